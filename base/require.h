@@ -1,0 +1,29 @@
+// Bad input is an exception that says what was wrong; numerical trouble is a status in a result, never an exception.
+#pragma once
+
+#include <source_location>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace softland {
+
+/// Input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns it into exit status 2.
+class InvalidInput : public std::runtime_error {
+ public:
+  explicit InvalidInput(const std::string& message, std::source_location where = std::source_location::current())
+      : std::runtime_error(message), where_(where) {}
+  /// The line of our source that found it, for debugging; not shown to users.
+  [[nodiscard]] const std::source_location& where() const noexcept { return where_; }
+
+ private:
+  std::source_location where_;
+};
+
+/// Throws InvalidInput with `message` unless `rule_holds`. Write the rule so that NaN fails it. Never compiled out.
+inline void require(bool rule_holds, std::string_view message,
+                    std::source_location where = std::source_location::current()) {
+  if (!rule_holds) throw InvalidInput(std::string(message), where);
+}
+
+}  // namespace softland

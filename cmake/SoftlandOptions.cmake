@@ -1,0 +1,35 @@
+# One interface target with the compile options of every target of ours.
+include(CheckCXXSourceRuns)
+
+add_library(softland_options INTERFACE)
+target_include_directories(softland_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
+target_compile_options(softland_options INTERFACE -Wall -Wextra -Wshadow -Wconversion)
+if(SOFTLAND_WERROR)
+  target_compile_options(softland_options INTERFACE -Werror)
+endif()
+
+# AVX2 where the building machine has it (the program is built where it runs); no -ffast-math: NaN must stay visible.
+set(CMAKE_REQUIRED_FLAGS -march=x86-64-v3)
+check_cxx_source_runs("int main() { volatile double a = 2; return __builtin_fma(a, a, -4.0) == 0.0 ? 0 : 1; }" SOFTLAND_RUNS_X86_64_V3)
+unset(CMAKE_REQUIRED_FLAGS)
+if(SOFTLAND_RUNS_X86_64_V3)
+  add_compile_options(-march=x86-64-v3)
+endif()
+# -fno-math-errno and -fno-trapping-math change no value: they let sqrt and comparisons be vectorised.
+add_compile_options(-fno-math-errno -fno-trapping-math)
+
+if(SOFTLAND_SANITIZE)
+  add_compile_options(-fsanitize=${SOFTLAND_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${SOFTLAND_SANITIZE})
+endif()
+if(SOFTLAND_COVERAGE)
+  add_compile_options(--coverage)
+  add_link_options(--coverage)
+endif()
+
+# softland_library(NAME SOURCES ... USES ...): a static library of one folder, linked only to what it names.
+function(softland_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+  add_library(softland_${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(softland_${name} PUBLIC softland_options ${ARG_USES})
+endfunction()

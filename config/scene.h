@@ -1,0 +1,92 @@
+// A scene file, read and checked: the only place that sees text, units and keys. Everything behind it is plain SI.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "model/device.h"
+#include "objectives/metrics.h"
+#include "waveforms/limits.h"
+#include "waveforms/waveform.h"
+
+namespace softland {
+
+/// The text of a scene with its source positions, and the changes made to it on the command line. A value: copies are independent.
+class SceneFile {
+ public:
+  /// Throws InvalidInput (file, line, column, what) when the file cannot be read or is not TOML.
+  static SceneFile load(const std::filesystem::path& path);
+  /// `name` stands for the file in messages; relative paths inside the scene are taken from `directory`.
+  static SceneFile parse(std::string_view text, std::string name, std::filesystem::path directory = ".");
+
+  /// Applies one `--set key.path=value`. The value is read as TOML; bare text that is not TOML is a string. May create sections.
+  /// Messages about such a key name the option ("--set gap.contact=...") instead of file and line.
+  void set(std::string_view assignment);
+  /// Replaces [waveform.DRIVE] by this waveform, volts and seconds with 17 significant digits (a Table is written as a pulse-free table of rows).
+  void set_waveform(const std::string& drive, const Waveform& waveform);
+
+  /// The scene as TOML text: parsing it again gives the same scene, digit for digit.
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] nlohmann::json json() const;
+  [[nodiscard]] const std::string& name() const;
+
+  struct Impl;
+  [[nodiscard]] const Impl& impl() const { return *impl_; }
+  SceneFile(const SceneFile&);
+  SceneFile& operator=(const SceneFile&);
+  SceneFile(SceneFile&&) noexcept;
+  SceneFile& operator=(SceneFile&&) noexcept;
+  ~SceneFile();
+
+ private:
+  explicit SceneFile(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Voltages that the units Vsp and Vdp stand for.
+struct PullInVoltages {
+  double static_pull_in = 0;   ///< Vsp [V]
+  double dynamic_pull_in = 0;  ///< Vdp [V]
+};
+
+/// Waveforms and limits in volts. Names are electrode names and "piezo".
+struct Drives {
+  std::map<std::string, Waveform> waveforms;
+  std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])
+};
+
+struct SimulateOptions {
+  double duration = 0;       ///< [s]; 0: choose (six periods of the first mode)
+  double accuracy = 1e-6;    ///< target relative error of t_i, v_i and B_H
+  double tolerance = 0;      ///< relative tolerance of the integrator; 0: derived from accuracy
+};
+
+struct Scene {
+  std::string title;
+  Device device;
+  SimulateOptions simulate;
+  MetricsOptions metrics;
+  /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
+  std::vector<std::string> need_pull_in;
+  std::vector<std::string> warnings;
+  SceneFile file;
+
+  /// Waveforms and limits in volts. `pull_in` must hold every electrode of need_pull_in; electrodes missing from it get no default limit.
+  /// Throws InvalidInput for a waveform outside its family's rules or outside its driver's limits.
+  [[nodiscard]] Drives drives(const std::map<std::string, PullInVoltages>& pull_in) const;
+};
+
+/// Throws InvalidInput whose message has file, line, key path, value, rule and, for an unknown key, the nearest known one.
+/// Everything is checked here, waveforms included (up to what needs the pull-in voltages).
+[[nodiscard]] Scene read_scene(const SceneFile& file);
+
+/// The scene with every default written out and every voltage in volts.
+[[nodiscard]] SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltages>& pull_in);
+
+}  // namespace softland

@@ -1,0 +1,85 @@
+// The described switch, as plain numbers in SI units. A part that is absent is an effect that is not simulated.
+// Coordinates: x along the beam from the clamped end; deflection y and every force positive towards the electrode.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace softland {
+
+/// A cantilever of rectangular section (Euler-Bernoulli).
+struct Structure {
+  double length = 0;         ///< L [m]
+  double width = 0;          ///< a [m]
+  double thickness = 0;      ///< b [m]
+  double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
+  double density = 0;        ///< rho [kg/m^3]
+  int modes = 4;
+  double damping_ratio = 0;  ///< zeta of every mode
+  bool plate_strain = false;  ///< use E / (1 - nu^2)
+  double poissons_ratio = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct Gap {
+  double electrode = 0;  ///< d0, rest distance beam to electrode [m]
+  double contact = 0;    ///< dt, rest distance contact point to contact plane [m]
+};
+
+enum class Fringing { none, bao_2001, meijs_fokkema, linear };
+
+struct Electrode {
+  std::string name;
+  double begin = 0;  ///< [m] from the clamped end
+  double end = 0;    ///< [m]
+  Fringing fringing = Fringing::meijs_fokkema;
+};
+
+enum class GasModel { strip };
+
+struct Gas {
+  GasModel model = GasModel::strip;
+  double viscosity = 0;  ///< mu [Pa s]
+};
+
+enum class ContactModel { linear, asperity_uniform };
+
+struct Contact {
+  ContactModel model = ContactModel::asperity_uniform;
+  double pad_length = 0;         ///< lt [m]: the pad is [L - lt, L]; the force acts at its centre
+  double stiffness = 0;          ///< linear: [N/m]
+  double asperity_radius = 0;    ///< R [m]
+  double asperity_density = 0;   ///< eta [1/m^2]
+  double asperity_height = 0;    ///< Hm [m]
+  double effective_modulus = 0;  ///< E* [Pa]
+};
+
+/// A piezoelectric layer on the face away from the electrode, as wide as the beam.
+struct Piezo {
+  double begin = 0;           ///< Lp1 [m]
+  double end = 0;             ///< Lp2 [m]
+  double thickness = 0;       ///< bp [m]
+  double youngs_modulus = 0;  ///< Ep [Pa]
+  double density = 0;         ///< [kg/m^3]
+  double d31 = 0;             ///< [m/V], negative for the usual ceramics
+};
+
+struct Device {
+  Structure structure;
+  Gap gap;
+  std::vector<Electrode> electrodes;
+  std::optional<Gas> gas;
+  std::optional<Contact> contact;
+  std::optional<Piezo> piezo;
+
+  /// x_c, the centre of the pad [m]: all figures of merit are taken there. The free end where there is no contact.
+  [[nodiscard]] double contact_position() const {
+    return structure.length - (contact ? contact->pad_length / 2 : 0);
+  }
+};
+
+/// Throws InvalidInput naming the quantity, its value and the rule when a number is outside what the model can mean.
+void validate(const Device& device);
+
+}  // namespace softland

@@ -1,0 +1,20 @@
+// How a numerical computation ended. Numerical trouble is a status, never an exception.
+#pragma once
+
+#include <string_view>
+
+namespace softland {
+
+enum class Status {
+  not_run,
+  done,
+  no_contact,         ///< the contact point never reached the contact gap in the window
+  not_settled,        ///< a rebound was under way, or had only just ended, at the end of the window
+  collapsed_at_rest,  ///< no stable static equilibrium to start from
+  numerical_failure,
+  interrupted,
+};
+
+[[nodiscard]] std::string_view to_string(Status status);
+
+}  // namespace softland

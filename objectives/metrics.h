@@ -1,0 +1,46 @@
+// Figures of merit of a closing (names after Bognash 2019). Every figure is taken at the contact point.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "model/trajectory.h"
+
+namespace softland {
+
+struct MetricsOptions {
+  double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
+};
+
+/// An interval after first contact in which the contact point stands above the first-touch plane.
+struct Rebound {
+  double begin = 0;   ///< [s]
+  double end = 0;     ///< [s]; NaN when it is under way at the end of the window
+  double height = 0;  ///< largest separation in it [m]; a lower bound when it is under way
+  double time_of_height = 0;  ///< [s]
+};
+
+struct Metrics {
+  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
+  Status status = Status::not_run;
+  double initial_contact_time = unset;    ///< t_i [s]
+  double permanent_contact_time = unset;  ///< t_p [s]; NaN when not settled
+  double bounce_time = unset;             ///< t_b = t_p - t_i [s]
+  int bounce_count = 0;                   ///< N_B, significant rebounds; meaningless when nothing touched
+  double major_bounce_height = unset;     ///< B_H [m]; 0 when there is no rebound
+  double impact_velocity = unset;         ///< v_i [m/s]
+  double peak_contact_force = unset;      ///< [N]
+  double impact_energy = unset;           ///< sum over touches of the largest stored contact energy [J]
+  double hold_force = unset;              ///< [N]
+  double drive_energy = unset;            ///< [J]
+  bool settled = false;
+};
+
+/// All rebounds, significant or not, in order. The trajectory's heights come from the extremum of its interpolant, not from its knots.
+[[nodiscard]] std::vector<Rebound> rebounds(const Trajectory& trajectory);
+
+/// Never throws: trouble is in the status (the trajectory's own if that is not `done`, else done | no_contact | not_settled).
+[[nodiscard]] Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options = {});
+
+}  // namespace softland

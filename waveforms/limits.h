@@ -1,0 +1,21 @@
+// What a voltage source can do, and whether a signal stays inside.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "waveforms/signal.h"
+
+namespace softland {
+
+/// Limits of a source: hard bounds of every search.
+struct DriverLimits {
+  double min_voltage = 0;                                     ///< [V]
+  double max_voltage = 0;                                     ///< [V]
+  double max_slew = std::numeric_limits<double>::infinity();  ///< [V/s]
+};
+
+/// Empty when the signal stays inside the limits for ever (to 1e-12 relative), else one sentence with the value and the limit.
+[[nodiscard]] std::string violation(const Signal& signal, const DriverLimits& limits);
+
+}  // namespace softland

@@ -1,0 +1,19 @@
+// Pulse: n levels, n - 1 switching times, linear edges. The first edge runs from 0 V on [0, edge]; the edge from level k to level k + 1
+// runs on [t_k, t_k + edge]. The last level holds for ever.
+#pragma once
+
+#include <vector>
+
+#include "waveforms/signal.h"
+
+namespace softland {
+
+struct Pulse {
+  std::vector<double> levels;  ///< [V], n >= 1
+  std::vector<double> times;   ///< [s], n - 1, increasing by at least edge; the first at least edge
+  double edge = 0;             ///< [s], >= 0
+};
+
+[[nodiscard]] Signal signal(const Pulse& pulse);
+
+}  // namespace softland

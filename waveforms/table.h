@@ -1,0 +1,21 @@
+// Table: measured or exported voltages, linear between rows, the last value held for ever. Two rows of the same time are a jump.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "waveforms/signal.h"
+
+namespace softland {
+
+struct Table {
+  std::vector<double> time;     ///< [s], from 0 on, not decreasing
+  std::vector<double> voltage;  ///< [V]
+};
+
+[[nodiscard]] Signal signal(const Table& table);
+
+/// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file, line and rule.
+[[nodiscard]] Table read_table(const std::string& file, const std::string& drive);
+
+}  // namespace softland
