@@ -1,0 +1,135 @@
+#include "waveforms/export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <iterator>
+#include <set>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+/// Sines become polylines this far from them, relative to the signal's peak: below the step of a 12-bit generator.
+constexpr double kSineTolerance = 1e-4;
+
+void require_signals(const std::map<std::string, Signal>& signals) {
+  require(!signals.empty(), "there is no waveform to export; there must be at least one");
+}
+
+void require_end(double end) {
+  require(end >= 0 && std::isfinite(end),
+          fmt::format("the end of an exported waveform is {} s; it must be finite and >= 0", end));
+}
+
+/// Appends the points of an oscillating piece strictly inside (begin, end): a chord of length h is at most h^2 max|V''| / 8 off.
+void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
+                   double tolerance) {
+  if (!piece.oscillates() || !(end > begin)) return;
+  const double w = piece.angular_frequency;
+  const double envelope = std::max(std::abs(piece.amplitude + piece.amplitude_slope * (begin - piece.begin)),
+                                   std::abs(piece.amplitude + piece.amplitude_slope * (end - piece.begin)));
+  const double curvature = envelope * w * w + 2 * std::abs(piece.amplitude_slope) * w;
+  require(tolerance > 0, fmt::format("the tolerance of the polyline of a sine is {} V; it must be > 0", tolerance));
+  const double chords = std::ceil((end - begin) * std::sqrt(curvature / (8 * tolerance)));
+  constexpr double most_chords = 1e7;
+  require(chords <= most_chords, fmt::format("a polyline within {} V of this waveform needs {} points; it may have at most {}",
+                                             tolerance, chords, most_chords));
+  for (double i = 1; i < chords; ++i) {
+    const double time = begin + (end - begin) * (i / chords);
+    points.emplace_back(time, piece.voltage(time));
+  }
+}
+
+}  // namespace
+
+std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance, double jump_time) {
+  require_end(end);
+  require(jump_time >= 0 && std::isfinite(jump_time), fmt::format("jump_time is {} s; it must be finite and >= 0", jump_time));
+  // A jump must end well before the next corner, which it would cut off otherwise.
+  constexpr double share_of_interval = 1e-3;
+  const std::vector<SignalPiece>& pieces = signal.pieces();
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t i = 0; i < pieces.size() && pieces[i].begin <= end; ++i) {
+    const SignalPiece& piece = pieces[i];
+    const double next = i + 1 < pieces.size() ? pieces[i + 1].begin : std::numeric_limits<double>::infinity();
+    const double before = signal.voltage_before(piece.begin);
+    const double after = piece.voltage(piece.begin);
+    double from = piece.begin;
+    if (before != after) {
+      points.emplace_back(piece.begin, before);
+      if (jump_time > 0) {
+        from = std::max(piece.begin + std::min(jump_time, share_of_interval * (next - piece.begin)),
+                        std::nextafter(piece.begin, std::numeric_limits<double>::infinity()));
+      }
+    }
+    points.emplace_back(from, piece.voltage(from));
+    const double to = std::min(next, end);
+    append_inside(points, piece, from, to, tolerance);
+    if (next > end && end > from) points.emplace_back(end, piece.voltage(end));
+  }
+  return points;
+}
+
+std::string csv(const std::map<std::string, Signal>& signals, double end) {
+  require_signals(signals);
+  std::set<double> times;
+  std::set<double> jumps;
+  std::string text = "time_s";
+  for (const auto& [drive, signal] : signals) {
+    require(!drive.empty() && drive.find_first_of(",\"\r\n#") == std::string::npos,
+            fmt::format(
+                "the name of a drive is \"{}\"; in a CSV file it must not be empty nor hold a comma, quote, hash or line break",
+                drive));
+    text += "," + drive;
+    for (const auto& [time, voltage] : polyline(signal, end, kSineTolerance * signal.peak(), 0)) {
+      times.insert(time);
+      if (signal.voltage_before(time) != signal.voltage(time)) jumps.insert(time);
+    }
+  }
+  text += '\n';
+  const auto append = [&](double time, auto voltage) {
+    // Shortest text that reads back to the same double.
+    fmt::format_to(std::back_inserter(text), "{}", time);
+    for (const auto& [drive, signal] : signals) fmt::format_to(std::back_inserter(text), ",{}", voltage(signal));
+    text += '\n';
+  };
+  for (const double time : times) {
+    if (jumps.contains(time)) append(time, [&](const Signal& signal) { return signal.voltage_before(time); });
+    append(time, [&](const Signal& signal) { return signal.voltage(time); });
+  }
+  return text;
+}
+
+std::string spice_pwl(const std::map<std::string, Signal>& signals, double end) {
+  require_signals(signals);
+  // Far below any time a switch knows, and resolved by the 17 digits of a time of a second.
+  constexpr double jump_time = 1e-12;
+  std::string text = "* Drive waveforms, one subcircuit each: Xname plus minus softland_drive\n";
+  std::set<std::string> names;
+  for (const auto& [drive, signal] : signals) {
+    // SPICE reads names without regard to case and knows letters, digits and underscores everywhere.
+    std::string name = "softland_";
+    for (const char c : drive) {
+      const auto byte = static_cast<unsigned char>(c);
+      name += byte < 128 && std::isalnum(byte) != 0 ? static_cast<char>(std::tolower(byte)) : '_';
+    }
+    require(names.insert(name).second,
+            fmt::format("the name of a drive is \"{}\"; another one has the same SPICE name {}", drive, name));
+    fmt::format_to(std::back_inserter(text), ".subckt {} plus minus\nVdrive plus minus PWL(\n", name);
+    double last = -1;
+    for (const auto& [time, voltage] : polyline(signal, end, kSineTolerance * signal.peak(), jump_time)) {
+      // Only jumps a rounding error apart can meet here; SPICE wants times that increase.
+      if (!(time > last)) continue;
+      fmt::format_to(std::back_inserter(text), "+ {} {}\n", time, voltage);
+      last = time;
+    }
+    fmt::format_to(std::back_inserter(text), "+ )\n.ends {}\n", name);
+  }
+  return text;
+}
+
+}  // namespace softland

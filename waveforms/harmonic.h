@@ -1,5 +1,6 @@
-// Harmonic dither on a step:  V(t) = base + amplitude e(t) sin(angular_frequency t + phase)  for t in [start, end], base elsewhere (t >= 0).
-// The envelope e rises linearly from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard switch.
+// Harmonic dither on a step:  V(t) = base + amplitude e(t) sin(angular_frequency t + phase)  for t in [start, end], base
+// elsewhere (t >= 0). The envelope e rises linearly from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade,
+// end]; fade = 0 is a hard switch.
 #pragma once
 
 #include <limits>
@@ -9,13 +10,13 @@
 namespace softland {
 
 struct Harmonic {
-  double base = 0;               ///< [V]
-  double amplitude = 0;          ///< [V]
-  double angular_frequency = 0;  ///< [rad/s], > 0
-  double phase = 0;              ///< [rad]
-  double start = 0;              ///< [s], >= 0
+  double base = 0;                                       ///< [V]
+  double amplitude = 0;                                  ///< [V]
+  double angular_frequency = 0;                          ///< [rad/s], > 0
+  double phase = 0;                                      ///< [rad]
+  double start = 0;                                      ///< [s], >= 0
   double end = std::numeric_limits<double>::infinity();  ///< [s], > start; a finite end needs end - start >= 2 fade
-  double fade = 0;               ///< [s], >= 0
+  double fade = 0;                                       ///< [s], >= 0
 };
 
 [[nodiscard]] Signal signal(const Harmonic& harmonic);

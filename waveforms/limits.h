@@ -16,6 +16,7 @@ struct DriverLimits {
 };
 
 /// Empty when the signal stays inside the limits for ever (to 1e-12 relative), else one sentence with the value and the limit.
+/// The 0 V every signal starts from count, so that a min_voltage above 0 V is always violated. A limit that is NaN is violated.
 [[nodiscard]] std::string violation(const Signal& signal, const DriverLimits& limits);
 
 }  // namespace softland

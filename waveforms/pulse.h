@@ -1,5 +1,5 @@
-// Pulse: n levels, n - 1 switching times, linear edges. The first edge runs from 0 V on [0, edge]; the edge from level k to level k + 1
-// runs on [t_k, t_k + edge]. The last level holds for ever.
+// Pulse: n levels, n - 1 switching times, linear edges. The first edge runs from 0 V on [0, edge]; the edge from level k to level
+// k + 1 runs on [t_k, t_k + edge]. The last level holds for ever.
 #pragma once
 
 #include <vector>

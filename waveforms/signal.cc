@@ -1,0 +1,243 @@
+#include "waveforms/signal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// The end value [V] whose straight connection from (piece.begin, piece.value) has the piece's slope bit for bit, where there is
+/// one; `favourite` is tried first. A table that jumps after a ramp, and its export, need it: value + slope * duration is off by
+/// rounding.
+double end_of_straight(const SignalPiece& piece, double end, double favourite) {
+  const double duration = end - piece.begin;
+  const auto has_the_slope = [&](double value) { return (value - piece.value) / duration == piece.slope; };
+  if (has_the_slope(favourite)) return favourite;
+  const double rise = piece.slope * duration;
+  const double computed = piece.value + rise;
+  // Two roundings stand between the original end value and `rise`, one more between `rise` and `computed`.
+  constexpr int reach = 4;
+  double rise_up = rise, rise_down = rise, value_up = computed, value_down = computed;
+  for (int i = 0; i <= reach; ++i) {
+    for (const double value : {piece.value + rise_up, piece.value + rise_down, value_up, value_down}) {
+      if (has_the_slope(value)) return value;
+    }
+    rise_up = std::nextafter(rise_up, HUGE_VAL);
+    rise_down = std::nextafter(rise_down, -HUGE_VAL);
+    value_up = std::nextafter(value_up, HUGE_VAL);
+    value_down = std::nextafter(value_down, -HUGE_VAL);
+  }
+  return computed;
+}
+
+/// What rounding can put between the end of a piece and the value it was meant to end on [V].
+double rounding_at_end(const SignalPiece& piece, double end) {
+  constexpr double roundings = 16;
+  const double duration = end - piece.begin;
+  const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
+  const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
+  return roundings * kEpsilon * (straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)));
+}
+
+/// Where `function` changes sign in (low, high): bisection to the last bit that matters, nothing if it does not change sign.
+template <typename Function>
+void append_root(std::vector<double>& times, Function function, double low, double high) {
+  const double at_low = function(low);
+  const double at_high = function(high);
+  if (!((at_low < 0 && at_high > 0) || (at_low > 0 && at_high < 0))) return;
+  // A quarter period halved 40 times: an extremum is flat, so that its value is exact long before.
+  constexpr int halvings = 40;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    ((function(middle) > 0) == (at_high > 0) ? high : low) = middle;
+  }
+  times.push_back(0.5 * (low + high));
+}
+
+/// Appends times in [low, high] among which are all extrema of voltage and rate there; low and high are among them.
+///
+/// With A = amplitude + amplitude_slope (t - begin): V'' ~ 2 A' cos - A w sin. Inside a quarter period in which A keeps its sign
+/// this is either of one sign or monotone, so it has one root at most; between such roots V' is monotone and has one root at
+/// most.
+void append_extrema(std::vector<double>& times, const SignalPiece& piece, double low, double high) {
+  const double quarter = 0.5 * std::numbers::pi;
+  std::vector<double> grid{low, high};
+  const double first = std::ceil((piece.angular_frequency * low + piece.phase) / quarter);
+  const double last = std::floor((piece.angular_frequency * high + piece.phase) / quarter);
+  // A period has four quarters; more than a few can only be an angle beyond 2^53, where the sine itself has no digit left.
+  constexpr int most_quarters = 6;
+  for (int k = 0; k <= most_quarters && first + k <= last; ++k) {
+    grid.push_back(((first + k) * quarter - piece.phase) / piece.angular_frequency);
+  }
+  if (piece.amplitude_slope != 0) grid.push_back(piece.begin - piece.amplitude / piece.amplitude_slope);
+  std::erase_if(grid, [&](double time) { return !(time >= low && time <= high); });
+  std::sort(grid.begin(), grid.end());
+
+  const auto curvature = [&](double time) {
+    const double angle = piece.angular_frequency * time + piece.phase;
+    const double envelope = piece.amplitude + piece.amplitude_slope * (time - piece.begin);
+    return 2 * piece.amplitude_slope * std::cos(angle) - envelope * piece.angular_frequency * std::sin(angle);
+  };
+  std::vector<double> inflections = grid;
+  for (std::size_t i = 0; i + 1 < grid.size(); ++i) append_root(inflections, curvature, grid[i], grid[i + 1]);
+  std::sort(inflections.begin(), inflections.end());
+  const auto rate = [&](double time) { return piece.rate(time); };
+  for (std::size_t i = 0; i + 1 < inflections.size(); ++i) append_root(times, rate, inflections[i], inflections[i + 1]);
+  times.insert(times.end(), inflections.begin(), inflections.end());
+}
+
+/// Times in [piece.begin, end] among which are those of the extreme voltages and the extreme rates.
+///
+/// At a fixed angle of the sine, V and V' are linear in the number of the period: no period between the first and the last can
+/// exceed both.
+std::vector<double> extreme_times(const SignalPiece& piece, double end) {
+  std::vector<double> times{piece.begin};
+  if (std::isfinite(end)) times.push_back(end);
+  if (!piece.oscillates()) return times;
+  const double period = 2 * std::numbers::pi / piece.angular_frequency;
+  append_extrema(times, piece, piece.begin, std::min(end, piece.begin + period));
+  if (std::isfinite(end)) append_extrema(times, piece, std::max(piece.begin, end - period), end);
+  return times;
+}
+
+/// Calls `see(piece, time)` at the extreme times of every piece on [0, end].
+template <typename See>
+void for_each_extreme(const std::vector<SignalPiece>& pieces, double end, See see) {
+  require(end >= 0, fmt::format("the end of the time span is {} s; it must be >= 0", end));
+  for (std::size_t i = 0; i < pieces.size() && pieces[i].begin <= end; ++i) {
+    const double next = i + 1 < pieces.size() ? pieces[i + 1].begin : std::numeric_limits<double>::infinity();
+    for (const double time : extreme_times(pieces[i], std::min(next, end))) see(pieces[i], time);
+  }
+}
+
+}  // namespace
+
+Signal::Signal(std::vector<SignalPiece> pieces) : pieces_(std::move(pieces)) {
+  require(!pieces_.empty(), "a signal has no pieces; it must have at least one");
+  require(pieces_.front().begin == 0,
+          fmt::format("the first piece of a signal begins at {} s; it must begin at 0 s", pieces_.front().begin));
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const SignalPiece& piece = pieces_[i];
+    for (const auto& [name, number] :
+         {std::pair{"begin", piece.begin}, std::pair{"value", piece.value}, std::pair{"slope", piece.slope},
+          std::pair{"amplitude", piece.amplitude}, std::pair{"amplitude_slope", piece.amplitude_slope},
+          std::pair{"angular_frequency", piece.angular_frequency}, std::pair{"phase", piece.phase}}) {
+      require(std::isfinite(number), fmt::format("{} of piece {} of a signal is {}; it must be finite", name, i + 1, number));
+    }
+    require(i == 0 || piece.begin > pieces_[i - 1].begin,
+            fmt::format("piece {} of a signal begins at {} s; it must begin after the piece before it", i + 1, piece.begin));
+    require(!piece.oscillates() || piece.angular_frequency > 0,
+            fmt::format("angular_frequency of piece {} of a signal is {} rad/s; it must be > 0", i + 1, piece.angular_frequency));
+  }
+  const SignalPiece& last = pieces_.back();
+  require(last.slope == 0,
+          fmt::format("slope of the last piece of a signal is {} V/s; it lasts for ever and must be level", last.slope));
+  require(last.amplitude_slope == 0,
+          fmt::format("amplitude_slope of the last piece of a signal is {} V/s; it lasts for ever and must be 0",
+                      last.amplitude_slope));
+}
+
+Signal Signal::constant(double voltage) { return Signal({SignalPiece{.value = voltage}}); }
+
+Signal Signal::piecewise_linear(const std::vector<std::pair<double, double>>& points) {
+  require(!points.empty(), "a piecewise linear signal has no points; it must have at least one");
+  std::size_t count = points.size();
+  while (count > 1 && points[count - 2].second == points[count - 1].second) --count;
+  std::vector<SignalPiece> pieces;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [time, voltage] = points[i];
+    if (i + 1 == count) {
+      pieces.push_back({.begin = time, .value = voltage});
+      break;
+    }
+    const auto& [next_time, next_voltage] = points[i + 1];
+    require(next_time >= time, fmt::format("the time of point {} is {} s; it must be at least the {} s of the point before",
+                                           i + 2, next_time, time));
+    if (next_time == time) continue;
+    pieces.push_back({.begin = time, .value = voltage, .slope = (next_voltage - voltage) / (next_time - time)});
+  }
+  return Signal(std::move(pieces));
+}
+
+std::size_t Signal::piece_at(double time) const {
+  const auto after = std::upper_bound(pieces_.begin() + 1, pieces_.end(), time,
+                                      [](double t, const SignalPiece& piece) { return t < piece.begin; });
+  return static_cast<std::size_t>(after - pieces_.begin()) - 1;
+}
+
+double Signal::voltage(double time) const { return time < 0 ? 0 : pieces_[piece_at(time)].voltage(time); }
+
+double Signal::left_limit(std::size_t next) const {
+  const SignalPiece& piece = pieces_[next - 1];
+  const double end = pieces_[next].begin;
+  const double continuous = pieces_[next].voltage(end);
+  const double computed = piece.oscillates() ? piece.voltage(end) : end_of_straight(piece, end, continuous);
+  if (piece.oscillates() || pieces_[next].oscillates()) {
+    const double rounding = rounding_at_end(piece, end) + rounding_at_end(pieces_[next], end);
+    if (std::abs(computed - continuous) <= rounding) return continuous;
+  }
+  return computed;
+}
+
+double Signal::voltage_before(double time) const {
+  if (time <= 0) return 0;
+  const std::size_t piece = piece_at(time);
+  return piece > 0 && pieces_[piece].begin == time ? left_limit(piece) : pieces_[piece].voltage(time);
+}
+
+std::vector<double> Signal::breakpoints() const {
+  std::vector<double> begins;
+  begins.reserve(pieces_.size());
+  for (const SignalPiece& piece : pieces_) begins.push_back(piece.begin);
+  return begins;
+}
+
+double Signal::hold_level() const { return pieces_.back().value; }
+
+bool Signal::is_zero() const {
+  return std::all_of(pieces_.begin(), pieces_.end(),
+                     [](const SignalPiece& piece) { return piece.value == 0 && piece.slope == 0 && !piece.oscillates(); });
+}
+
+double Signal::maximum(double end) const {
+  double largest = 0;
+  for_each_extreme(pieces_, end,
+                   [&](const SignalPiece& piece, double time) { largest = std::max(largest, piece.voltage(time)); });
+  return largest;
+}
+
+double Signal::minimum(double end) const {
+  double smallest = 0;
+  for_each_extreme(pieces_, end,
+                   [&](const SignalPiece& piece, double time) { smallest = std::min(smallest, piece.voltage(time)); });
+  return smallest;
+}
+
+double Signal::peak(double end) const { return std::max(maximum(end), -minimum(end)); }
+
+double Signal::peak_slew(double end) const {
+  double largest = 0;
+  for_each_extreme(pieces_, end,
+                   [&](const SignalPiece& piece, double time) { largest = std::max(largest, std::abs(piece.rate(time))); });
+  for (const SignalPiece& piece : pieces_) {
+    if (piece.begin <= end && voltage_before(piece.begin) != piece.voltage(piece.begin))
+      return std::numeric_limits<double>::infinity();
+  }
+  return largest;
+}
+
+double Signal::resolving_step(double time) const {
+  // Fine enough for a controller of order 2 and more to see every swing, coarse enough to leave the step to its error test.
+  constexpr double steps_per_period = 20;
+  const SignalPiece& piece = pieces_[piece_at(time)];
+  if (!piece.oscillates()) return std::numeric_limits<double>::infinity();
+  return 2 * std::numbers::pi / piece.angular_frequency / steps_per_period;
+}
+
+}  // namespace softland

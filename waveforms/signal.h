@@ -6,8 +6,10 @@
 // Time integration stops at every breakpoint, so that no step crosses a corner or a jump.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace softland {
@@ -21,25 +23,44 @@ struct SignalPiece {
   double angular_frequency = 0;  ///< [rad/s]
   double phase = 0;              ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
 
-  [[nodiscard]] double voltage(double time) const;  ///< [V]
-  [[nodiscard]] double rate(double time) const;     ///< dV/dt [V/s]
+  [[nodiscard]] bool oscillates() const { return amplitude != 0 || amplitude_slope != 0; }
+  /// [V]. The formula goes on past both ends of the piece, so that an integrator may look a little beyond a breakpoint.
+  [[nodiscard]] double voltage(double time) const {
+    const double elapsed = time - begin;
+    const double straight = value + slope * elapsed;
+    if (!oscillates()) return straight;
+    return straight + (amplitude + amplitude_slope * elapsed) * std::sin(angular_frequency * time + phase);
+  }
+  /// dV/dt [V/s]
+  [[nodiscard]] double rate(double time) const {
+    if (!oscillates()) return slope;
+    const double angle = angular_frequency * time + phase;
+    const double envelope = amplitude + amplitude_slope * (time - begin);
+    return slope + amplitude_slope * std::sin(angle) + envelope * angular_frequency * std::cos(angle);
+  }
 };
 
 class Signal {
  public:
   /// 0 V for ever.
   Signal() : pieces_{SignalPiece{}} {}
-  /// Throws InvalidInput unless the pieces start at 0, begins strictly increase and every number is finite.
+  /// Throws InvalidInput unless the pieces start at 0, begins strictly increase, every number is finite, the angular frequency is
+  /// positive where there is an amplitude, and the last piece, which lasts for ever, has no slope and no amplitude_slope.
   explicit Signal(std::vector<SignalPiece> pieces);
   /// A constant voltage [V] from t = 0 on.
   static Signal constant(double voltage);
+  /// Straight connections of points [s, V]; the last value holds for ever. Two points of the same time are a jump. The
+  /// breakpoints are the times of the points, less those at the end that only repeat the held value. Throws InvalidInput unless
+  /// there is a point, times start at 0 and do not decrease, and every number is finite.
+  static Signal piecewise_linear(const std::vector<std::pair<double, double>>& points);
 
   [[nodiscard]] const std::vector<SignalPiece>& pieces() const { return pieces_; }
   /// The piece that holds on [time, time + something): at a breakpoint the later one.
   [[nodiscard]] std::size_t piece_at(double time) const;
   /// [V]; at a jump the value after it; 0 for time < 0.
   [[nodiscard]] double voltage(double time) const;
-  /// [V] at the end of the piece that ends at `time` (the limit from the left); 0 at time <= 0.
+  /// [V] the limit from the left; 0 at time <= 0. Equal to voltage(time), bit for bit, where the signal does not jump: what
+  /// rounding leaves between the end of one piece and the beginning of the next is not a jump.
   [[nodiscard]] double voltage_before(double time) const;
   /// [s] beginnings of all pieces, 0 included.
   [[nodiscard]] std::vector<double> breakpoints() const;
@@ -48,6 +69,7 @@ class Signal {
   [[nodiscard]] bool is_zero() const;
 
   /// Largest and smallest voltage on [0, end] [V], the starting 0 V included, sines to 1e-9 of their amplitude.
+  /// These four throw InvalidInput unless end >= 0.
   [[nodiscard]] double maximum(double end = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] double minimum(double end = std::numeric_limits<double>::infinity()) const;
   /// Largest |V| on [0, end] [V].
@@ -58,6 +80,9 @@ class Signal {
   [[nodiscard]] double resolving_step(double time) const;
 
  private:
+  /// voltage_before at the beginning of piece `next`, which is not the first.
+  [[nodiscard]] double left_limit(std::size_t next) const;
+
   std::vector<SignalPiece> pieces_;
 };
 

@@ -1,0 +1,115 @@
+#include "waveforms/table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blank = " \t\r";
+  const std::size_t begin = text.find_first_not_of(blank);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(blank) - begin + 1);
+}
+
+std::vector<std::string_view> cells(std::string_view line) {
+  std::vector<std::string_view> result;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    result.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return result;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+/// The column of `name`, which must be there exactly once.
+std::size_t column(const std::vector<std::string_view>& header, std::string_view name, const std::string& place) {
+  const auto count = std::count(header.begin(), header.end(), name);
+  require(count == 1, fmt::format("{}: there are {} columns named \"{}\" in the header \"{}\"; there must be one", place, count,
+                                  name, fmt::join(header, ",")));
+  return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
+}
+
+double number(std::string_view text, std::string_view name, const std::string& place) {
+  // from_chars reads every decimal number to the nearest double whatever the locale, but knows no leading plus.
+  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+  double value = 0;
+  const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  require(error == std::errc() && stop == digits.data() + digits.size() && std::isfinite(value),
+          fmt::format("{}: {} is \"{}\"; it must be a finite number", place, name, text));
+  return value;
+}
+
+}  // namespace
+
+Signal signal(const Table& table) {
+  const std::size_t count = table.time.size();
+  require(count == table.voltage.size(),
+          fmt::format("a table has {} times and {} voltages; there must be as many of both", count, table.voltage.size()));
+  require(count >= 1, "a table has no rows; there must be at least one");
+  require(table.time.front() == 0, fmt::format("the time of the first row of a table is {} s; it must be 0", table.time.front()));
+  std::vector<std::pair<double, double>> points;
+  points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    require(std::isfinite(table.time[i]) && (i == 0 || table.time[i] >= table.time[i - 1]),
+            fmt::format("the time of row {} of a table is {} s; it must be finite and not before the row above", i + 1,
+                        table.time[i]));
+    require(std::isfinite(table.voltage[i]),
+            fmt::format("the voltage of row {} of a table is {} V; it must be finite", i + 1, table.voltage[i]));
+    points.emplace_back(table.time[i], table.voltage[i]);
+  }
+  return Signal::piecewise_linear(points);
+}
+
+Table read_table(const std::string& file, const std::string& drive) {
+  std::ifstream stream(file, std::ios::binary);
+  require(stream.is_open(), fmt::format("{}: the file cannot be opened for reading", file));
+
+  Table table;
+  std::string line;
+  std::size_t time_column = 0;
+  std::size_t drive_column = 0;
+  std::size_t columns = 0;
+  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    std::string_view text = line;
+    if (line_number == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    text = trimmed(text);
+    if (text.empty() || text.starts_with('#')) continue;
+
+    const std::string place = fmt::format("{}:{}", file, line_number);
+    const std::vector<std::string_view> row = cells(text);
+    if (columns == 0) {
+      time_column = column(row, "time_s", place);
+      drive_column = column(row, drive, place);
+      columns = row.size();
+      continue;
+    }
+    require(row.size() == columns,
+            fmt::format("{}: the row has {} cells; it must have {} as the header", place, row.size(), columns));
+    const double time = number(row[time_column], "time_s", place);
+    if (table.time.empty()) require(time == 0, fmt::format("{}: the first time_s is {} s; it must be 0", place, time));
+    if (!table.time.empty()) {
+      require(time >= table.time.back(),
+              fmt::format("{}: time_s is {} s; it must not be before the {} s of the row above", place, time, table.time.back()));
+    }
+    table.time.push_back(time);
+    table.voltage.push_back(number(row[drive_column], drive, place));
+  }
+  require(!stream.bad(), fmt::format("{}: the file cannot be read", file));
+  require(columns > 0, fmt::format("{}: the file has no header; its first line must be time_s and one column per drive", file));
+  require(!table.time.empty(), fmt::format("{}: the file has a header and no rows; there must be at least one", file));
+  return table;
+}
+
+}  // namespace softland

@@ -15,7 +15,8 @@ struct Table {
 
 [[nodiscard]] Signal signal(const Table& table);
 
-/// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file, line and rule.
+/// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file,
+/// line and rule.
 [[nodiscard]] Table read_table(const std::string& file, const std::string& drive);
 
 }  // namespace softland
