@@ -1,0 +1,118 @@
+// Ipopt 3.11.9 as a bounded quasi-Newton method with differenced gradients. Two solves at once abort the process (its linear
+// solver MUMPS keeps global state), hence the mutex. Ipopt answers an objective it cannot evaluate by shortening steps, thousands
+// of times; the Strand counts, and its Cut passes through Ipopt, which catches whatever callbacks throw and returns
+// NonIpopt_Exception_Thrown.
+#include <IpIpoptApplication.hpp>
+#include <IpTNLP.hpp>
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+
+#include "optimizers/backends.h"
+
+namespace softland::internal {
+namespace {
+
+std::timed_mutex& one_solve_at_a_time() {
+  static std::timed_mutex mutex;
+  return mutex;
+}
+constexpr std::chrono::milliseconds kLookUp{20};  ///< while waiting: how often to see whether there is still time
+
+class BoxProblem final : public Ipopt::TNLP {
+ public:
+  BoxProblem(const Point& start, Strand& strand) : start_(start), strand_(strand) {}
+
+  bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,
+                    IndexStyleEnum& index_style) override {
+    n = static_cast<Ipopt::Index>(start_.size());
+    m = 0;
+    jacobian_entries = 0;
+    hessian_entries = 0;
+    index_style = C_STYLE;
+    return true;
+  }
+  bool get_bounds_info(Ipopt::Index n, Ipopt::Number* lower, Ipopt::Number* upper, Ipopt::Index, Ipopt::Number*,
+                       Ipopt::Number*) override {
+    std::fill_n(lower, n, 0.0);
+    std::fill_n(upper, n, 1.0);
+    return true;
+  }
+  bool get_starting_point(Ipopt::Index, bool, Ipopt::Number* x, bool, Ipopt::Number*, Ipopt::Number*, Ipopt::Index, bool,
+                          Ipopt::Number*) override {
+    std::copy(start_.begin(), start_.end(), x);
+    return true;
+  }
+  bool eval_f(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Number& value) override {
+    value = strand_(view(x, n)).value;
+    return true;
+  }
+  bool eval_grad_f(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Number* gradient) override {
+    strand_.gradient(view(x, n), {gradient, static_cast<std::size_t>(n)});
+    return true;
+  }
+  bool eval_g(Ipopt::Index, const Ipopt::Number*, bool, Ipopt::Index, Ipopt::Number*) override { return true; }
+  bool eval_jac_g(Ipopt::Index, const Ipopt::Number*, bool, Ipopt::Index, Ipopt::Index, Ipopt::Index*, Ipopt::Index*,
+                  Ipopt::Number*) override {
+    return true;
+  }
+  bool intermediate_callback(Ipopt::AlgorithmMode, Ipopt::Index, Ipopt::Number, Ipopt::Number, Ipopt::Number, Ipopt::Number,
+                             Ipopt::Number, Ipopt::Number, Ipopt::Number, Ipopt::Number, Ipopt::Index, const Ipopt::IpoptData*,
+                             Ipopt::IpoptCalculatedQuantities*) override {
+    return !strand_.over();
+  }
+  void finalize_solution(Ipopt::SolverReturn, Ipopt::Index, const Ipopt::Number*, const Ipopt::Number*, const Ipopt::Number*,
+                         Ipopt::Index, const Ipopt::Number*, const Ipopt::Number*, Ipopt::Number, const Ipopt::IpoptData*,
+                         Ipopt::IpoptCalculatedQuantities*) override {}
+
+ private:
+  static std::span<const double> view(const Ipopt::Number* x, Ipopt::Index n) { return {x, static_cast<std::size_t>(n)}; }
+
+  const Point& start_;
+  Strand& strand_;
+};
+
+RunReport report_of(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded:
+      return {.converged = true, .message = "Ipopt: Solve_Succeeded"};
+    case Ipopt::Solved_To_Acceptable_Level:
+      return {.converged = true, .message = "Ipopt: Solved_To_Acceptable_Level"};
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return {.converged = true, .message = "Ipopt: Search_Direction_Becomes_Too_Small"};
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return {.converged = false, .message = "Ipopt: Maximum_Iterations_Exceeded"};
+    case Ipopt::Restoration_Failed:
+      return {.converged = false, .message = "Ipopt: Restoration_Failed"};
+    case Ipopt::Error_In_Step_Computation:
+      return {.converged = false, .message = "Ipopt: Error_In_Step_Computation"};
+    case Ipopt::User_Requested_Stop:
+    case Ipopt::NonIpopt_Exception_Thrown:
+      return {.converged = false, .message = "Ipopt: stopped by us"};
+    default:
+      return {.converged = false, .message = "Ipopt: status " + std::to_string(static_cast<int>(status))};
+  }
+}
+
+}  // namespace
+
+RunReport run_ipopt(const Run& run, Strand& strand) {
+  std::unique_lock turn(one_solve_at_a_time(), std::defer_lock);
+  while (!turn.try_lock_for(kLookUp)) {
+    if (strand.over()) return {.converged = false, .message = "Ipopt: stopped by us while waiting for another solve"};
+  }
+  strand.begin_search();
+  const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
+  const auto options = application->Options();
+  options->SetIntegerValue("print_level", 0);
+  options->SetStringValue("sb", "yes");
+  options->SetStringValue("hessian_approximation", "limited-memory");
+  options->SetNumericValue("bound_relax_factor", 0.0);  // points outside the bounds are never asked for
+  options->SetNumericValue("tol", 1e-6);                // of gradients that are no better than that
+  options->SetIntegerValue("max_iter", 1000);
+  // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
+  if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);
+  return report_of(application->OptimizeTNLP(new BoxProblem(run.start, strand)));
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/require.h"
+#include "optimizers/auto_search.h"
+#include "optimizers/backends.h"
+#include "optimizers/ledger.h"
+#include "optimizers/problem.h"
+#include "optimizers/seeding.h"
+
+namespace softland {
+namespace internal {
+
+RunReport run_method(const Method& method, const Run& run, Strand& strand) {
+  return method.backend == Backend::ipopt ? run_ipopt(run, strand) : run_nlopt(method, run, strand);
+}
+
+namespace {
+
+void check(const Problem& problem, const OptimizerOptions& options) {
+  require(!problem.variables.empty(), "a problem needs at least one variable");
+  require(static_cast<bool>(problem.objective), "a problem needs an objective");
+  for (const Variable& variable : problem.variables) {
+    require(std::isfinite(variable.lower) && std::isfinite(variable.upper),
+            fmt::format("variable \"{}\": bounds [{}, {}] must be finite", variable.name, variable.lower, variable.upper));
+    require(variable.lower <= variable.upper, fmt::format("variable \"{}\": lower bound {} must not exceed upper bound {}",
+                                                          variable.name, variable.lower, variable.upper));
+  }
+  for (const std::vector<double>& start : problem.starts) {
+    require(start.size() == problem.variables.size(),
+            fmt::format("a start has {} values where there are {} variables", start.size(), problem.variables.size()));
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      require(std::isfinite(start[i]),
+              fmt::format("variable \"{}\": start {} must be finite", problem.variables[i].name, start[i]));
+    }
+  }
+  require(options.max_evaluations > 0, fmt::format("max_evaluations = {} must be positive", options.max_evaluations));
+  require(options.max_seconds > 0, fmt::format("max_seconds = {} must be positive", options.max_seconds));
+  require(options.jobs >= 1, fmt::format("jobs = {} must be at least 1", options.jobs));
+  require(!std::isnan(options.target), "target must not be NaN");
+}
+
+// Runs that end without a single new evaluation: the method has nothing more to offer, from anywhere.
+constexpr int kIdleRunsAllowed = 20;
+
+RunReport search_single_method(Ledger& ledger, const Method& method) {
+  RunReport report;
+  const auto body = [&](Strand& strand) {
+    int idle_runs = 0;
+    for (std::uint64_t k = 0; !strand.over() && idle_runs < kIdleRunsAllowed; ++k) {
+      const bool given = k == 0 && !ledger.starts().empty();
+      const Run run{.start = given ? ledger.starts().front() : sobol_points(ledger.seed(), ledger.dimension(), k, 1).front(),
+                    .seed = draw_bits(ledger.seed(), Draw::library_seed, k)};
+      const long before = strand.evaluations();
+      report = run_method(method, run, strand);
+      if (method.reach == Reach::global) return;
+      idle_runs = strand.evaluations() == before ? idle_runs + 1 : 0;
+    }
+  };
+  ledger.run({{.budget = ledger.remaining(), .body = body}});
+  return report;
+}
+
+void evaluate_starts(Ledger& ledger) {
+  std::vector<Ledger::Task> tasks;
+  for (const Point& start : ledger.starts()) tasks.push_back({.budget = 1, .body = [&start](Strand& strand) { strand(start); }});
+  ledger.run(tasks);
+}
+
+}  // namespace
+}  // namespace internal
+
+std::string_view to_string(Termination termination) {
+  switch (termination) {
+    case Termination::not_run:
+      return "not_run";
+    case Termination::converged:
+      return "converged";
+    case Termination::target_reached:
+      return "target_reached";
+    case Termination::evaluation_budget:
+      return "evaluation_budget";
+    case Termination::time_budget:
+      return "time_budget";
+    case Termination::interrupted:
+      return "interrupted";
+    case Termination::no_feasible_point:
+      return "no_feasible_point";
+    case Termination::failure:
+      return "failure";
+  }
+  return "unknown";
+}
+
+OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options) {
+  const internal::Method& method = internal::find_method(options.optimizer);
+  internal::check(problem, options);
+
+  internal::Ledger ledger(problem, options);
+  internal::evaluate_starts(ledger);
+  if (ledger.dimension() == 0) {
+    ledger.run({{.budget = 1, .body = [](internal::Strand& strand) { strand(internal::Point{}); }}});
+    return ledger.result(true, "every variable is held");
+  }
+  if (method.backend == internal::Backend::search_auto) {
+    internal::search_auto(ledger);
+    return ledger.result(true, "");
+  }
+  const internal::RunReport report = internal::search_single_method(ledger, method);
+  return ledger.result(report.converged, report.message);
+}
+
+}  // namespace softland

@@ -1,0 +1,110 @@
+// NLopt 2.7.1. What its methods need that its interface does not say:
+// - Its own limits are not enough: several methods report success on NaN, hang, or swallow exceptions. The Strand counts, keeps
+// the best
+//   point and cuts; nothing that NLopt returns but the words is used.
+// - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in that
+// thread.
+// - BOBYQA refuses problems in one variable: it gets a second one which does nothing. MLSL starts BOBYQA.
+// - DIRECT divides the box at fixed places; a bent scale per variable, drawn from the seed, moves them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlopt.hpp>
+
+#include "optimizers/backends.h"
+#include "optimizers/seeding.h"
+
+namespace softland::internal {
+namespace {
+
+// In units of the box. Far below what the noise of an objective allows to resolve, so that no method gives up on a narrow valley.
+constexpr double kStepTolerance = 1e-7;
+// MLSL polishes many minima and needs only to tell them apart.
+constexpr double kStepToleranceInsideMlsl = 1e-4;
+
+struct Callback {
+  Strand& strand;
+  std::size_t dimension;            ///< of the problem; the library may have one more
+  std::vector<double> bent_middle;  ///< where 0.5 goes; empty for a straight scale
+
+  [[nodiscard]] Point to_point(const std::vector<double>& x) const {
+    Point point(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(dimension));
+    for (std::size_t i = 0; i < bent_middle.size(); ++i) {
+      const double t = point[i];
+      const double middle = bent_middle[i];
+      point[i] = t < 0.5 ? 2 * middle * t : middle + (1 - middle) * (2 * t - 1);
+    }
+    return point;
+  }
+};
+
+double call(const std::vector<double>& x, std::vector<double>& gradient, void* data) {
+  Callback& callback = *static_cast<Callback*>(data);
+  try {
+    const Point point = callback.to_point(x);
+    const double value = callback.strand(point).value;
+    if (!gradient.empty()) callback.strand.gradient(point, std::span(gradient).first(callback.dimension));
+    return value;
+  } catch (const Cut&) {
+    throw nlopt::forced_stop();
+  }
+}
+
+std::string_view name_of(nlopt::result result) {
+  switch (result) {
+    case nlopt::SUCCESS:
+      return "SUCCESS";
+    case nlopt::FTOL_REACHED:
+      return "FTOL_REACHED";
+    case nlopt::XTOL_REACHED:
+      return "XTOL_REACHED";
+    default:
+      return "unexpected result";
+  }
+}
+
+}  // namespace
+
+RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
+  const auto algorithm = static_cast<nlopt::algorithm>(method.nlopt_algorithm);
+  const bool is_mlsl = algorithm == nlopt::G_MLSL_LDS;
+  Callback callback{.strand = strand, .dimension = run.start.size(), .bent_middle = {}};
+  std::vector<double> x = run.start;
+  if (x.size() == 1 && (algorithm == nlopt::LN_BOBYQA || is_mlsl)) x.push_back(0.5);
+  if (algorithm == nlopt::GN_DIRECT_L) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      callback.bent_middle.push_back(0.4 + 0.2 * draw_uniform(run.seed, Draw::skew, i));
+    }
+  }
+
+  strand.begin_search();
+  const auto report = [&](bool converged, std::string_view words) {
+    return RunReport{.converged = converged, .message = fmt::format("NLopt {}: {}", method.name, words)};
+  };
+  try {
+    const auto dimension = static_cast<unsigned>(x.size());
+    nlopt::opt opt(algorithm, dimension);
+    opt.set_lower_bounds(0.0);
+    opt.set_upper_bounds(1.0);
+    opt.set_min_objective(call, &callback);
+    opt.set_initial_step(run.step);
+    opt.set_xtol_abs(kStepTolerance);
+    if (is_mlsl) {
+      nlopt::opt local(nlopt::LN_BOBYQA, dimension);
+      local.set_xtol_abs(kStepToleranceInsideMlsl);
+      local.set_initial_step(run.step);
+      opt.set_local_optimizer(local);
+    }
+    nlopt::srand(static_cast<unsigned long>(run.seed));
+    double value = 0;
+    return report(true, name_of(opt.optimize(x, value)));
+  } catch (const nlopt::forced_stop&) {
+    return report(false, "stopped by us");
+  } catch (const nlopt::roundoff_limited&) {
+    return report(true, "ROUNDOFF_LIMITED");
+  } catch (const std::exception& exception) {
+    return report(false, exception.what());
+  }
+}
+
+}  // namespace softland::internal

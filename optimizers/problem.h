@@ -18,19 +18,24 @@ struct Variable {
   double upper = 1;
 };
 
-/// minimise objective(x) subject to lower <= x <= upper. Optimizers work on x scaled to [0, 1].
+/// minimise objective(x) subject to lower <= x <= upper. Optimizers work on x scaled to [0, 1]; a variable with lower == upper is
+/// held.
 struct Problem {
-  std::vector<Variable> variables;
-  /// Called from several threads at once when jobs > 1, each thread with its own x. May return a non-finite value or throw: such a point counts as
-  /// infeasible; the first exception is kept in the result.
-  std::function<double(std::span<const double>)> objective;
-  /// Starting points worth trying first; may be empty. Points outside the bounds are moved to them.
-  std::vector<std::vector<double>> starts;
+  std::vector<Variable> variables = {};
+  /// Called from several threads at once when jobs > 1, each call with its own x, which lies within the bounds exactly. May
+  /// return a non-finite value or throw: such a point counts as infeasible; the first exception is kept in the result. It must
+  /// give the same value for the same x: a point that comes back is answered from memory.
+  std::function<double(std::span<const double>)> objective = {};
+  /// Starting points worth trying first; may be empty. Points outside the bounds are moved to them. Every optimizer evaluates all
+  /// of them, as given to the last digit; local ones start from the first, `auto` from the most promising.
+  std::vector<std::vector<double>> starts = {};
 };
 
 struct Evaluation {
-  long index = 0;  ///< counted in an order that does not depend on the number of jobs
-  double value = 0;  ///< the objective; may be non-finite
+  /// Unique, and increasing in an order that does not depend on the number of jobs. There are gaps where a search ended before
+  /// its share of the budget did, so it may exceed the number of evaluations.
+  long index = 0;
+  double value = 0;  ///< the objective; non-finite (NaN where it threw) when infeasible
   std::vector<double> x;
 };
 
@@ -39,33 +44,60 @@ struct OptimizerOptions {
   long max_evaluations = 2000;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
-  int jobs = 1;
+  int jobs = 1;                                              ///< threads, the calling one among them; `auto` makes use of them
   double target = -std::numeric_limits<double>::infinity();  ///< good enough: stop once a value is at or below it
-  const std::atomic<bool>* stop = nullptr;                    ///< set from outside (Ctrl-C): ends the search with what there is
-  /// Called (under a lock) after every evaluation, as they happen; with jobs > 1 the order of calls may vary between runs.
-  std::function<void(const Evaluation&)> on_evaluation;
+  const std::atomic<bool>* stop = nullptr;                   ///< set from outside (Ctrl-C): ends the search with what there is
+  /// Called (under a lock) after every evaluation, as they happen; with jobs > 1 the order of calls may vary between runs, and
+  /// calls for evaluations that the result leaves out (beyond the target in the job-independent order) may be among them. If it
+  /// throws, the search ends with Termination::failure.
+  std::function<void(const Evaluation&)> on_evaluation = {};
   /// Called (under the same lock) whenever an evaluation is the best so far.
-  std::function<void(const Evaluation&)> on_improvement;
+  std::function<void(const Evaluation&)> on_improvement = {};
 };
 
-enum class Termination { not_run, converged, target_reached, evaluation_budget, time_budget, interrupted, no_feasible_point, failure };
+/// interrupted, time_budget and evaluation_budget come with the best point so far; x is empty when there was none.
+/// no_feasible_point: the search went to its end and every evaluation was non-finite or threw.
+enum class Termination {
+  not_run,
+  converged,
+  target_reached,
+  evaluation_budget,
+  time_budget,
+  interrupted,
+  no_feasible_point,
+  failure
+};
 [[nodiscard]] std::string_view to_string(Termination termination);
 
 struct OptimizerResult {
   Termination termination = Termination::not_run;
-  std::string message;                                       ///< of the library where it has one
-  std::vector<double> x;                                     ///< the best point; empty if no point was feasible
-  double value = std::numeric_limits<double>::quiet_NaN();   ///< objective there
+  std::string message = {};                                 ///< why it ended, with the words of the library where it has any
+  std::vector<double> x;                                    ///< the best point; empty if no point was feasible
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< objective there
   long evaluations = 0;
-  std::vector<Evaluation> improvements;                      ///< best-so-far history in the job-independent order
-  std::string first_exception;                               ///< what() of the first exception the objective threw, if any
+  std::vector<Evaluation> improvements;  ///< best-so-far history in the job-independent order
+  std::string first_exception;           ///< what() of the first exception the objective threw, if any
 };
 
 /// Names accepted in OptimizerOptions::optimizer, `auto` first.
 [[nodiscard]] std::span<const std::string_view> optimizer_names();
 
-/// Throws InvalidInput for an unknown optimizer, no variables, lower > upper, a non-positive budget. Otherwise always returns.
-/// The result depends on problem, optimizer, max_evaluations, seed and target only: not on jobs, and on time only through max_seconds and stop.
+/// One line for --help. Throws InvalidInput for a name that is not among optimizer_names().
+[[nodiscard]] std::string_view optimizer_description(std::string_view name);
+
+/// Throws InvalidInput for an unknown or refused optimizer, no variables or no objective, a bound that is not finite, lower >
+/// upper, a start of the wrong length or not finite, jobs < 1, a budget that is not positive, a target that is NaN. Otherwise
+/// always returns.
+///
+/// The result depends on problem, optimizer, max_evaluations, seed and target only: not on jobs, and on time only through
+/// max_seconds and stop. The time budget, the stop flag and the target are looked at before every evaluation; one under way is
+/// never cut short.
+///
+/// `auto` samples the box, runs local searches from well separated good points, lets the promising ones continue and polishes the
+/// best; it is the one that uses several jobs. A local method runs from the first start (without one: a point drawn from the
+/// seed) and, when it converges with budget left, again from points drawn from the seed. A global method runs once.
+/// Gradient-based methods take central differences, which count as evaluations. Ipopt solves one problem at a time in a process;
+/// others wait, so an objective must not itself minimize with ipopt while ipopt calls it.
 [[nodiscard]] OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options);
 
 }  // namespace softland

@@ -1,0 +1,46 @@
+// The libraries, seen from the search: one run of one method from one point, answered by a Strand.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "optimizers/ledger.h"
+
+namespace softland::internal {
+
+enum class Backend { search_auto, nlopt, ipopt };
+
+/// A local method converges to a minimum nearby and may be started again; a global one is run once.
+enum class Reach { local, global };
+
+struct Method {
+  std::string_view name;
+  Backend backend;
+  Reach reach;
+  int nlopt_algorithm;  ///< of nlopt::algorithm
+  bool uses_gradient;
+  std::string_view description;
+};
+
+/// Throws InvalidInput for a name that is unknown or refused; the message says why and what there is.
+[[nodiscard]] const Method& find_method(std::string_view name);
+
+struct Run {
+  Point start;
+  double step = 0.1;       ///< first step as a fraction of the box
+  std::uint64_t seed = 0;  ///< of the library's random numbers
+};
+
+struct RunReport {
+  bool converged = false;  ///< ended by itself, and not by an error
+  std::string message;     ///< of the library
+};
+
+/// Both always return, whatever the objective does. A run that is repeated with the same arguments asks for the same points in
+/// the same order, so that a search which ran out of budget is continued by repeating it: its past is answered from memory.
+[[nodiscard]] RunReport run_nlopt(const Method& method, const Run& run, Strand& strand);
+[[nodiscard]] RunReport run_ipopt(const Run& run, Strand& strand);
+[[nodiscard]] RunReport run_method(const Method& method, const Run& run, Strand& strand);
+
+}  // namespace softland::internal

@@ -1,0 +1,326 @@
+#include "optimizers/ledger.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <exception>
+#include <system_error>
+#include <thread>
+
+#include "optimizers/seeding.h"
+
+namespace softland::internal {
+namespace {
+
+constexpr std::size_t kNoTask = std::numeric_limits<std::size_t>::max();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Libraries square and subtract values: beyond this size only the order is kept, so that nothing overflows inside them.
+constexpr double kLargeValue = 1e12;
+double compress(double value) {
+  const double size = std::abs(value);
+  if (size <= kLargeValue) return value;
+  return std::copysign(kLargeValue * (1 + std::log(size / kLargeValue)), value);
+}
+// Above compress(x) for every finite x (the largest is 6.8e14).
+constexpr double kPenaltyInTheDark = 1e15;
+
+// Objectives carry noise of about 1e-9, so that a step of its cube root balances the noise against the curvature a difference
+// leaves out.
+constexpr double kDifferenceStep = 1e-3;
+
+// A search that is continued first walks through its own past, so the limit grows with what is known.
+constexpr long kCirclesAllowed = 1000;
+
+}  // namespace
+
+std::size_t PointHash::operator()(const Point& point) const noexcept {
+  std::uint64_t bits = 0;
+  for (const double coordinate : point) bits = draw_bits(bits, Draw::library_seed, std::bit_cast<std::uint64_t>(coordinate));
+  return static_cast<std::size_t>(bits);
+}
+
+Strand::Strand(Ledger& ledger, std::size_t task, long budget, long first_index)
+    : ledger_(ledger),
+      task_(task),
+      budget_(budget),
+      first_index_(first_index),
+      best_seen_(ledger.best_seen_),
+      worst_seen_(ledger.worst_seen_) {}
+
+bool Strand::over() const { return cut_ || evaluations() >= budget_ || ledger_.cut_off(task_); }
+
+Answer Strand::operator()(std::span<const double> point) {
+  if (cut_) throw Cut{};
+  Point inside(point.begin(), point.end());
+  // Libraries step over a bound by a rounding error, and into NaN when the objective leads them there. Adding 0 turns -0 to 0.
+  for (double& coordinate : inside) coordinate = std::isnan(coordinate) ? 0.5 : std::clamp(coordinate, 0.0, 1.0) + 0.0;
+
+  const auto recall = [&](const Memory& memory) {
+    const auto found = memory.find(inside);
+    return found == memory.end() ? nullptr : &found->second;
+  };
+  const Answer* known = recall(ledger_.memory_);
+  if (known == nullptr) known = recall(memory_);
+  if (known != nullptr) {
+    const auto points_known = static_cast<long>(ledger_.memory_.size() + memory_.size());
+    if (++repeats_ > kCirclesAllowed + points_known) throw Cut{};
+    return *known;
+  }
+
+  if (over()) {
+    cut_ = true;
+    throw Cut{};
+  }
+  repeats_ = 0;
+  const double value = ledger_.evaluate(*this, inside);
+  const Answer answer = remember(inside, value);
+  if (answer.feasible && value <= ledger_.options_.target) {
+    cut_ = true;
+    std::size_t earliest = ledger_.target_task_;
+    while (task_ < earliest && !ledger_.target_task_.compare_exchange_weak(earliest, task_)) {
+    }
+    throw Cut{};
+  }
+  return answer;
+}
+
+Answer Strand::remember(const Point& point, double value) {
+  Answer answer{compress(value), std::isfinite(value)};
+  if (answer.feasible) {
+    best_of_task_ = std::min(best_of_task_, answer.value);
+    best_seen_ = std::min(best_seen_, answer.value);
+    worst_seen_ = std::max(worst_seen_, answer.value);
+  } else {
+    answer.value = penalty();
+  }
+  memory_.emplace(point, answer);
+  records_.push_back({point, answer, value});
+  return answer;
+}
+
+// Above everything seen, yet of the same size: a wall of 1e15 next to values of order 1 would blind the methods that fit models.
+double Strand::penalty() const {
+  if (worst_seen_ < best_seen_) return kPenaltyInTheDark;
+  const double spread = worst_seen_ - best_seen_;
+  return worst_seen_ + (spread > 0 ? std::max(spread, 1e-3 * std::abs(worst_seen_)) : std::max(1.0, std::abs(worst_seen_)));
+}
+
+void Strand::gradient(std::span<const double> point, std::span<double> gradient) {
+  const Answer here = (*this)(point);
+  Point moved(point.begin(), point.end());
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    // Two offsets a < b from here; both to the same side next to a bound.
+    double a = -kDifferenceStep;
+    double b = kDifferenceStep;
+    if (point[i] + a < 0) a = 2 * kDifferenceStep;
+    if (point[i] + b > 1) b = -2 * kDifferenceStep;
+    const auto probe = [&](double offset) {
+      moved[i] = point[i] + offset;
+      return (*this)(moved);
+    };
+    const Answer at_a = probe(a);
+    const Answer at_b = probe(b);
+    moved[i] = point[i];
+    const double slope_a = (at_a.value - here.value) / a;
+    const double slope_b = (at_b.value - here.value) / b;
+    if (!here.feasible) {
+      gradient[i] = at_a.feasible && at_b.feasible ? (at_b.value - at_a.value) / (b - a) : 0;
+    } else if (at_a.feasible && at_b.feasible) {
+      gradient[i] = (slope_a * b - slope_b * a) / (b - a);  // exact for parabolas
+    } else {
+      gradient[i] = at_a.feasible ? slope_a : at_b.feasible ? slope_b : 0;
+    }
+  }
+}
+
+Ledger::Ledger(const Problem& problem, const OptimizerOptions& options)
+    : problem_(problem), options_(options), begin_(std::chrono::steady_clock::now()), target_task_(kNoTask) {
+  for (std::size_t i = 0; i < problem.variables.size(); ++i) {
+    if (problem.variables[i].lower < problem.variables[i].upper) free_.push_back(i);
+  }
+  for (const std::vector<double>& start : problem.starts) {
+    Point point = to_point(start);
+    std::vector<double> x = start;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i], problem.variables[i].lower, problem.variables[i].upper);
+    if (exact_.emplace(point, std::move(x)).second) starts_.push_back(std::move(point));
+  }
+}
+
+Point Ledger::to_point(std::span<const double> x) const {
+  Point point;
+  for (const std::size_t i : free_) {
+    const Variable& variable = problem_.variables[i];
+    // Halves: the width of the widest box would overflow.
+    const double part = (0.5 * x[i] - 0.5 * variable.lower) / (0.5 * variable.upper - 0.5 * variable.lower);
+    point.push_back(std::clamp(part, 0.0, 1.0) + 0.0);
+  }
+  return point;
+}
+
+std::vector<double> Ledger::to_user(const Point& point) const {
+  if (const auto found = exact_.find(point); found != exact_.end()) return found->second;
+  std::vector<double> x;
+  for (const Variable& variable : problem_.variables) x.push_back(variable.lower);
+  for (std::size_t k = 0; k < free_.size(); ++k) {
+    const Variable& variable = problem_.variables[free_[k]];
+    const double half = std::lerp(0.5 * variable.lower, 0.5 * variable.upper, point[k]);
+    x[free_[k]] = std::clamp(2 * half, variable.lower, variable.upper);
+  }
+  return x;
+}
+
+double Ledger::evaluate(Strand& strand, const Point& point) {
+  const std::vector<double> x = to_user(point);
+  double value = std::numeric_limits<double>::quiet_NaN();
+  const auto keep = [&](const char* what) {
+    if (!strand.first_exception_) strand.first_exception_ = what;
+  };
+  try {
+    value = problem_.objective(x);
+  } catch (const std::exception& exception) {
+    keep(exception.what());
+  } catch (...) {
+    keep("an exception that is not a std::exception");
+  }
+  report(strand.first_index_ + strand.evaluations(), value, x);
+  return value;
+}
+
+void Ledger::report(long index, double value, const std::vector<double>& x) {
+  if (!options_.on_evaluation && !options_.on_improvement) return;
+  const std::scoped_lock lock(report_mutex_);
+  if (!failure_.empty()) return;
+  try {
+    const Evaluation evaluation{.index = index, .value = value, .x = x};
+    if (options_.on_evaluation) options_.on_evaluation(evaluation);
+    if (std::isfinite(value) && value < live_best_) {
+      live_best_ = value;
+      if (options_.on_improvement) options_.on_improvement(evaluation);
+    }
+  } catch (const std::exception& exception) {
+    failure_ = fmt::format("on_evaluation or on_improvement threw: {}", exception.what());
+  } catch (...) {
+    failure_ = "on_evaluation or on_improvement threw";
+  }
+  if (!failure_.empty()) end_from_outside(Termination::failure);
+}
+
+void Ledger::end_from_outside(Termination reason) {
+  Termination none = Termination::not_run;
+  outside_.compare_exchange_strong(none, reason);
+}
+
+bool Ledger::cut_off(std::size_t task) {
+  if (task > target_task_ || outside_ != Termination::not_run) return true;
+  if (options_.stop != nullptr && *options_.stop) {
+    end_from_outside(Termination::interrupted);
+    return true;
+  }
+  if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() >= options_.max_seconds) {
+    end_from_outside(Termination::time_budget);
+    return true;
+  }
+  return false;
+}
+
+long Ledger::run(const std::vector<Task>& tasks) {
+  if (over()) return 0;
+  std::vector<Strand> strands;
+  long left = remaining();
+  for (const Task& task : tasks) {
+    const long budget = std::min(task.budget, left);
+    if (budget <= 0) break;
+    strands.push_back(Strand(*this, strands.size(), budget, next_index_));
+    left -= budget;
+    next_index_ += budget;
+  }
+
+  target_task_ = kNoTask;
+  std::atomic<std::size_t> next_task = 0;
+  const auto work = [&] {
+    for (std::size_t k = next_task++; k < strands.size(); k = next_task++) {
+      try {
+        if (!strands[k].over()) tasks[k].body(strands[k]);
+      } catch (const Cut&) {
+      } catch (const std::exception& exception) {
+        const std::scoped_lock lock(report_mutex_);
+        failure_ = exception.what();
+        end_from_outside(Termination::failure);
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    const std::size_t threads = std::min(strands.size(), static_cast<std::size_t>(options_.jobs));
+    try {
+      while (helpers.size() + 1 < threads) helpers.emplace_back(work);
+    } catch (const std::system_error&) {
+      // The machine is out of threads: those there are, at least this one, do the work.
+    }
+    work();
+  }
+
+  const long before = evaluations_;
+  settle(strands);
+  return evaluations_ - before;
+}
+
+void Ledger::settle(const std::vector<Strand>& strands) {
+  const std::size_t last = target_task_;
+  for (const Strand& strand : strands) {
+    if (strand.task_ > last) break;
+    if (strand.first_exception_ && best_.first_exception.empty()) best_.first_exception = *strand.first_exception_;
+    for (std::size_t k = 0; k < strand.records_.size(); ++k) {
+      const Strand::Record& record = strand.records_[k];
+      ++evaluations_;
+      known_.push_back({record.point, record.answer});
+      memory_.emplace(record.point, record.answer);
+      if (!record.answer.feasible) continue;
+      best_seen_ = std::min(best_seen_, record.answer.value);
+      worst_seen_ = std::max(worst_seen_, record.answer.value);
+      if (best_.x.empty() || record.value < best_.value) {
+        best_.x = to_user(record.point);
+        best_.value = record.value;
+        best_.improvements.push_back({.index = strand.first_index_ + static_cast<long>(k), .value = record.value, .x = best_.x});
+      }
+    }
+  }
+  target_reached_ = last != kNoTask;
+}
+
+OptimizerResult Ledger::result(bool converged, const std::string& message) const {
+  OptimizerResult result = best_;
+  result.evaluations = evaluations_;
+  const std::string said = message.empty() ? "" : fmt::format("; {}", message);
+  if (target_reached_) {
+    result.termination = Termination::target_reached;
+    result.message = fmt::format("value {} is at or below the target {}", result.value, options_.target);
+  } else if (outside_ == Termination::failure) {
+    result.termination = Termination::failure;
+    result.message = failure_;
+  } else if (outside_ == Termination::interrupted) {
+    result.termination = Termination::interrupted;
+    result.message = fmt::format("interrupted after {} evaluations", evaluations_);
+  } else if (outside_ == Termination::time_budget) {
+    result.termination = Termination::time_budget;
+    result.message = fmt::format("time budget of {} s used up after {} evaluations", options_.max_seconds, evaluations_);
+  } else if (result.x.empty()) {
+    result.termination = Termination::no_feasible_point;
+    result.message = fmt::format("none of {} evaluations gave a finite value{}", evaluations_, said);
+  } else if (remaining() <= 0) {
+    result.termination = Termination::evaluation_budget;
+    result.message = fmt::format("budget of {} evaluations used up{}", options_.max_evaluations, said);
+  } else if (converged) {
+    result.termination = Termination::converged;
+    result.message = fmt::format("converged after {} evaluations{}", evaluations_, said);
+  } else {
+    result.termination = Termination::failure;
+    result.message = fmt::format("ended after {} evaluations{}", evaluations_, said);
+  }
+  return result;
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,85 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <nlopt.hpp>
+
+#include "base/require.h"
+#include "optimizers/backends.h"
+
+namespace softland {
+namespace internal {
+namespace {
+
+constexpr std::array kMethods = {
+    Method{"auto", Backend::search_auto, Reach::global, -1, false,
+           "samples the box, then local searches from several good points; runs on all jobs (default)"},
+    Method{"bobyqa", Backend::nlopt, Reach::local, nlopt::LN_BOBYQA, false,
+           "local: quadratic model in a trust region; the fastest where the objective is smooth"},
+    Method{"sbplx", Backend::nlopt, Reach::local, nlopt::LN_SBPLX, false,
+           "local: Nelder-Mead in subspaces; copes with kinks and small jumps"},
+    Method{"nelder-mead", Backend::nlopt, Reach::local, nlopt::LN_NELDERMEAD, false,
+           "local: the simplex method; copes with kinks"},
+    Method{"slsqp", Backend::nlopt, Reach::local, nlopt::LD_SLSQP, true,
+           "local: sequential quadratic programming, differenced gradient"},
+    Method{"mma", Backend::nlopt, Reach::local, nlopt::LD_MMA, true, "local: moving asymptotes, differenced gradient"},
+    Method{"ccsaq", Backend::nlopt, Reach::local, nlopt::LD_CCSAQ, true,
+           "local: separable convex quadratic approximations, differenced gradient"},
+    Method{"ipopt", Backend::ipopt, Reach::local, -1, true,
+           "local: interior point with quasi-Newton Hessian, differenced gradient; one solve at a time"},
+    Method{"crs2", Backend::nlopt, Reach::global, nlopt::GN_CRS2_LM, false,
+           "global: controlled random search with local mutation"},
+    Method{"isres", Backend::nlopt, Reach::global, nlopt::GN_ISRES, false, "global: evolution strategy"},
+    Method{"esch", Backend::nlopt, Reach::global, nlopt::GN_ESCH, false, "global: evolutionary, with Cauchy mutations"},
+    Method{"direct-l", Backend::nlopt, Reach::global, nlopt::GN_DIRECT_L, false,
+           "global: divides the box into ever smaller rectangles"},
+    Method{"mlsl", Backend::nlopt, Reach::global, nlopt::G_MLSL_LDS, false,
+           "global: multi-level single linkage, BOBYQA from spread points"},
+};
+
+struct Refusal {
+  std::string_view name;
+  std::string_view reason;
+};
+constexpr std::array kRefusals = {
+    Refusal{"ags", "it crashes on non-finite values"},
+    Refusal{"stogo", "it swallows exceptions and reports success"},
+    Refusal{"newuoa", "it hangs on non-finite values"},
+    Refusal{"newuoa-bound", "it hangs on non-finite values"},
+    Refusal{"praxis", "it is not repeatable"},
+    Refusal{"cobyla", "it can hang between evaluations, where no budget reaches it"},
+};
+
+}  // namespace
+
+const Method& find_method(std::string_view name) {
+  const auto found = std::find_if(kMethods.begin(), kMethods.end(), [&](const Method& method) { return method.name == name; });
+  if (found != kMethods.end()) return *found;
+  const std::string there_are = fmt::format("there are {}", fmt::join(optimizer_names(), ", "));
+  std::string plain(name);
+  for (char& letter : plain)
+    letter = letter == '_' ? '-' : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
+  for (const Refusal& refusal : kRefusals) {
+    if (refusal.name == plain) {
+      throw InvalidInput(fmt::format("optimizer \"{}\" is refused: {}; {}", name, refusal.reason, there_are));
+    }
+  }
+  throw InvalidInput(fmt::format("optimizer \"{}\" is unknown; {}", name, there_are));
+}
+
+}  // namespace internal
+
+std::span<const std::string_view> optimizer_names() {
+  static constexpr auto kNames = [] {
+    std::array<std::string_view, internal::kMethods.size()> names;
+    std::transform(internal::kMethods.begin(), internal::kMethods.end(), names.begin(),
+                   [](const internal::Method& method) { return method.name; });
+    return names;
+  }();
+  return kNames;
+}
+
+std::string_view optimizer_description(std::string_view name) { return internal::find_method(name).description; }
+
+}  // namespace softland
