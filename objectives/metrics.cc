@@ -1,0 +1,248 @@
+#include "objectives/metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace softland {
+namespace {
+
+/// Knots this close to the first-touch plane, relative to the contact gap, are on it: the integrator stops there to rounding.
+constexpr double kPlaneTolerance = 1e-12;
+
+/// c[0] + c[1] s + ... + c[degree] s^degree on 0 <= s <= 1.
+struct Polynomial {
+  std::array<double, 6> c{};
+  int degree = 5;
+
+  [[nodiscard]] double operator()(double s) const {
+    double value = 0;
+    for (int k = degree; k >= 0; --k) value = value * s + c[static_cast<std::size_t>(k)];
+    return value;
+  }
+  [[nodiscard]] Polynomial derivative() const {
+    Polynomial result;
+    result.degree = degree - 1;
+    for (int k = 1; k <= degree; ++k) result.c[static_cast<std::size_t>(k - 1)] = k * c[static_cast<std::size_t>(k)];
+    return result;
+  }
+};
+
+/// The root of a function that is monotone on [low, high] and has opposite signs at the ends: Newton, halving where Newton leaves
+/// the bracket or gains too little.
+double monotone_root(const Polynomial& function, const Polynomial& slope, double low, double high) {
+  const bool rising = function(high) > 0;
+  double s = 0.5 * (low + high);
+  constexpr int most_iterations = 100;
+  for (int i = 0; i < most_iterations; ++i) {
+    const double value = function(s);
+    if (value == 0) return s;
+    ((value > 0) == rising ? high : low) = s;
+    double next = s - value / slope(s);
+    const bool inside = next > low && next < high;
+    // Newton converges within a few steps or not at all; every third step halves so that a flat start cannot creep.
+    constexpr int halving_every = 3;
+    if (!inside || i % halving_every == halving_every - 1) next = 0.5 * (low + high);
+    if (std::abs(next - s) <= std::numeric_limits<double>::epsilon()) return next;
+    s = next;
+  }
+  return s;
+}
+
+struct Roots {
+  std::array<double, 5> at{};
+  int count = 0;
+};
+
+/// All sign changes inside (0, 1), in order: between the roots of its derivative a polynomial is monotone.
+Roots sign_changes(const Polynomial& function) {
+  Roots roots;
+  if (function.degree == 0) return roots;
+  const Polynomial slope = function.derivative();
+  const Roots turns = sign_changes(slope);
+  double low = 0;
+  for (int i = 0; i <= turns.count; ++i) {
+    const double high = i < turns.count ? turns.at[static_cast<std::size_t>(i)] : 1.0;
+    const double at_low = function(low);
+    const double at_high = function(high);
+    if ((at_low < 0 && at_high > 0) || (at_low > 0 && at_high < 0)) {
+      roots.at[static_cast<std::size_t>(roots.count++)] = monotone_root(function, slope, low, high);
+    }
+    low = high;
+  }
+  return roots;
+}
+
+/// The separation contact_gap - position between two knots, as a quintic in s = (time - a.time) / (b.time - a.time).
+Polynomial separation(const TrajectoryPoint& a, const TrajectoryPoint& b, double contact_gap) {
+  const double h = b.time - a.time;
+  const double rise = a.position - b.position;
+  const double v0 = -a.velocity * h;
+  const double v1 = -b.velocity * h;
+  const double a0 = -a.acceleration * h * h;
+  const double a1 = -b.acceleration * h * h;
+  return {.c = {contact_gap - a.position, v0, 0.5 * a0, 10 * rise - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1,
+                -15 * rise + 8 * v0 + 7 * v1 + 1.5 * a0 - a1, 6 * rise - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
+}
+
+/// True when the control points of the quintic's Bernstein form are in order: a cheap proof that nothing turns between the knots.
+bool surely_monotone(const TrajectoryPoint& a, const TrajectoryPoint& b) {
+  const double h = b.time - a.time;
+  const double from_a = a.velocity * h / 5;
+  const double from_b = b.velocity * h / 5;
+  const double bend_a = a.acceleration * h * h / 20;
+  const double bend_b = b.acceleration * h * h / 20;
+  const std::array<double, 5> differences{
+      from_a, from_a + bend_a, (b.position - a.position) - 2 * (from_a + from_b) + bend_b - bend_a, from_b - bend_b, from_b};
+  return std::all_of(differences.begin(), differences.end(), [](double d) { return d >= 0; }) ||
+         std::all_of(differences.begin(), differences.end(), [](double d) { return d <= 0; });
+}
+
+/// A place on the trajectory between which and the next one the separation is monotone and keeps its sign.
+struct Node {
+  double time = 0;        ///< [s]
+  double separation = 0;  ///< [m], 0 on the plane
+  double velocity = 0;    ///< [m/s]
+};
+
+/// The trajectory as far as its knots are finite and ordered.
+std::size_t usable_points(const Trajectory& trajectory) {
+  if (!std::isfinite(trajectory.contact_gap)) return 0;
+  std::size_t count = 0;
+  for (const TrajectoryPoint& point : trajectory.points) {
+    if (!(std::isfinite(point.time) && std::isfinite(point.position) && std::isfinite(point.velocity) &&
+          std::isfinite(point.acceleration))) {
+      break;
+    }
+    if (count > 0 && point.time < trajectory.points[count - 1].time) break;
+    ++count;
+  }
+  return count;
+}
+
+/// Knots, turning points and crossings of the plane, in order. At every change of side there is a node with separation 0.
+std::vector<Node> nodes(const Trajectory& trajectory) {
+  const double gap = trajectory.contact_gap;
+  const double tolerance = kPlaneTolerance * std::abs(gap);
+  const auto snapped = [&](double value) { return std::abs(value) <= tolerance ? 0.0 : value; };
+  const auto knot = [&](const TrajectoryPoint& point) { return Node{point.time, snapped(gap - point.position), point.velocity}; };
+
+  std::vector<Node> result;
+  const std::size_t count = usable_points(trajectory);
+  if (count == 0) return result;
+  result.reserve(2 * count);
+  result.push_back(knot(trajectory.points.front()));
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const TrajectoryPoint& a = trajectory.points[i];
+    const TrajectoryPoint& b = trajectory.points[i + 1];
+    const double h = b.time - a.time;
+    const Polynomial curve = separation(a, b, gap);
+    const Polynomial slope = curve.derivative();
+    const auto node_at = [&](double s, double value) { return Node{a.time + s * h, value, h > 0 ? -slope(s) / h : b.velocity}; };
+
+    double low = 0;
+    const auto advance = [&](double high, const Node& node) {
+      const double before = result.back().separation;
+      if ((before < 0 && node.separation > 0) || (before > 0 && node.separation < 0)) {
+        const bool bracketed = (curve(low) > 0) != (curve(high) > 0);
+        result.push_back(node_at(h > 0 && bracketed ? monotone_root(curve, slope, low, high) : high, 0));
+      }
+      result.push_back(node);
+      low = high;
+    };
+    if (h > 0 && !surely_monotone(a, b)) {
+      const Roots turns = sign_changes(slope);
+      for (int k = 0; k < turns.count; ++k) {
+        const double s = turns.at[static_cast<std::size_t>(k)];
+        advance(s, node_at(s, snapped(curve(s))));
+      }
+    }
+    advance(1, knot(b));
+  }
+  return result;
+}
+
+/// The first node in contact, or the number of nodes.
+std::size_t first_touch(const std::vector<Node>& path) {
+  const auto found = std::find_if(path.begin(), path.end(), [](const Node& node) { return node.separation <= 0; });
+  return static_cast<std::size_t>(found - path.begin());
+}
+
+std::vector<Rebound> rebounds(const std::vector<Node>& path) {
+  std::vector<Rebound> result;
+  for (std::size_t i = first_touch(path); i < path.size(); ++i) {
+    if (!(path[i].separation > 0)) continue;
+    Rebound rebound{.begin = path[i - 1].time, .end = Metrics::unset};
+    for (; i < path.size() && path[i].separation > 0; ++i) {
+      if (path[i].separation > rebound.height) {
+        rebound.height = path[i].separation;
+        rebound.time_of_height = path[i].time;
+      }
+    }
+    if (i < path.size()) rebound.end = path[i].time;
+    result.push_back(rebound);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Rebound> rebounds(const Trajectory& trajectory) { return rebounds(nodes(trajectory)); }
+
+Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options) {
+  Metrics result;
+  result.status = trajectory.status;
+  const bool ran_to_the_end =
+      trajectory.status == Status::done || trajectory.status == Status::no_contact || trajectory.status == Status::not_settled;
+  const bool sound = usable_points(trajectory) == trajectory.points.size() && std::isfinite(trajectory.contact_gap);
+  if (ran_to_the_end && !sound) result.status = Status::numerical_failure;
+
+  const std::vector<Node> path = nodes(trajectory);
+  const std::size_t touch = first_touch(path);
+  const bool touched = touch < path.size();
+  if (touched) {
+    result.initial_contact_time = path[touch].time;
+    result.impact_velocity = std::abs(path[touch].velocity);
+  }
+  if (!ran_to_the_end || !sound) return result;
+
+  result.drive_energy = trajectory.drive_energy;
+  if (!touched) {
+    if (trajectory.status == Status::done) result.status = Status::no_contact;
+    return result;
+  }
+  result.hold_force = trajectory.hold_force;
+  if (!trajectory.touches.empty()) {
+    result.peak_contact_force = 0;
+    result.impact_energy = 0;
+    for (const Touch& one : trajectory.touches) {
+      // Not std::max, which would lose a NaN; once NaN it stays.
+      if (std::isnan(one.peak_force) || one.peak_force > result.peak_contact_force) result.peak_contact_force = one.peak_force;
+      result.impact_energy += one.peak_energy;
+    }
+  }
+
+  const double window_end = path.back().time;
+  double permanent = result.initial_contact_time;
+  bool under_way = false;
+  result.major_bounce_height = 0;
+  for (const Rebound& rebound : rebounds(path)) {
+    result.major_bounce_height = std::max(result.major_bounce_height, rebound.height);
+    under_way = std::isnan(rebound.end);
+    if (!(rebound.height > options.significant_rebound)) continue;
+    ++result.bounce_count;
+    permanent = rebound.end;
+  }
+  const bool long_enough = result.bounce_count == 0 || window_end - permanent >= trajectory.in_contact_period;
+  result.settled = trajectory.status == Status::done && !under_way && long_enough;
+  if (!result.settled) {
+    if (trajectory.status == Status::done) result.status = Status::not_settled;
+    return result;
+  }
+  result.permanent_contact_time = permanent;
+  result.bounce_time = permanent - result.initial_contact_time;
+  return result;
+}
+
+}  // namespace softland

@@ -14,9 +14,9 @@ struct MetricsOptions {
 
 /// An interval after first contact in which the contact point stands above the first-touch plane.
 struct Rebound {
-  double begin = 0;   ///< [s]
-  double end = 0;     ///< [s]; NaN when it is under way at the end of the window
-  double height = 0;  ///< largest separation in it [m]; a lower bound when it is under way
+  double begin = 0;           ///< [s]
+  double end = 0;             ///< [s]; NaN when it is under way at the end of the window
+  double height = 0;          ///< largest separation in it [m]; a lower bound when it is under way
   double time_of_height = 0;  ///< [s]
 };
 
@@ -37,10 +37,14 @@ struct Metrics {
   bool settled = false;
 };
 
-/// All rebounds, significant or not, in order. The trajectory's heights come from the extremum of its interpolant, not from its knots.
+/// All rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact gap is
+/// none. The trajectory's heights come from the extremum of its interpolant, not from its knots.
 [[nodiscard]] std::vector<Rebound> rebounds(const Trajectory& trajectory);
 
-/// Never throws: trouble is in the status (the trajectory's own if that is not `done`, else done | no_contact | not_settled).
+/// Never throws: trouble is in the status (the trajectory's own if that is not `done`, else done | no_contact | not_settled, or
+/// numerical_failure when a knot is not finite or goes back in time). A run that did not reach the end of its window gives
+/// initial_contact_time and impact_velocity when it touched before, and nothing else. No contact: drive_energy alone. A
+/// significant rebound and an in_contact_period that is NaN: not settled.
 [[nodiscard]] Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options = {});
 
 }  // namespace softland
