@@ -3,7 +3,7 @@
 
 namespace softland::literals {
 
-#define SOFTLAND_LITERAL(suffix, factor)                                                                   \
+#define SOFTLAND_LITERAL(suffix, factor)                                                                    \
   constexpr double operator""_##suffix(long double value) { return static_cast<double>(value) * (factor); } \
   constexpr double operator""_##suffix(unsigned long long value) { return static_cast<double>(value) * (factor); }
 

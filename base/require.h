@@ -8,7 +8,8 @@
 
 namespace softland {
 
-/// Input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns it into exit status 2.
+/// Input that breaks a stated rule. The message is complete: it names the value and the rule. The program turns it into exit
+/// status 2.
 class InvalidInput : public std::runtime_error {
  public:
   explicit InvalidInput(const std::string& message, std::source_location where = std::source_location::current())
@@ -21,8 +22,7 @@ class InvalidInput : public std::runtime_error {
 };
 
 /// Throws InvalidInput with `message` unless `rule_holds`. Write the rule so that NaN fails it. Never compiled out.
-inline void require(bool rule_holds, std::string_view message,
-                    std::source_location where = std::source_location::current()) {
+inline void require(bool rule_holds, std::string_view message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidInput(std::string(message), where);
 }
 

@@ -1,0 +1,410 @@
+#include "model/closing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "base/require.h"
+#include "model/pull_in.h"
+#include "model/quintic.h"
+#include "model/stepper.h"
+
+namespace softland {
+namespace {
+
+// Lengths the tolerance is relative to. The touches that follow the first magnify what flight leaves behind, so flight is held
+// tighter than the contact gap itself; with these two numbers a tolerance of 1e-6 holds t_i, v_i and B_H of the reference closing
+// to four digits (measured: a tenfold change of the second moves the error of B_H by less than a tenth of itself, of the first in
+// proportion).
+constexpr double flight_fraction = 1.0 / 30;   // of the contact gap
+constexpr double penetrations_in_contact = 1;  // of the static interference that bends the beam by the contact gap
+
+// Abscissae and weights of the three-point Gauss rule on [0, 1], for the energy integrals over one step.
+constexpr double gauss3[3][2] = {{0.1127016653792583, 5.0 / 18}, {0.5, 8.0 / 18}, {0.8872983346207417, 5.0 / 18}};
+
+struct Knot {
+  double time = 0;
+  std::vector<double> state;         // q then v
+  std::vector<double> acceleration;  // q''
+};
+
+class Run {
+ public:
+  Run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options)
+      : device_(device),
+        drives_(drives),
+        options_(options),
+        n_(static_cast<std::size_t>(device.modes())),
+        work_(device.workspace()),
+        volts_(drives.size(), 0.0),
+        pieces_(drives.size(), 0),
+        plane_(device.device().gap.contact) {
+    system_.size = 2 * n_;
+    system_.rhs = [this](double t, const double* y, double* dydt) { right_hand_side(t, y, dydt); };
+    system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, j); };
+    stepper_ = internal::make_stepper(options.integrator, system_);
+    here_ = {.time = 0, .state = std::vector<double>(2 * n_, 0.0), .acceleration = std::vector<double>(n_, 0.0)};
+    next_ = last_ = here_;
+    last_.time = -1;
+    set_tolerances();
+    out_.contact_gap = plane_;
+    out_.in_contact_period = device.in_contact_period();
+    out_.smallest_gap = device.device().gap.electrode;
+    out_.drive_energy = 0;
+  }
+
+  Trajectory run() {
+    const auto start = std::chrono::steady_clock::now();
+    const std::vector<double> stops = stretches();
+    for (std::size_t i = 0; i + 1 < stops.size() && !ended_; ++i) {
+      enter_stretch(i == 0);
+      stop_ = stops[i + 1];
+      while (!ended_ && here_.time < stop_) advance();
+    }
+    if (!ended_) out_.status = Status::done;
+    finish();
+    out_.work.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return std::move(out_);
+  }
+
+ private:
+  // ---- the equations
+  // -------------------------------------------------------------------------------------------------------------
+
+  void set_volts(double t) {
+    for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = drives_[k].pieces()[pieces_[k]].voltage(t);
+  }
+
+  void accelerations(double t, const double* y, double* a) {
+    set_volts(t);
+    device_.accelerations(y, y + n_, volts_, in_contact_, work_, a);
+    ++out_.work.rhs_evaluations;
+  }
+
+  void right_hand_side(double t, const double* y, double* dydt) {
+    std::copy_n(y + n_, n_, dydt);
+    // The integrator begins a step where the last one ended, which has been evaluated already.
+    if (t == here_.time && std::equal(y, y + 2 * n_, here_.state.begin())) {
+      std::copy_n(here_.acceleration.begin(), n_, dydt + n_);
+    } else {
+      accelerations(t, y, dydt + n_);
+      last_.time = t;
+      std::copy_n(y, 2 * n_, last_.state.begin());
+      std::copy_n(dydt + n_, n_, last_.acceleration.begin());
+    }
+  }
+
+  // Takes the integrator's state as next_. The last stage of many methods is the right-hand side there.
+  void take_state() {
+    next_.time = stepper_->time();
+    std::copy_n(stepper_->state(), 2 * n_, next_.state.begin());
+    if (last_.time == next_.time && last_.state == next_.state) {
+      next_.acceleration = last_.acceleration;
+    } else {
+      accelerations(next_.time, next_.state.data(), next_.acceleration.data());
+    }
+  }
+
+  void jacobian(double t, const double* y, double* j) {
+    set_volts(t);
+    const auto n = static_cast<Eigen::Index>(n_);
+    Eigen::Map<Eigen::MatrixXd> full(j, 2 * n, 2 * n);
+    full.topRows(n).setZero();
+    full.topRightCorner(n, n).setIdentity();
+    device_.jacobian(y, y + n_, volts_, in_contact_, work_, full.bottomLeftCorner(n, n), full.bottomRightCorner(n, n));
+  }
+
+  // ---- stretches between breakpoints
+  // ---------------------------------------------------------------------------------------------
+
+  [[nodiscard]] std::vector<double> stretches() const {
+    std::vector<double> stops{0, options_.duration};
+    for (const Signal& signal : drives_) {
+      for (const double t : signal.breakpoints()) {
+        if (t > 0 && t < options_.duration) stops.push_back(t);
+      }
+    }
+    std::sort(stops.begin(), stops.end());
+    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    return stops;
+  }
+
+  void enter_stretch(bool first) {
+    const double t = here_.time;
+    for (std::size_t k = 0; k < drives_.size(); ++k) {
+      const double before = first ? 0 : volts_at(k, t);
+      pieces_[k] = drives_[k].piece_at(t);
+      const double after = volts_at(k, t);
+      // A jump charges the electrode at fixed deflection: the limit of ever steeper edges.
+      if (before != after) {
+        out_.drive_energy += device_.capacitance(k, here_.state.data(), work_) * (after * after - before * before) / 2;
+      }
+    }
+    restart();
+    record(here_);
+  }
+
+  [[nodiscard]] double volts_at(std::size_t k, double t) const { return drives_[k].pieces()[pieces_[k]].voltage(t); }
+
+  void set_tolerances() {
+    const Eigen::VectorXd& omega = device_.angular_frequencies();
+    const Eigen::VectorXd& shape = device_.contact_shape();
+    const double largest = shape.cwiseAbs().maxCoeff();
+    const auto fill = [&](std::vector<double>& absolute, double length) {
+      absolute.resize(2 * n_);
+      for (std::size_t i = 0; i < n_; ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        // A mode that hardly moves the contact point still shakes the rest of the beam: count it as if it moved it by a tenth of
+        // the others.
+        const double amplitude = std::max(std::abs(shape[k]), largest / 10);
+        absolute[i] = options_.tolerance * length / amplitude;
+        absolute[n_ + i] = options_.tolerance * flight_fraction * plane_ / amplitude * omega[k];
+      }
+    };
+    fill(in_flight_, flight_fraction * plane_);
+    fill(touching_, std::min(flight_fraction * plane_, penetrations_in_contact * device_.penetration_scale()));
+  }
+
+  void restart() {
+    accelerations(here_.time, here_.state.data(), here_.acceleration.data());
+    double max_step = std::numeric_limits<double>::infinity();
+    for (const Signal& signal : drives_) max_step = std::min(max_step, signal.resolving_step(here_.time));
+    const double first = last_step_ > 0 ? std::min(last_step_, max_step) : 0.01 / device_.angular_frequencies().maxCoeff();
+    if (!stepper_->restart(here_.time, here_.state.data(), in_contact_ ? touching_ : in_flight_, first, max_step)) {
+      fail(stepper_->message());
+    }
+  }
+
+  // ---- steps and events
+  // ----------------------------------------------------------------------------------------------------------
+
+  void advance() {
+    if (!stepper_->step(stop_)) return fail(stepper_->message());
+    ++out_.work.steps;
+    take_state();
+    if (!std::isfinite(next_.acceleration[0])) return fail("the motion is no longer finite");
+    if (next_.time < stop_) last_step_ = next_.time - here_.time;
+
+    const TrajectoryPoint from = out_.points.back(), to = point(next_);
+    const Quintic tip(from.time, from.position, from.velocity, from.acceleration, to.time, to.position, to.velocity,
+                      to.acceleration);
+    const double gap = Switch::smallest_gap(work_);
+    const double event = crossing(tip, from, to);
+    const bool crossed = event > 0;
+    if (crossed && !step_again(event)) return;
+    account(tip);
+    here_.state.swap(next_.state);
+    here_.acceleration.swap(next_.acceleration);
+    here_.time = next_.time;
+    record(here_, crossed);
+    if (crossed) toggle();
+    out_.smallest_gap = std::min(out_.smallest_gap, gap);
+    if (ended_) return;
+    if (gap < device_.gap_floor()) {
+      return fail(fmt::format("the beam came within {:.3g} m of the electrode", device_.gap_floor()));
+    }
+    if (out_.work.steps >= options_.max_steps) return fail(fmt::format("more than {} steps needed", options_.max_steps));
+    if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);
+    if (options_.observer && options_.observer(here_.time, here_.state.data(), here_.state.data() + n_)) return end(Status::done);
+    if (out_.touches.empty() ? here_.time >= options_.no_contact_before
+                             : here_.time >= out_.touches.front().begin + options_.after_contact) {
+      return end(Status::done);
+    }
+  }
+
+  [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
+    const double y = device_.contact_deflection(knot.state.data());
+    return {.time = knot.time,
+            .position = y,
+            .velocity = device_.contact_deflection(knot.state.data() + n_),
+            .acceleration = device_.contact_deflection(knot.acceleration.data()),
+            .contact_force = in_contact_ ? contact_force(device_.contact(), y - plane_) : 0};
+  }
+
+  void record(const Knot& knot, bool on_plane = false) {
+    TrajectoryPoint p = point(knot);
+    if (on_plane) {
+      p.position = plane_;  // what the event is, to rounding
+      p.contact_force = 0;
+    }
+    out_.points.push_back(p);
+  }
+
+  // Time in (from, to] at which the contact point crosses the plane outwards of its present side; 0 if it does not.
+  [[nodiscard]] double crossing(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) const {
+    const double side = in_contact_ ? 1 : -1;  // side * (position - plane) is positive on the side where the step began
+    const auto depth = [&](double t) { return side * (tip.position(t) - plane_); };
+    const double far = side * (to.position - plane_);
+    double outside = far < 0 ? to.time : 0;
+    double inside = from.time;
+    // Just after an event the motion starts on the plane: the point deepest inside separates that zero from the next one.
+    if (side * from.velocity > 0 && side * to.velocity < 0) {
+      inside = bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
+    }
+    if (outside == 0 && side * from.velocity < 0 && side * to.velocity > 0) {  // dipped and came back: a grazing crossing
+      const double lowest = bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
+      if (depth(lowest) < 0) outside = lowest;
+    }
+    if (outside == 0) return 0;
+    if (!(depth(inside) > 0)) return inside;  // a touch without depth: over before it began
+    return bracketed_zero(depth, inside, outside);
+  }
+
+  // Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch.
+  bool step_again(double event) {
+    if (event <= here_.time) {
+      next_ = here_;
+      return true;
+    }
+    if (!stepper_->restart(here_.time, here_.state.data(), in_contact_ ? touching_ : in_flight_, event - here_.time,
+                           std::numeric_limits<double>::infinity())) {
+      return fail(stepper_->message()), false;
+    }
+    do {
+      if (!stepper_->step(event)) return fail(stepper_->message()), false;
+    } while (stepper_->time() < event);
+    take_state();
+    return true;
+  }
+
+  void toggle() {
+    const TrajectoryPoint& p = out_.points.back();
+    if (in_contact_) {
+      out_.touches.back().end = p.time;
+      in_contact_ = false;
+    } else {
+      out_.touches.push_back(
+          {.begin = p.time, .end = std::numeric_limits<double>::quiet_NaN(), .impact_velocity = std::abs(p.velocity)});
+      if (!device_.has_contact()) {
+        out_.warnings.push_back("no [contact] section: the run ends at first touch");
+        return end(Status::done);
+      }
+      in_contact_ = true;
+    }
+    restart();
+  }
+
+  // Peaks and energies over the step that ends at next_.
+  void account(const Quintic& tip) {
+    const double t0 = here_.time, t1 = next_.time;
+    if (in_contact_) {
+      double deepest = std::max(tip.position(t0), tip.position(t1));
+      if (tip.velocity(t0) > 0 && tip.velocity(t1) < 0) {
+        deepest = tip.position(bracketed_zero([&](double t) { return tip.velocity(t); }, t0, t1));
+      }
+      const double d = deepest - plane_;
+      Touch& touch = out_.touches.back();
+      touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d));
+      touch.peak_energy = std::max(touch.peak_energy, contact_energy(device_.contact(), d));
+      out_.deepest_penetration = std::max(out_.deepest_penetration, d);
+    }
+
+    // Work of the sources: integral of V dQ = [V Q] - integral of Q dV.
+    for (std::size_t k = 0; k < drives_.size(); ++k) {
+      const SignalPiece& piece = drives_[k].pieces()[pieces_[k]];
+      const double v0 = piece.voltage(t0), v1 = piece.voltage(t1);
+      const bool changing = piece.slope != 0 || piece.amplitude != 0 || piece.amplitude_slope != 0;
+      if (v0 == 0 && v1 == 0 && !changing) continue;
+      out_.drive_energy += v1 * charge(k, v1, next_.state.data()) - v0 * charge(k, v0, here_.state.data());
+      if (!changing) continue;
+      for (const auto& [s, weight] : gauss3) {
+        const double t = t0 + s * (t1 - t0);
+        between(t);
+        out_.drive_energy -= weight * (t1 - t0) * piece.rate(t) * charge(k, piece.voltage(t), middle_.data());
+      }
+    }
+    if (options_.audit) {
+      for (const auto& [s, weight] : gauss3) {
+        between(t0 + s * (t1 - t0));
+        out_.energy.dissipated += weight * (t1 - t0) * device_.dissipated_power(middle_.data(), middle_.data() + n_, work_);
+      }
+    }
+  }
+
+  double charge(std::size_t k, double volts, const double* q) {
+    const bool piezo = device_.has_piezo() && k + 1 == drives_.size();
+    return piezo ? device_.piezo_charge(q) : device_.capacitance(k, q, work_) * volts;
+  }
+
+  // State inside the last step, in middle_.
+  void between(double t) {
+    middle_.resize(2 * n_);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Quintic q(here_.time, here_.state[i], here_.state[n_ + i], here_.acceleration[i], next_.time, next_.state[i],
+                      next_.state[n_ + i], next_.acceleration[i]);
+      middle_[i] = q.position(t);
+      middle_[n_ + i] = q.velocity(t);
+    }
+  }
+
+  void end(Status status) {
+    ended_ = true;
+    out_.status = status;
+  }
+
+  void fail(const std::string& why) {
+    end(Status::numerical_failure);
+    out_.message = fmt::format("at t = {:.6g} s: {}", here_.time, why);
+  }
+
+  void finish() {
+    if (options_.audit) {
+      const double* q = here_.state.data();
+      double stored = device_.kinetic_energy(q + n_) + device_.elastic_energy(q);
+      for (std::size_t k = 0; k < drives_.size(); ++k) {
+        const double v = volts_at(k, here_.time);
+        stored += device_.capacitance(k, q, work_) * v * v / 2;
+      }
+      if (in_contact_) stored += contact_energy(device_.contact(), device_.contact_deflection(q) - plane_);
+      out_.energy.source_work = out_.drive_energy;
+      out_.energy.stored = stored;  // at rest under 0 V nothing is stored
+    }
+    if (const auto* c = std::get_if<UniformAsperityContact>(device_.has_contact() ? &device_.contact() : nullptr)) {
+      if (out_.deepest_penetration > c->height) {
+        out_.warnings.push_back(
+            fmt::format("contact law asperity-uniform: interference {:.3g} m exceeds the asperity height {:.3g} m",
+                        out_.deepest_penetration, c->height));
+      }
+    }
+    if (out_.status == Status::done && !out_.touches.empty() && device_.has_contact()) {
+      std::vector<double> hold;
+      for (const Signal& signal : drives_) hold.push_back(signal.hold_level());
+      out_.hold_force = closed_contact_force(device_, hold);
+    }
+  }
+
+  const Switch& device_;
+  std::span<const Signal> drives_;
+  const ClosingOptions& options_;
+  std::size_t n_;
+  Switch::Workspace work_;
+  std::vector<double> volts_;
+  std::vector<std::size_t> pieces_;  // the signal piece of each drive in the present stretch
+  double plane_;
+  internal::OdeSystem system_;
+  std::unique_ptr<internal::Stepper> stepper_;
+  std::vector<double> in_flight_, touching_;  // absolute tolerances
+  Knot here_, next_, last_;
+  std::vector<double> middle_;
+  bool in_contact_ = false;
+  bool ended_ = false;
+  double stop_ = 0;
+  double last_step_ = 0;
+  Trajectory out_;
+};
+
+}  // namespace
+
+Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options) {
+  require(drives.size() == device.drives(),
+          fmt::format("{} signals for a switch with {} drives", drives.size(), device.drives()));
+  require(options.duration > 0 && options.duration < 1e6, fmt::format("duration = {} s: must be positive", options.duration));
+  require(options.tolerance > 0 && options.tolerance <= 0.1,
+          fmt::format("tolerance = {}: must be in (0, 0.1]", options.tolerance));
+  return Run(device, drives, options).run();
+}
+
+}  // namespace softland

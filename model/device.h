@@ -11,13 +11,13 @@ namespace softland {
 
 /// A cantilever of rectangular section (Euler-Bernoulli).
 struct Structure {
-  double length = 0;         ///< L [m]
-  double width = 0;          ///< a [m]
-  double thickness = 0;      ///< b [m]
+  double length = 0;          ///< L [m]
+  double width = 0;           ///< a [m]
+  double thickness = 0;       ///< b [m]
   double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
-  double density = 0;        ///< rho [kg/m^3]
+  double density = 0;         ///< rho [kg/m^3]
   int modes = 4;
-  double damping_ratio = 0;  ///< zeta of every mode
+  double damping_ratio = 0;   ///< zeta of every mode
   bool plate_strain = false;  ///< use E / (1 - nu^2)
   double poissons_ratio = std::numeric_limits<double>::quiet_NaN();
 };
@@ -30,7 +30,7 @@ struct Gap {
 enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
 struct Electrode {
-  std::string name;
+  std::string name = {};
   double begin = 0;  ///< [m] from the clamped end
   double end = 0;    ///< [m]
   Fringing fringing = Fringing::meijs_fokkema;
@@ -66,17 +66,15 @@ struct Piezo {
 };
 
 struct Device {
-  Structure structure;
-  Gap gap;
-  std::vector<Electrode> electrodes;
-  std::optional<Gas> gas;
-  std::optional<Contact> contact;
-  std::optional<Piezo> piezo;
+  Structure structure = {};
+  Gap gap = {};
+  std::vector<Electrode> electrodes = {};
+  std::optional<Gas> gas = {};
+  std::optional<Contact> contact = {};
+  std::optional<Piezo> piezo = {};
 
   /// x_c, the centre of the pad [m]: all figures of merit are taken there. The free end where there is no contact.
-  [[nodiscard]] double contact_position() const {
-    return structure.length - (contact ? contact->pad_length / 2 : 0);
-  }
+  [[nodiscard]] double contact_position() const { return structure.length - (contact ? contact->pad_length / 2 : 0); }
 };
 
 /// Throws InvalidInput naming the quantity, its value and the rule when a number is outside what the model can mean.

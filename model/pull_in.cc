@@ -1,0 +1,259 @@
+#include "model/pull_in.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "model/closing.h"
+#include "model/constants.h"
+#include "model/quintic.h"
+
+namespace softland {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// A static equilibrium with the contact point held at a given deflection. `unknown` is what keeps it there: V^2 of the driven
+// electrode [V^2], or the reaction of the holder [N].
+struct Held {
+  Eigen::VectorXd q;
+  double unknown = 0;
+};
+
+class Statics {
+ public:
+  explicit Statics(const Switch& device)
+      : device_(device),
+        work_(device.workspace()),
+        rest_(Eigen::VectorXd::Zero(device.modes())),
+        squares_(device.angular_frequencies().cwiseAbs2()) {}
+
+  // Shape under a force at the contact point, scaled to the deflection s there.
+  [[nodiscard]] Eigen::VectorXd pushed(double s) const {
+    const Eigen::VectorXd shape = device_.contact_shape().cwiseQuotient(squares_);
+    return shape * (s / device_.contact_shape().dot(shape));
+  }
+
+  // Electrode `drive` alone holds the contact point at s against the contact force P(s - dt).
+  std::optional<Held> on_branch(std::size_t drive, double s, Held start) {
+    std::vector<double> unit(device_.drives(), 0.0);
+    unit[drive] = 1;
+    const Eigen::VectorXd& shape = device_.contact_shape();
+    const double d = s - device_.device().gap.contact;
+    const double push = d > 0 && device_.has_contact() ? contact_force(device_.contact(), d) : 0;
+    return newton(s, std::move(start),
+                  [&](const Held& h, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
+                    evaluate(h.q, unit, by_unknown, by_q);
+                    by_unknown += squares_.cwiseProduct(h.q);  // the electrostatic force at 1 V
+                    by_q.diagonal() += squares_;
+                    by_q *= h.unknown;
+                    by_q.diagonal() -= squares_;
+                    residual = h.unknown * by_unknown - squares_.cwiseProduct(h.q) - push * shape;
+                  });
+  }
+
+  // A holder keeps the contact point at s under constant voltages; unknown is the force with which the beam presses on it.
+  std::optional<Held> pinned(std::span<const double> volts, double s) {
+    Held h{.q = pushed(s)};
+    std::vector<double> part(volts.begin(), volts.end());
+    for (const double load : {0.25, 0.5, 0.75, 1.0}) {
+      std::transform(volts.begin(), volts.end(), part.begin(), [&](double v) { return v * std::sqrt(load); });
+      const auto next =
+          newton(s, h, [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
+            evaluate(at.q, part, residual, by_q);
+            residual -= at.unknown * device_.contact_shape();
+            by_unknown = -device_.contact_shape();
+          });
+      if (!next) return std::nullopt;
+      h = *next;
+    }
+    return h;
+  }
+
+  double potential(const Eigen::VectorXd& q, std::span<const double> volts) {
+    return device_.potential(q.data(), volts, false, work_);
+  }
+
+ private:
+  // Static modal forces without contact, and their derivative.
+  void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
+    const auto n = device_.modes();
+    force.resize(n);
+    by_q.resize(n, n);
+    Eigen::MatrixXd by_v(n, n);
+    device_.accelerations(q.data(), rest_.data(), volts, false, work_, force.data());
+    device_.jacobian(q.data(), rest_.data(), volts, false, work_, by_q, by_v);
+  }
+
+  template <class Equations>
+  std::optional<Held> newton(double s, Held h, Equations&& equations) {
+    const Eigen::Index n = device_.modes();
+    const Eigen::VectorXd& shape = device_.contact_shape();
+    const double largest = shape.cwiseAbs().maxCoeff();
+    Eigen::VectorXd residual, by_unknown;
+    Eigen::MatrixXd by_q, bordered(n + 1, n + 1);
+    Eigen::VectorXd right(n + 1);
+    for (int i = 0; i < 60; ++i) {
+      equations(h, residual, by_q, by_unknown);
+      // Rows in units of each mode's own stiffness: unscaled they span ten decades.
+      bordered.topLeftCorner(n, n) = squares_.cwiseInverse().asDiagonal() * by_q;
+      bordered.topRightCorner(n, 1) = by_unknown.cwiseQuotient(squares_);
+      bordered.bottomLeftCorner(1, n) = shape.transpose() / largest;
+      bordered(n, n) = 0;
+      right.head(n) = -residual.cwiseQuotient(squares_);
+      right[n] = (s - shape.dot(h.q)) / largest;
+      const Eigen::VectorXd step = bordered.partialPivLu().solve(right);
+      if (!step.allFinite()) return std::nullopt;
+      h.q += step.head(n);
+      h.unknown += step[n];
+      const double moved = step.head(n).cwiseProduct(shape).cwiseAbs().sum();
+      if (moved < 1e-13 * device_.device().gap.electrode) {
+        // Below the floor the laws are no longer physics: a state there is none.
+        return Switch::smallest_gap(work_) > device_.gap_floor() ? std::optional(h) : std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+
+  const Switch& device_;
+  Switch::Workspace work_;
+  Eigen::VectorXd rest_, squares_;
+};
+
+// The static branch of one electrode as a function of the contact point's deflection.
+class Branch {
+ public:
+  Branch(const Switch& device, std::size_t drive) : statics_(device), drive_(drive) {}
+
+  // V^2 at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
+  double operator()(double s) {
+    if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
+    auto found = statics_.on_branch(drive_, s, start_);
+    if (!found) found = statics_.on_branch(drive_, s, {.q = statics_.pushed(s), .unknown = start_.unknown});
+    if (!found) return nan;
+    start_ = *found;
+    return found->unknown;
+  }
+  [[nodiscard]] const Eigen::VectorXd& q() const { return start_.q; }
+
+ private:
+  Statics statics_;
+  std::size_t drive_;
+  Held start_;
+};
+
+constexpr int branch_steps = 64;
+
+}  // namespace
+
+std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? "fold" : "contact"; }
+
+StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
+  Branch branch(device, drive);
+  const double end = device.device().gap.contact;
+  double best = 0;
+  for (int k = 1; k <= branch_steps; ++k) {
+    const double s = end * k / branch_steps, square = branch(s);
+    if (!std::isfinite(square)) return {.status = Status::numerical_failure};
+    if (square <= best) {
+      // The top is flat: 1e-9 of the deflection is far more than the voltage needs.
+      const auto [at, value] = boost::math::tools::brent_find_minima(
+          [&](double x) { return -branch(x); }, std::max(0.0, end * (k - 2) / branch_steps) + 1e-6 * end, s, 30);
+      return {.status = Status::done, .voltage = std::sqrt(-value), .deflection = at, .kind = StaticKind::fold};
+    }
+    best = square;
+  }
+  return {.status = Status::done, .voltage = std::sqrt(best), .deflection = end, .kind = StaticKind::contact};
+}
+
+double release_voltage(const Switch& device, std::size_t drive) {
+  if (!device.has_contact()) return nan;
+  Branch branch(device, drive);
+  const double plane = device.device().gap.contact;
+  for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
+  // The contact is soft at first touch, so the branch may fall a little further before contact turns it up.
+  double lowest = branch(plane), at = plane;
+  const double step = device.penetration_scale() / 16;
+  for (int k = 1; k <= 64; ++k) {
+    const double square = branch(plane + k * step);
+    if (!std::isfinite(square) || square > lowest) break;
+    lowest = square;
+    at = plane + k * step;
+  }
+  if (at > plane) {
+    const auto minimum = boost::math::tools::brent_find_minima([&](double x) { return branch(x); }, at - step, at + step, 30);
+    lowest = std::min(lowest, minimum.second);
+  }
+  return lowest > 0 ? std::sqrt(lowest) : nan;
+}
+
+double closed_contact_force(const Switch& device, std::span<const double> volts) {
+  if (!device.has_contact()) return nan;
+  Statics statics(device);
+  const double plane = device.device().gap.contact;
+  const auto surplus = [&](double s) {
+    const auto held = statics.pinned(volts, s);
+    return held ? held->unknown - contact_force(device.contact(), s - plane) : nan;
+  };
+  if (!(surplus(plane) > 0)) return nan;
+  double deep = plane + device.penetration_scale();
+  for (int i = 0; i < 40 && surplus(deep) > 0; ++i) deep = plane + 2 * (deep - plane);
+  if (!(surplus(deep) < 0)) return nan;
+  return contact_force(device.contact(), bracketed_zero(surplus, plane, deep) - plane);
+}
+
+DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result, double tolerance) {
+  if (static_result.status != Status::done) return {.status = static_result.status};
+  Statics statics(device);
+  Branch branch(device, drive);
+  const double plane = device.device().gap.contact;
+  const std::vector<double> rest(static_cast<std::size_t>(device.modes()), 0.0);
+  Switch::Workspace work = device.workspace();
+
+  // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane never gets there. The pass
+  // is the unstable equilibrium, or the state held at the plane where that comes first.
+  const auto pass = [&](double volts, std::span<const double> all) {
+    const double square = volts * volts;
+    if (static_result.kind == StaticKind::fold && branch(plane) < square) {
+      const double s = bracketed_zero([&](double x) { return branch(x) - square; }, static_result.deflection, plane);
+      branch(s);
+      return statics.potential(branch.q(), all);
+    }
+    const auto held = statics.pinned(all, plane);
+    return held ? statics.potential(held->q, all) : nan;
+  };
+
+  const auto reaches = [&](double volts) {
+    std::vector<double> all(device.drives(), 0.0);
+    all[drive] = volts;
+    const double barrier = pass(volts, all);
+    if (device.potential(rest.data(), all, false, work) < barrier) return false;
+    std::vector<Signal> signals(device.drives());
+    signals[drive] = Signal::constant(volts);
+    ClosingOptions options{
+        .duration = 100 * 2 * pi / device.angular_frequencies()[0], .tolerance = tolerance, .after_contact = 0};
+    int step = 0;
+    options.observer = [&](double, const double* q, const double* v) {
+      if (++step % 8 != 0) return false;  // looking more often costs more than it saves
+      return device.kinetic_energy(v) + device.potential(q, all, false, work) < barrier;
+    };
+    return !simulate_closing(device, signals, options).touches.empty();
+  };
+
+  double low = 0.5 * static_result.voltage, high = static_result.voltage;
+  while (reaches(low)) {
+    high = low;
+    low /= 2;
+    if (low < 1e-9 * static_result.voltage) return {.status = Status::numerical_failure};
+  }
+  while (high - low > 1e-7 * high) {
+    const double middle = (low + high) / 2;
+    (reaches(middle) ? high : low) = middle;
+  }
+  return {.status = Status::done, .voltage = high};
+}
+
+}  // namespace softland

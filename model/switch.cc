@@ -1,0 +1,190 @@
+#include "model/switch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "model/forces/electrostatic.h"
+#include "model/gas/strip.h"
+#include "model/gauss.h"
+
+namespace softland {
+namespace {
+
+struct PointRange {
+  Eigen::Index begin, end;
+};
+
+PointRange points_in(const Eigen::ArrayXd& positions, double begin, double end) {
+  const auto first = std::lower_bound(positions.begin(), positions.end(), begin);
+  const auto last = std::lower_bound(positions.begin(), positions.end(), end);
+  return {first - positions.begin(), last - positions.begin()};
+}
+
+template <class Law>
+std::unique_ptr<const DistributedLaw> erased(Law law, PointRange range, double floor) {
+  return std::make_unique<DistributedLawOf<Law>>(law, range.begin, range.end, floor);
+}
+
+std::unique_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, PointRange range, double floor) {
+  switch (fringing) {
+    case Fringing::none:
+      return erased(ElectrostaticForce<NoFringing>{{.width = s.width}}, range, floor);
+    case Fringing::linear:
+      return erased(ElectrostaticForce<LinearFringing>{{.width = s.width}}, range, floor);
+    case Fringing::bao_2001:
+      return erased(ElectrostaticForce<Bao2001Fringing>{{.width = s.width, .thickness = s.thickness}}, range, floor);
+    case Fringing::meijs_fokkema:
+      break;
+  }
+  return erased(ElectrostaticForce<MeijsFokkemaFringing>{{.width = s.width, .thickness = s.thickness}}, range, floor);
+}
+
+}  // namespace
+
+Switch::Switch(const Device& device, const SwitchOptions& options) : device_(device) {
+  validate(device_);
+  const Structure& s = device_.structure;
+  const double x_c = device_.contact_position();
+  const BeamModes beam(beam_sections(device_), s.modes);
+  frequencies_ = beam.angular_frequencies();
+  squares_ = frequencies_.cwiseAbs2();
+  contact_shape_ = beam.value(x_c);
+  in_contact_period_ = 2 * pi / beam.pinned_frequency(x_c);
+  piezo_shape_ = Eigen::VectorXd::Zero(modes());
+
+  std::set<double> corners{0, s.length};
+  for (const Electrode& e : device_.electrodes) corners.insert({e.begin, std::min(e.end, s.length)});
+  if (device_.piezo) {
+    corners.insert({device_.piezo->begin, device_.piezo->end});
+    piezo_shape_ = piezo_moment_per_volt(s, *device_.piezo) * (beam.slope(device_.piezo->end) - beam.slope(device_.piezo->begin));
+  }
+  if (device_.contact) corners.insert(s.length - device_.contact->pad_length);
+
+  std::vector<double> positions, weights;
+  for (auto corner = corners.begin(); std::next(corner) != corners.end(); ++corner) {
+    const double begin = *corner, length = *std::next(corner) - begin;
+    const GaussRule rule = gauss_rule(std::max(3, static_cast<int>(std::ceil(length / s.length * options.points_per_length))));
+    for (std::size_t i = 0; i < rule.points.size(); ++i) {
+      positions.push_back(begin + length * (1 + rule.points[i]) / 2);
+      weights.push_back(rule.weights[i] * length / 2);
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(positions.size());
+  positions_ = Eigen::Map<Eigen::ArrayXd>(positions.data(), n);
+  weights_ = Eigen::Map<Eigen::ArrayXd>(weights.data(), n);
+  shapes_.resize(n, modes());
+  for (Eigen::Index p = 0; p < n; ++p) shapes_.row(p) = beam.value(positions_[p]).transpose();
+  weighted_shapes_ = weights_.matrix().asDiagonal() * shapes_;
+
+  for (const Electrode& e : device_.electrodes) {
+    electrode_laws_.push_back(electrostatic(e.fringing, s, points_in(positions_, e.begin, e.end), gap_floor()));
+  }
+  if (device_.gas) {
+    passive_laws_.push_back(erased(StripSqueezeFilm{.viscosity = device_.gas->viscosity, .width = s.width}, {0, n}, gap_floor()));
+  }
+  if (device_.contact) {
+    contact_ = contact_law(*device_.contact, s.width);
+    // Stiffness of the beam against a force at x_c, then the interference that carries it over the contact gap, by bisection:
+    // laws grow.
+    const double compliance = contact_shape_.cwiseAbs2().cwiseQuotient(squares_).sum();
+    const double force = device_.gap.contact / compliance;
+    double low = 0, high = device_.gap.contact;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      (contact_force(*contact_, middle) < force ? low : high) = middle;
+    }
+    penetration_scale_ = high;
+  }
+}
+
+Switch::Workspace Switch::workspace() const {
+  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(points());
+  return {.field = {.gap = zero, .velocity = zero, .smallest_gap = 0}, .load = zero, .by_deflection = zero, .by_velocity = zero};
+}
+
+void Switch::set_field(const double* q, const double* v, Workspace& work) const {
+  const Eigen::Map<const Eigen::VectorXd> qs(q, modes()), vs(v, modes());
+  work.field.gap = device_.gap.electrode - (shapes_ * qs).array();
+  work.field.velocity.matrix().noalias() = shapes_ * vs;
+  work.field.smallest_gap = work.field.gap.minCoeff();
+}
+
+void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
+                           double* result) const {
+  const int n = modes();
+  set_field(q, v, work);
+  work.load.setZero();
+  for (std::size_t e = 0; e < electrode_laws_.size(); ++e) {
+    if (volts[e] != 0) electrode_laws_[e]->add_load(work.field, volts[e] * volts[e], work.load.data());
+  }
+  for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
+  Eigen::Map<Eigen::VectorXd> a(result, n);
+  a.noalias() = weighted_shapes_.transpose() * work.load.matrix();
+  const double damping = 2 * device_.structure.damping_ratio;
+  for (int i = 0; i < n; ++i) a[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
+  if (device_.piezo) a += volts.back() * piezo_shape_;
+  if (in_contact) a -= contact_force(*contact_, contact_deflection(q) - device_.gap.contact) * contact_shape_;
+}
+
+void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
+                      Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const {
+  set_field(q, v, work);
+  work.by_deflection.setZero();
+  work.by_velocity.setZero();
+  for (std::size_t e = 0; e < electrode_laws_.size(); ++e) {
+    electrode_laws_[e]->add_derivatives(work.field, volts[e] * volts[e], work.by_deflection.data(), work.by_velocity.data());
+  }
+  for (const auto& law : passive_laws_) law->add_derivatives(work.field, 0, work.by_deflection.data(), work.by_velocity.data());
+  by_q = weighted_shapes_.transpose() * work.by_deflection.matrix().asDiagonal() * shapes_;
+  by_v = weighted_shapes_.transpose() * work.by_velocity.matrix().asDiagonal() * shapes_;
+  by_q.diagonal() -= squares_;
+  by_v.diagonal() -= 2 * device_.structure.damping_ratio * frequencies_;
+  if (in_contact) {
+    const Dual d(contact_deflection(q) - device_.gap.contact, 1);
+    const double stiffness = std::visit([&](const auto& l) { return l.force(d).slope; }, *contact_);
+    by_q -= stiffness * contact_shape_ * contact_shape_.transpose();
+  }
+}
+
+double Switch::contact_deflection(const double* q) const {
+  double sum = 0;
+  for (int i = 0; i < modes(); ++i) sum += contact_shape_[i] * q[i];
+  return sum;
+}
+
+double Switch::capacitance(std::size_t drive, const double* q, Workspace& work) const {
+  if (drive >= electrode_laws_.size()) return 0;
+  const Eigen::Map<const Eigen::VectorXd> qs(q, modes());
+  work.field.gap = device_.gap.electrode - (shapes_ * qs).array();
+  return electrode_laws_[drive]->capacitance(work.field, weights_);
+}
+
+double Switch::piezo_charge(const double* q) const { return Eigen::Map<const Eigen::VectorXd>(q, modes()).dot(piezo_shape_); }
+
+double Switch::kinetic_energy(const double* v) const { return Eigen::Map<const Eigen::VectorXd>(v, modes()).squaredNorm() / 2; }
+
+double Switch::elastic_energy(const double* q) const {
+  return Eigen::Map<const Eigen::VectorXd>(q, modes()).cwiseAbs2().dot(squares_) / 2;
+}
+
+double Switch::dissipated_power(const double* q, const double* v, Workspace& work) const {
+  set_field(q, v, work);
+  work.load.setZero();
+  for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
+  const double modal =
+      2 * device_.structure.damping_ratio * Eigen::Map<const Eigen::VectorXd>(v, modes()).cwiseAbs2().dot(frequencies_);
+  return modal - (weights_ * work.load * work.field.velocity).sum();
+}
+
+double Switch::potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const {
+  double energy = elastic_energy(q);
+  for (std::size_t e = 0; e < electrode_laws_.size(); ++e) {
+    if (volts[e] != 0) energy -= capacitance(e, q, work) * volts[e] * volts[e] / 2;
+  }
+  if (device_.piezo) energy -= volts.back() * piezo_charge(q);
+  if (in_contact) energy += contact_energy(*contact_, contact_deflection(q) - device_.gap.contact);
+  return energy;
+}
+
+}  // namespace softland

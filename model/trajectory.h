@@ -10,8 +10,8 @@
 namespace softland {
 
 /// One knot. Between knots position is the quintic Hermite interpolant of (position, velocity, acceleration), so knots must not
-/// straddle a kink: every make and break of contact and every waveform breakpoint is a knot. Two knots of equal time are a jump of velocity
-/// or acceleration.
+/// straddle a kink: every make and break of contact and every waveform breakpoint is a knot. Two knots of equal time are a jump
+/// of velocity or acceleration.
 struct TrajectoryPoint {
   double time = 0;           ///< [s]
   double position = 0;       ///< of the contact point, from rest towards the contact [m]
@@ -37,24 +37,26 @@ struct Work {
 
 /// Residual of the energy balance of a run: work of the sources = change of stored energy + dissipated energy.
 struct EnergyAudit {
-  double source_work = 0;   ///< [J]
-  double stored = 0;        ///< change of kinetic + elastic + electrostatic + contact energy [J]
-  double dissipated = 0;    ///< gas and modal damping [J]
+  double source_work = 0;  ///< [J]
+  double stored = 0;       ///< change of kinetic + elastic + electrostatic + contact energy [J]
+  double dissipated = 0;   ///< gas and modal damping [J]
   [[nodiscard]] double residual() const { return source_work - stored - dissipated; }
 };
 
 struct Trajectory {
   Status status = Status::not_run;
-  std::string message;              ///< why, where it is not done
-  double contact_gap = 0;           ///< dt: the first-touch plane [m]
+  std::string message;     ///< why, where it is not done
+  double contact_gap = 0;  ///< dt: the first-touch plane [m]
   std::vector<TrajectoryPoint> points;
   std::vector<Touch> touches;
-  double in_contact_period = std::numeric_limits<double>::quiet_NaN();  ///< 2 pi over the first frequency of the beam pinned at x_c [s]
-  double drive_energy = std::numeric_limits<double>::quiet_NaN();       ///< integral of V dQ over all drives [J]
-  double hold_force = std::numeric_limits<double>::quiet_NaN();  ///< contact force of the closed equilibrium under the hold levels [N]
-  double smallest_gap = std::numeric_limits<double>::quiet_NaN();       ///< beam to electrode, anywhere, ever [m]
-  double deepest_penetration = 0;   ///< [m]
-  EnergyAudit energy;               ///< filled when asked for
+  double in_contact_period =
+      std::numeric_limits<double>::quiet_NaN();  ///< 2 pi over the first frequency of the beam pinned at x_c [s]
+  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< integral of V dQ over all drives [J]
+  double hold_force =
+      std::numeric_limits<double>::quiet_NaN();  ///< contact force of the closed equilibrium under the hold levels [N]
+  double smallest_gap = std::numeric_limits<double>::quiet_NaN();  ///< beam to electrode, anywhere, ever [m]
+  double deepest_penetration = 0;                                  ///< [m]
+  EnergyAudit energy;                                              ///< filled when asked for
   Work work;
   std::vector<std::string> warnings;
 };

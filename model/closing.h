@@ -1,0 +1,45 @@
+// Time integration of one closing: from rest under 0 V, through every waveform breakpoint and every make and break of contact.
+//
+// The integrator restarts at waveform breakpoints and at make and break of contact, so it only ever sees smooth right-hand sides.
+// Between its steps the motion is a quintic Hermite interpolant; contact events are its zeros and its extrema (grazing touches do
+// not hide between steps). Error weights: a mode's coordinate counts as the deflection it causes at the contact point, its
+// velocity as that times its frequency. In flight the tolerance is relative to the contact gap, in contact to the penetration,
+// which is a thousand times smaller.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <limits>
+#include <span>
+
+#include "model/switch.h"
+#include "model/trajectory.h"
+#include "waveforms/signal.h"
+
+namespace softland {
+
+enum class Integrator {
+  dormand_prince,  ///< explicit Runge-Kutta 5(4), ARKODE
+  esdirk,          ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
+  bdf,             ///< CVODE, exact Jacobian
+  adams,           ///< CVODE, functional iteration
+};
+
+struct ClosingOptions {
+  double duration = 0;      ///< window [s]
+  double tolerance = 1e-6;  ///< relative, of the integrator
+  Integrator integrator = Integrator::dormand_prince;
+  double after_contact = std::numeric_limits<double>::infinity();      ///< end this long after first touch [s]
+  double no_contact_before = std::numeric_limits<double>::infinity();  ///< end here if nothing has touched [s]
+  long max_steps = 2'000'000;               ///< work bound: a run that needs more ends as numerical_failure
+  bool audit = false;                       ///< integrate dissipation for Trajectory::energy
+  const std::atomic<bool>* stop = nullptr;  ///< set from outside: ends the run as `interrupted`
+  /// Called after every step with time [s], q and v; true ends the run (status done).
+  std::function<bool(double, const double*, const double*)> observer = {};
+};
+
+/// Never throws for numerical trouble: see Trajectory::status. Throws InvalidInput unless there is one signal per drive of the
+/// switch, duration and tolerance are positive and tolerance <= 0.1.
+[[nodiscard]] Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options);
+
+}  // namespace softland

@@ -1,0 +1,77 @@
+// A force law that acts along the beam, erased to one indirect call per law and right-hand side. A law is a small value that
+// gives load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives) and, if it is driven by a voltage,
+// its capacitance.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "model/dual.h"
+
+namespace softland {
+
+/// The beam at the quadrature points: local gap h [m] and velocity towards the electrode [m/s].
+struct GapField {
+  Eigen::ArrayXd gap;
+  Eigen::ArrayXd velocity;
+  double smallest_gap = 0;  ///< [m]
+};
+
+class DistributedLaw {
+ public:
+  virtual ~DistributedLaw() = default;
+  /// load += drive * law [N/m] at the law's points; `drive` is V^2 for electrostatic laws and ignored by the others.
+  virtual void add_load(const GapField& field, double drive, double* load) const = 0;
+  /// Derivatives of the load with respect to deflection and velocity, added at the law's points.
+  virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
+  /// Integral of the capacitance per length over the law's points [F]; 0 for laws without drive.
+  [[nodiscard]] virtual double capacitance(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
+};
+
+template <class Law>
+class DistributedLawOf final : public DistributedLaw {
+ public:
+  /// Acts at the points [begin, end). Below `floor` [m] the law is continued by its tangent.
+  DistributedLawOf(Law law, Eigen::Index begin, Eigen::Index end, double floor)
+      : law_(law), begin_(begin), end_(end), floor_(floor) {}
+
+  void add_load(const GapField& field, double drive, double* load) const override {
+    const double* gap = field.gap.data();
+    const double* velocity = field.velocity.data();
+    const double factor = Law::driven ? drive : 1;
+    const Law law = law_;  // a local copy lets the compiler keep the parameters in registers
+    if (field.smallest_gap >= floor_) {
+      for (Eigen::Index p = begin_; p < end_; ++p) load[p] += factor * law.load(gap[p], velocity[p]);
+      return;
+    }
+    for (Eigen::Index p = begin_; p < end_; ++p) {
+      const Dual at = law.load(Dual(std::max(gap[p], floor_), 1), Dual(velocity[p]));
+      load[p] += factor * (at.value + at.slope * std::min(gap[p] - floor_, 0.0));
+    }
+  }
+
+  void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const override {
+    const double factor = Law::driven ? drive : 1;
+    for (Eigen::Index p = begin_; p < end_; ++p) {
+      const double gap = std::max(field.gap[p], floor_);
+      by_deflection[p] -=
+          factor * law_.load(Dual(gap, 1), Dual(field.velocity[p])).slope;  // the gap shrinks as the beam deflects
+      by_velocity[p] += factor * law_.load(Dual(gap), Dual(field.velocity[p], 1)).slope;
+    }
+  }
+
+  [[nodiscard]] double capacitance(const GapField& field, const Eigen::ArrayXd& weights) const override {
+    double sum = 0;
+    if constexpr (Law::driven) {
+      for (Eigen::Index p = begin_; p < end_; ++p) sum += weights[p] * law_.capacitance(std::max(field.gap[p], floor_));
+    }
+    return sum;
+  }
+
+ private:
+  Law law_;
+  Eigen::Index begin_, end_;
+  double floor_;
+};
+
+}  // namespace softland

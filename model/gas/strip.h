@@ -1,0 +1,27 @@
+// Squeezed gas film under a long strip: incompressible, continuum, whole width, also where there is no electrode.
+//
+//   f = -mu (a / h)^3 v     [N/m], positive towards the electrode
+//
+// mu viscosity [Pa s], a width [m], h local gap [m], v velocity towards the electrode [m/s]: the film always opposes the motion.
+// Valid for squeeze numbers 12 mu a^2 omega / (p h^2) below about 10, gaps well above the mean free path (65 nm in air), strips
+// much longer than wide. Singular at h = 0: the switch ends a run before any gap gets there. Source: Bognash 2019, eq. 2.8;
+// textbook limit of the Reynolds equation.
+#pragma once
+
+namespace softland {
+
+struct StripSqueezeFilm {
+  double viscosity = 0;  ///< [Pa s]
+  double width = 0;      ///< [m]
+  double mu_a3 = viscosity * width * width * width;
+  static constexpr bool driven = false;
+
+  /// [N/m]
+  template <class S>
+  S load(S gap, S velocity) const {
+    return S(-mu_a3) * velocity / (gap * gap * gap);
+  }
+  [[nodiscard]] double capacitance(double) const { return 0; }
+};
+
+}  // namespace softland

@@ -1,0 +1,46 @@
+// Where the switch snaps in and lets go: static and dynamic pull-in, release, and the closed equilibrium.
+//
+// Static equilibria of one electrode at voltage V, other drives 0 V:   omega_i^2 q_i = V^2 g_i(q) - phi_i(x_c) P(y(x_c) - dt)
+// are followed by the deflection of the contact point, which goes through the fold without turning back; V^2 is an unknown there.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "model/status.h"
+#include "model/switch.h"
+
+namespace softland {
+
+enum class StaticKind { fold, contact };
+[[nodiscard]] std::string_view to_string(StaticKind kind);
+
+struct StaticPullIn {
+  Status status = Status::not_run;
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]
+  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< of the contact point there [m]
+  StaticKind kind = StaticKind::fold;  ///< fold of the branch, or the contact point reaches the contact plane before it
+};
+
+/// Fold of the static branch of electrode `drive`, or the voltage at which the contact point reaches the contact plane if that
+/// comes first.
+[[nodiscard]] StaticPullIn static_pull_in(const Switch& device, std::size_t drive);
+
+/// Release voltage [V]: the smallest voltage with a closed equilibrium. NaN where there is no contact law or the branch could not
+/// be followed.
+[[nodiscard]] double release_voltage(const Switch& device, std::size_t drive);
+
+/// Contact force [N] of the closed equilibrium under constant voltages; NaN if there is none.
+[[nodiscard]] double closed_contact_force(const Switch& device, std::span<const double> volts);
+
+/// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest whose contact point reaches the contact plane, whether
+/// or not it stays, within 100 periods of the first mode; to 1e-7 relative. NaN with a status when static pull-in fails.
+struct DynamicPullIn {
+  Status status = Status::not_run;
+  double voltage = std::numeric_limits<double>::quiet_NaN();
+};
+[[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result,
+                                            double tolerance = 1e-8);
+
+}  // namespace softland

@@ -1,0 +1,220 @@
+#include "model/stepper.h"
+
+#include <arkode/arkode_arkstep.h>
+#include <arkode/arkode_erkstep.h>
+#include <cvode/cvode.h>
+#include <fmt/format.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softland::internal {
+namespace {
+
+// What the SUNDIALS steppers share: context, vectors, tolerances, callbacks that never throw (ours cannot).
+class SundialsStepper : public Stepper {
+ public:
+  explicit SundialsStepper(const OdeSystem& system) : system_(system) {
+    SUNContext_Create(nullptr, &context_);
+    const auto n = static_cast<sunindextype>(system.size);
+    y_ = N_VNew_Serial(n, context_);
+    weights_ = N_VNew_Serial(n, context_);
+  }
+  SundialsStepper(const SundialsStepper&) = delete;
+  SundialsStepper& operator=(const SundialsStepper&) = delete;
+  ~SundialsStepper() override {
+    N_VDestroy(y_);
+    N_VDestroy(weights_);
+    if (solver_ != nullptr) SUNLinSolFree(solver_);
+    if (fixed_point_ != nullptr) SUNNonlinSolFree(fixed_point_);
+    if (matrix_ != nullptr) SUNMatDestroy(matrix_);
+    SUNContext_Free(&context_);
+  }
+
+  [[nodiscard]] double time() const override { return t_; }
+  [[nodiscard]] const double* state() const override { return N_VGetArrayPointer(y_); }
+  [[nodiscard]] std::string message() const override { return message_; }
+
+ protected:
+  void load(double t, const double* y, const std::vector<double>& absolute) {
+    t_ = t;
+    std::copy_n(y, system_.size, N_VGetArrayPointer(y_));
+    std::transform(absolute.begin(), absolute.end(), N_VGetArrayPointer(weights_), [](double a) { return 1 / a; });
+  }
+  void make_dense_solver() {
+    const auto n = static_cast<sunindextype>(system_.size);
+    matrix_ = SUNDenseMatrix(n, n, context_);
+    solver_ = SUNLinSol_Dense(y_, matrix_, context_);
+  }
+  bool report(const char* library, int flag) {
+    if (flag >= 0) return true;
+    message_ = fmt::format("{} stopped with code {} at t = {:.9g} s", library, flag, t_);
+    return false;
+  }
+
+  static int rhs(realtype t, N_Vector y, N_Vector dydt, void* self) {
+    const auto* me = static_cast<SundialsStepper*>(self);
+    double* out = N_VGetArrayPointer(dydt);
+    me->system_.rhs(t, N_VGetArrayPointer(y), out);
+    for (std::size_t i = 0; i < me->system_.size; ++i) {
+      if (!std::isfinite(out[i]))
+        out[i] = 1e100;  // fails the error test: an explicit method has no other way to ask for a shorter step
+    }
+    return 0;
+  }
+  static int jacobian(realtype t, N_Vector y, N_Vector, SUNMatrix j, void* self, N_Vector, N_Vector, N_Vector) {
+    static_cast<SundialsStepper*>(self)->system_.jacobian(t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(j));
+    return 0;
+  }
+  static int error_weights(N_Vector, N_Vector ewt, void* self) {
+    N_VScale(1, static_cast<SundialsStepper*>(self)->weights_, ewt);
+    return 0;
+  }
+  static void silent(int, const char*, const char*, char*, void*) {}
+
+  const OdeSystem& system_;
+  SUNContext context_ = nullptr;
+  N_Vector y_ = nullptr;
+  N_Vector weights_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  SUNLinearSolver solver_ = nullptr;
+  SUNNonlinearSolver fixed_point_ = nullptr;
+  double t_ = 0;
+  std::string message_;
+};
+
+constexpr long unbounded_steps = -1;  // the closing keeps its own work bound
+
+class ErkStepper final : public SundialsStepper {
+ public:
+  ErkStepper(const OdeSystem& system, ARKODE_ERKTableID table) : SundialsStepper(system), table_(table) {}
+  ~ErkStepper() override {
+    if (memory_ != nullptr) ERKStepFree(&memory_);
+  }
+
+  bool restart(double t, const double* y, const std::vector<double>& absolute, double first_step, double max_step) override {
+    load(t, y, absolute);
+    if (memory_ == nullptr) {
+      memory_ = ERKStepCreate(&SundialsStepper::rhs, t, y_, context_);
+      ERKStepSetErrHandlerFn(memory_, &SundialsStepper::silent, nullptr);
+      ERKStepSetUserData(memory_, static_cast<SundialsStepper*>(this));
+      ERKStepSetTableNum(memory_, table_);
+      ERKStepWFtolerances(memory_, &SundialsStepper::error_weights);
+      ERKStepSetMaxNumSteps(memory_, unbounded_steps);
+      ERKStepSetInterpolantType(memory_, ARK_INTERP_LAGRANGE);  // never asked for: the closing interpolates on its own
+      ERKStepSetInterpolantDegree(memory_, 0);
+    } else if (!report("ERKStep", ERKStepReInit(memory_, &SundialsStepper::rhs, t, y_))) {
+      return false;
+    }
+    ERKStepSetInitStep(memory_, first_step);
+    return report("ERKStep", ERKStepSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0));
+  }
+
+  bool step(double t_stop) override {
+    ERKStepSetStopTime(memory_, t_stop);
+    return report("ERKStep", ERKStepEvolve(memory_, t_stop, y_, &t_, ARK_ONE_STEP));
+  }
+
+ private:
+  ARKODE_ERKTableID table_;
+  void* memory_ = nullptr;
+};
+
+class DirkStepper final : public SundialsStepper {
+ public:
+  explicit DirkStepper(const OdeSystem& system) : SundialsStepper(system) {}
+  ~DirkStepper() override {
+    if (memory_ != nullptr) ARKStepFree(&memory_);
+  }
+
+  bool restart(double t, const double* y, const std::vector<double>& absolute, double first_step, double max_step) override {
+    load(t, y, absolute);
+    if (memory_ == nullptr) {
+      memory_ = ARKStepCreate(nullptr, &SundialsStepper::rhs, t, y_, context_);
+      make_dense_solver();
+      ARKStepSetErrHandlerFn(memory_, &SundialsStepper::silent, nullptr);
+      ARKStepSetUserData(memory_, static_cast<SundialsStepper*>(this));
+      ARKStepSetTableNum(memory_, ARKODE_ARK548L2SA_DIRK_8_4_5, ARKODE_ERK_NONE);
+      ARKStepWFtolerances(memory_, &SundialsStepper::error_weights);
+      ARKStepSetLinearSolver(memory_, solver_, matrix_);
+      ARKStepSetJacFn(memory_, &SundialsStepper::jacobian);
+      ARKStepSetMaxNumSteps(memory_, unbounded_steps);
+    } else if (!report("ARKStep", ARKStepReInit(memory_, nullptr, &SundialsStepper::rhs, t, y_))) {
+      return false;
+    }
+    ARKStepSetInitStep(memory_, first_step);
+    return report("ARKStep", ARKStepSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0));
+  }
+
+  bool step(double t_stop) override {
+    ARKStepSetStopTime(memory_, t_stop);
+    return report("ARKStep", ARKStepEvolve(memory_, t_stop, y_, &t_, ARK_ONE_STEP));
+  }
+
+ private:
+  void* memory_ = nullptr;
+};
+
+class CvodeStepper final : public SundialsStepper {
+ public:
+  CvodeStepper(const OdeSystem& system, int method) : SundialsStepper(system), method_(method) {}
+  ~CvodeStepper() override {
+    if (memory_ != nullptr) CVodeFree(&memory_);
+  }
+
+  bool restart(double t, const double* y, const std::vector<double>& absolute, double first_step, double max_step) override {
+    load(t, y, absolute);
+    if (memory_ == nullptr) {
+      memory_ = CVodeCreate(method_, context_);
+      if (!report("CVODE", CVodeInit(memory_, &SundialsStepper::rhs, t, y_))) return false;
+      CVodeSetErrHandlerFn(memory_, &SundialsStepper::silent, nullptr);
+      CVodeSetUserData(memory_, static_cast<SundialsStepper*>(this));
+      CVodeWFtolerances(memory_, &SundialsStepper::error_weights);
+      if (method_ == CV_BDF) {
+        make_dense_solver();
+        CVodeSetLinearSolver(memory_, solver_, matrix_);
+        CVodeSetJacFn(memory_, &SundialsStepper::jacobian);
+      } else {
+        fixed_point_ = SUNNonlinSol_FixedPoint(y_, 0, context_);
+        CVodeSetNonlinearSolver(memory_, fixed_point_);
+      }
+      CVodeSetMaxNumSteps(memory_, unbounded_steps);
+    } else if (!report("CVODE", CVodeReInit(memory_, t, y_))) {
+      return false;
+    }
+    CVodeSetInitStep(memory_, first_step / 100);  // a restart begins at order 1
+    return report("CVODE", CVodeSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0));
+  }
+
+  bool step(double t_stop) override {
+    CVodeSetStopTime(memory_, t_stop);
+    return report("CVODE", CVode(memory_, t_stop, y_, &t_, CV_ONE_STEP));
+  }
+
+ private:
+  int method_;
+  void* memory_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system) {
+  switch (integrator) {
+    case Integrator::esdirk:
+      return std::make_unique<DirkStepper>(system);
+    case Integrator::bdf:
+      return std::make_unique<CvodeStepper>(system, CV_BDF);
+    case Integrator::adams:
+      return std::make_unique<CvodeStepper>(system, CV_ADAMS);
+    case Integrator::dormand_prince:
+      break;
+  }
+  return std::make_unique<ErkStepper>(system, ARKODE_DORMAND_PRINCE_7_4_5);
+}
+
+}  // namespace softland::internal

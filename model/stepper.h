@@ -1,0 +1,35 @@
+// One smooth stretch of an ordinary differential equation at a time: what the closing needs of an integrator library.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/closing.h"
+
+namespace softland::internal {
+
+/// y' = f(t, y) of dimension n; the Jacobian is needed by the implicit methods only (column-major n x n).
+struct OdeSystem {
+  std::size_t size = 0;
+  std::function<void(double t, const double* y, double* dydt)> rhs;
+  std::function<void(double t, const double* y, double* jacobian)> jacobian;
+};
+
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// Starts a smooth stretch. `absolute` are the absolute tolerances per unknown, `first_step` a suggestion [s] (0: let the
+  /// method choose).
+  virtual bool restart(double t, const double* y, const std::vector<double>& absolute, double first_step, double max_step) = 0;
+  /// One step, never beyond t_stop. False: failed, see message().
+  virtual bool step(double t_stop) = 0;
+  [[nodiscard]] virtual double time() const = 0;
+  [[nodiscard]] virtual const double* state() const = 0;
+  [[nodiscard]] virtual std::string message() const = 0;
+};
+
+[[nodiscard]] std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system);
+
+}  // namespace softland::internal

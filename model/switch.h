@@ -1,0 +1,102 @@
+// The switch as a system of ordinary differential equations in modal coordinates.
+//
+//   q_i'' = -omega_i^2 q_i - 2 zeta omega_i q_i' + V_piezo theta_i + sum over points p of w_p phi_i(x_p) f(x_p) - phi_i(x_c) P(d)
+//
+// q modal coordinates [m kg^(1/2)], phi mass-normalised modes [kg^(-1/2)], f load per length of all distributed laws [N/m], w
+// quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P contact force [N], d
+// interference [m]. Deflection y(x) = sum phi_i(x) q_i, positive towards the electrode. Galerkin projection on Gauss panels that
+// start and end where an electrode, the piezo layer or the pad does. Only the laws that the device has are composed: an absent
+// effect costs nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/beam.h"
+#include "model/contact/contact_law.h"
+#include "model/device.h"
+#include "model/distributed_law.h"
+
+namespace softland {
+
+struct SwitchOptions {
+  double points_per_length = 24;  ///< quadrature points over the beam's length (each panel has at least 3)
+};
+
+class Switch {
+ public:
+  /// Throws InvalidInput for a device that validate() refuses.
+  explicit Switch(const Device& device, const SwitchOptions& options = {});
+
+  [[nodiscard]] const Device& device() const { return device_; }
+  [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
+  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
+  [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }      ///< phi_i(x_c) [kg^(-1/2)]
+  /// Force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero where there is no layer.
+  [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
+  [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
+  /// Number of drives: the electrodes in order, then the piezo if there is one.
+  [[nodiscard]] std::size_t drives() const { return device_.electrodes.size() + (device_.piezo ? 1 : 0); }
+  [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
+  [[nodiscard]] bool has_contact() const { return contact_.has_value(); }
+  [[nodiscard]] const ContactLaw& contact() const { return *contact_; }
+  [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
+  [[nodiscard]] const Eigen::ArrayXd& point_positions() const { return positions_; }  ///< [m]
+
+  /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0
+  /// [m].
+  [[nodiscard]] double gap_floor() const { return device_.gap.electrode / 100; }
+  /// Interference at which the contact law carries the force that bends the beam by the contact gap [m]: the scale of
+  /// penetration.
+  [[nodiscard]] double penetration_scale() const { return penetration_scale_; }
+
+  /// Scratch memory of one run: a Switch is shared between threads, a Workspace is not.
+  struct Workspace {
+    GapField field;
+    Eigen::ArrayXd load, by_deflection, by_velocity;
+  };
+  [[nodiscard]] Workspace workspace() const;
+
+  /// Modal accelerations [m kg^(1/2) / s^2] for coordinates q, velocities v and drive voltages [V]; arrays of modes() doubles.
+  void accelerations(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
+                     double* result) const;
+  /// Their derivatives with respect to q and v: modes x modes each.
+  void jacobian(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
+                Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;
+
+  [[nodiscard]] double contact_deflection(const double* q) const;  ///< y(x_c) [m]; also the velocity when given v
+  /// Smallest local gap in the last field computed with `work` [m].
+  [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
+
+  /// Charge on drive k per its own volt (capacitance) [F]; for the piezo 0: see piezo_charge.
+  [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
+  /// Charge that the deflection puts on the piezo's electrodes, theta q [C]. The layer's own capacitance is not described by a
+  /// scene.
+  [[nodiscard]] double piezo_charge(const double* q) const;
+  [[nodiscard]] double kinetic_energy(const double* v) const;  ///< [J]
+  [[nodiscard]] double elastic_energy(const double* q) const;  ///< bending, without piezo coupling and contact [J]
+  /// Power taken out by gas and modal damping [W].
+  [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work) const;
+  /// Energy of the closed system under constant voltages: elastic + contact - 1/2 C V^2 - V theta q [J]. Its gradient is minus
+  /// the static force.
+  [[nodiscard]] double potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const;
+
+ private:
+  void set_field(const double* q, const double* v, Workspace& work) const;
+
+  Device device_;
+  Eigen::VectorXd frequencies_, squares_, contact_shape_, piezo_shape_;
+  Eigen::ArrayXd positions_, weights_;
+  Eigen::MatrixXd shapes_;                                             // phi_i(x_p), points x modes
+  Eigen::MatrixXd weighted_shapes_;                                    // w_p phi_i(x_p)
+  std::vector<std::unique_ptr<const DistributedLaw>> electrode_laws_;  // one per electrode
+  std::vector<std::unique_ptr<const DistributedLaw>> passive_laws_;    // not driven by a voltage
+  std::optional<ContactLaw> contact_;
+  double in_contact_period_ = 0;
+  double penetration_scale_ = 0;
+};
+
+}  // namespace softland
