@@ -1,0 +1,259 @@
+#include "config/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/require.h"
+#include "config/drives.h"
+#include "config/section_reader.h"
+
+namespace softland {
+namespace {
+
+using internal::SectionReader;
+
+Fringing fringing(const std::string& name) {
+  if (name == "none") return Fringing::none;
+  if (name == "bao-2001") return Fringing::bao_2001;
+  if (name == "linear") return Fringing::linear;
+  return Fringing::meijs_fokkema;
+}
+
+std::vector<std::string> names_in(const SceneFile::Impl& file, const std::string& section) {
+  std::vector<std::string> names;
+  const toml::node* node = file.find({section});
+  if (!node) return names;
+  if (!node->is_table()) file.fail(section, fmt::format("expected sections [{}.NAME]", section));
+  for (const auto& [name, value] : *node->as_table()) {
+    if (!value.is_table())
+      file.fail(internal::join_path(section, name.str()), fmt::format("expected a section [{}.NAME]", section));
+    names.emplace_back(name.str());
+  }
+  return names;
+}
+
+void check_section_names(const SceneFile::Impl& file) {
+  std::vector<std::string_view> known;
+  for (const internal::Section& section : internal::schema()) {
+    if (!section.pending && !section.name.empty()) known.push_back(section.name);
+  }
+  for (const auto& [name, node] : file.root) {
+    if (internal::find_section("")->find(name.str())) continue;
+    const std::string path = internal::join_path("", name.str());
+    const internal::Section* section = internal::find_section(name.str());
+    if (!section || name.str().empty()) {
+      if (node.is_table()) file.fail_section(path, "unknown section" + internal::hint(name.str(), known));
+      known.push_back("title");
+      file.fail(path, "unknown key" + internal::hint(name.str(), known));
+    }
+    if (section->pending) file.fail_section(path, "not available yet");
+  }
+}
+
+Structure read_structure(const SectionReader& in) {
+  in.require(!in.flag("plate_strain") || in.is_given("poissons_ratio"), "plate_strain", "needs structure.poissons_ratio");
+  return {.length = in.number("length"),
+          .width = in.number("width"),
+          .thickness = in.number("thickness"),
+          .youngs_modulus = in.number("youngs_modulus"),
+          .density = in.number("density"),
+          .modes = in.integer("modes"),
+          .damping_ratio = in.number("damping_ratio"),
+          .plate_strain = in.flag("plate_strain"),
+          .poissons_ratio = in.number("poissons_ratio")};
+}
+
+Gap read_gap(const SectionReader& in) {
+  const Gap gap{.electrode = in.number("electrode"), .contact = in.number("contact")};
+  in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
+  return gap;
+}
+
+/// A span along the beam: [begin, end] in metres.
+std::pair<double, double> read_span(const SectionReader& in, const SectionReader& structure) {
+  const double begin = in.quantities("span")[0].value;
+  const double end = in.quantities("span")[1].value;
+  in.require(begin < end, "span", "the end must lie beyond the begin");
+  in.require(end <= structure.number("length"), "span", "must end on the beam: " + structure.written("length"));
+  return {begin, end};
+}
+
+Contact read_contact(const SectionReader& in, const SectionReader& structure) {
+  Contact contact{.pad_length = in.number("pad_length")};
+  in.require(contact.pad_length < structure.number("length"), "pad_length", "must be less than " + structure.written("length"));
+  if (in.text("model") == "linear") {
+    contact.model = ContactModel::linear;
+    contact.stiffness = in.number("stiffness");
+  } else {
+    contact.model = ContactModel::asperity_uniform;
+    contact.asperity_radius = in.number("asperity_radius");
+    contact.asperity_density = in.number("asperity_density");
+    contact.asperity_height = in.number("asperity_height");
+    contact.effective_modulus = in.number("effective_modulus");
+  }
+  return contact;
+}
+
+Device read_device(const SceneFile::Impl& file) {
+  const SectionReader structure(file, "structure");
+  Device device{.structure = read_structure(structure), .gap = read_gap(SectionReader(file, "gap"))};
+  for (const std::string& name : names_in(file, "electrode")) {
+    internal::check_drive_name(file, name);
+    const SectionReader in(file, "electrode", name);
+    const auto [begin, end] = read_span(in, structure);
+    device.electrodes.push_back({.name = name, .begin = begin, .end = end, .fringing = fringing(in.text("fringing"))});
+  }
+  if (const SectionReader in(file, "gas"); in.is_present()) device.gas = Gas{.viscosity = in.number("viscosity")};
+  if (const SectionReader in(file, "contact"); in.is_present()) device.contact = read_contact(in, structure);
+  if (const SectionReader in(file, "piezo"); in.is_present()) {
+    const auto [begin, end] = read_span(in, structure);
+    device.piezo = Piezo{.begin = begin,
+                         .end = end,
+                         .thickness = in.number("thickness"),
+                         .youngs_modulus = in.number("youngs_modulus"),
+                         .density = in.number("density"),
+                         .d31 = in.number("d31")};
+  }
+  return device;
+}
+
+SimulateOptions read_simulate(const SectionReader& in) {
+  SimulateOptions options;
+  if (in.is_given("duration")) options.duration = in.number("duration");
+  if (in.is_given("tolerance")) {
+    options.tolerance = in.number("tolerance");
+  } else {
+    options.accuracy = in.number("accuracy");
+  }
+  return options;
+}
+
+/// Returns whether there is a spread.
+bool check_spread(const SceneFile::Impl& file) {
+  const std::vector<std::string> names = names_in(file, "spread");
+  for (const std::string& name : names) {
+    const SectionReader in(file, "spread", name);
+    std::vector<std::string> parts;
+    try {
+      parts = internal::split_path(name);
+    } catch (const InvalidInput& error) {
+      file.fail_section(in.path(), error.what());
+    }
+    const internal::Section* section = internal::find_section(parts.front());
+    const internal::Key* key = nullptr;
+    if (section && file.find({parts.begin(), parts.end() - 1}) && parts.size() == (section->is_named ? 3U : 2U)) {
+      const SectionReader varied(file, parts[0], section->is_named ? parts[1] : std::string());
+      if (varied.has_value(parts.back())) key = varied.find(parts.back());
+    }
+    const bool can_vary =
+        key && key->type == internal::KeyType::quantity && !section->always_in_force && section->name != "spread";
+    if (!can_vary)
+      file.fail_section(in.path(), fmt::format("'{}' is not a key of this scene that holds one number of the device", name));
+    if (!in.is_given("half_width")) continue;
+    const Dimension given = in.quantities("half_width").front().dimension;
+    const auto& allowed = key->dimensions;
+    in.require(given == dimension::none || std::find(allowed.begin(), allowed.end(), given) != allowed.end(), "half_width",
+               fmt::format("expected {}, got {}", describe(allowed.front()), describe(given)));
+  }
+  return !names.empty();
+}
+
+std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device& device, bool has_spread) {
+  std::vector<std::string> warnings;
+  if (device.electrodes.empty() && !device.piezo) {
+    warnings.push_back(file.name + ": neither an electrode nor a piezo layer: nothing drives this switch");
+  }
+  constexpr double wide = 5;  // width over thickness from which the beam bends more like a plate
+  const Structure& structure = device.structure;
+  if (!structure.plate_strain && structure.width > wide * structure.thickness) {
+    warnings.push_back(fmt::format(
+        "{}: {}: more than five thicknesses; youngs_modulus is used as given, plate_strain = true with poissons_ratio would "
+        "use E / (1 - nu^2)",
+        file.origin("structure.width").text, file.written("structure.width")));
+  }
+  if (has_spread) {
+    warnings.push_back(
+        fmt::format("{}: [spread] describes device variation and is not used by this command", file.origin("spread").text));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+Scene read_scene(const SceneFile& file) {
+  const SceneFile::Impl& impl = file.impl();
+  check_section_names(impl);
+  Scene scene{.title = SectionReader(impl, "").text("title"),
+              .device = read_device(impl),
+              .simulate = read_simulate(SectionReader(impl, "simulate")),
+              .metrics = {.significant_rebound = SectionReader(impl, "metrics").number("significant_rebound")},
+              .need_pull_in = {},
+              .warnings = {},
+              .file = file};
+  scene.need_pull_in = internal::check_drives(impl, scene.device);
+  scene.warnings = find_warnings(impl, scene.device, check_spread(impl));
+  try {
+    validate(scene.device);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", impl.name, error.what()));
+  }
+  return scene;
+}
+
+Drives Scene::drives(const std::map<std::string, PullInVoltages>& pull_in) const {
+  for (const std::string& name : need_pull_in) {
+    const auto known = pull_in.find(name);
+    require(known != pull_in.end(), fmt::format("{}: the pull-in voltages of electrode '{}' are needed", file.name(), name));
+    const auto& [static_voltage, dynamic_voltage] = known->second;
+    require(static_voltage > 0 && dynamic_voltage > 0 && std::isfinite(static_voltage) && std::isfinite(dynamic_voltage),
+            fmt::format("{}: electrode '{}' has no pull-in voltage (static {} V, dynamic {} V) to multiply", file.name(), name,
+                        static_voltage, dynamic_voltage));
+  }
+  return internal::read_drives(file.impl(), device, pull_in);
+}
+
+SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltages>& pull_in) {
+  const Drives drives = scene.drives(pull_in);
+  const SceneFile::Impl& impl = scene.file.impl();
+  toml::table root;
+  for (const internal::Section& section : internal::schema()) {
+    const std::string name(section.name);
+    if (section.pending || name == "waveform" || name == "driver") continue;
+    if (name.empty()) {
+      root = SectionReader(impl, "").with_defaults();
+    } else if (!section.is_named) {
+      const SectionReader in(impl, name);
+      if (in.is_present() || section.always_in_force) root.insert(name, in.with_defaults());
+    } else {
+      toml::table named;
+      for (const std::string& entry : names_in(impl, name)) {
+        toml::table keys = SectionReader(impl, name, entry).with_defaults();
+        keys.is_inline(name == "spread");
+        named.insert(entry, std::move(keys));
+      }
+      if (!named.empty()) root.insert(name, std::move(named));
+    }
+  }
+  toml::table drivers;
+  for (const auto& [name, limits] : drives.limits) {
+    toml::table keys;
+    const auto insert = [&](std::string_view key, double value, const Dimension& unit) {
+      if (std::isfinite(value)) keys.insert(key, quantity_text(value, unit));
+    };
+    insert("min_voltage", limits.min_voltage, dimension::voltage);
+    insert("max_voltage", limits.max_voltage, dimension::voltage);
+    insert("max_slew", limits.max_slew, dimension::slew_rate);
+    drivers.insert(name, std::move(keys));
+  }
+  if (!drivers.empty()) root.insert("driver", std::move(drivers));
+
+  // Written and read once more: the result then has lines to cite, like any other file.
+  SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name, impl.directory);
+  for (const auto& [name, waveform] : drives.waveforms) file.set_waveform(name, waveform);
+  return file;
+}
+
+}  // namespace softland

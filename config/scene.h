@@ -4,11 +4,10 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "model/device.h"
 #include "objectives/metrics.h"
@@ -17,7 +16,8 @@
 
 namespace softland {
 
-/// The text of a scene with its source positions, and the changes made to it on the command line. A value: copies are independent.
+/// The text of a scene with its source positions, and the changes made to it on the command line. A value: copies are
+/// independent.
 class SceneFile {
  public:
   /// Throws InvalidInput (file, line, column, what) when the file cannot be read or is not TOML.
@@ -28,7 +28,8 @@ class SceneFile {
   /// Applies one `--set key.path=value`. The value is read as TOML; bare text that is not TOML is a string. May create sections.
   /// Messages about such a key name the option ("--set gap.contact=...") instead of file and line.
   void set(std::string_view assignment);
-  /// Replaces [waveform.DRIVE] by this waveform, volts and seconds with 17 significant digits (a Table is written as a pulse-free table of rows).
+  /// Replaces [waveform.DRIVE] by this waveform, volts and seconds with 17 significant digits (a Table is written as a pulse-free
+  /// table of rows).
   void set_waveform(const std::string& drive, const Waveform& waveform);
 
   /// The scene as TOML text: parsing it again gives the same scene, digit for digit.
@@ -62,9 +63,9 @@ struct Drives {
 };
 
 struct SimulateOptions {
-  double duration = 0;       ///< [s]; 0: choose (six periods of the first mode)
-  double accuracy = 1e-6;    ///< target relative error of t_i, v_i and B_H
-  double tolerance = 0;      ///< relative tolerance of the integrator; 0: derived from accuracy
+  double duration = 0;     ///< [s]; 0: choose (six periods of the first mode)
+  double accuracy = 1e-6;  ///< target relative error of t_i, v_i and B_H
+  double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
 };
 
 struct Scene {
@@ -77,8 +78,8 @@ struct Scene {
   std::vector<std::string> warnings;
   SceneFile file;
 
-  /// Waveforms and limits in volts. `pull_in` must hold every electrode of need_pull_in; electrodes missing from it get no default limit.
-  /// Throws InvalidInput for a waveform outside its family's rules or outside its driver's limits.
+  /// Waveforms and limits in volts. `pull_in` must hold every electrode of need_pull_in; electrodes missing from it get no
+  /// default limit. Throws InvalidInput for a waveform outside its family's rules or outside its driver's limits.
   [[nodiscard]] Drives drives(const std::map<std::string, PullInVoltages>& pull_in) const;
 };
 

@@ -1,0 +1,430 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "base/require.h"
+#include "config/scene.h"
+#include "config/scene_file_impl.h"
+#include "config/schema.h"
+#include "config/units.h"
+
+namespace softland {
+namespace internal {
+namespace {
+
+constexpr std::size_t deepest_path = 16;
+
+/// toml++ bounds nested values but not dotted keys, and a table some ten thousand levels deep overflows the stack when it is
+/// destroyed.
+bool has_deep_dotted_key(std::string_view text) {
+  std::size_t dots = 0;
+  for (const char c : text) {
+    if (c == '.' && ++dots >= deepest_path) return true;
+    if (constexpr std::string_view ends = "\n=,[]{}#"; ends.find(c) != std::string_view::npos) dots = 0;
+  }
+  return false;
+}
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
+  if (has_deep_dotted_key(text)) throw InvalidInput(fmt::format("{}: a key has more than {} parts", name, deepest_path));
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const auto& at = error.source().begin;
+    throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}", name, at.line, at.column, error.description()));
+  }
+}
+
+std::string float_text(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  std::string text = number_text(value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";  // an integer would change type
+  return text;
+}
+
+std::string key_text(std::string_view key) { return is_bare_key(key) ? std::string(key) : toml_string(key); }
+
+/// The keys of `table`: those in `order` first, then the rest by name.
+
+struct Entry {
+  std::string key;
+  const toml::node* node;
+};
+
+std::vector<Entry> ordered(const toml::table& table, const std::vector<std::string_view>& order) {
+  std::vector<Entry> entries;
+  for (const auto& [key, node] : table) entries.push_back({std::string(key.str()), &node});
+  const auto rank = [&](const Entry& entry) { return std::find(order.begin(), order.end(), entry.key) - order.begin(); };
+  std::stable_sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) { return rank(a) < rank(b); });
+  return entries;
+}
+
+std::vector<std::string_view> section_names() {
+  std::vector<std::string_view> names;
+  for (const Section& section : schema()) names.push_back(section.name);
+  return names;
+}
+
+std::vector<std::string_view> key_names(const Section* section) {
+  std::vector<std::string_view> names;
+  if (section) {
+    for (const Key& key : section->keys) names.push_back(key.name);
+  }
+  return names;
+}
+
+/// A section and what is below it. Inline tables stay inline: an entry of [spread] reads best on one line.
+void write_section(std::string& out, const toml::table& table, const std::string& path, std::size_t depth,
+                   const Section* section) {
+  const bool holds_keys = section && (section->is_named ? depth == 2 : depth == 1);
+  const std::vector<Entry> entries = ordered(table, holds_keys ? key_names(section) : std::vector<std::string_view>{});
+  const auto is_subsection = [](const Entry& entry) { return entry.node->is_table() && !entry.node->as_table()->is_inline(); };
+  if (entries.empty() || !std::all_of(entries.begin(), entries.end(), is_subsection)) {
+    if (!out.empty()) out += '\n';
+    out += fmt::format("[{}]\n", path);
+  }
+  for (const Entry& entry : entries) {
+    if (!is_subsection(entry)) out += fmt::format("{} = {}\n", key_text(entry.key), inline_text(*entry.node));
+  }
+  for (const Entry& entry : entries) {
+    if (is_subsection(entry)) write_section(out, *entry.node->as_table(), join_path(path, entry.key), depth + 1, section);
+  }
+}
+
+nlohmann::json to_json(const toml::node& node) {
+  if (const auto* table = node.as_table()) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const auto& [key, value] : *table) json[std::string(key.str())] = to_json(value);
+    return json;
+  }
+  if (const auto* array = node.as_array()) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const auto& value : *array) json.push_back(to_json(value));
+    return json;
+  }
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* number = node.as_floating_point())
+    return std::isfinite(number->get()) ? nlohmann::json(number->get()) : nullptr;
+  return inline_text(node);  // dates and times
+}
+
+}  // namespace
+
+bool is_bare_key(std::string_view key) {
+  constexpr std::string_view extra = "_-";
+  return !key.empty() && std::all_of(key.begin(), key.end(), [&](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || extra.find(c) != std::string_view::npos;
+  });
+}
+
+std::string write_scene(const toml::table& root) {
+  std::string out;
+  const std::vector<Entry> entries = ordered(root, section_names());
+  const auto is_section = [](const Entry& entry) { return entry.node->is_table() && !entry.node->as_table()->is_inline(); };
+  for (const Entry& entry : entries) {
+    if (!is_section(entry)) out += fmt::format("{} = {}\n", key_text(entry.key), inline_text(*entry.node));
+  }
+  for (const Entry& entry : entries) {
+    if (is_section(entry)) write_section(out, *entry.node->as_table(), key_text(entry.key), 1, find_section(entry.key));
+  }
+  return out;
+}
+
+std::string toml_string(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    switch (c) {
+      case '"':
+        out += "\\\"";
+        break;
+      case '\\':
+        out += "\\\\";
+        break;
+      case '\n':
+        out += "\\n";
+        break;
+      case '\t':
+        out += "\\t";
+        break;
+      case '\r':
+        out += "\\r";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+          out += fmt::format("\\u{:04X}", static_cast<int>(c));
+        } else {
+          out += c;
+        }
+    }
+  }
+  return out + '"';
+}
+
+std::string inline_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return toml_string(text->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
+  if (const auto* number = node.as_floating_point()) return float_text(number->get());
+  if (const auto* array = node.as_array()) {
+    std::vector<std::string> parts;
+    for (const auto& value : *array) parts.push_back(inline_text(value));
+    return fmt::format("[{}]", fmt::join(parts, ", "));
+  }
+  if (const auto* table = node.as_table()) {
+    if (table->empty()) return "{}";
+    std::vector<std::string> parts;
+    for (const auto& [key, value] : *table) parts.push_back(key_text(key.str()) + " = " + inline_text(value));
+    return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+  }
+  std::ostringstream out;
+  node.visit([&](const auto& value) {
+    if constexpr (!toml::is_container<decltype(value)>) out << value.get();
+  });
+  return out.str();
+}
+
+std::string join_path(const std::string& path, std::string_view key) {
+  return path.empty() ? key_text(key) : path + "." + key_text(key);
+}
+
+std::vector<std::string> split_path(std::string_view path) {
+  // TOML itself reads the keys, so that quoting means the same here and in a file.
+  const std::string rule = fmt::format("'{}' is not a key path such as structure.length", path);
+  std::vector<std::string> parts;
+  try {
+    const toml::table parsed = parse_toml(std::string(path) + " = 0", "");
+    for (const toml::table* table = &parsed; table != nullptr;) {
+      if (table->size() != 1) throw InvalidInput(rule);
+      const auto& [key, node] = *table->begin();
+      parts.emplace_back(key.str());
+      table = node.as_table();
+    }
+  } catch (const InvalidInput&) {
+    throw InvalidInput(rule);
+  }
+  return parts;
+}
+
+toml::table parse_value(std::string_view toml_text) {
+  return parse_toml(fmt::format("{} = {}", value_key, toml_text), std::string(toml_text));
+}
+
+}  // namespace internal
+
+namespace {
+
+using internal::join_path;
+
+void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::string& path) {
+  for (const auto& [key, node] : table) {
+    const std::string key_path = join_path(path, key.str());
+    impl.origins[key_path] = {fmt::format("{}:{}", impl.name, node.source().begin.line)};
+    if (const auto* inner = node.as_table()) record_origins(impl, *inner, key_path);
+  }
+}
+
+/// Control characters and broken UTF-8 stay out of messages.
+std::string printable(std::string_view text) {
+  std::string out;
+  for (const char c : text) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return out;
+}
+
+bool is_below(std::string_view path, std::string_view ancestor) {
+  return path.size() > ancestor.size() && path.starts_with(ancestor) && path[ancestor.size()] == '.';
+}
+
+}  // namespace
+
+const toml::node* SceneFile::Impl::find(const std::vector<std::string>& path) const {
+  const toml::node* node = &root;
+  for (const std::string& key : path) {
+    const toml::table* table = node->as_table();
+    node = table ? table->get(key) : nullptr;
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
+SceneFile::Impl::Origin SceneFile::Impl::origin(std::string_view path) const {
+  if (const auto exact = origins.find(path); exact != origins.end()) return exact->second;
+  // A key inside a value given as a whole, e.g. an option that replaced a section.
+  const Origin* nearest = nullptr;
+  for (const auto& [known, place] : origins) {
+    if (is_below(path, known)) nearest = &place;  // ancestors sort from the shortest to the longest
+  }
+  if (nearest) return *nearest;
+  // A section that exists only because an option set something in it.
+  for (const auto& [known, place] : origins) {
+    if (is_below(known, path)) return place;
+  }
+  return {name};
+}
+
+void SceneFile::Impl::forget(std::string_view path) {
+  std::erase_if(origins, [&](const auto& entry) { return entry.first == path || is_below(entry.first, path); });
+}
+
+std::string SceneFile::Impl::written(std::string_view path) const {
+  constexpr std::size_t longest_value = 80;
+  const toml::node* node = find(internal::split_path(path));
+  std::string value = node ? internal::inline_text(*node) : std::string();
+  if (value.size() > longest_value) {
+    std::size_t cut = longest_value;
+    while (cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0) == 0x80) --cut;  // not inside a UTF-8 sequence
+    value = value.substr(0, cut) + "...";
+  }
+  return fmt::format("{} = {}", path, value);
+}
+
+void SceneFile::Impl::fail(std::string_view path, std::string_view rule) const {
+  const Origin place = origin(path);
+  const auto exact = origins.find(path);
+  if (place.is_option && exact != origins.end()) throw InvalidInput(fmt::format("{}: {}", place.text, rule));
+  throw InvalidInput(fmt::format("{}: {}: {}", place.text, written(path), rule));
+}
+
+void SceneFile::Impl::fail_section(std::string_view path, std::string_view rule) const {
+  throw InvalidInput(fmt::format("{}: [{}]: {}", origin(path).text, path, rule));
+}
+
+SceneFile::SceneFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SceneFile::SceneFile(const SceneFile& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+SceneFile& SceneFile::operator=(const SceneFile& other) {
+  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+SceneFile::SceneFile(SceneFile&&) noexcept = default;
+SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
+SceneFile::~SceneFile() = default;
+
+SceneFile SceneFile::load(const std::filesystem::path& path) {
+  constexpr std::size_t largest = std::size_t{64} << 20;  // [byte]; a scene with a measured waveform inside stays far below
+  const std::string name = path.string();
+  std::error_code ignored;
+  require(!std::filesystem::is_directory(path, ignored), name + ": is a directory, not a scene file");
+  std::ifstream stream(path, std::ios::binary);
+  require(stream.is_open(), fmt::format("{}: cannot be opened: {}", name, std::generic_category().message(errno)));
+  std::string text;
+  std::array<char, 1 << 16> block;
+  while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    require(text.size() <= largest, name + ": is larger than 64 MiB, so it is not a scene file");
+  }
+  require(!stream.bad(), name + ": cannot be read to its end");
+  return parse(text, name, path.parent_path());
+}
+
+SceneFile SceneFile::parse(std::string_view text, std::string name, std::filesystem::path directory) {
+  auto impl = std::make_unique<Impl>();
+  impl->root = internal::parse_toml(text, name);
+  impl->name = std::move(name);
+  impl->directory = std::move(directory);
+  record_origins(*impl, impl->root, "");
+  return SceneFile(std::move(impl));
+}
+
+void SceneFile::set(std::string_view assignment) {
+  const std::string option = "--set " + printable(assignment);
+  const auto equals = assignment.find('=');
+  require(equals != std::string_view::npos, option + ": not of the form key.path=value");
+  const std::string_view value = assignment.substr(equals + 1);
+
+  std::vector<std::string> path;
+  try {
+    path = internal::split_path(assignment.substr(0, equals));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(option + ": " + error.what());
+  }
+
+  toml::table parsed;
+  try {
+    parsed = internal::parse_value(value);
+  } catch (const InvalidInput&) {
+    parsed.clear();
+  }
+  if (parsed.size() != 1) {  // not TOML, or a line break smuggled in a second key
+    try {
+      parsed = internal::parse_value(internal::toml_string(value));
+    } catch (const InvalidInput&) {
+      throw InvalidInput(fmt::format("--set {}: the value is not UTF-8 text", printable(assignment.substr(0, equals))));
+    }
+  }
+
+  toml::table* table = &impl_->root;
+  std::string path_text;
+  for (const std::string& key : path) {
+    path_text = join_path(path_text, key);
+    if (&key == &path.back()) break;
+    if (!table->contains(key)) table->insert(key, toml::table{});
+    table = table->get(key)->as_table();
+    if (!table) throw InvalidInput(fmt::format("{}: {} is not a section", option, impl_->written(path_text)));
+  }
+  // An option that gives a quantity in one of two ways takes the place of the other way.
+  if (const internal::Section* section = internal::find_section(path.front());
+      section && path.size() == (section->is_named ? 3 : 2)) {
+    const std::string parent = path_text.substr(0, path_text.size() - join_path("", path.back()).size() - 1);
+    for (const internal::Key& key : section->keys) {
+      if (key.name != path.back()) continue;
+      for (const std::string_view other : key.instead_of) {
+        if (table->erase(other) > 0) impl_->forget(join_path(parent, other));
+      }
+    }
+  }
+  parsed.get(internal::value_key)->visit([&](const auto& node) { table->insert_or_assign(path.back(), node); });
+  impl_->forget(path_text);
+  impl_->origins[path_text] = {option, true};
+}
+
+void SceneFile::set_waveform(const std::string& drive, const Waveform& waveform) {
+  static_cast<void>(signal(waveform));  // a waveform that breaks its family's rules would write a scene that cannot be read
+  const auto text = [](double value, const Dimension& unit) { return quantity_text(value, unit); };
+  const auto texts = [](const std::vector<double>& values, const Dimension& unit) {
+    toml::array array;
+    for (const double value : values) array.push_back(quantity_text(value, unit));
+    return array;
+  };
+  toml::table table{{"family", std::string(family(waveform))}};
+  if (const auto* step = std::get_if<Step>(&waveform)) {
+    table.insert("level", text(step->level, dimension::voltage));
+    table.insert("rise_time", text(step->rise_time, dimension::time));
+  } else if (const auto* harmonic = std::get_if<Harmonic>(&waveform)) {
+    table.insert("base", text(harmonic->base, dimension::voltage));
+    table.insert("amplitude", text(harmonic->amplitude, dimension::voltage));
+    table.insert("angular_frequency", text(harmonic->angular_frequency, dimension::angular_frequency));
+    table.insert("phase", text(harmonic->phase, dimension::angle));
+    table.insert("start", text(harmonic->start, dimension::time));
+    if (std::isfinite(harmonic->end)) table.insert("end", text(harmonic->end, dimension::time));
+    table.insert("fade", text(harmonic->fade, dimension::time));
+  } else if (const auto* pulse = std::get_if<Pulse>(&waveform)) {
+    table.insert("levels", texts(pulse->levels, dimension::voltage));
+    table.insert("times", texts(pulse->times, dimension::time));
+    table.insert("edge", text(pulse->edge, dimension::time));
+  } else {
+    const Table& rows = std::get<Table>(waveform);
+    table.insert("times", texts(rows.time, dimension::time));
+    table.insert("voltages", texts(rows.voltage, dimension::voltage));
+  }
+  toml::table* waveforms = impl_->root["waveform"].as_table();
+  if (!waveforms) waveforms = impl_->root.insert_or_assign("waveform", toml::table{}).first->second.as_table();
+  waveforms->insert_or_assign(drive, std::move(table));
+  const std::string path = join_path("waveform", drive);
+  impl_->forget(path);
+  impl_->origins[path] = {impl_->name};
+}
+
+std::string SceneFile::text() const { return internal::write_scene(impl_->root); }
+nlohmann::json SceneFile::json() const { return internal::to_json(impl_->root); }
+const std::string& SceneFile::name() const { return impl_->name; }
+
+}  // namespace softland

@@ -1,0 +1,288 @@
+#include "config/units.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+struct Symbol {
+  std::string_view name;
+  Dimension dimension;
+  int exponent = 0;  ///< power of ten to SI
+  bool takes_prefix = false;
+  double factor = 1;  ///< what no power of ten can say
+};
+
+constexpr std::array symbols{
+    Symbol{"m", dimension::length, 0, true},
+    Symbol{"g", dimension::mass, -3, true},
+    Symbol{"s", dimension::time, 0, true},
+    Symbol{"A", dimension::current, 0, true},
+    Symbol{"K", dimension::temperature, 0, true},
+    Symbol{"Pa", dimension::pressure, 0, true},
+    Symbol{"N", dimension::force, 0, true},
+    Symbol{"J", dimension::energy, 0, true},
+    Symbol{"W", dimension::power, 0, true},
+    Symbol{"V", dimension::voltage, 0, true},
+    Symbol{"C", dimension::charge, 0, true},
+    Symbol{"F", dimension::capacitance, 0, true},
+    Symbol{"ohm", dimension::resistance, 0, true},
+    Symbol{"S", dimension::conductance, 0, true},
+    Symbol{"Hz", dimension::frequency, 0, true},
+    Symbol{"rad", dimension::angle, 0, true},
+    Symbol{"deg", dimension::angle, 0, false, std::numbers::pi / 180},
+    Symbol{"%", dimension::none, -2},
+    Symbol{"Vsp", dimension::static_pull_in},
+    Symbol{"Vdp", dimension::dynamic_pull_in},
+};
+
+struct Prefix {
+  char letter;
+  int exponent;
+};
+constexpr std::array prefixes{Prefix{'f', -15}, Prefix{'p', -12}, Prefix{'n', -9}, Prefix{'u', -6},
+                              Prefix{'m', -3},  Prefix{'k', 3},   Prefix{'M', 6},  Prefix{'G', 9}};
+
+struct Name {
+  Dimension dimension;
+  std::string_view what;
+  std::string_view unit;
+  std::string_view example;
+};
+
+constexpr std::array names{
+    Name{dimension::none, "a plain number", "", "15 %"},
+    Name{dimension::length, "a length", "m", "2 um"},
+    Name{dimension::mass, "a mass", "kg", "1 kg"},
+    Name{dimension::time, "a time", "s", "20 us"},
+    Name{dimension::current, "a current", "A", "1 mA"},
+    Name{dimension::temperature, "a temperature", "K", "300 K"},
+    Name{dimension::angle, "an angle", "rad", "90 deg"},
+    Name{dimension::static_pull_in, "a multiple of static pull-in", "Vsp", "1.1 Vsp"},
+    Name{dimension::dynamic_pull_in, "a multiple of dynamic pull-in", "Vdp", "1.25 Vdp"},
+    Name{dimension::area_density, "a number per area", "1/m^2", "100 1/um^2"},
+    Name{dimension::density, "a density", "kg/m^3", "19300 kg/m^3"},
+    Name{dimension::frequency, "a frequency", "Hz", "30 kHz"},
+    Name{dimension::angular_frequency, "an angular frequency", "rad/s", "180543 rad/s"},
+    Name{dimension::force, "a force", "N", "1 uN"},
+    Name{dimension::energy, "an energy", "J", "1 fJ"},
+    Name{dimension::power, "a power", "W", "1 uW"},
+    Name{dimension::pressure, "a pressure", "Pa", "78 GPa"},
+    Name{dimension::viscosity, "a viscosity", "Pa s", "1.86e-5 Pa s"},
+    Name{dimension::stiffness, "a stiffness", "N/m", "100 N/m"},
+    Name{dimension::voltage, "a voltage", "V", "45 V"},
+    Name{dimension::slew_rate, "a slew rate", "V/s", "3 V/us"},
+    Name{dimension::charge, "a charge", "C", "1 pC"},
+    Name{dimension::capacitance, "a capacitance", "F", "1 pF"},
+    Name{dimension::resistance, "a resistance", "ohm", "1 ohm"},
+    Name{dimension::conductance, "a conductance", "S", "1 S"},
+    Name{dimension::piezo_coefficient, "a piezoelectric coefficient", "m/V", "-171 pm/V"},
+};
+
+constexpr std::array<std::string_view, 8> base_units{"m", "kg", "s", "A", "K", "rad", "Vsp", "Vdp"};
+
+const Name* find_name(const Dimension& dimension) {
+  for (const Name& name : names) {
+    if (name.dimension == dimension) return &name;
+  }
+  return nullptr;
+}
+
+/// A unit's meaning: value [SI] = number * 10^exponent * factor.
+struct Scale {
+  Dimension dimension;
+  int exponent = 0;
+  double factor = 1;
+};
+
+std::optional<Scale> look_up(std::string_view name) {
+  for (const Symbol& symbol : symbols) {
+    if (name == symbol.name) return Scale{symbol.dimension, symbol.exponent, symbol.factor};
+  }
+  for (const Prefix& prefix : prefixes) {
+    if (!name.starts_with(prefix.letter)) continue;
+    for (const Symbol& symbol : symbols) {
+      if (symbol.takes_prefix && name.substr(1) == symbol.name) {
+        return Scale{symbol.dimension, symbol.exponent + prefix.exponent, symbol.factor};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+constexpr std::string_view blanks = " \t";
+
+std::string_view trim(std::string_view text) {
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+int parse_power(std::string_view text, std::string_view factor) {
+  constexpr int largest = 9;
+  int power = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), power);
+  if (error != std::errc() || end != text.data() + text.size() || power == 0 || std::abs(power) > largest) {
+    throw InvalidInput(fmt::format("'{}' needs an integer power between -{} and {}, not 0", factor, largest, largest));
+  }
+  return power;
+}
+
+/// Multiplies `scale` by one factor such as "um^2", raised to `sign`.
+void apply_factor(Scale& scale, std::string_view factor, int sign) {
+  const auto caret = factor.find('^');
+  const std::string_view name = factor.substr(0, caret);
+  const int power = sign * (caret == std::string_view::npos ? 1 : parse_power(factor.substr(caret + 1), factor));
+  if (name == "degC") throw InvalidInput("'degC' has an offset and can only stand alone; use K here");
+  const auto unit = look_up(name);
+  if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", name));
+  for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) scale.dimension.powers[i] += power * unit->dimension.powers[i];
+  scale.exponent += power * unit->exponent;
+  if (unit->factor != 1) scale.factor *= std::pow(unit->factor, power);
+}
+
+/// Multiplies `scale` by factors joined by blanks or single asterisks, each raised to `sign`.
+void apply_factors(Scale& scale, std::string_view text, int sign, std::string_view unit) {
+  while (true) {
+    const auto star = text.find('*');
+    std::string_view group = trim(text.substr(0, star));
+    if (group.empty()) throw InvalidInput(fmt::format("a factor is missing in the unit '{}'", unit));
+    while (!group.empty()) {
+      const auto end = group.find_first_of(blanks);
+      apply_factor(scale, group.substr(0, end), sign);
+      group = end == std::string_view::npos ? std::string_view{} : trim(group.substr(end));
+    }
+    if (star == std::string_view::npos) return;
+    text.remove_prefix(star + 1);
+  }
+}
+
+Scale parse_unit(std::string_view unit) {
+  Scale scale;
+  const auto slash = unit.find('/');
+  if (slash == std::string_view::npos) {
+    apply_factors(scale, unit, 1, unit);
+    return scale;
+  }
+  if (unit.find('/', slash + 1) != std::string_view::npos) {
+    throw InvalidInput(fmt::format("more than one '/' in the unit '{}'", unit));
+  }
+  if (trim(unit.substr(0, slash)) != "1") apply_factors(scale, unit.substr(0, slash), 1, unit);
+  apply_factors(scale, unit.substr(slash + 1), -1, unit);
+  return scale;
+}
+
+/// Length of the decimal number at the beginning of `text`; 0 if there is none.
+std::size_t number_length(std::string_view text) {
+  std::size_t i = 0;
+  const auto digits = [&] {
+    const std::size_t begin = i;
+    while (i < text.size() && text[i] >= '0' && text[i] <= '9') ++i;
+    return i - begin;
+  };
+  if (i < text.size() && (text[i] == '+' || text[i] == '-')) ++i;
+  std::size_t mantissa = digits();
+  if (i < text.size() && text[i] == '.') {
+    ++i;
+    mantissa += digits();
+  }
+  if (mantissa == 0) return 0;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    const std::size_t mantissa_end = i++;
+    if (i < text.size() && (text[i] == '+' || text[i] == '-')) ++i;
+    if (digits() == 0) return mantissa_end;
+  }
+  return i;
+}
+
+/// number * 10^exponent, rounded once.
+double scaled_number(std::string_view number, int exponent) {
+  if (number.starts_with('+')) number.remove_prefix(1);
+  const auto e = number.find_first_of("eE");
+  const auto out_of_range = [&] { return InvalidInput(fmt::format("{} is outside the range of double precision", number)); };
+  if (e != std::string_view::npos) {
+    std::string_view digits = number.substr(e + 1);
+    if (digits.starts_with('+')) digits.remove_prefix(1);
+    int own = 0;
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), own).ec != std::errc() || std::abs(own) > 9999) {
+      throw out_of_range();
+    }
+    exponent += own;
+  }
+  const std::string text = fmt::format("{}e{}", number.substr(0, e), exponent);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) throw out_of_range();
+  return value;
+}
+
+}  // namespace
+
+Quantity parse_quantity(std::string_view text) {
+  text = trim(text);
+  const std::size_t length = number_length(text);
+  const std::string_view number = text.substr(0, length);
+  const std::string_view unit = trim(text.substr(length));
+  if (length == 0 || (length < text.size() && blanks.find(text[length]) == std::string_view::npos)) {
+    throw InvalidInput("not a number, a space and a unit");
+  }
+  if (unit.empty()) return {scaled_number(number, 0), dimension::none};
+  if (unit == "degC") {
+    constexpr double zero_celsius = 273.15;  // [K]
+    return {scaled_number(number, 0) + zero_celsius, dimension::temperature};
+  }
+  const Scale scale = parse_unit(unit);
+  double value = scaled_number(number, scale.exponent);
+  if (scale.factor != 1) value *= scale.factor;
+  if (!std::isfinite(value)) throw InvalidInput(fmt::format("{} is outside the range of double precision", text));
+  return {value, scale.dimension};
+}
+
+std::string unit_symbol(const Dimension& dimension) {
+  if (const Name* name = find_name(dimension)) return std::string(name->unit);
+  std::string text;
+  for (std::size_t i = 0; i < base_units.size(); ++i) {
+    const int power = dimension.powers[i];
+    if (power == 0) continue;
+    if (!text.empty()) text += ' ';
+    text += base_units[i];
+    if (power != 1) text += fmt::format("^{}", power);
+  }
+  return text;
+}
+
+std::string_view noun(const Dimension& dimension) {
+  const Name* name = find_name(dimension);
+  return name ? name->what : "a quantity";
+}
+
+std::string describe(const Dimension& dimension) {
+  const std::string unit = unit_symbol(dimension);
+  return unit.empty() ? std::string(noun(dimension)) : fmt::format("{} [{}]", noun(dimension), unit);
+}
+
+std::string_view example(const Dimension& dimension) {
+  const Name* name = find_name(dimension);
+  return name ? name->example : std::string_view{};
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string quantity_text(double value, const Dimension& dimension) {
+  const std::string unit = unit_symbol(dimension);
+  return unit.empty() ? number_text(value) : number_text(value) + " " + unit;
+}
+
+}  // namespace softland

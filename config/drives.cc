@@ -1,0 +1,225 @@
+#include "config/drives.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "base/require.h"
+#include "config/section_reader.h"
+#include "config/units.h"
+
+namespace softland::internal {
+namespace {
+
+constexpr std::string_view piezo_drive = "piezo";
+constexpr std::string_view main_drive = "main";
+constexpr double default_max_voltage = 1.5;  // of an electrode [Vdp]
+
+enum class LimitChecks { without_pull_in, all };
+
+std::vector<std::string_view> drive_names(const Device& device) {
+  std::vector<std::string_view> names;
+  for (const Electrode& electrode : device.electrodes) names.push_back(electrode.name);
+  if (device.piezo) names.push_back(piezo_drive);
+  return names;
+}
+
+/// Every [section.NAME] must name a drive of the device.
+void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
+  const toml::node* node = file.find({section});
+  if (!node) return;
+  if (!node->is_table()) file.fail(section, fmt::format("expected sections [{}.NAME]", section));
+  const std::vector<std::string_view> known = drive_names(device);
+  for (const auto& [key, value] : *node->as_table()) {
+    const std::string path = join_path(section, key.str());
+    if (!value.is_table()) file.fail(path, fmt::format("expected a section [{}.NAME]", section));
+    if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+    if (key.str() == piezo_drive) file.fail_section(path, "there is no [piezo] layer to drive");
+    file.fail_section(path, "no such electrode" + hint(key.str(), known));
+  }
+}
+
+void refuse_pull_in_units(const SectionReader& in, std::string_view drive) {
+  if (drive != piezo_drive) return;
+  for (const std::string_view key : in.keys_in_pull_in_units()) {
+    in.require(false, key, "pull-in voltages belong to electrodes; give the piezo volts [V]");
+  }
+}
+
+double volts(const Quantity& quantity, const PullInVoltages& pull_in) {
+  if (quantity.dimension == dimension::static_pull_in) return quantity.value * pull_in.static_pull_in;
+  if (quantity.dimension == dimension::dynamic_pull_in) return quantity.value * pull_in.dynamic_pull_in;
+  return quantity.value;
+}
+
+std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInVoltages& pull_in) {
+  std::vector<double> values;
+  for (const Quantity& quantity : quantities) values.push_back(volts(quantity, pull_in));
+  return values;
+}
+
+/// A percentage of the base or, for the piezo, of the main hold level.
+double amplitude(const SectionReader& in, std::string_view drive, const PullInVoltages& pull_in, double base,
+                 const std::optional<double>& main_hold) {
+  const Quantity& given = in.quantities("amplitude").front();
+  if (given.dimension != dimension::none) return volts(given, pull_in);
+  if (drive != piezo_drive) {
+    in.require(base != 0, "amplitude", "is a percentage of the base, which is 0 V");
+    return given.value * base;
+  }
+  in.require(main_hold.has_value(), "amplitude",
+             "is a percentage of the main hold level, but there is neither an electrode 'main' nor only one electrode");
+  in.require(*main_hold != 0, "amplitude", "is a percentage of the main hold level, which is 0 V");
+  return given.value * *main_hold;
+}
+
+Table read_rows(const SceneFile::Impl& file, const SectionReader& in, std::string_view drive, const PullInVoltages& pull_in) {
+  if (!in.is_given("file")) return {.time = in.numbers("times"), .voltage = volts(in.quantities("voltages"), pull_in)};
+  try {
+    return read_table((file.directory / in.text("file")).string(), std::string(drive));
+  } catch (const InvalidInput& error) {
+    file.fail(in.path("file"), error.what());
+  }
+}
+
+Waveform read_waveform(const SceneFile::Impl& file, const SectionReader& in, std::string_view drive,
+                       const PullInVoltages& pull_in, const std::optional<double>& main_hold) {
+  const std::string& name = in.text("family");
+  if (name == "step") {
+    return Step{.level = volts(in.quantities("level").front(), pull_in), .rise_time = in.number("rise_time")};
+  }
+  if (name == "harmonic") {
+    const double base = volts(in.quantities("base").front(), pull_in);
+    return Harmonic{.base = base,
+                    .amplitude = amplitude(in, drive, pull_in, base, main_hold),
+                    .angular_frequency =
+                        in.is_given("frequency") ? 2 * std::numbers::pi * in.number("frequency") : in.number("angular_frequency"),
+                    .phase = in.number("phase"),
+                    .start = in.number("start"),
+                    .end = in.is_given("end") ? in.number("end") : std::numeric_limits<double>::infinity(),
+                    .fade = in.number("fade")};
+  }
+  if (name == "pulse") {
+    return Pulse{.levels = volts(in.quantities("levels"), pull_in), .times = in.numbers("times"), .edge = in.number("edge")};
+  }
+  return read_rows(file, in, drive, pull_in);
+}
+
+/// The key a message of a waveform family is about: such a message begins with its parameter ("fade of ...", "time 2 of ...").
+std::optional<std::string> blamed_key(const SectionReader& in, const std::string& message) {
+  const std::string word = message.substr(0, message.find(' '));
+  for (const std::string& key : {word, word + "s"}) {
+    if (in.is_given(key)) return key;
+  }
+  return std::nullopt;
+}
+
+Signal compile(const SceneFile::Impl& file, const SectionReader& in, const Waveform& waveform) {
+  try {
+    return signal(waveform);
+  } catch (const InvalidInput& error) {
+    if (const auto key = blamed_key(in, error.what())) file.fail(in.path(*key), error.what());
+    file.fail_section(in.path(), error.what());
+  }
+}
+
+/// Nothing when the drive has no limits. `pull_in` is null where it is not known: then there is no default limit.
+std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages* pull_in) {
+  const PullInVoltages known = pull_in ? *pull_in : PullInVoltages{};
+  DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
+  if (pull_in && drive != piezo_drive) {
+    limits.max_voltage = default_max_voltage * known.dynamic_pull_in;
+  } else if (!in.is_present()) {
+    return std::nullopt;
+  }
+  if (in.is_given("min_voltage")) limits.min_voltage = volts(in.quantities("min_voltage").front(), known);
+  if (in.is_given("max_voltage")) limits.max_voltage = volts(in.quantities("max_voltage").front(), known);
+  if (in.is_given("max_slew")) limits.max_slew = in.number("max_slew");
+  return limits;
+}
+
+void check_order(const SectionReader& in, const DriverLimits& limits) {
+  if (limits.min_voltage < limits.max_voltage) return;
+  const std::string_view key = in.is_given("min_voltage") ? "min_voltage" : "max_voltage";
+  in.require(false, key,
+             fmt::format("min_voltage of {} V must be less than max_voltage of {} V", limits.min_voltage, limits.max_voltage));
+}
+
+/// The electrode whose hold level a percentage of the piezo's amplitude refers to; empty when there is none.
+std::string_view main_electrode(const Device& device) {
+  for (const Electrode& electrode : device.electrodes) {
+    if (electrode.name == main_drive || device.electrodes.size() == 1) return electrode.name;
+  }
+  return {};
+}
+
+Drives read_all(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in,
+                LimitChecks checks) {
+  Drives drives;
+  std::optional<double> main_hold;
+  if (!main_electrode(device).empty()) main_hold = 0;
+  for (const std::string_view drive : drive_names(device)) {  // the piezo comes last: it may refer to the main hold level
+    const std::string name(drive);
+    const auto found = pull_in.find(name);
+    const PullInVoltages* known = found == pull_in.end() ? nullptr : &found->second;
+
+    const SectionReader driver(file, "driver", drive);
+    const std::optional<DriverLimits> limits = read_limits(driver, drive, known);
+    const bool check_limits = limits && (checks == LimitChecks::all || driver.keys_in_pull_in_units().empty());
+    if (check_limits) check_order(driver, *limits);
+    if (limits) drives.limits[name] = *limits;
+
+    const SectionReader in(file, "waveform", drive);
+    if (!in.is_present()) continue;
+    const Waveform waveform = read_waveform(file, in, drive, known ? *known : PullInVoltages{}, main_hold);
+    const Signal compiled = compile(file, in, waveform);
+    if (drive == main_electrode(device)) main_hold = compiled.hold_level();
+    if (limits && checks == LimitChecks::all) {
+      if (const std::string broken = violation(compiled, *limits); !broken.empty()) file.fail_section(in.path(), broken);
+    }
+    drives.waveforms[name] = waveform;
+  }
+  return drives;
+}
+
+}  // namespace
+
+void check_drive_name(const SceneFile::Impl& file, const std::string& electrode) {
+  const std::string path = join_path("electrode", electrode);
+  if (electrode == piezo_drive) file.fail_section(path, "the name 'piezo' is reserved for the piezo layer");
+  // The name becomes a column of CSV files and a node of SPICE circuits.
+  if (!is_bare_key(electrode)) file.fail_section(path, "a name may hold letters, digits, '_' and '-'");
+}
+
+std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device& device) {
+  check_names(file, "waveform", device);
+  check_names(file, "driver", device);
+  std::vector<std::string> need_pull_in;
+  for (const std::string_view drive : drive_names(device)) {
+    const SectionReader waveform(file, "waveform", drive);
+    const SectionReader driver(file, "driver", drive);
+    refuse_pull_in_units(waveform, drive);
+    refuse_pull_in_units(driver, drive);
+    if (drive == piezo_drive && driver.is_present()) {
+      for (const std::string_view key : {"min_voltage", "max_voltage"}) {
+        if (!driver.is_given(key))
+          file.fail_section(driver.path(), fmt::format("missing key '{}' (a voltage such as \"1 V\")", key));
+      }
+    }
+    if (!waveform.keys_in_pull_in_units().empty() || !driver.keys_in_pull_in_units().empty()) need_pull_in.emplace_back(drive);
+  }
+  // The rules of a family do not depend on how large a volt is: any pull-in voltage will do for them.
+  std::map<std::string, PullInVoltages> any;
+  for (const std::string& drive : need_pull_in) any[drive] = {.static_pull_in = 1, .dynamic_pull_in = 1};
+  static_cast<void>(read_all(file, device, any, LimitChecks::without_pull_in));
+  return need_pull_in;
+}
+
+Drives read_drives(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in) {
+  return read_all(file, device, pull_in, LimitChecks::all);
+}
+
+}  // namespace softland::internal

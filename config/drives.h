@@ -1,0 +1,24 @@
+// Waveforms and driver limits of a scene: from text to volts. Internal to config/.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "config/scene.h"
+#include "config/scene_file_impl.h"
+
+namespace softland::internal {
+
+/// Throws InvalidInput for an electrode name that cannot name a drive.
+void check_drive_name(const SceneFile::Impl& file, const std::string& electrode);
+
+/// Checks every [waveform.NAME] and [driver.NAME] as far as this is possible without pull-in voltages. Throws InvalidInput.
+/// Returns the electrodes that need theirs.
+[[nodiscard]] std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device& device);
+
+/// Everything in volts, waveforms inside their limits. Throws InvalidInput.
+[[nodiscard]] Drives read_drives(const SceneFile::Impl& file, const Device& device,
+                                 const std::map<std::string, PullInVoltages>& pull_in);
+
+}  // namespace softland::internal

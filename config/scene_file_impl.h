@@ -1,0 +1,63 @@
+// What SceneFile holds. Internal to config/: the only header of ours that shows TOML.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/scene.h"
+
+namespace softland::internal {
+
+/// A path of keys as text, parts quoted where TOML needs it: spread."structure.thickness".
+[[nodiscard]] std::string join_path(const std::string& path, std::string_view key);
+/// The parts of such a text. Throws InvalidInput with the rule only.
+[[nodiscard]] std::vector<std::string> split_path(std::string_view path);
+/// Whether TOML takes this key without quotes.
+[[nodiscard]] bool is_bare_key(std::string_view key);
+/// A basic TOML string with its quotes.
+[[nodiscard]] std::string toml_string(std::string_view text);
+/// A value as TOML on one line.
+[[nodiscard]] std::string inline_text(const toml::node& node);
+/// A whole scene as TOML, in the order of the schema.
+[[nodiscard]] std::string write_scene(const toml::table& root);
+/// A table that holds the value of a TOML text under `value_key`. Throws InvalidInput.
+[[nodiscard]] toml::table parse_value(std::string_view toml_text);
+inline constexpr std::string_view value_key = "v";
+
+}  // namespace softland::internal
+
+namespace softland {
+
+struct SceneFile::Impl {
+  /// Where a key was written.
+  struct Origin {
+    std::string text;  ///< "scenes/x.toml:12" or "--set gap.contact=3"
+    bool is_option = false;
+  };
+
+  std::string name;
+  std::filesystem::path directory;
+  toml::table root;
+  // Kept apart from the nodes, because toml++ forgets source positions when a table is copied.
+  std::map<std::string, Origin, std::less<>> origins;
+
+  /// Null when there is no such key.
+  [[nodiscard]] const toml::node* find(const std::vector<std::string>& path) const;
+  /// `structure.length = "250 um"`, for messages.
+  [[nodiscard]] std::string written(std::string_view path) const;
+  /// Throws InvalidInput: where, key path, value as written, rule.
+  [[noreturn]] void fail(std::string_view path, std::string_view rule) const;
+  /// The same about a section: the value is not shown.
+  [[noreturn]] void fail_section(std::string_view path, std::string_view rule) const;
+
+  /// Forgets where the keys at and below `path` were written.
+  void forget(std::string_view path);
+  [[nodiscard]] Origin origin(std::string_view path) const;
+};
+
+}  // namespace softland

@@ -1,0 +1,424 @@
+#include "config/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace softland::internal {
+namespace {
+
+constexpr Range positive{.least = 0, .least_open = true};
+constexpr Range not_negative{.least = 0};
+constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
+
+/// An electrode's voltages may be multiples of its pull-in voltages.
+const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
+
+std::vector<Section> make_schema() {
+  using enum KeyType;
+  return {
+      {.name = "", .keys = {{.name = "title", .type = text, .fallback = "''", .about = "one line that names the switch"}}},
+      {.name = "structure",
+       .required = true,
+       .selector = "kind",
+       .keys =
+           {
+               {.name = "kind",
+                .type = choice,
+                .choices = {"cantilever"},
+                .pending = {"clamped-clamped", "plate"},
+                .required = true,
+                .about = "what moves"},
+               {.name = "length",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .about = "along the beam"},
+               {.name = "width",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .about = "across the beam"},
+               {.name = "thickness",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .about = "in the direction of motion"},
+               {.name = "youngs_modulus",
+                .dimensions = {dimension::pressure},
+                .range = positive,
+                .required = true,
+                .about = "used as given unless plate_strain is on"},
+               {.name = "density",
+                .dimensions = {dimension::density},
+                .range = positive,
+                .required = true,
+                .about = "of the beam"},
+               {.name = "modes",
+                .type = integer,
+                .range = {.least = 1, .most = 20},
+                .pending = {"auto"},
+                .fallback = "4",
+                .about = "number of modes kept"},
+               {.name = "damping_ratio",
+                .dimensions = {dimension::none},
+                .range = {.least = 0, .most = 1, .most_open = true},
+                .fallback = "0.0",
+                .about = "modal, the same for every mode"},
+               {.name = "plate_strain", .type = flag, .fallback = "false", .about = "use E / (1 - nu^2) for a wide beam"},
+               {.name = "poissons_ratio",
+                .dimensions = {dimension::none},
+                .range = {.least = -1, .most = 0.5, .least_open = true, .most_open = true},
+                .about = "needed by plate_strain"},
+           },
+       .about = "the moving part"},
+      {.name = "gap",
+       .required = true,
+       .keys = {{.name = "electrode",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .required = true,
+                 .about = "rest distance beam to electrode"},
+                {.name = "contact",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .required = true,
+                 .about = "rest distance contact point to contact plane"}},
+       .about = "rest distances"},
+      {.name = "electrode",
+       .is_named = true,
+       .keys = {{.name = "span",
+                 .type = quantities,
+                 .dimensions = {dimension::length},
+                 .range = not_negative,
+                 .count = 2,
+                 .required = true,
+                 .about = "begin and end, from the clamped end"},
+                {.name = "fringing",
+                 .type = choice,
+                 .choices = {"none", "bao-2001", "meijs-fokkema", "linear"},
+                 .fallback = "'meijs-fokkema'",
+                 .about = "law of the fringing field"}},
+       .about = "an electrode under the beam"},
+      {.name = "gas",
+       .selector = "model",
+       .keys = {{.name = "model",
+                 .type = choice,
+                 .choices = {"strip"},
+                 .pending = {"veijola", "gallis-torczynski", "near-contact", "linear"},
+                 .required = true,
+                 .about = "law of the squeeze film"},
+                {.name = "viscosity",
+                 .dimensions = {dimension::viscosity},
+                 .range = positive,
+                 .required = true,
+                 .about = "dynamic viscosity of the gas"}},
+       .about = "gas between beam and electrode; absent: none"},
+      {.name = "contact",
+       .selector = "model",
+       .keys =
+           {
+               {.name = "model",
+                .type = choice,
+                .choices = {"linear", "asperity-uniform"},
+                .pending = {"hysteretic", "asperity-gaussian", "elastic-plastic", "adhesive"},
+                .required = true,
+                .about = "law of the contact force"},
+               {.name = "pad_length",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .about = "the pad is [length - pad_length, length]; the force acts at its centre"},
+               {.name = "stiffness",
+                .dimensions = {dimension::stiffness},
+                .range = positive,
+                .required = true,
+                .only_for = "linear",
+                .about = "contact force per penetration"},
+               {.name = "asperity_radius",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .only_for = "asperity-uniform",
+                .about = "radius of the summits"},
+               {.name = "asperity_density",
+                .dimensions = {dimension::area_density},
+                .range = positive,
+                .required = true,
+                .only_for = "asperity-uniform",
+                .about = "summits per area"},
+               {.name = "asperity_height",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .only_for = "asperity-uniform",
+                .about = "summit heights are uniform on [0, asperity_height]"},
+               {.name = "effective_modulus",
+                .dimensions = {dimension::pressure},
+                .range = positive,
+                .required = true,
+                .only_for = "asperity-uniform",
+                .about = "E* of the pair of surfaces"},
+           },
+       .about = "contact under the tip; absent: the tip meets nothing"},
+      {.name = "piezo",
+       .keys =
+           {
+               {.name = "span",
+                .type = quantities,
+                .dimensions = {dimension::length},
+                .range = not_negative,
+                .count = 2,
+                .required = true,
+                .about = "begin and end, from the clamped end"},
+               {.name = "thickness",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .about = "of the layer"},
+               {.name = "youngs_modulus",
+                .dimensions = {dimension::pressure},
+                .range = positive,
+                .required = true,
+                .about = "of the layer"},
+               {.name = "density",
+                .dimensions = {dimension::density},
+                .range = positive,
+                .required = true,
+                .about = "of the layer"},
+               {.name = "d31",
+                .dimensions = {dimension::piezo_coefficient},
+                .required = true,
+                .about = "negative for the usual ceramics: a positive voltage lifts the tip"},
+           },
+       .about = "a piezoelectric layer on the face away from the electrode"},
+      {.name = "dispersion", .pending = true, .about = "Casimir and van der Waals forces"},
+      {.name = "surface", .pending = true, .about = "surface elasticity and residual stress"},
+      {.name = "waveform",
+       .is_named = true,
+       .selector = "family",
+       .keys =
+           {
+               {.name = "family",
+                .type = choice,
+                .choices = {"step", "harmonic", "pulse", "table"},
+                .required = true,
+                .about = "shape of the voltage against time"},
+               {.name = "level", .dimensions = drive_voltage, .required = true, .only_for = "step", .about = "held for ever"},
+               {.name = "rise_time",
+                .dimensions = {dimension::time},
+                .range = not_negative,
+                .fallback = "'0 s'",
+                .only_for = "step",
+                .about = "linear rise from 0 V"},
+               {.name = "base",
+                .dimensions = drive_voltage,
+                .fallback = "'0 V'",
+                .only_for = "harmonic",
+                .about = "what the sine swings about"},
+               {.name = "amplitude",
+                .dimensions = {dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in, dimension::none},
+                .required = true,
+                .only_for = "harmonic",
+                .about = "or a percentage of the base; for the piezo, of the main hold level"},
+               {.name = "angular_frequency",
+                .dimensions = {dimension::angular_frequency},
+                .range = positive,
+                .required = true,
+                .only_for = "harmonic",
+                .instead_of = {"frequency"},
+                .about = "of the sine"},
+               {.name = "frequency",
+                .dimensions = {dimension::frequency},
+                .range = positive,
+                .required = true,
+                .only_for = "harmonic",
+                .instead_of = {"angular_frequency"},
+                .about = "of the sine"},
+               {.name = "phase",
+                .dimensions = {dimension::angle},
+                .fallback = "'0 rad'",
+                .only_for = "harmonic",
+                .about = "of the sine at t = 0"},
+               {.name = "start",
+                .dimensions = {dimension::time},
+                .range = not_negative,
+                .fallback = "'0 s'",
+                .only_for = "harmonic",
+                .about = "when the sine begins"},
+               {.name = "end",
+                .dimensions = {dimension::time},
+                .range = positive,
+                .only_for = "harmonic",
+                .about = "when the sine ends; absent: never"},
+               {.name = "fade",
+                .dimensions = {dimension::time},
+                .range = not_negative,
+                .fallback = "'0 s'",
+                .only_for = "harmonic",
+                .about = "linear fade in after start and out before end"},
+               {.name = "levels",
+                .type = quantities,
+                .dimensions = drive_voltage,
+                .required = true,
+                .only_for = "pulse",
+                .about = "n levels; the last is held for ever"},
+               {.name = "times",
+                .type = quantities,
+                .dimensions = {dimension::time},
+                .range = not_negative,
+                .fallback = "[]",
+                .only_for = "pulse",
+                .about = "n - 1 times at which the edge to the next level begins"},
+               {.name = "edge",
+                .dimensions = {dimension::time},
+                .range = not_negative,
+                .fallback = "'0 s'",
+                .only_for = "pulse",
+                .about = "duration of every linear edge"},
+               {.name = "file",
+                .type = text,
+                .required = true,
+                .only_for = "table",
+                .instead_of = {"times", "voltages"},
+                .about = "CSV with time_s and a column named after the drive, relative to the scene"},
+               {.name = "times",
+                .type = quantities,
+                .dimensions = {dimension::time},
+                .range = not_negative,
+                .required = true,
+                .only_for = "table",
+                .instead_of = {"file"},
+                .about = "of the rows, from 0 s on"},
+               {.name = "voltages",
+                .type = quantities,
+                .dimensions = drive_voltage,
+                .required = true,
+                .only_for = "table",
+                .instead_of = {"file"},
+                .about = "of the rows; linear between them"},
+           },
+       .about = "voltage of an electrode or of the piezo; a drive without one stays at 0 V"},
+      {.name = "driver",
+       .is_named = true,
+       .keys = {{.name = "min_voltage", .dimensions = drive_voltage, .about = "default for an electrode: 0 V"},
+                {.name = "max_voltage", .dimensions = drive_voltage, .about = "default for an electrode: 1.5 Vdp"},
+                {.name = "max_slew", .dimensions = {dimension::slew_rate}, .range = positive, .about = "absent: unlimited"}},
+       .about = "limits of the source: hard bounds of every search"},
+      {.name = "simulate",
+       .always_in_force = true,
+       .keys = {{.name = "duration",
+                 .dimensions = {dimension::time},
+                 .range = positive,
+                 .about = "absent: six periods of the first mode"},
+                {.name = "accuracy",
+                 .dimensions = {dimension::none},
+                 .range = small_error,
+                 .fallback = "1e-06",
+                 .instead_of = {"tolerance"},
+                 .about = "target relative error of t_i, v_i and B_H"},
+                {.name = "tolerance",
+                 .dimensions = {dimension::none},
+                 .range = small_error,
+                 .instead_of = {"accuracy"},
+                 .about = "relative tolerance of the integrator, instead of accuracy"}},
+       .about = "the run"},
+      {.name = "metrics",
+       .always_in_force = true,
+       .keys = {{.name = "significant_rebound",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .fallback = "'1 nm'",
+                 .about = "a rebound counts when it is higher"}},
+       .about = "figures of merit"},
+      {.name = "spread",
+       .is_named = true,
+       .selector = "distribution",
+       .keys = {{.name = "distribution",
+                 .type = choice,
+                 .choices = {"normal", "lognormal", "uniform"},
+                 .required = true,
+                 .about = "of the key that varies; its mean is the scene's value"},
+                {.name = "cov",
+                 .dimensions = {dimension::none},
+                 .range = {.least = 0, .most = 1, .least_open = true},
+                 .required = true,
+                 .instead_of = {"half_width"},
+                 .about = "standard deviation over mean"},
+                {.name = "half_width",
+                 .range = positive,
+                 .required = true,
+                 .only_for = "uniform",
+                 .instead_of = {"cov"},
+                 .about = "in the unit of the key, or a percentage of its value"}},
+       .about = "manufacturing spread of scene keys"},
+  };
+}
+
+/// Edits (insertion, deletion, substitution, swap of neighbours) from `a` to `b`.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  std::iota(d[0].begin(), d[0].end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  return (least_open ? value > least : value >= least) && (most_open ? value < most : value <= most);
+}
+
+std::string Range::rule(std::string_view unit) const {
+  const auto with_unit = [&](double value) {
+    return unit.empty() ? number_text(value) : fmt::format("{} {}", number_text(value), unit);
+  };
+  if (most == std::numeric_limits<double>::infinity()) {
+    return fmt::format("must be {} {}", least_open ? "greater than" : "at least", with_unit(least));
+  }
+  return fmt::format("must be in {}{}, {}{}", least_open ? '(' : '[', with_unit(least), with_unit(most), most_open ? ')' : ']');
+}
+
+bool Key::is_bare_number() const {
+  return type == KeyType::quantity && dimensions.size() == 1 && dimensions.front() == dimension::none;
+}
+
+const Key* Section::find(std::string_view key, std::string_view choice) const {
+  const Key* found = nullptr;
+  for (const Key& candidate : keys) {
+    if (candidate.name != key) continue;
+    if (candidate.belongs_to(choice)) return &candidate;
+    if (!found) found = &candidate;
+  }
+  return found;
+}
+
+const std::vector<Section>& schema() {
+  static const std::vector<Section> sections = make_schema();
+  return sections;
+}
+
+const Section* find_section(std::string_view name) {
+  const auto found = std::find_if(schema().begin(), schema().end(), [&](const Section& s) { return s.name == name; });
+  return found == schema().end() ? nullptr : &*found;
+}
+
+std::string hint(std::string_view word, const std::vector<std::string_view>& known) {
+  if (known.empty()) return {};
+  constexpr std::size_t longest_word = 64;  // a longer one is no slip of the pen, and the distance costs the product of lengths
+  if (word.size() <= longest_word) {
+    const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
+    const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
+    if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
+  }
+  return fmt::format(" (known: {})", fmt::join(known, ", "));
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,236 @@
+#include "config/section_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/require.h"
+
+namespace softland::internal {
+namespace {
+
+/// `a length such as "2 um"`
+std::string wanted(const Key& key) {
+  switch (key.type) {
+    case KeyType::text:
+      return "a text in quotes";
+    case KeyType::flag:
+      return "true or false";
+    case KeyType::integer:
+      return "a whole number";
+    case KeyType::choice:
+      return fmt::format("one of {}", fmt::join(key.choices, ", "));
+    case KeyType::quantity:
+    case KeyType::quantities:
+      break;
+  }
+  if (key.dimensions.empty()) return "a quantity with its unit";
+  if (key.is_bare_number()) return "a plain number such as 0.02";
+  std::vector<std::string> examples;
+  for (const Dimension& dimension : key.dimensions) examples.push_back(toml_string(example(dimension)));
+  if (key.type == KeyType::quantities) return fmt::format("a list such as [{0}, {0}]", examples.front());
+  return fmt::format("{} such as {}", noun(key.dimensions.front()), fmt::join(examples, " or "));
+}
+
+std::string expected(const Key& key) { return fmt::format(" (expected {})", wanted(key)); }
+
+Quantity parse_number(const Key& key, const toml::node& node) {
+  Quantity quantity;
+  bool has_unit = false;
+  if (const auto* text = node.as_string()) {
+    try {
+      quantity = parse_quantity(text->get());
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(error.what() + expected(key));
+    }
+    has_unit = quantity.dimension != dimension::none || text->get().find('%') != std::string::npos;
+  } else if (node.is_number()) {
+    quantity.value = node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+  } else {
+    throw InvalidInput("not a number with a unit" + expected(key));
+  }
+  if (!has_unit && !key.is_bare_number()) throw InvalidInput("no unit" + expected(key));
+  if (!std::isfinite(quantity.value)) throw InvalidInput("must be finite");
+  const auto& allowed = key.dimensions;
+  if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), quantity.dimension) == allowed.end()) {
+    throw InvalidInput(fmt::format("expected {}, got {}", describe(allowed.front()), describe(quantity.dimension)));
+  }
+  if (!key.range.contains(quantity.value)) throw InvalidInput(key.range.rule(unit_symbol(quantity.dimension)));
+  return quantity;
+}
+
+std::string parse_choice(const Key& key, const std::string& text) {
+  const auto is_one_of = [&](const auto& list) { return std::find(list.begin(), list.end(), text) != list.end(); };
+  if (is_one_of(key.pending)) throw InvalidInput(fmt::format("not available yet (available: {})", fmt::join(key.choices, ", ")));
+  if (!is_one_of(key.choices)) throw InvalidInput("unknown value" + hint(text, key.choices));
+  return text;
+}
+
+}  // namespace
+
+SectionReader::SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name)
+    : file_(file), section_(*find_section(section)), path_(section) {
+  std::vector<std::string> parts;
+  if (!section.empty()) parts.emplace_back(section);
+  if (!name.empty()) {
+    parts.emplace_back(name);
+    path_ = join_path(path_, name);
+  }
+  if (const toml::node* node = file.find(parts)) {
+    table_ = node->as_table();
+    if (!table_) file_.fail(path_, fmt::format("expected a section [{}]", path_));
+  }
+  if (!table_) {
+    if (section_.required) throw InvalidInput(fmt::format("{}: section [{}] is missing", file.name, path_));
+    if (!section_.always_in_force) return;
+  }
+  check_keys();
+  read_selector();
+  for (const Key& key : section_.keys) {
+    if (key.belongs_to(choice_)) read_key(key);
+  }
+}
+
+void SectionReader::check_keys() const {
+  if (!table_ || section_.name.empty()) return;  // sections stand beside the keys above the first one
+  std::vector<std::string_view> known;
+  for (const Key& key : section_.keys) {
+    if (std::find(known.begin(), known.end(), key.name) == known.end()) known.push_back(key.name);
+  }
+  for (const auto& [key, node] : *table_) {
+    if (!section_.find(key.str())) file_.fail(path(key.str()), "unknown key" + hint(key.str(), known));
+  }
+}
+
+void SectionReader::read_selector() {
+  if (section_.selector.empty() || !table_) return;
+  read_key(*section_.find(section_.selector));
+  choice_ = text(section_.selector);
+  for (const auto& [name, node] : *table_) {
+    const Key& key = *section_.find(name.str(), choice_);
+    if (key.belongs_to(choice_)) continue;
+    file_.fail(path(name.str()),
+               fmt::format("belongs to {} = {}, not to {}", section_.selector, toml_string(key.only_for), toml_string(choice_)));
+  }
+}
+
+bool SectionReader::is_replaced(const Key& key) const {
+  return std::any_of(key.instead_of.begin(), key.instead_of.end(), [&](std::string_view other) {
+    const Key* alternative = section_.find(other, choice_);
+    return alternative->belongs_to(choice_) && is_given(other);
+  });
+}
+
+void SectionReader::read_key(const Key& key) {
+  if (is_given(key.name)) {
+    for (const std::string_view other : key.instead_of) {
+      if (is_given(other)) file_.fail(path(key.name), fmt::format("cannot stand beside {}: give one of them", written(other)));
+    }
+    try {
+      values_[key.name] = parse(key, *table_->get(key.name));
+    } catch (const InvalidInput& error) {
+      file_.fail(path(key.name), error.what());
+    }
+    return;
+  }
+  if (is_replaced(key)) return;
+  if (key.required) {
+    std::string names = fmt::format("'{}'", key.name);
+    for (const std::string_view other : key.instead_of) {
+      if (section_.find(other, choice_)->belongs_to(choice_)) names += fmt::format(" or '{}'", other);
+    }
+    file_.fail_section(path_, fmt::format("missing key {} ({})", names, wanted(key)));
+  }
+  if (!key.fallback.empty()) values_[key.name] = parse(key, *parse_value(key.fallback).get(value_key));
+}
+
+SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node) {
+  const auto* text = node.as_string();
+  switch (key.type) {
+    case KeyType::text:
+      if (text) return text->get();
+      break;
+    case KeyType::choice:
+      if (text) return parse_choice(key, text->get());
+      break;
+    case KeyType::flag:
+      if (const auto* flag = node.as_boolean()) return flag->get();
+      break;
+    case KeyType::integer:
+      if (const auto* integer = node.as_integer()) {
+        if (!key.range.contains(static_cast<double>(integer->get()))) throw InvalidInput(key.range.rule(""));
+        return integer->get();
+      }
+      if (text && std::find(key.pending.begin(), key.pending.end(), text->get()) != key.pending.end()) {
+        throw InvalidInput("not available yet");
+      }
+      break;
+    case KeyType::quantity:
+      return std::vector{parse_number(key, node)};
+    case KeyType::quantities:
+      if (const auto* array = node.as_array()) {
+        std::vector<Quantity> values;
+        for (const auto& element : *array) {
+          try {
+            values.push_back(parse_number(key, element));
+          } catch (const InvalidInput& error) {
+            throw InvalidInput(fmt::format("value {}: {}", values.size() + 1, error.what()));
+          }
+        }
+        if (key.count != 0 && values.size() != key.count) {
+          throw InvalidInput(fmt::format("needs {} values, got {}", key.count, values.size()));
+        }
+        return values;
+      }
+      break;
+  }
+  throw InvalidInput(fmt::format("expected {}", wanted(key)));
+}
+
+double SectionReader::number(std::string_view key) const {
+  return values_.contains(key) ? quantities(key).front().value : std::numeric_limits<double>::quiet_NaN();
+}
+
+const std::vector<Quantity>& SectionReader::quantities(std::string_view key) const {
+  return std::get<std::vector<Quantity>>(values_.at(key));
+}
+
+std::vector<double> SectionReader::numbers(std::string_view key) const {
+  std::vector<double> values;
+  for (const Quantity& quantity : quantities(key)) values.push_back(quantity.value);
+  return values;
+}
+
+int SectionReader::integer(std::string_view key) const { return static_cast<int>(std::get<std::int64_t>(values_.at(key))); }
+bool SectionReader::flag(std::string_view key) const { return std::get<bool>(values_.at(key)); }
+const std::string& SectionReader::text(std::string_view key) const { return std::get<std::string>(values_.at(key)); }
+
+std::vector<std::string_view> SectionReader::keys_in_pull_in_units() const {
+  std::vector<std::string_view> keys;
+  for (const auto& [key, value] : values_) {
+    const auto* numbers = std::get_if<std::vector<Quantity>>(&value);
+    if (numbers && std::any_of(numbers->begin(), numbers->end(), [](const Quantity& quantity) {
+          return quantity.dimension == dimension::static_pull_in || quantity.dimension == dimension::dynamic_pull_in;
+        })) {
+      keys.push_back(key);
+    }
+  }
+  return keys;
+}
+
+toml::table SectionReader::with_defaults() const {
+  toml::table table;
+  for (const auto& [key, value] : values_) {
+    const auto insert = [&, name = key](const auto& node) { table.insert(name, node); };
+    if (is_given(key)) {
+      table_->get(key)->visit(insert);
+    } else {
+      parse_value(section_.find(key, choice_)->fallback).get(value_key)->visit(insert);
+    }
+  }
+  return table;
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,73 @@
+// One section of a scene, checked against the schema key by key. Internal to config/.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "config/scene_file_impl.h"
+#include "config/schema.h"
+#include "config/units.h"
+
+namespace softland::internal {
+
+class SectionReader {
+ public:
+  /// Reads [section] or [section.NAME]. Throws InvalidInput for an unknown or missing key, a value of the wrong kind, dimension
+  /// or range. Keys that are not given take their defaults. `file` must outlive the reader.
+  explicit SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name = {});
+
+  /// Whether the section stands in the file.
+  [[nodiscard]] bool is_present() const { return table_ != nullptr; }
+  /// Whether the key stands in the file.
+  [[nodiscard]] bool is_given(std::string_view key) const { return table_ && table_->contains(key); }
+
+  /// Whether the key is in force: given or with a default.
+  [[nodiscard]] bool has_value(std::string_view key) const { return values_.contains(key); }
+  /// The schema's entry of a key. Null when there is none.
+  [[nodiscard]] const Key* find(std::string_view key) const { return section_.find(key, choice_); }
+
+  /// The value or the default [SI unit]; NaN when there is neither.
+  [[nodiscard]] double number(std::string_view key) const;
+  [[nodiscard]] const std::vector<Quantity>& quantities(std::string_view key) const;
+  [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
+  [[nodiscard]] int integer(std::string_view key) const;
+  [[nodiscard]] bool flag(std::string_view key) const;
+  /// Of a text or a choice.
+  [[nodiscard]] const std::string& text(std::string_view key) const;
+
+  /// Keys whose values are multiples of a pull-in voltage.
+  [[nodiscard]] std::vector<std::string_view> keys_in_pull_in_units() const;
+  /// Every key that is in force with its TOML value: as written, or the default.
+  [[nodiscard]] toml::table with_defaults() const;
+
+  /// Throws InvalidInput about this key unless the rule holds.
+  void require(bool holds, std::string_view key, std::string_view rule) const {
+    if (!holds) file_.fail(path(key), rule);
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::string path(std::string_view key) const { return join_path(path_, key); }
+  /// `gap.electrode = "3.5 um"`
+  [[nodiscard]] std::string written(std::string_view key) const { return file_.written(path(key)); }
+
+ private:
+  using Value = std::variant<std::vector<Quantity>, std::string, bool, std::int64_t>;
+
+  static Value parse(const Key& key, const toml::node& node);
+  void check_keys() const;
+  void read_selector();
+  void read_key(const Key& key);
+  [[nodiscard]] bool is_replaced(const Key& key) const;
+
+  const SceneFile::Impl& file_;
+  const Section& section_;
+  std::string path_;
+  const toml::table* table_ = nullptr;
+  std::string choice_;
+  std::map<std::string_view, Value> values_;
+};
+
+}  // namespace softland::internal

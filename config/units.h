@@ -1,0 +1,76 @@
+// Quantities as text: "2 um", "1.86e-5 Pa s", "19300 kg/m^3", "15 %". Converted to SI once, here.
+//
+// Grammar: number SPACE unit. A unit is factors joined by spaces or `*`, with at most one `/`; every factor after the `/`
+// divides. A factor is a prefix (f p n u m k M G), a symbol and an integer power `^n`; the whole numerator may be `1`. A text
+// without unit is a plain number. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa" metre pascal, "mPa"
+// millipascal.
+//
+// Prefixes and `%` move the decimal exponent of the number before it is rounded, so that "2 um" is the double nearest to 2e-6,
+// and a number in SI base units is read bit for bit.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace softland {
+
+/// Powers of m, kg, s, A, K, rad, Vsp, Vdp. An angle is a dimension, so that rad/s and Hz cannot be mixed up; so are the pull-in
+/// voltages of an electrode, whose volts are known only later.
+struct Dimension {
+  std::array<int, 8> powers{};
+  friend bool operator==(const Dimension&, const Dimension&) = default;
+};
+
+namespace dimension {
+inline constexpr Dimension none{};
+inline constexpr Dimension length{{1}};
+inline constexpr Dimension mass{{0, 1}};
+inline constexpr Dimension time{{0, 0, 1}};
+inline constexpr Dimension current{{0, 0, 0, 1}};
+inline constexpr Dimension temperature{{0, 0, 0, 0, 1}};
+inline constexpr Dimension angle{{0, 0, 0, 0, 0, 1}};
+inline constexpr Dimension static_pull_in{{0, 0, 0, 0, 0, 0, 1}};
+inline constexpr Dimension dynamic_pull_in{{0, 0, 0, 0, 0, 0, 0, 1}};
+inline constexpr Dimension area_density{{-2}};
+inline constexpr Dimension density{{-3, 1}};
+inline constexpr Dimension frequency{{0, 0, -1}};
+inline constexpr Dimension angular_frequency{{0, 0, -1, 0, 0, 1}};
+inline constexpr Dimension force{{1, 1, -2}};
+inline constexpr Dimension energy{{2, 1, -2}};
+inline constexpr Dimension power{{2, 1, -3}};
+inline constexpr Dimension pressure{{-1, 1, -2}};
+inline constexpr Dimension viscosity{{-1, 1, -1}};
+inline constexpr Dimension stiffness{{0, 1, -2}};
+inline constexpr Dimension voltage{{2, 1, -3, -1}};
+inline constexpr Dimension slew_rate{{2, 1, -4, -1}};
+inline constexpr Dimension charge{{0, 0, 1, 1}};
+inline constexpr Dimension capacitance{{-2, -1, 4, 2}};
+inline constexpr Dimension resistance{{2, 1, -3, -2}};
+inline constexpr Dimension conductance{{-2, -1, 3, 2}};
+inline constexpr Dimension piezo_coefficient{{-1, -1, 3, 1}};
+}  // namespace dimension
+
+struct Quantity {
+  double value = 0;  ///< [SI unit of the dimension]
+  Dimension dimension;
+};
+
+/// Throws InvalidInput with the broken rule only ("unknown unit 'u'"): the caller knows which key it was. The value is finite.
+[[nodiscard]] Quantity parse_quantity(std::string_view text);
+
+/// The SI symbol: "m", "kg/m^3"; empty for a plain number; base units where there is no usual name.
+[[nodiscard]] std::string unit_symbol(const Dimension& dimension);
+/// For messages: "a length", "a plain number".
+[[nodiscard]] std::string_view noun(const Dimension& dimension);
+/// For messages: "a length [m]", "a plain number".
+[[nodiscard]] std::string describe(const Dimension& dimension);
+/// For messages: a text of this dimension, such as "2 um"; empty where there is no usual name.
+[[nodiscard]] std::string_view example(const Dimension& dimension);
+
+/// The shortest decimal text that reads back to the same bits.
+[[nodiscard]] std::string number_text(double value);
+/// "2e-06 m": reads back to the same bits. `value` [SI unit of `dimension`].
+[[nodiscard]] std::string quantity_text(double value, const Dimension& dimension);
+
+}  // namespace softland
