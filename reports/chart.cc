@@ -1,0 +1,359 @@
+#include "reports/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "reports/findings.h"
+#include "reports/quantity.h"
+#include "reports/result_view.h"
+#include "reports/thin.h"
+
+namespace softland::internal {
+namespace {
+
+using nlohmann::json;
+using Points = std::vector<std::array<double, 2>>;
+
+constexpr std::array<std::pair<const char*, Role>, 2> runs{std::pair{"baseline", Role::baseline}, std::pair{"best", Role::best}};
+
+const char* role_name(Role role) {
+  switch (role) {
+    case Role::best: return "best";
+    case Role::baseline: return "baseline";
+    case Role::evaluations: break;
+  }
+  return "evaluations";
+}
+
+const char* scale_name(Scale scale) {
+  switch (scale) {
+    case Scale::linear: return "linear";
+    case Scale::logarithmic: return "log";
+    case Scale::symlog: break;
+  }
+  return "symlog";
+}
+
+/// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left out.
+Table curve_table(const json& curve) {
+  const std::vector<double> times = numbers(at(curve, {"time_s"}));
+  std::vector<std::size_t> sound;
+  for (std::size_t row = 0; row < times.size(); ++row) {
+    if (std::isfinite(times[row]) && (sound.empty() || times[row] >= times[sound.back()])) sound.push_back(row);
+  }
+  Table table;
+  if (sound.size() < 2) return table;
+  for (const char* name : {"time_s", "tip_gap_m", "tip_velocity_m_s", "contact_force_N"}) {
+    const std::vector<double> column = numbers(at(curve, {name}));
+    if (column.size() != times.size()) continue;
+    std::vector<double> values;
+    values.reserve(sound.size());
+    for (const std::size_t row : sound) values.push_back(column[row]);
+    if (std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) table[name] = std::move(values);
+  }
+  return table;
+}
+
+/// [[x, y], ...] without what is not finite.
+Points points_of(const json& pairs) {
+  Points points;
+  if (!pairs.is_array()) return points;
+  for (const json& pair : pairs) {
+    if (!pair.is_array() || pair.size() != 2) continue;
+    const std::array<double, 2> point{number(pair[0]), number(pair[1])};
+    if (std::isfinite(point[0]) && std::isfinite(point[1])) points.push_back(point);
+  }
+  return points;
+}
+
+/// A drive from 0 V before t = 0 to the end of the window, where it holds its last value.
+Points whole_waveform(const json& pairs, double end) {
+  Points points = points_of(pairs);
+  if (points.empty()) return points;
+  if (points.front()[1] != 0 && points.front()[0] <= 0) points.insert(points.begin(), {points.front()[0], 0.0});
+  if (points.back()[0] < end) points.push_back({end, points.back()[1]});
+  return points;
+}
+
+/// The last time at which a drive moves; NaN when it never does.
+double last_move(const Points& points) {
+  double time = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (points[i][1] != points[i - 1][1]) time = points[i][0];
+  }
+  return time;
+}
+
+void add_columns(Table& table, const char* x, const char* y, const Points& points) {
+  for (const auto& [first, second] : points) {
+    table[x].push_back(first);
+    table[y].push_back(second);
+  }
+}
+
+std::vector<Mark> rebound_marks(const json& result) {
+  std::vector<Mark> marks;
+  for (const auto& [run, role] : runs) {
+    std::size_t highest = 0;
+    std::vector<Mark> own;
+    const json& list = at(result, {"curves", run, "rebounds"});
+    if (!list.is_array()) continue;
+    for (const json& rebound : list) {
+      if (!rebound.is_array() || rebound.size() < 4) continue;
+      const Mark mark{number(rebound[3]), number(rebound[2]), role, ""};
+      if (!std::isfinite(mark.x) || !(mark.y > significant_rebound(result))) continue;
+      if (own.empty() || mark.y > own[highest].y) highest = own.size();
+      own.push_back(mark);
+    }
+    if (!own.empty()) own[highest].text = quantity(own[highest].y, "m");
+    marks.insert(marks.end(), own.begin(), own.end());
+  }
+  return marks;
+}
+
+/// The end of the part worth enlarging: the winner's landing, what its drives do, and the baseline's highest rebound.
+double landing_end(const json& result, const Tables& tables, double window) {
+  double end = std::numeric_limits<double>::quiet_NaN();
+  const auto cover = [&](double time) {
+    if (time < window) end = std::fmax(end, time);
+  };
+  const json& own = best_metrics(result);
+  cover(number(own, {"initial_contact_time_s"}));
+  cover(number(own, {"permanent_contact_time_s"}));
+  for (const auto& [name, table] : tables) {
+    if (!name.starts_with("best/")) continue;
+    Points points;
+    for (std::size_t row = 0; row < table.at("time_s").size(); ++row) points.push_back({table.at("time_s")[row], table.at("volts_V")[row]});
+    if (last_move(points) < 0.5 * window) cover(last_move(points));
+  }
+  for (const char* run : {"baseline", "best"}) {
+    double highest = -1;
+    double until = std::numeric_limits<double>::quiet_NaN();
+    const json& list = at(result, {"curves", run, "rebounds"});
+    if (!list.is_array()) continue;
+    for (const json& rebound : list) {
+      if (!rebound.is_array() || rebound.size() < 4 || !(number(rebound[2]) > highest)) continue;
+      highest = number(rebound[2]);
+      until = number(rebound[1]);
+    }
+    cover(until);
+  }
+  constexpr double margin = 1.15;
+  return end > 0 ? std::min(window, margin * end) : window;
+}
+
+std::array<double, 2> symlog_range(const Tables& tables, double threshold) {
+  double lowest = 0;
+  double highest = threshold;
+  for (const auto& [run, role] : runs) {
+    const auto table = tables.find(run);
+    if (table == tables.end() || !table->second.contains("tip_gap_m")) continue;
+    for (const double gap : table->second.at("tip_gap_m")) {
+      if (!std::isfinite(gap)) continue;
+      lowest = std::min(lowest, gap);
+      highest = std::max(highest, gap);
+    }
+  }
+  constexpr double margin = 1.6;
+  return {margin * std::min(lowest, -threshold), margin * highest};
+}
+
+void add_time_charts(const json& result, Picture& out) {
+  const double window = window_end(result);
+  if (!(window > 0)) return;
+  std::set<std::string> drives;
+  for (const auto& [run, role] : runs) {
+    Table table = curve_table(at(result, {"curves", run}));
+    if (!table.empty()) out.tables[run] = std::move(table);
+    const json& waveforms = at(result, {run, "waveforms"});
+    if (!waveforms.is_object()) continue;
+    for (const auto& [drive, pairs] : waveforms.items()) {
+      const Points points = whole_waveform(pairs, window);
+      if (points.size() < 2) continue;
+      add_columns(out.tables[fmt::format("{}/{}", run, drive)], "time_s", "volts_V", points);
+      drives.insert(drive);
+    }
+  }
+  const double landing = landing_end(result, out.tables, window);
+  const auto time_chart = [&](std::string id, std::string title, std::string caption) {
+    Chart chart;
+    chart.id = std::move(id);
+    chart.title = std::move(title);
+    chart.caption = std::move(caption);
+    chart.x_column = "time_s";
+    chart.x_label = "Time";
+    chart.x_unit = "s";
+    chart.x_whole = {0, window};
+    chart.x_home = {0, landing};
+    chart.group = "time";
+    return chart;
+  };
+  const auto add_series = [&](Chart& chart, const std::string& suffix, const char* column) {
+    for (const auto& [run, role] : runs) {
+      const auto table = out.tables.find(run + suffix);
+      if (table == out.tables.end() || !table->second.contains(column)) continue;
+      chart.series.push_back({table->first, column, role == Role::best ? best_label(result) : baseline_label(), role});
+    }
+  };
+  const auto keep = [&](Chart chart) {
+    if (!chart.series.empty()) out.charts.push_back(std::move(chart));
+  };
+
+  Chart gap = time_chart("gap", "Gap: the whole closing", gap_caption(result));
+  gap.x_home = gap.x_whole;
+  gap.y_label = "Gap";
+  gap.y_unit = "m";
+  gap.zero_line = true;
+  gap.zero_label = "contact plane";
+  gap.marks = rebound_marks(result);
+  gap.height = 320;
+  add_series(gap, "", "tip_gap_m");
+  Chart near = gap;
+  keep(std::move(gap));
+
+  near.id = "landing";
+  near.title = "Gap: the landing, enlarged";
+  near.caption = landing_caption(result);
+  near.x_home = {0, landing};
+  near.scale = Scale::symlog;
+  near.threshold = significant_rebound(result);
+  near.y_home = symlog_range(out.tables, near.threshold);
+  keep(std::move(near));
+
+  int index = 0;
+  for (const std::string& drive : drives) {
+    Chart chart = time_chart(fmt::format("drive-{}", index++), fmt::format("Drive: {}", drive), waveform_caption(result, drive));
+    chart.y_label = "Voltage";
+    chart.y_unit = "V";
+    chart.height = 210;
+    add_series(chart, "/" + drive, "volts_V");
+    keep(std::move(chart));
+  }
+
+  Chart velocity = time_chart("velocity", "Tip velocity", velocity_caption(result));
+  velocity.y_label = "Velocity";
+  velocity.y_unit = "m/s";
+  velocity.zero_line = true;
+  velocity.height = 230;
+  add_series(velocity, "", "tip_velocity_m_s");
+  keep(std::move(velocity));
+
+  Chart force = time_chart("force", "Contact force", force_caption(result));
+  force.y_label = "Force";
+  force.y_unit = "N";
+  force.height = 230;
+  add_series(force, "", "contact_force_N");
+  keep(std::move(force));
+}
+
+void add_search_chart(const json& result, Picture& out) {
+  const Points tried = points_of(at(result, {"search", "evaluations"}));
+  Points best = points_of(at(result, {"search", "best_so_far"}));
+  if (tried.empty() && best.empty()) return;
+  double last = std::max(tried.empty() ? 0.0 : tried.back()[0], best.empty() ? 0.0 : best.back()[0]);
+  last = std::fmax(last, number(result, {"evaluations"}));
+  bool positive = true;
+  for (const Points* points : {&tried, &std::as_const(best)}) {
+    positive = positive && std::all_of(points->begin(), points->end(), [](const auto& point) { return point[1] > 0; });
+  }
+  Chart chart;
+  chart.id = "search";
+  chart.title = "Search";
+  chart.caption = search_caption(result);
+  chart.x_column = "evaluation";
+  chart.x_label = "Evaluation";
+  chart.x_home = chart.x_whole = {0, std::max(1.0, last)};
+  chart.y_label = text(result, {"search", "value_name"});
+  if (chart.y_label.empty()) chart.y_label = "cost";
+  chart.scale = positive ? Scale::logarithmic : Scale::linear;
+  chart.height = 260;
+  if (!tried.empty()) {
+    add_columns(out.tables["tried"], "evaluation", "value", tried);
+    chart.series.push_back({"tried", "value", "each waveform tried", Role::evaluations});
+  }
+  if (!best.empty()) {
+    Points stairs;  // the best so far holds until it is beaten
+    for (const auto& point : best) {
+      if (!stairs.empty()) stairs.push_back({point[0], stairs.back()[1]});
+      stairs.push_back(point);
+    }
+    stairs.push_back({last, stairs.back()[1]});
+    add_columns(out.tables["search"], "evaluation", "value", stairs);
+    chart.series.push_back({"search", "value", "best so far", Role::best});
+  }
+  out.charts.push_back(std::move(chart));
+}
+
+/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and adds nothing.
+json packed(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
+  double largest = 0;
+  for (const std::size_t row : rows) {
+    if (std::isfinite(column[row])) largest = std::max(largest, std::abs(column[row]));
+  }
+  json steps = json::array();
+  if (logarithmic) {  // values over many decades: as numbers of six digits
+    for (const std::size_t row : rows) {
+      steps.push_back(std::isfinite(column[row]) ? json::parse(fmt::format("{:.6g}", column[row])) : json());
+    }
+    return {{"values", steps}};
+  }
+  constexpr double resolution = 1e-7;
+  const double unit = largest > 0 ? largest * resolution : 1;
+  long long before = 0;
+  for (const std::size_t row : rows) {
+    if (!std::isfinite(column[row])) {
+      steps.push_back(nullptr);
+      continue;
+    }
+    const long long now = std::llround(column[row] / unit);
+    steps.push_back(now - before);
+    before = now;
+  }
+  return {{"unit", unit}, {"steps", steps}};
+}
+
+}  // namespace
+
+Picture picture(const json& result) {
+  Picture out;
+  add_time_charts(result, out);
+  add_search_chart(result, out);
+  return out;
+}
+
+json chart_json(const Picture& picture, std::size_t rows) {
+  json tables = json::object();
+  for (const auto& [name, table] : picture.tables) {
+    std::vector<const std::vector<double>*> columns;
+    for (const auto& [key, column] : table) columns.push_back(&column);
+    const std::vector<std::size_t> kept = thinned(columns, rows);
+    for (const auto& [key, column] : table) tables[name][key] = packed(column, kept, key == "value");
+  }
+  json charts = json::array();
+  for (const Chart& chart : picture.charts) {
+    json series = json::array();
+    for (const Series& one : chart.series) {
+      series.push_back({{"table", one.table}, {"column", one.column}, {"label", one.label}, {"role", role_name(one.role)}});
+    }
+    json marks = json::array();
+    for (const Mark& mark : chart.marks) marks.push_back({{"x", mark.x}, {"y", mark.y}, {"role", role_name(mark.role)}, {"text", mark.text}});
+    charts.push_back({{"id", chart.id},
+                      {"group", chart.group},
+                      {"height", chart.height},
+                      {"x", {{"column", chart.x_column}, {"label", chart.x_label}, {"unit", chart.x_unit}, {"home", chart.x_home}, {"whole", chart.x_whole}}},
+                      {"y", {{"label", chart.y_label}, {"unit", chart.y_unit}, {"scale", scale_name(chart.scale)}, {"threshold", chart.threshold}}},
+                      {"zero", chart.zero_line},
+                      {"zeroLabel", chart.zero_label},
+                      {"series", series},
+                      {"marks", marks}});
+    if (chart.y_home) charts.back()["y"]["home"] = *chart.y_home;
+  }
+  return {{"tables", tables}, {"charts", charts}};
+}
+
+}  // namespace softland::internal

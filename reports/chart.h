@@ -1,0 +1,75 @@
+// A chart as a description, drawn twice: as static SVG here (print, no JavaScript, README) and by uPlot in the page.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace softland::internal {
+
+/// Columns of equal length; the first key of a chart's x axis is one of them.
+using Table = std::map<std::string, std::vector<double>>;
+using Tables = std::map<std::string, Table>;
+
+enum class Role { best, baseline, evaluations };
+enum class Scale { linear, logarithmic, symlog };
+
+struct Series {
+  std::string table;
+  std::string column;
+  std::string label;
+  Role role = Role::best;
+};
+
+/// A dot on the picture; `text` may be empty.
+struct Mark {
+  double x = 0;
+  double y = 0;
+  Role role = Role::best;
+  std::string text;
+};
+
+struct Chart {
+  std::string id;  ///< letters, digits and dashes only
+  std::string title;
+  std::string caption;
+  std::string x_column;
+  std::string x_label;
+  std::string x_unit;  ///< empty: a count
+  std::string y_label;
+  std::string y_unit;
+  Scale scale = Scale::linear;
+  double threshold = 1;                         ///< symlog: linear below this
+  std::array<double, 2> x_home{0, 1};           ///< what is shown before any zoom
+  std::array<double, 2> x_whole{0, 1};          ///< all there is
+  std::optional<std::array<double, 2>> y_home;  ///< not set: from the data in view
+  bool zero_line = false;
+  std::string zero_label;
+  std::string group;  ///< charts of one group share cursor and zoom; empty: alone
+  int height = 300;   ///< [px]
+  std::vector<Series> series;
+  std::vector<Mark> marks;
+};
+
+struct Picture {
+  Tables tables;
+  std::vector<Chart> charts;
+};
+
+/// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, search. What has no data is left out.
+[[nodiscard]] Picture picture(const nlohmann::json& result);
+
+/// Tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps of a unit
+/// fine enough to be invisible (one part in ten million of the largest value).
+[[nodiscard]] nlohmann::json chart_json(const Picture& picture, std::size_t rows);
+
+/// The chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own colours.
+[[nodiscard]] std::string chart_svg(const Tables& tables, const Chart& chart, double width, double top);
+/// Its height on that canvas [px], title and axes included.
+[[nodiscard]] double chart_svg_height(const Chart& chart);
+
+}  // namespace softland::internal

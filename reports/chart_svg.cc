@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "reports/chart.h"
+#include "reports/escape.h"
+#include "reports/quantity.h"
+
+namespace softland::internal {
+namespace {
+
+// Okabe and Ito's palette, which colour-blind readers tell apart; the dashes carry the same distinction without colour.
+constexpr const char* ink = "#1b1f24";
+constexpr const char* muted = "#5f6b76";
+constexpr const char* grid = "#e4e7ea";
+
+constexpr double left = 78;
+constexpr double right = 18;
+constexpr double above = 46;  // title and legend
+constexpr double below = 46;  // tick labels and axis label
+
+struct Stroke {
+  const char* colour;
+  double width;
+  const char* dash;  // empty: solid
+};
+
+Stroke stroke(Role role) {
+  switch (role) {
+    case Role::best: return {"#0072b2", 2.2, ""};
+    case Role::baseline: return {"#d55e00", 1.3, "7 2.5"};
+    case Role::evaluations: break;
+  }
+  return {"#8a949e", 1, ""};
+}
+
+/// Data to pixels along one axis.
+struct Axis {
+  Scale scale = Scale::linear;
+  double threshold = 1;
+  double low = 0, high = 1;               // data
+  double pixel_low = 0, pixel_high = 1;
+
+  [[nodiscard]] double transformed(double value) const {
+    switch (scale) {
+      case Scale::linear: return value;
+      case Scale::logarithmic: return std::log10(value);
+      case Scale::symlog: break;
+    }
+    return std::asinh(value / threshold);
+  }
+  [[nodiscard]] double pixel(double value) const {
+    const double from = transformed(low);
+    return pixel_low + (transformed(value) - from) / (transformed(high) - from) * (pixel_high - pixel_low);
+  }
+};
+
+std::vector<double> ticks(const Axis& axis, int wanted) {
+  std::vector<double> out;
+  if (axis.scale == Scale::linear) {
+    const double raw = (axis.high - axis.low) / wanted;
+    const double decade = std::pow(10, std::floor(std::log10(raw)));
+    double step = 10 * decade;
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      if (factor * decade >= raw * (1 - 1e-9)) {
+        step = factor * decade;
+        break;
+      }
+    }
+    for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; ++k) out.push_back(k * step);
+    return out;
+  }
+  const bool both_signs = axis.scale == Scale::symlog;
+  const double smallest = both_signs ? axis.threshold : axis.low;
+  const double largest = std::max(std::abs(axis.low), std::abs(axis.high));
+  if (both_signs) out.push_back(0);
+  const int first = static_cast<int>(std::ceil(std::log10(smallest) - 1e-9));
+  const int last = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+  const int every = std::max(1, (last - first + 7) / 8);
+  for (int exponent = first; exponent <= last; exponent += every) {
+    const double value = std::pow(10, exponent);
+    if (value <= axis.high) out.push_back(value);
+    if (both_signs && -value >= axis.low) out.push_back(-value);
+  }
+  return out;
+}
+
+/// Rows of a table in view plus one on either side, thinned to first, lowest, highest and last per pixel column.
+std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const std::vector<double>& xs, const std::vector<double>& ys) {
+  std::vector<std::array<double, 2>> out;
+  std::size_t begin = static_cast<std::size_t>(std::lower_bound(xs.begin(), xs.end(), x.low) - xs.begin());
+  std::size_t end = static_cast<std::size_t>(std::upper_bound(xs.begin(), xs.end(), x.high) - xs.begin());
+  if (begin > 0) --begin;
+  if (end < xs.size()) ++end;
+  std::vector<std::array<double, 2>> column;
+  const auto flush = [&] {
+    if (column.empty()) return;
+    const auto [low, high] = std::minmax_element(column.begin(), column.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
+    std::vector<std::size_t> kept{0, static_cast<std::size_t>(low - column.begin()), static_cast<std::size_t>(high - column.begin()), column.size() - 1};
+    std::sort(kept.begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    for (const std::size_t i : kept) out.push_back(column[i]);
+    column.clear();
+  };
+  for (std::size_t row = begin; row < end; ++row) {
+    if (!std::isfinite(ys[row]) || (y.scale == Scale::logarithmic && !(ys[row] > 0))) continue;
+    const std::array<double, 2> point{x.pixel(xs[row]), y.pixel(ys[row])};
+    if (!column.empty() && std::floor(point[0]) != std::floor(column.front()[0])) flush();
+    column.push_back(point);
+  }
+  flush();
+  return out;
+}
+
+std::array<double, 2> range_in_view(const Tables& tables, const Chart& chart) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const Series& one : chart.series) {
+    const Table& table = tables.at(one.table);
+    const std::vector<double>& xs = table.at(chart.x_column);
+    const std::vector<double>& ys = table.at(one.column);
+    for (std::size_t row = 0; row < xs.size(); ++row) {
+      if (!std::isfinite(ys[row]) || xs[row] < chart.x_home[0] || xs[row] > chart.x_home[1]) continue;
+      if (chart.scale == Scale::logarithmic && !(ys[row] > 0)) continue;
+      lowest = std::min(lowest, ys[row]);
+      highest = std::max(highest, ys[row]);
+    }
+  }
+  if (lowest > highest) return {chart.scale == Scale::logarithmic ? 0.1 : 0.0, 1.0};
+  if (chart.scale == Scale::logarithmic) return {lowest / 1.5, highest * 1.5};
+  lowest = std::min(lowest, 0.0);
+  highest = std::max(highest, 0.0);
+  const double margin = highest > lowest ? 0.06 * (highest - lowest) : 1.0;
+  return {lowest - (lowest < 0 || chart.zero_line ? margin : 0), highest + margin};
+}
+
+std::string line(double x1, double y1, double x2, double y2, const char* colour, const char* extra = "") {
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"{}/>\n", x1, y1, x2, y2, colour, extra);
+}
+
+std::string label(double x, double y, const char* anchor, const char* colour, double size, std::string_view words, const char* extra = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" font-size=\"{}\"{}>{}</text>\n", x, y, anchor, colour, size, extra,
+                     escaped(words));
+}
+
+/// "Time (µs)", "Gap (nm)", "cost".
+std::string axis_title(const std::string& name, const std::string& unit, const Prefix& prefix) {
+  return unit.empty() ? name : fmt::format("{} ({}{})", name, prefix.symbol, unit);
+}
+
+}  // namespace
+
+double chart_svg_height(const Chart& chart) { return above + chart.height + below; }
+
+std::string chart_svg(const Tables& tables, const Chart& chart, double width, double top) {
+  Axis x;
+  x.low = chart.x_home[0];
+  x.high = chart.x_home[1];
+  x.pixel_low = left;
+  x.pixel_high = width - right;
+  Axis y;
+  y.scale = chart.scale;
+  y.threshold = chart.threshold;
+  const std::array<double, 2> range = chart.y_home.value_or(range_in_view(tables, chart));
+  y.low = range[0];
+  y.high = range[1];
+  y.pixel_low = top + above + chart.height;
+  y.pixel_high = top + above;
+
+  std::string out = label(0, top + 15, "start", ink, 15, chart.title, " font-weight=\"600\"");
+  double legend_x = left;
+  for (const Series& one : chart.series) {
+    const Stroke pen = stroke(one.role);
+    if (one.role == Role::evaluations) {
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.2\" fill=\"{}\"/>\n", legend_x + 13, top + 31, pen.colour);
+    } else {
+      out += line(legend_x, top + 31, legend_x + 26, top + 31, pen.colour,
+                  fmt::format(" stroke-width=\"{}\" stroke-dasharray=\"{}\"", pen.width, *pen.dash ? pen.dash : "none").c_str());
+    }
+    out += label(legend_x + 33, top + 35, "start", ink, 12.5, one.label);
+    legend_x += 33 + 7.2 * static_cast<double>(one.label.size()) + 26;
+  }
+
+  const Prefix x_prefix = chart.x_unit.empty() ? Prefix{} : prefix_for(std::max(std::abs(x.low), std::abs(x.high)));
+  for (const double tick : ticks(x, 8)) {
+    const double at_pixel = x.pixel(tick);
+    out += line(at_pixel, y.pixel_low, at_pixel, y.pixel_high, grid);
+    out += label(at_pixel, y.pixel_low + 17, "middle", muted, 12, fmt::format("{:.6g}", tick / x_prefix.factor));
+  }
+  const Prefix y_prefix = chart.y_unit.empty()              ? Prefix{}
+                          : chart.scale == Scale::symlog ? prefix_for(chart.threshold)
+                                                         : prefix_for(std::max(std::abs(y.low), std::abs(y.high)) / 1.1);
+  for (const double tick : ticks(y, std::max(2, chart.height / 50))) {
+    const double at_pixel = y.pixel(tick);
+    out += line(left, at_pixel, width - right, at_pixel, grid);
+    out += label(left - 8, at_pixel + 4, "end", muted, 12, fmt::format("{:.6g}", tick / y_prefix.factor));
+  }
+  out += label((left + width - right) / 2, y.pixel_low + 36, "middle", muted, 12.5, axis_title(chart.x_label, chart.x_unit, x_prefix));
+  const double middle = (y.pixel_low + y.pixel_high) / 2;
+  out += label(16, middle, "middle", muted, 12.5, axis_title(chart.y_label, chart.y_unit, y_prefix),
+               fmt::format(" transform=\"rotate(-90 16 {:.1f})\"", middle).c_str());
+
+  if (chart.zero_line && y.low <= 0 && y.high >= 0) {
+    out += line(left, y.pixel(0), width - right, y.pixel(0), ink, " stroke-width=\"1\"");
+    if (!chart.zero_label.empty()) out += label(width - right - 4, y.pixel(0) - 5, "end", muted, 11.5, chart.zero_label);
+  }
+  out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n", chart.id, left,
+                     y.pixel_high, x.pixel_high - x.pixel_low, chart.height);
+  out += fmt::format("<g clip-path=\"url(#clip-{})\">\n", chart.id);
+  for (const Series& one : chart.series) {
+    const Stroke pen = stroke(one.role);
+    const Table& table = tables.at(one.table);
+    const auto points = visible(x, y, table.at(chart.x_column), table.at(one.column));
+    if (points.empty()) continue;
+    std::string path;
+    if (one.role == Role::evaluations) {
+      for (const auto& [px, py] : points) path += fmt::format("M{:.1f} {:.1f}h0", px, py);
+      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"3\" stroke-linecap=\"round\" stroke-opacity=\"0.55\"/>\n", path,
+                         pen.colour);
+      continue;
+    }
+    for (const auto& [px, py] : points) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : path.size() < 14 ? "L" : " ", px, py);
+    out += fmt::format(
+        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>\n", path, pen.colour, pen.width,
+        *pen.dash ? pen.dash : "none");
+  }
+  for (const Mark& mark : chart.marks) {
+    if (mark.x < x.low || mark.x > x.high) continue;
+    const Stroke pen = stroke(mark.role);
+    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x.pixel(mark.x), y.pixel(mark.y), pen.colour);
+    if (mark.text.empty()) continue;
+    out += label(x.pixel(mark.x), y.pixel(mark.y) - 7, "middle", pen.colour, 12.5, mark.text, " font-weight=\"600\"");
+  }
+  return out + "</g>\n";
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,122 @@
+#include "reports/files.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+/// Closes the descriptor and removes the file unless it was renamed in time.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::filesystem::path& beside) {
+    static std::atomic<unsigned> serial{0};
+    do {
+      name_ = fmt::format("{}.{}-{}.tmp", beside.string(), ::getpid(), serial++);
+      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (descriptor_ < 0) return;
+    ::close(descriptor_);
+    if (!renamed_) ::unlink(name_.c_str());
+  }
+  [[nodiscard]] bool open() const { return descriptor_ >= 0; }
+  [[nodiscard]] bool write(std::string_view content) const {
+    while (!content.empty()) {
+      const ssize_t written = ::write(descriptor_, content.data(), content.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return ::fsync(descriptor_) == 0;
+  }
+  /// A new file gets the usual rights; one that replaces another gets the rights of that one.
+  [[nodiscard]] bool adopt_rights(const std::filesystem::path& path) const {
+    std::error_code missing;
+    const auto old = std::filesystem::status(path, missing);
+    if (missing || !std::filesystem::is_regular_file(old)) return true;
+    return ::fchmod(descriptor_, static_cast<mode_t>(old.permissions() & std::filesystem::perms::all)) == 0;
+  }
+  [[nodiscard]] bool rename_to(const std::filesystem::path& path) {
+    renamed_ = ::rename(name_.c_str(), path.c_str()) == 0;
+    return renamed_;
+  }
+
+ private:
+  std::string name_;
+  int descriptor_ = -1;
+  bool renamed_ = false;
+};
+
+}  // namespace
+
+void write_whole(const std::filesystem::path& path, std::string_view content) {
+  const auto check = [&](bool done, const char* what) {
+    if (done) return;
+    const int reason = errno;
+    throw InvalidInput(fmt::format("{}: cannot {}: {}", path.string(), what, std::strerror(reason)));
+  };
+  std::filesystem::path folder = path.parent_path();
+  if (folder.empty()) folder = ".";
+  TemporaryFile temporary(path);
+  check(temporary.open(), "write in its folder");
+  check(temporary.write(content), "write");
+  check(temporary.adopt_rights(path), "set its access rights");
+  check(temporary.rename_to(path), "replace it");
+  const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  check(directory >= 0, "open its folder");
+  // Some file systems cannot sync a folder and say so with EINVAL; the rename itself has been done.
+  const bool synced = ::fsync(directory) == 0 || errno == EINVAL;
+  const int reason = errno;
+  ::close(directory);
+  errno = reason;
+  check(synced, "sync its folder");
+}
+
+std::string trajectory_csv(const json& curves) {
+  require(curves.is_object() && curves.contains("time_s") && curves["time_s"].is_array(), "trajectory_csv: the curves hold no array time_s");
+  const std::size_t rows = curves["time_s"].size();
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    const auto found = curves.find(name);
+    if (found == curves.end() || !found->is_array() || found->size() != rows) return;
+    for (const json& value : *found) {
+      if (!value.is_number() && !value.is_null()) return;
+    }
+    names.push_back(name);
+  };
+  const std::vector<std::string> first{"time_s", "tip_gap_m", "tip_velocity_m_s", "contact_force_N"};
+  for (const std::string& name : first) add(name);
+  for (const auto& [name, value] : curves.items()) {
+    if (std::find(first.begin(), first.end(), name) == first.end()) add(name);
+  }
+  std::string out = fmt::format("{}\n", fmt::join(names, ","));
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < names.size(); ++column) {
+      const json& value = curves[names[column]][row];
+      if (column > 0) out += ',';
+      if (value.is_number() && std::isfinite(value.get<double>())) out += fmt::format("{}", value.get<double>());
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace softland

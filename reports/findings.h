@@ -1,0 +1,54 @@
+// What a result says, in words computed from its numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace softland::internal {
+
+/// The finding in one sentence, in two parts so that a page can weigh them differently: `main` is about the winner or the single run,
+/// `rest` about the baseline (empty for a single run). main + rest is the whole sentence, with its full stop.
+struct Headline {
+  std::string main;
+  std::string rest;
+  [[nodiscard]] std::string whole() const { return main + rest; }
+};
+[[nodiscard]] Headline headline(const nlohmann::json& result);
+
+/// One sentence or two under each chart.
+[[nodiscard]] std::string gap_caption(const nlohmann::json& result);
+[[nodiscard]] std::string landing_caption(const nlohmann::json& result);
+[[nodiscard]] std::string force_caption(const nlohmann::json& result);
+[[nodiscard]] std::string velocity_caption(const nlohmann::json& result);
+[[nodiscard]] std::string waveform_caption(const nlohmann::json& result, const std::string& drive);
+[[nodiscard]] std::string search_caption(const nlohmann::json& result);
+[[nodiscard]] std::string checks_caption(const nlohmann::json& result);
+
+enum class Verdict { better, worse, same, neutral };
+
+/// How a figure changed from baseline to winner: "8.4 times lower", "gone" when it became 0, "unchanged"; empty when either is missing.
+struct Change {
+  std::string words;
+  Verdict verdict = Verdict::neutral;
+};
+/// `lower_is_better`: otherwise the change is neutral, neither good nor bad.
+[[nodiscard]] Change change(double before, double after, bool lower_is_better);
+
+/// One line of the table of figures.
+struct Figure {
+  std::string key;  ///< as in result.json
+  std::string label;
+  std::string unit;  ///< empty: a count; "bool": yes or no
+  bool lower_is_better = false;
+};
+[[nodiscard]] const std::vector<Figure>& figures();
+/// The value of a figure as text, an em dash when not available.
+[[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const Figure& figure);
+
+/// "Softland's waveform" and "plain step", or "closing" for a single run.
+[[nodiscard]] std::string best_label(const nlohmann::json& result);
+[[nodiscard]] std::string baseline_label();
+
+}  // namespace softland::internal

@@ -1,0 +1,282 @@
+#include "reports/html.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "base/require.h"
+#include "reports/chart.h"
+#include "reports/escape.h"
+#include "reports/findings.h"
+#include "reports/page_files.h"
+#include "reports/quantity.h"
+#include "reports/result_view.h"
+
+namespace softland {
+namespace {
+
+using namespace internal;
+using nlohmann::json;
+
+/// Rows per curve in the page: several times the pixels of a wide screen, so that zooming shows more, at about 100 kB a curve.
+constexpr std::size_t rows_per_curve = 6000;
+/// Bytes of text shown per block; more is cut.
+constexpr std::size_t most_text = 100'000;
+constexpr std::size_t most_lines = 200;
+
+/// Replaces each {{name}} of the page by its part; parts are not searched again, so they may contain anything.
+std::string filled(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts) {
+  std::string out;
+  for (;;) {
+    const std::size_t begin = page.find("{{");
+    if (begin == std::string_view::npos) break;
+    const std::size_t end = page.find("}}", begin);
+    out += page.substr(0, begin);
+    out += parts.find(page.substr(begin + 2, end - begin - 2))->second;
+    page.remove_prefix(end + 2);
+  }
+  return out + std::string(page);
+}
+
+/// Text cut to `most_text` bytes at a line end, with a word about it.
+std::string shortened(const std::string& words) {
+  if (words.size() <= most_text) return words;
+  return words.substr(0, words.rfind('\n', most_text)) + fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
+}
+
+std::string verdict_class(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::better: return "better";
+    case Verdict::worse: return "worse";
+    case Verdict::same:
+    case Verdict::neutral: break;
+  }
+  return "neutral";
+}
+
+const Figure& figure(std::string_view key) {
+  return *std::find_if(figures().begin(), figures().end(), [&](const Figure& one) { return one.key == key; });
+}
+
+std::string key_number(const json& result, std::string_view key, std::string_view label) {
+  const Figure& shown = figure(key);
+  const json& own = best_metrics(result);
+  const json& step = baseline_metrics(result);
+  const auto words = [&](const json& metrics) { return quantity(number(metrics, {key}), shown.unit); };
+  std::string out = fmt::format("<div class=\"key\"><dt>{}</dt><dd>", label);
+  if (is_optimize(result) && step.is_object()) out += fmt::format("<span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> ", words(step));
+  out += fmt::format("<span class=\"after\">{}</span>", words(own));
+  if (const Change changed = change(number(step, {key}), number(own, {key}), shown.lower_is_better); !changed.words.empty()) {
+    out += fmt::format("<span class=\"change {}\">{}</span>", verdict_class(changed.verdict), changed.words);
+  }
+  return out + "</dd></div>\n";
+}
+
+std::string key_numbers(const json& result) {
+  return key_number(result, "permanent_contact_time_s", "Settling time") + key_number(result, "bounce_count", "Rebounds") +
+         key_number(result, "major_bounce_height_m", "Highest rebound") + key_number(result, "impact_velocity_m_s", "Impact speed");
+}
+
+std::string figures_table(const json& result) {
+  const json& own = best_metrics(result);
+  const json& step = baseline_metrics(result);
+  const json& errors = at(result, {"errors"});
+  if (!own.is_object() && !step.is_object()) return {};
+  const bool pair = is_optimize(result) && step.is_object();
+  const bool estimated = errors.is_object() && std::any_of(errors.begin(), errors.end(), [](const json& error) { return error.is_number(); });
+  std::string out = "<section id=\"figures\"><h2>Figures</h2>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
+  if (pair) out += "<th scope=\"col\">Plain step</th>";
+  out += pair ? "<th scope=\"col\">Softland</th><th scope=\"col\">Change</th>" : "<th scope=\"col\">Value</th>";
+  if (estimated) out += "<th scope=\"col\">Estimated error</th>";
+  out += "</tr></thead><tbody>\n";
+  for (const Figure& one : figures()) {
+    if (at(own, {one.key}).is_null() && at(step, {one.key}).is_null()) continue;
+    out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label);
+    if (pair) out += fmt::format("<td>{}</td>", figure_text(step, one));
+    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, one));
+    if (pair) {
+      const Change changed = change(number(step, {one.key}), number(own, {one.key}), one.lower_is_better);
+      out += fmt::format("<td class=\"{}\">{}</td>", verdict_class(changed.verdict), changed.words);
+    }
+    if (estimated) {
+      const double error = number(errors, {one.key});
+      const double value = number(own, {one.key});
+      constexpr double ill = 0.1;  // an error above a tenth of the figure
+      out += fmt::format("<td>{}{}</td>", std::isfinite(error) ? "± " + quantity(error, one.unit, 2) : "—",
+                         error > ill * std::abs(value) ? " <span class=\"note\">ill-conditioned</span>" : "");
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div></section>\n";
+}
+
+std::string charts(const Picture& drawn) {
+  constexpr double width = 960;
+  std::string time_charts;
+  std::string search;
+  for (const Chart& chart : drawn.charts) {
+    std::string words = fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n", chart.id, escaped(chart.title));
+    words += fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width, chart_svg_height(chart),
+                         escaped(chart.title + ". " + chart.caption), chart_svg(drawn.tables, chart, width, 0));
+    words += fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(chart.caption));
+    (chart.group.empty() ? search : time_charts) += words;
+  }
+  std::string out;
+  if (!time_charts.empty()) {
+    out += "<section id=\"charts\"><h2>The closing</h2>\n<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
+           "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview and landing</button>"
+           "<button type=\"button\" data-view=\"landing\" aria-pressed=\"false\">Landing</button>"
+           "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
+           "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 back.</span></div>\n" +
+           time_charts + "</section>\n";
+  }
+  if (!search.empty()) out += "<section id=\"search\"><h2>The search</h2>\n" + search + "</section>\n";
+  return out;
+}
+
+std::string list_of(const json& lines, std::string_view heading, std::string_view id) {
+  if (!lines.is_array() || lines.empty()) return {};
+  std::string out = fmt::format("<section id=\"{}\"><h2>{}</h2>\n<ul>\n", id, heading);
+  std::size_t shown = 0;
+  for (const json& line : lines) {
+    if (!line.is_string()) continue;
+    if (shown++ == most_lines) {
+      out += fmt::format("<li>… and {} more</li>\n", lines.size() - most_lines);
+      break;
+    }
+    out += fmt::format("<li>{}</li>\n", escaped(shortened(line.get<std::string>())));
+  }
+  return out + "</ul></section>\n";
+}
+
+std::string checks_table(const json& result) {
+  const json& checks = at(result, {"checks"});
+  if (!checks.is_array() || checks.empty()) return {};
+  const std::vector<std::string_view> keys{"initial_contact_time_s", "permanent_contact_time_s", "bounce_count", "major_bounce_height_m", "impact_velocity_m_s"};
+  std::string out = "<section id=\"checks\"><h2>Confirmations</h2>\n<p>" + escaped(checks_caption(result)) + "</p>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Simulated with</th>";
+  for (const std::string_view key : keys) out += fmt::format("<th scope=\"col\">{}</th>", figure(key).label);
+  out += "</tr></thead><tbody>\n";
+  const auto row = [&](const std::string& name, const json& metrics) {
+    out += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(name));
+    for (const std::string_view key : keys) out += fmt::format("<td>{}</td>", figure_text(metrics, figure(key)));
+    out += "</tr>\n";
+  };
+  row("as searched", best_metrics(result));
+  for (const json& check : checks) row(text(check, {"name"}), at(check, {"metrics"}));
+  return out + "</tbody></table></div></section>\n";
+}
+
+std::string parameters_table(const json& result) {
+  const json& parameters = at(result, {"best", "parameters"});
+  if (!parameters.is_object() || parameters.empty()) return {};
+  std::string out = "<section id=\"parameters\"><h2>The waveform found</h2>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Parameter</th><th scope=\"col\">Value</th></tr></thead><tbody>\n";
+  std::size_t shown = 0;
+  for (const auto& [name, value] : parameters.items()) {
+    if (shown++ == most_lines) break;
+    const std::string words = value.is_number() ? plain_number(value.get<double>(), 7) : value.is_string() ? value.get<std::string>() : value.dump();
+    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(words));
+  }
+  return out + "</tbody></table></div></section>\n";
+}
+
+/// Seed, version, effort: what one needs to know to believe and repeat it.
+std::string facts(const json& result) {
+  std::string out;
+  const auto fact = [&](std::string_view name, const std::string& value) {
+    if (!value.empty()) out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", name, escaped(value));
+  };
+  const auto any = [&](std::initializer_list<std::string_view> path) -> std::string {
+    const json& value = at(result, path);
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_integer()) return value.dump();
+    if (value.is_number()) return plain_number(value.get<double>(), 6);
+    return {};
+  };
+  const auto measured = [&](std::initializer_list<std::string_view> path, std::string_view unit, int digits) {
+    const double value = number(result, path);
+    return std::isfinite(value) ? quantity(value, unit, digits) : std::string();
+  };
+  fact("Status", any({"status"}));
+  if (const auto met = truth(result, {"goal_met"})) fact("Goal met", *met ? "yes" : "no");
+  fact("Target", any({"target"}));
+  fact("Actuator", any({"actuator"}));
+  fact("Optimizer", any({"optimizer"}));
+  fact("Evaluations", any({"evaluations"}));
+  fact("Budget", any({"budget"}));
+  fact("Ended by", any({"termination"}));
+  fact("Seed", any({"seed"}));
+  fact("Static pull-in", measured({"pull_in", "static_V"}, "V", 5));
+  fact("Dynamic pull-in", measured({"pull_in", "dynamic_V"}, "V", 5));
+  std::string modes;
+  const json& frequencies = at(result, {"natural_frequencies_rad_s"});
+  if (frequencies.is_array()) {
+    constexpr double two_pi = 6.283185307179586;
+    for (std::size_t i = 0; i < std::min<std::size_t>(frequencies.size(), 12); ++i) {
+      modes += (modes.empty() ? "" : ", ") + quantity(number(frequencies[i]) / two_pi, "Hz", 4);
+    }
+  }
+  fact("Natural frequencies", modes);
+  fact("Integration steps", any({"work", "steps"}));
+  fact("Right-hand sides", any({"work", "rhs_evaluations"}));
+  fact("Computing time", measured({"work", "wall_s"}, "s", 3));
+  fact("softland", any({"version"}));
+  return out.empty() ? out : "<section id=\"facts\"><h2>About this result</h2>\n<dl class=\"facts\">\n" + out + "</dl></section>\n";
+}
+
+std::string reproduce(const json& result) {
+  std::string commands;
+  const json& lines = at(result, {"reproduce"});
+  if (lines.is_array()) {
+    for (const json& line : lines) {
+      if (line.is_string()) commands += line.get<std::string>() + "\n";
+    }
+  }
+  if (commands.empty()) commands = text(result, {"command"});
+  return commands.empty() ? commands
+                          : "<section id=\"reproduce\"><h2>Reproduce it</h2>\n<pre><code>" + escaped(shortened(commands)) + "</code></pre></section>\n";
+}
+
+std::string scene(const json& result) {
+  std::string words = text(result, {"scene_toml"});
+  if (words.empty() && at(result, {"scene"}).is_object()) words = at(result, {"scene"}).dump(2, ' ', false, json::error_handler_t::replace);
+  if (words.empty()) return {};
+  return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" + escaped(shortened(words)) +
+         "</code></pre></details></section>\n";
+}
+
+}  // namespace
+
+std::string html_report(const json& result) {
+  require(result.is_object(), "html_report: the result is not a JSON object");
+  const Headline line = headline(result);
+  const Picture drawn = picture(result);
+  const std::string title = text(result, {"title"});
+  std::string origin = is_optimize(result) ? "optimize" : "simulate";
+  for (const char* key : {"target", "actuator"}) {
+    if (const std::string word = text(result, {key}); !word.empty()) origin += " · " + word;
+  }
+  return filled(page_file("page/page.html"), {{"page_title", escaped(title.empty() ? "softland report" : title + " – softland")},
+                                              {"chart_css", std::string(page_file("uplot/uPlot.min.css"))},
+                                              {"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
+                                              {"chart_licence", std::string(page_file("uplot/LICENSE"))},
+                                              {"css", std::string(page_file("page/page.css"))},
+                                              {"js", std::string(page_file("page/page.js"))},
+                                              {"origin", escaped(origin)},
+                                              {"title", escaped(title)},
+                                              {"headline", escaped(line.main)},
+                                              {"headline_rest", escaped(line.rest)},
+                                              {"keys", key_numbers(result)},
+                                              {"warnings", list_of(at(result, {"warnings"}), "Warnings", "warnings")},
+                                              {"charts", charts(drawn)},
+                                              {"figures", figures_table(result)},
+                                              {"checks", checks_table(result)},
+                                              {"parameters", parameters_table(result)},
+                                              {"facts", facts(result)},
+                                              {"reproduce", reproduce(result)},
+                                              {"scene", scene(result)},
+                                              {"data", script_json(chart_json(drawn, rows_per_curve))}});
+}
+
+}  // namespace softland

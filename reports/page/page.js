@@ -1,0 +1,282 @@
+// Draws the charts of the report with uPlot and keeps the time charts in step.
+(() => {
+  "use strict";
+  const {tables, charts} = JSON.parse(document.getElementById("data").textContent);
+  const prefixes = [[1e12, "T"], [1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"], [1e-12, "p"], [1e-15, "f"]];
+  const noBreak = "\u00a0";
+
+  // Columns come as integer steps of a unit, or as plain values.
+  const column = ({unit, steps, values}) => {
+    if (values) return values;
+    let sum = 0;
+    return steps.map((step) => (step === null ? null : (sum += step) * unit));
+  };
+  for (const table of Object.values(tables)) {
+    for (const key of Object.keys(table)) table[key] = column(table[key]);
+  }
+
+  const prefix = (largest) => (largest > 0 ? prefixes.find(([factor]) => largest >= factor * (1 - 1e-9)) || prefixes[prefixes.length - 1] : [1, ""]);
+  const quantity = (value, unit, digits = 4) => {
+    if (value == null || !isFinite(value)) return "";
+    if (!unit) return String(+value.toPrecision(digits));
+    const [factor, symbol] = prefix(Math.abs(value));
+    return (value / factor).toPrecision(digits).replace("-", "\u2212") + noBreak + symbol + unit;
+  };
+  const largest = (scale) => Math.max(Math.abs(scale.min), Math.abs(scale.max));
+
+  // One x axis for curves with knots of their own: the union of all knots, values in between on the straight line. A jump (two knots at one
+  // x) stays a jump.
+  const aligned = (curves) => {
+    const count = new Map();
+    for (const {xs} of curves) {
+      for (let i = 0; i < xs.length; ) {
+        let next = i;
+        while (next < xs.length && xs[next] === xs[i]) ++next;
+        count.set(xs[i], Math.min(2, Math.max(count.get(xs[i]) || 0, next - i)));
+        i = next;
+      }
+    }
+    const x = [...count.keys()].sort((a, b) => a - b).flatMap((value) => Array(count.get(value)).fill(value));
+    const rows = curves.map(({xs, ys}) => {
+      const out = new Array(x.length).fill(null);
+      let right = 0;
+      for (let row = 0; row < x.length; ++row) {
+        const second = row > 0 && x[row] === x[row - 1];
+        while (right < xs.length && (second ? xs[right] <= x[row] : xs[right] < x[row])) ++right;
+        if (second) {
+          out[row] = xs[right - 1] === x[row] ? ys[right - 1] : out[row - 1];
+        } else if (right < xs.length && xs[right] === x[row]) {
+          out[row] = ys[right];
+        } else if (right > 0 && right < xs.length && ys[right] !== null && ys[right - 1] !== null) {
+          const share = (x[row] - xs[right - 1]) / (xs[right] - xs[right - 1]);
+          out[row] = ys[right - 1] + share * (ys[right] - ys[right - 1]);
+        }
+      }
+      return out;
+    });
+    return [x, ...rows];
+  };
+
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+  const pens = {
+    best: {width: 2, dash: undefined},
+    baseline: {width: 1.25, dash: [7, 2.5]},
+    evaluations: {width: 0, dash: undefined},
+  };
+  const font = (size) => size + 'px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
+
+  // Powers of ten on both sides of zero.
+  const symlogSplits = (threshold) => (u, axis, min, max) => {
+    const out = [0];
+    const decades = Math.round(Math.log10(Math.max(Math.abs(min), Math.abs(max)) / threshold));
+    for (let k = 0; k <= decades; ++k) {
+      const value = threshold * 10 ** k;
+      if (value <= max) out.push(value);
+      if (-value >= min) out.unshift(-value);
+    }
+    return out;
+  };
+
+  const drawn = new Map();   // chart id -> uPlot
+  const wanted = new Map();  // chart id -> the range this script last asked for; any other range comes from the reader's hand
+
+  const timeCharts = () => charts.filter((chart) => chart.group === "time" && drawn.has(chart.id));
+  const press = (view) => {
+    for (const button of document.querySelectorAll("[data-view]")) button.setAttribute("aria-pressed", String(button.dataset.view === view));
+  };
+  const setRange = (chart, [min, max]) => {
+    wanted.set(chart.id, [min, max]);
+    drawn.get(chart.id).setScale("x", {min, max});
+  };
+  const spread = (range) => {
+    for (const chart of timeCharts()) setRange(chart, range(chart));
+  };
+  const show = (view) => {
+    const landing = (charts.find(({id}) => id === "landing") || {x: {}}).x.home;
+    spread(({x}) => (view === "landing" && landing ? landing : view === "whole" ? x.whole : x.home));
+    press(view);
+  };
+  const goHome = (chart) => (chart.group === "time" ? show("home") : setRange(chart, chart.x.home));
+  const zoom = (chart, factor) => {
+    const {min, max} = drawn.get(chart.id).scales.x;
+    const u = drawn.get(chart.id);
+    const centre = u.cursor.left >= 0 ? u.posToVal(u.cursor.left, "x") : (min + max) / 2;
+    const [low, high] = chart.x.whole;
+    const range = [Math.max(low, centre - (centre - min) * factor), Math.min(high, centre + (max - centre) * factor)];
+    if (!(range[1] - range[0] > 1e-6 * (high - low))) return;
+    if (chart.group === "time") {
+      press(null);
+      spread(() => range);
+    } else {
+      setRange(chart, range);
+    }
+  };
+  // The next sample to the left or right that lies some pixels away.
+  const step = (chart, direction) => {
+    const u = drawn.get(chart.id);
+    const width = u.bbox.width / uPlot.pxRatio;
+    const from = u.cursor.left >= 0 ? u.cursor.left : direction > 0 ? 0 : width;
+    u.setCursor({left: Math.min(width, Math.max(0, from + 4 * direction)), top: u.bbox.height / uPlot.pxRatio / 2}, true);
+  };
+
+  const decorate = (chart) => (u) => {
+    const {ctx, bbox} = u;
+    const ratio = uPlot.pxRatio;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top - 1, bbox.width, bbox.height + 2);
+    ctx.clip();
+    if (chart.zero) {
+      const y = Math.round(u.valToPos(0, "y", true));
+      ctx.strokeStyle = ctx.fillStyle = colour("ink");
+      ctx.lineWidth = ratio;
+      ctx.beginPath();
+      ctx.moveTo(bbox.left, y);
+      ctx.lineTo(bbox.left + bbox.width, y);
+      ctx.stroke();
+      ctx.fillStyle = colour("muted");
+      ctx.font = font(12 * ratio);
+      ctx.textAlign = "right";
+      ctx.textBaseline = "bottom";
+      ctx.fillText(chart.zeroLabel, bbox.left + bbox.width - 4 * ratio, y - 3 * ratio);
+    }
+    ctx.textAlign = "center";
+    ctx.textBaseline = "bottom";
+    ctx.font = "600 " + font(12.5 * ratio);
+    for (const mark of chart.marks) {
+      const index = 1 + chart.series.findIndex(({role}) => role === mark.role);
+      if (mark.x < u.scales.x.min || mark.x > u.scales.x.max || (index > 0 && !u.series[index].show)) continue;
+      const x = u.valToPos(mark.x, "x", true);
+      const y = u.valToPos(mark.y, "y", true);
+      ctx.fillStyle = colour(mark.role);
+      ctx.beginPath();
+      ctx.arc(x, y, 2.6 * ratio, 0, 2 * Math.PI);
+      ctx.fill();
+      if (mark.text) ctx.fillText(mark.text, x, y - 5 * ratio);
+    }
+    ctx.restore();
+  };
+
+  const options = (chart, width, start) => {
+    const {x, y} = chart;
+    const narrow = width < 560;
+    const axis = (name, unit, more) => ({
+      stroke: colour("muted"),
+      font: font(12),
+      labelFont: font(12.5),
+      grid: {stroke: colour("grid"), width: 1},
+      ticks: {show: false},
+      ...more,
+    });
+    const distribution = {linear: {distr: 1}, log: {distr: 3, log: 10}, symlog: {distr: 4, asinh: y.threshold}}[y.scale];
+    const yPrefix = (u) => (!y.unit ? [1, ""] : prefix(y.scale === "symlog" ? y.threshold : largest(u.scales.y) / 1.1));
+    const ticks = (factor) => (value) => (value === null ? null : String(+(value / factor).toPrecision(6)).replace("-", "\u2212"));
+    const padded = (u, min, max) => {
+      if (min === null || max === null) return [0, 1];
+      const low = Math.min(min, chart.zero || min > 0 && min < 0.6 * max ? 0 : min);
+      const high = Math.max(max, 0);
+      const margin = high > low ? 0.06 * (high - low) : Math.max(1e-12, Math.abs(high));
+      return [low < 0 || chart.zero ? low - margin : low, high + margin];
+    };
+    const range = y.home ? y.home : y.scale === "linear" ? padded : undefined;
+    return {
+      width,
+      height: narrow ? Math.min(chart.height, 240) : chart.height,
+      padding: [10, 14, 0, 0],
+      cursor: {
+        y: false,
+        drag: {x: true, y: false, setScale: true},
+        points: {size: 7},
+        ...(chart.group ? {sync: {key: chart.group, setSeries: false, scales: ["x", null], filters: {pub: (type) => type === "mousemove" || type === "mouseleave"}}} : {}),
+        bind: {dblclick: () => () => goHome(chart)},
+      },
+      legend: {live: true, markers: {width: 3}},
+      scales: {x: {time: false, min: start[0], max: start[1], range: (u, min, max) => [min, max]}, y: {...distribution, ...(range ? {range} : {})}},
+      axes: [
+        axis("x", x.unit, {
+          label: (u) => (x.unit ? `${x.label} (${prefix(largest(u.scales.x))[1]}${x.unit})` : x.label),
+          values: (u, splits) => splits.map(ticks(x.unit ? prefix(largest(u.scales.x))[0] : 1)),
+          labelSize: 22,
+          size: 30,
+          space: narrow ? 50 : 80,
+        }),
+        axis("y", y.unit, {
+          label: (u) => (y.unit ? `${y.label} (${yPrefix(u)[1]}${y.unit})` : y.label),
+          values: (u, splits) => splits.map(ticks(yPrefix(u)[0])),
+          labelSize: 20,
+          size: 54,
+          space: 36,
+          ...(y.scale === "symlog" ? {splits: symlogSplits(y.threshold), filter: (u, splits) => splits} : {}),
+        }),
+      ],
+      series: [
+        {label: x.label, value: (u, value) => quantity(value, x.unit)},
+        ...chart.series.map(({label, role}) => ({
+          label,
+          stroke: colour(role),
+          ...pens[role],
+          spanGaps: false,
+          points: role === "evaluations" ? {show: true, size: 3, width: 0, fill: colour(role), space: 0} : {show: false},
+          ...(role === "evaluations" ? {paths: () => null} : {}),
+          value: (u, value) => quantity(value, y.unit, 4),
+        })),
+      ],
+      hooks: {
+        draw: [decorate(chart)],
+        setScale: [
+          (u, key) => {
+            const {min, max} = u.scales.x;
+            const [low, high] = wanted.get(chart.id);
+            if (key !== "x" || chart.group !== "time" || (min === low && max === high)) return;
+            press(null);
+            spread(() => [min, max]);
+          },
+        ],
+      },
+    };
+  };
+
+  const draw = () => {
+    for (const u of drawn.values()) u.destroy();
+    drawn.clear();
+    for (const chart of charts) {
+      const place = document.querySelector(`[data-chart="${chart.id}"]`);
+      const data = aligned(chart.series.map(({table, column: key}) => ({xs: tables[table][chart.x.column], ys: tables[table][key]})));
+      const range = wanted.get(chart.id) || chart.x.home;
+      wanted.set(chart.id, range);
+      const u = new uPlot(options(chart, place.clientWidth, range), data, place);
+      drawn.set(chart.id, u);
+      u.over.tabIndex = 0;
+      u.over.setAttribute("role", "application");
+      u.over.setAttribute("aria-label", place.closest("figure").querySelector("h3").textContent + ": interactive chart");
+      u.over.addEventListener("keydown", (event) => {
+        const action = {
+          ArrowLeft: () => step(chart, -1),
+          ArrowRight: () => step(chart, 1),
+          "+": () => zoom(chart, 0.5),
+          "=": () => zoom(chart, 0.5),
+          "-": () => zoom(chart, 2),
+          0: () => goHome(chart),
+          Escape: () => goHome(chart),
+        }[event.key];
+        if (!action) return;
+        action();
+        event.preventDefault();
+      });
+    }
+  };
+
+  document.body.classList.add("drawn");
+  draw();
+  for (const tools of document.querySelectorAll(".tools")) tools.hidden = false;
+  for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => show(button.dataset.view));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+  let width = innerWidth;
+  addEventListener("resize", () => {
+    if (innerWidth === width) return;
+    width = innerWidth;
+    for (const [id, u] of drawn) u.setSize({width: document.querySelector(`[data-chart="${id}"]`).clientWidth, height: u.height});
+  });
+  const details = () => document.querySelectorAll("details");
+  addEventListener("beforeprint", () => details().forEach((one) => (one.open = true)));
+})();

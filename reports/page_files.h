@@ -1,0 +1,11 @@
+// The files of the report page, compiled in by embed.cmake.
+#pragma once
+
+#include <string_view>
+
+namespace softland::internal {
+
+/// Text of a file under reports/, e.g. "page/page.js". Throws std::logic_error for a file that is not embedded.
+[[nodiscard]] std::string_view page_file(std::string_view name);
+
+}  // namespace softland::internal

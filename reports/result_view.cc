@@ -1,0 +1,82 @@
+#include "reports/result_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+namespace softland::internal {
+
+using nlohmann::json;
+
+const json& at(const json& value, std::initializer_list<std::string_view> path) {
+  static const json nothing;
+  const json* here = &value;
+  for (const std::string_view key : path) {
+    if (!here->is_object()) return nothing;
+    const auto found = here->find(key);
+    if (found == here->end()) return nothing;
+    here = &*found;
+  }
+  return *here;
+}
+
+double number(const json& value) { return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN(); }
+
+double number(const json& value, std::initializer_list<std::string_view> path) { return number(at(value, path)); }
+
+std::string text(const json& value, std::initializer_list<std::string_view> path) {
+  const json& found = at(value, path);
+  return found.is_string() ? found.get<std::string>() : std::string();
+}
+
+std::optional<bool> truth(const json& value, std::initializer_list<std::string_view> path) {
+  const json& found = at(value, path);
+  return found.is_boolean() ? std::optional<bool>(found.get<bool>()) : std::nullopt;
+}
+
+std::vector<double> numbers(const json& value) {
+  std::vector<double> out;
+  if (!value.is_array()) return out;
+  out.reserve(value.size());
+  for (const json& element : value) out.push_back(number(element));
+  return out;
+}
+
+bool is_optimize(const json& result) {
+  const std::string kind = text(result, {"kind"});
+  return kind == "optimize" || (kind.empty() && !at(result, {"baseline"}).is_null());
+}
+
+const json& best_metrics(const json& result) {
+  const json& of_best = at(result, {"best", "metrics"});
+  return of_best.is_object() ? of_best : at(result, {"metrics"});
+}
+
+const json& baseline_metrics(const json& result) { return at(result, {"baseline", "metrics"}); }
+
+double window_end(const json& result) {
+  double end = std::numeric_limits<double>::quiet_NaN();
+  for (const char* run : {"best", "baseline"}) {
+    const json& times = at(result, {"curves", run, "time_s"});
+    if (times.is_array() && !times.empty()) end = std::fmax(end, number(times.back()));
+  }
+  return end;
+}
+
+double significant_rebound(const json& result) {
+  constexpr double usual = 1e-9;
+  const json& given = at(result, {"scene", "metrics", "significant_rebound"});
+  if (given.is_number() && given.get<double>() > 0) return given.get<double>();
+  if (!given.is_string()) return usual;
+  const std::string words = given.get<std::string>();
+  char* unit = nullptr;
+  const double value = std::strtod(words.c_str(), &unit);
+  const std::string_view rest = unit;
+  for (const auto& [name, factor] : {std::pair{" m", 1.0}, {" um", 1e-6}, {" nm", 1e-9}, {" pm", 1e-12}}) {
+    if (rest == name && value > 0) return value * factor;
+  }
+  return usual;
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,35 @@
+// Reading a result whose every part is optional: what is missing, null or of another type is "not available".
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace softland::internal {
+
+/// The value at this path of keys; a null value when any of them is missing.
+[[nodiscard]] const nlohmann::json& at(const nlohmann::json& value, std::initializer_list<std::string_view> path);
+/// NaN unless the value is a number.
+[[nodiscard]] double number(const nlohmann::json& value);
+[[nodiscard]] double number(const nlohmann::json& value, std::initializer_list<std::string_view> path);
+/// Empty unless the value is a string.
+[[nodiscard]] std::string text(const nlohmann::json& value, std::initializer_list<std::string_view> path);
+/// Not set unless the value is true or false.
+[[nodiscard]] std::optional<bool> truth(const nlohmann::json& value, std::initializer_list<std::string_view> path);
+/// Numbers of an array, NaN for what is not a number; empty unless the value is an array.
+[[nodiscard]] std::vector<double> numbers(const nlohmann::json& value);
+
+[[nodiscard]] bool is_optimize(const nlohmann::json& result);
+/// Figures of the winner or of the single run, of the baseline; null when there are none.
+[[nodiscard]] const nlohmann::json& best_metrics(const nlohmann::json& result);
+[[nodiscard]] const nlohmann::json& baseline_metrics(const nlohmann::json& result);
+/// The simulated time [s]: the last time of any curve; NaN without curves.
+[[nodiscard]] double window_end(const nlohmann::json& result);
+/// Height from which a rebound counts [m]; 1 nm unless the scene says otherwise.
+[[nodiscard]] double significant_rebound(const nlohmann::json& result);
+
+}  // namespace softland::internal

@@ -1,0 +1,68 @@
+#include "reports/svg.h"
+
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/require.h"
+#include "reports/chart.h"
+#include "reports/escape.h"
+#include "reports/findings.h"
+#include "reports/result_view.h"
+
+namespace softland {
+namespace {
+
+/// Words in lines of at most `columns` bytes; a longer word stands alone.
+std::vector<std::string> wrapped(const std::string& words, std::size_t columns) {
+  std::vector<std::string> lines{""};
+  for (std::size_t begin = 0; begin < words.size();) {
+    const std::size_t end = std::min(words.find(' ', begin), words.size());
+    const std::string word = words.substr(begin, end - begin);
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > columns) lines.emplace_back();
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+    begin = end + 1;
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::string svg_gap_chart(const nlohmann::json& result) {
+  using namespace internal;
+  require(result.is_object(), "svg_gap_chart: the result is not a JSON object");
+  constexpr double width = 900;
+  constexpr double margin = 24;
+  constexpr double between = 14;
+  constexpr double line_height = 24;
+  constexpr std::size_t columns = 96;
+
+  std::string body;
+  double top = margin;
+  for (const std::string& line : wrapped(headline(result).whole(), columns)) {
+    body += fmt::format("<text x=\"0\" y=\"{:.1f}\" fill=\"#1b1f24\" font-size=\"17\" font-weight=\"600\">{}</text>\n", top, escaped(line));
+    top += line_height;
+  }
+  if (const std::string title = text(result, {"title"}); !title.empty()) {
+    for (const std::string& line : wrapped(title, columns + 30)) {
+      body += fmt::format("<text x=\"0\" y=\"{:.1f}\" fill=\"#5f6b76\" font-size=\"13\">{}</text>\n", top, escaped(line));
+      top += line_height;
+    }
+  }
+  top += between;
+  const Picture drawn = picture(result);
+  for (Chart chart : drawn.charts) {
+    const bool drive = chart.id.starts_with("drive");
+    if (chart.id != "gap" && chart.id != "landing" && !drive) continue;
+    chart.height = drive ? 120 : 220;
+    body += chart_svg(drawn.tables, chart, width - 2 * margin, top);
+    top += chart_svg_height(chart) + between;
+  }
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" viewBox=\"0 0 {0} {1:.0f}\" role=\"img\" "
+      "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
+      "<g transform=\"translate({3} {4})\">\n{5}</g>\n</svg>\n",
+      width, top + margin, escaped(headline(result).whole()), margin, 10, body);
+}
+
+}  // namespace softland

@@ -1,0 +1,23 @@
+// Writes sample pages and pictures into a folder, for looking at them.
+#include <cstdio>
+#include <filesystem>
+
+#include "reports/files.h"
+#include "reports/html.h"
+#include "reports/svg.h"
+#include "sample_result.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: sample_report FOLDER\n", stderr);
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  const auto optimize = softland::testing::sample_optimize_result();
+  const auto simulate = softland::testing::sample_simulate_result();
+  softland::write_whole(folder / "optimize.html", softland::html_report(optimize));
+  softland::write_whole(folder / "simulate.html", softland::html_report(simulate));
+  softland::write_whole(folder / "optimize.svg", softland::svg_gap_chart(optimize));
+  softland::write_whole(folder / "simulate.svg", softland::svg_gap_chart(simulate));
+  return 0;
+}
