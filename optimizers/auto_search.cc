@@ -1,6 +1,7 @@
 #include "optimizers/auto_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "optimizers/backends.h"
@@ -9,10 +10,25 @@
 namespace softland::internal {
 namespace {
 
+// Shares of the budget of an epoch.
+constexpr double kSampling = 0.15;
+constexpr double kFirstHeat = 0.3;
+constexpr double kLaterHeat = 0.2;
+
+constexpr long kLongestEpoch = 5000;  // evaluations: beyond that, other starts promise more than longer searches
+constexpr std::size_t kSearches = 6;
+constexpr long kShortestHeat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
+
+// Fractions of the box.
+constexpr double kSeparation = 0.15;
+constexpr double kFirstStep = 0.25;
+constexpr double kPolishingStep = 0.02;
+
 struct Search {
   const Method* method;
   Run run;
   double best = std::numeric_limits<double>::infinity();
+  Point best_point;
   bool converged = false;
 };
 
@@ -22,72 +38,95 @@ double distance(const Point& a, const Point& b) {
   return farthest;
 }
 
-std::vector<Point> well_separated(std::vector<Ledger::Known> known, std::size_t count, double separation) {
+/// The best known points that are apart from each other and from the explored ones; the distance shrinks until there are enough.
+std::vector<Point> promising_points(std::vector<Ledger::Known> known, const std::vector<Point>& explored) {
   std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
   std::vector<Point> chosen;
-  for (; chosen.size() < std::min(count, known.size()); separation *= 0.5) {
+  const auto apart = [&](const Point& candidate, double separation) {
+    const auto far = [&](const Point& other) { return distance(candidate, other) > separation; };
+    return std::all_of(chosen.begin(), chosen.end(), far) && std::all_of(explored.begin(), explored.end(), far);
+  };
+  constexpr int kHalvings = 10;
+  double separation = kSeparation;
+  for (int i = 0; i < kHalvings && chosen.size() < kSearches; ++i, separation /= 2) {
     for (const Ledger::Known& candidate : known) {
-      if (chosen.size() == count) break;
-      const bool apart = std::all_of(chosen.begin(), chosen.end(),
-                                     [&](const Point& other) { return distance(candidate.point, other) > separation; });
-      if (apart) chosen.push_back(candidate.point);
+      if (chosen.size() == kSearches) break;
+      if (apart(candidate.point, separation)) chosen.push_back(candidate.point);
     }
-    if (separation < 1e-9) break;
   }
   return chosen;
 }
 
-void advance(Ledger& ledger, std::vector<Search>& searches, long budget_each) {
+void sample(Ledger& ledger, std::uint64_t first, std::size_t count) {
+  std::vector<Ledger::Task> tasks;
+  for (const Point& point : sobol_points(ledger.seed(), ledger.dimension(), first, count)) {
+    tasks.push_back({.budget = 1, .body = [point](Strand& strand) { strand(point); }});
+  }
+  ledger.run(tasks);
+}
+
+/// Lets each search that has not converged go on for `budget` evaluations.
+void advance(Ledger& ledger, std::vector<Search>& searches, long budget) {
   std::vector<Ledger::Task> tasks;
   for (Search& search : searches) {
     if (search.converged) continue;
-    tasks.push_back({.budget = budget_each, .body = [&search](Strand& strand) {
+    tasks.push_back({.budget = budget, .body = [&search](Strand& strand) {
                        search.converged = run_method(*search.method, search.run, strand).converged;
-                       search.best = std::min(search.best, strand.best_of_task());
+                       if (strand.best_of_task() < search.best) {
+                         search.best = strand.best_of_task();
+                         search.best_point = strand.best_point_of_task();
+                       }
                      }});
   }
   ledger.run(tasks);
 }
 
+long share_of(long budget, double share, std::size_t searches) {
+  return std::max(kShortestHeat, static_cast<long>(share * static_cast<double>(budget) / static_cast<double>(searches)));
+}
+
 }  // namespace
 
 void search_auto(Ledger& ledger) {
-  const Method* methods[] = {&find_method("sbplx"), &find_method("nelder-mead"), &find_method("bobyqa")};
-  std::uint64_t sobol_next = 0;
-  std::uint64_t search_id = 0;
-  while (!ledger.over()) {
-    const long total = ledger.remaining();
-    const auto samples = static_cast<std::size_t>(std::max(1.0, 0.25 * static_cast<double>(total)));
-    std::vector<Ledger::Task> tasks;
-    for (Point& point : sobol_points(ledger.seed(), ledger.dimension(), sobol_next, samples)) {
-      tasks.push_back({.budget = 1, .body = [point = std::move(point)](Strand& strand) { strand(point); }});
-    }
-    sobol_next += samples;
-    ledger.run(tasks);
+  const Method& polisher = find_method("bobyqa");
+  const std::array methods = {&find_method("nelder-mead"), &polisher};
+  std::uint64_t points_sampled = 0;
+  std::uint64_t searches_begun = 0;
+  const auto begin_search = [&](const Method& method, const Point& start, double step) {
+    const std::uint64_t seed = draw_bits(ledger.seed(), Draw::library_seed, searches_begun++);
+    return Search{.method = &method, .run = {.start = start, .step = step, .seed = seed}, .best_point = start};
+  };
+  std::vector<Point> explored;
 
-    std::vector<Search> searches;
-    for (const Point& start : well_separated(ledger.known(), 6, 0.15)) {
-      searches.push_back(
-          {.method = methods[searches.size() % 3],
-           .run = {.start = start, .step = 0.1, .seed = draw_bits(ledger.seed(), Draw::library_seed, search_id++)}});
+  while (!ledger.over()) {
+    const long before = ledger.remaining();
+    const long budget = std::min(before, kLongestEpoch);
+    const auto samples = static_cast<std::size_t>(std::ceil(kSampling * static_cast<double>(budget)));
+    sample(ledger, points_sampled, samples);
+    points_sampled += samples;
+
+    std::vector<Search> running;
+    for (const Point& start : promising_points(ledger.known(), explored)) {
+      running.push_back(begin_search(*methods[running.size() % methods.size()], start, kFirstStep));
     }
-    double share = 0.3;
-    while (!searches.empty() && !ledger.over()) {
-      const long budget =
-          std::max<long>(20, static_cast<long>(share * static_cast<double>(total) / static_cast<double>(searches.size())));
-      const long before = ledger.remaining();
-      advance(ledger, searches, budget);
-      if (ledger.remaining() == before) break;
-      if (searches.size() == 1) break;
-      std::stable_sort(searches.begin(), searches.end(), [](auto& a, auto& b) { return a.best < b.best; });
-      searches.resize((searches.size() + 1) / 2);
-      share = 0.2;
+    double share = kFirstHeat;
+    while (!running.empty() && !ledger.over()) {
+      advance(ledger, running, share_of(budget, share, running.size()));
+      for (const Search& search : running) explored.push_back(search.best_point);
+      if (running.size() == 1) break;
+      std::stable_sort(running.begin(), running.end(), [](const Search& a, const Search& b) { return a.best < b.best; });
+      running.resize((running.size() + 1) / 2);
+      share = kLaterHeat;
     }
-    if (ledger.over()) break;
-    const Search polish{.method = methods[2],
-                        .run = {.start = well_separated(ledger.known(), 1, 1).front(), .step = 0.02, .seed = 1}};
-    std::vector<Search> last{polish};
-    advance(ledger, last, ledger.remaining());
+
+    const auto& known = ledger.known();
+    const auto best = std::min_element(known.begin(), known.end(),
+                                       [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
+    if (best != known.end() && best->answer.feasible) {
+      std::vector<Search> polish{begin_search(polisher, best->point, kPolishingStep)};
+      advance(ledger, polish, budget);
+    }
+    if (ledger.remaining() == before) return;
   }
 }
 

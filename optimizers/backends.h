@@ -9,7 +9,7 @@
 
 namespace softland::internal {
 
-enum class Backend { search_auto, nlopt, ipopt };
+enum class Backend { search_auto, cma_es, nlopt, ipopt };
 
 /// A local method converges to a minimum nearby and may be started again; a global one is run once.
 enum class Reach { local, global };
@@ -28,7 +28,7 @@ struct Method {
 
 struct Run {
   Point start;
-  double step = 0.1;       ///< first step as a fraction of the box
+  double step = 0.25;      ///< first step as a fraction of the box
   std::uint64_t seed = 0;  ///< of the library's random numbers
 };
 
@@ -40,6 +40,7 @@ struct RunReport {
 /// Both always return, whatever the objective does. A run that is repeated with the same arguments asks for the same points in
 /// the same order, so that a search which ran out of budget is continued by repeating it: its past is answered from memory.
 [[nodiscard]] RunReport run_nlopt(const Method& method, const Run& run, Strand& strand);
+[[nodiscard]] RunReport run_cma_es(const Run& run, Strand& strand);
 [[nodiscard]] RunReport run_ipopt(const Run& run, Strand& strand);
 [[nodiscard]] RunReport run_method(const Method& method, const Run& run, Strand& strand);
 

@@ -90,7 +90,10 @@ Answer Strand::operator()(std::span<const double> point) {
 Answer Strand::remember(const Point& point, double value) {
   Answer answer{compress(value), std::isfinite(value)};
   if (answer.feasible) {
-    best_of_task_ = std::min(best_of_task_, answer.value);
+    if (answer.value < best_of_task_) {
+      best_of_task_ = answer.value;
+      best_point_of_task_ = point;
+    }
     best_seen_ = std::min(best_seen_, answer.value);
     worst_seen_ = std::max(worst_seen_, answer.value);
   } else {

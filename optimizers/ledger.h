@@ -56,6 +56,7 @@ class Strand {
   [[nodiscard]] long evaluations() const { return static_cast<long>(records_.size()); }
   /// The lowest feasible value this task has found; infinite without one.
   [[nodiscard]] double best_of_task() const { return best_of_task_; }
+  [[nodiscard]] const Point& best_point_of_task() const { return best_point_of_task_; }
 
  private:
   friend class Ledger;
@@ -78,6 +79,7 @@ class Strand {
   double best_seen_;
   double worst_seen_;
   double best_of_task_ = std::numeric_limits<double>::infinity();
+  Point best_point_of_task_;
   Memory memory_;
   std::vector<Record> records_;
   std::optional<std::string> first_exception_;

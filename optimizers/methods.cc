@@ -28,13 +28,15 @@ constexpr std::array kMethods = {
            "local: separable convex quadratic approximations, differenced gradient"},
     Method{"ipopt", Backend::ipopt, Reach::local, -1, true,
            "local: interior point with quasi-Newton Hessian, differenced gradient; one solve at a time"},
+    Method{"cma-es", Backend::cma_es, Reach::local, -1, false,
+           "local to regional: evolution strategy that learns the shape of the valley; copes with kinks and jumps"},
     Method{"crs2", Backend::nlopt, Reach::global, nlopt::GN_CRS2_LM, false,
            "global: controlled random search with local mutation"},
     Method{"isres", Backend::nlopt, Reach::global, nlopt::GN_ISRES, false, "global: evolution strategy"},
     Method{"esch", Backend::nlopt, Reach::global, nlopt::GN_ESCH, false, "global: evolutionary, with Cauchy mutations"},
     Method{"direct-l", Backend::nlopt, Reach::global, nlopt::GN_DIRECT_L, false,
            "global: divides the box into ever smaller rectangles"},
-    Method{"mlsl", Backend::nlopt, Reach::global, nlopt::G_MLSL_LDS, false,
+    Method{"mlsl", Backend::nlopt, Reach::global, nlopt::G_MLSL, false,
            "global: multi-level single linkage, BOBYQA from spread points"},
 };
 

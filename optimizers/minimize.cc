@@ -13,6 +13,7 @@ namespace softland {
 namespace internal {
 
 RunReport run_method(const Method& method, const Run& run, Strand& strand) {
+  if (method.backend == Backend::cma_es) return run_cma_es(run, strand);
   return method.backend == Backend::ipopt ? run_ipopt(run, strand) : run_nlopt(method, run, strand);
 }
 
@@ -41,6 +42,9 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   require(!std::isnan(options.target), "target must not be NaN");
 }
 
+// A search begun at an infeasible point sees a plateau: it is worth a few evaluations to begin elsewhere.
+constexpr std::uint64_t kInfeasibleStartsSkipped = 20;
+
 // Runs that end without a single new evaluation: the method has nothing more to offer, from anywhere.
 constexpr int kIdleRunsAllowed = 20;
 
@@ -48,13 +52,23 @@ RunReport search_single_method(Ledger& ledger, const Method& method) {
   RunReport report;
   const auto body = [&](Strand& strand) {
     int idle_runs = 0;
+    std::uint64_t skipped = 0;
+    const std::size_t given = ledger.starts().size();
     for (std::uint64_t k = 0; !strand.over() && idle_runs < kIdleRunsAllowed; ++k) {
-      const bool given = k == 0 && !ledger.starts().empty();
-      const Run run{.start = given ? ledger.starts().front() : sobol_points(ledger.seed(), ledger.dimension(), k, 1).front(),
-                    .seed = draw_bits(ledger.seed(), Draw::library_seed, k)};
+      const Run run{
+          .start = k < given ? ledger.starts()[k] : sobol_points(ledger.seed(), ledger.dimension(), k - given, 1).front(),
+          .seed = draw_bits(ledger.seed(), Draw::library_seed, k)};
       const long before = strand.evaluations();
+      if (method.reach == Reach::global) {
+        report = run_method(method, run, strand);
+        return;
+      }
+      if (!strand(run.start).feasible && skipped < kInfeasibleStartsSkipped) {
+        ++skipped;
+        continue;
+      }
+      skipped = 0;
       report = run_method(method, run, strand);
-      if (method.reach == Reach::global) return;
       idle_runs = strand.evaluations() == before ? idle_runs + 1 : 0;
     }
   };

@@ -67,7 +67,7 @@ std::string_view name_of(nlopt::result result) {
 
 RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
   const auto algorithm = static_cast<nlopt::algorithm>(method.nlopt_algorithm);
-  const bool is_mlsl = algorithm == nlopt::G_MLSL_LDS;
+  const bool is_mlsl = algorithm == nlopt::G_MLSL;
   Callback callback{.strand = strand, .dimension = run.start.size(), .bent_middle = {}};
   std::vector<double> x = run.start;
   if (x.size() == 1 && (algorithm == nlopt::LN_BOBYQA || is_mlsl)) x.push_back(0.5);

@@ -41,12 +41,13 @@ inline double rosenbrock(std::span<const double> x) {
   return sum / 100;
 }
 
-/// Minima on a grid of spacing 1 in a wide bowl, the lowest, 0, at (0.3, ..., 0.3); divided by 10.
+/// Minima on a grid in a wide bowl, the lowest, 0, at (0.3, ..., 0.3); divided by 10. The spacing, 1.13, is no fraction of the
+/// box that a first step may be.
 inline double rastrigin(std::span<const double> x) {
   double sum = 0;
   for (const double coordinate : x) {
     const double u = coordinate - 0.3;
-    sum += u * u + 3 * (1 - std::cos(2 * std::numbers::pi * u));
+    sum += u * u + 3 * (1 - std::cos(2 * std::numbers::pi * u / 1.13));
   }
   return sum / 10;
 }
@@ -68,6 +69,18 @@ inline double creases(std::span<const double> x) {
   double largest = std::abs(x[0] - 0.5);
   for (std::size_t i = 0; i + 1 < x.size(); ++i) largest = std::max(largest, 2 * std::abs(x[i + 1] - x[i] * x[i]));
   return largest;
+}
+
+/// Parallel curved valleys a distance of about 0.5 apart; the floor of each slopes, and only one reaches 0, at (0.3, 0.3, ...).
+inline double valleys(std::span<const double> x) {
+  double across = x[0] - 0.3;
+  double along = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double u = x[i] - 0.3;
+    if (i > 0) across += 0.5 * u * std::sin(2 * u + static_cast<double>(i));
+    along += u * u;
+  }
+  return 1 - std::cos(4 * std::numbers::pi * across) + along / 4;
 }
 
 /// A parallel-plate switch: an undamped oscillator pulled by V^2 / (1 - x)^2 towards a contact at x = 0.6; time in units of the
@@ -184,6 +197,7 @@ inline std::vector<Landscape> all() {
           {"rosenbrock-7", box(7, -2, 2, rosenbrock), 1e-3}, {"rastrigin-4", box(4, -4, 4, rastrigin), 1e-3},
           {"rastrigin-6", box(6, -4, 4, rastrigin), 1e-3},   {"ackley-5", box(5, -10, 10, ackley), 1e-2},
           {"creases-4", box(4, -2, 2, creases), 1e-2},       {"creases-6", box(6, -2, 2, creases), 1e-2},
+          {"valleys-4", box(4, -2, 2, valleys), 1e-3},       {"valleys-6", box(6, -2, 2, valleys), 1e-3},
           {"landing-4", landing_problem(2), 1e-2},           {"landing-7", landing_problem(3), 1e-2}};
 }
 
