@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
 namespace softland {
 
 std::string violation(const Signal& signal, const DriverLimits& limits) {
   constexpr double rounding = 1e-12;
-  const double slack = rounding * std::max(std::abs(limits.min_voltage), std::abs(limits.max_voltage));
+  const double slack = rounding * std::fmax(std::abs(limits.min_voltage), std::abs(limits.max_voltage));
   const double maximum = signal.maximum();
   if (!(maximum <= limits.max_voltage + slack)) {
     return fmt::format("the voltage reaches {} V, above the driver's max_voltage of {} V", maximum, limits.max_voltage);

@@ -9,9 +9,9 @@
 namespace softland {
 
 struct Pulse {
-  std::vector<double> levels;  ///< [V], n >= 1
-  std::vector<double> times;   ///< [s], n - 1, increasing by at least edge; the first at least edge
-  double edge = 0;             ///< [s], >= 0
+  std::vector<double> levels = {};  ///< [V], n >= 1
+  std::vector<double> times = {};   ///< [s], n - 1, increasing by at least edge; the first at least edge
+  double edge = 0;                  ///< [s], >= 0
 };
 
 [[nodiscard]] Signal signal(const Pulse& pulse);

@@ -17,6 +17,7 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// rounding.
 double end_of_straight(const SignalPiece& piece, double end, double favourite) {
   const double duration = end - piece.begin;
+  if (piece.slope == 0) return piece.value;
   const auto has_the_slope = [&](double value) { return (value - piece.value) / duration == piece.slope; };
   if (has_the_slope(favourite)) return favourite;
   const double rise = piece.slope * duration;
@@ -174,7 +175,8 @@ std::size_t Signal::piece_at(double time) const {
 double Signal::voltage(double time) const { return time < 0 ? 0 : pieces_[piece_at(time)].voltage(time); }
 
 double Signal::left_limit(std::size_t next) const {
-  const SignalPiece& piece = pieces_[next - 1];
+  // Before t = 0 there is a piece at 0 V.
+  const SignalPiece piece = next > 0 ? pieces_[next - 1] : SignalPiece{};
   const double end = pieces_[next].begin;
   const double continuous = pieces_[next].voltage(end);
   const double computed = piece.oscillates() ? piece.voltage(end) : end_of_straight(piece, end, continuous);
@@ -186,9 +188,9 @@ double Signal::left_limit(std::size_t next) const {
 }
 
 double Signal::voltage_before(double time) const {
-  if (time <= 0) return 0;
+  if (time < 0) return 0;
   const std::size_t piece = piece_at(time);
-  return piece > 0 && pieces_[piece].begin == time ? left_limit(piece) : pieces_[piece].voltage(time);
+  return pieces_[piece].begin == time ? left_limit(piece) : pieces_[piece].voltage(time);
 }
 
 std::vector<double> Signal::breakpoints() const {

@@ -38,6 +38,7 @@ struct SignalPiece {
     const double envelope = amplitude + amplitude_slope * (time - begin);
     return slope + amplitude_slope * std::sin(angle) + envelope * angular_frequency * std::cos(angle);
   }
+  bool operator==(const SignalPiece&) const = default;
 };
 
 class Signal {
@@ -59,8 +60,9 @@ class Signal {
   [[nodiscard]] std::size_t piece_at(double time) const;
   /// [V]; at a jump the value after it; 0 for time < 0.
   [[nodiscard]] double voltage(double time) const;
-  /// [V] the limit from the left; 0 at time <= 0. Equal to voltage(time), bit for bit, where the signal does not jump: what
-  /// rounding leaves between the end of one piece and the beginning of the next is not a jump.
+  /// [V] the limit from the left, 0 for time < 0. Equal to voltage(time), bit for bit, where the signal does not jump: what
+  /// rounding leaves between the end of one piece and the beginning of the next, or between 0 V and a sine that starts there, is
+  /// not a jump.
   [[nodiscard]] double voltage_before(double time) const;
   /// [s] beginnings of all pieces, 0 included.
   [[nodiscard]] std::vector<double> breakpoints() const;
@@ -80,7 +82,7 @@ class Signal {
   [[nodiscard]] double resolving_step(double time) const;
 
  private:
-  /// voltage_before at the beginning of piece `next`, which is not the first.
+  /// voltage_before at the beginning of piece `next`.
   [[nodiscard]] double left_limit(std::size_t next) const;
 
   std::vector<SignalPiece> pieces_;

@@ -9,8 +9,8 @@
 namespace softland {
 
 struct Table {
-  std::vector<double> time;     ///< [s], from 0 on, not decreasing
-  std::vector<double> voltage;  ///< [V]
+  std::vector<double> time = {};     ///< [s], from 0 on, not decreasing
+  std::vector<double> voltage = {};  ///< [V]
 };
 
 [[nodiscard]] Signal signal(const Table& table);
