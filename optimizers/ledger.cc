@@ -115,7 +115,7 @@ void Strand::gradient(std::span<const double> point, std::span<double> gradient)
   const Answer here = (*this)(point);
   Point moved(point.begin(), point.end());
   for (std::size_t i = 0; i < point.size(); ++i) {
-    // Two offsets a < b from here; both to the same side next to a bound.
+    // Two offsets from here; both to the same side next to a bound.
     double a = -kDifferenceStep;
     double b = kDifferenceStep;
     if (point[i] + a < 0) a = 2 * kDifferenceStep;

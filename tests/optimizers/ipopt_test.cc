@@ -14,7 +14,7 @@ using landscapes::box;
 using namespace std::chrono_literals;
 
 OptimizerResult solve(std::uint64_t seed) {
-  return minimize(box(3, -2, 2, landscapes::rosenbrock), {.optimizer = "ipopt", .max_evaluations = 300, .seed = seed});
+  return minimize(box(3, -2, 2, landscapes::rosenbrock), {.optimizer = "ipopt", .max_evaluations = 150, .seed = seed});
 }
 
 TEST(Ipopt, SolvesFromTwoThreadsAtOnce) {
@@ -22,7 +22,7 @@ TEST(Ipopt, SolvesFromTwoThreadsAtOnce) {
   const OptimizerResult alone_2 = solve(2);
   OptimizerResult together_1;
   OptimizerResult together_2;
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 3; ++i) {
     {
       const std::jthread one([&] { together_1 = solve(1); });
       const std::jthread two([&] { together_2 = solve(2); });

@@ -1,0 +1,147 @@
+// What libraries are told.
+#include "optimizers/ledger.h"
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/optimizers/landscapes.h"
+#include "tests/optimizers/support.h"
+
+namespace softland::internal {
+namespace {
+
+using landscapes::box;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Gives the body a strand of a problem over [0, 1]^n, where points and x are the same.
+void with_strand(std::size_t dimension, const std::function<double(std::span<const double>)>& objective,
+                 const std::function<void(Strand&)>& body, long budget = 1000) {
+  const Problem problem = box(dimension, 0, 1, objective);
+  const OptimizerOptions options{.max_evaluations = budget};
+  Ledger ledger(problem, options);
+  ledger.run({{.budget = budget, .body = body}});
+}
+
+TEST(Answers, RankInfeasiblePointsBelowEverythingSeen) {
+  // x names a value from a list that goes through all sizes; every second point is infeasible.
+  const std::vector<double> values = {-1e300, -1e13, -5, 0, 1e-9, 1, 3, 1e11, 1e12, 1e13, 1e14, 1e200, 1.7e308};
+  const auto objective = [&](std::span<const double> x) {
+    const auto k = static_cast<std::size_t>(std::lround(x[0] * 1000));
+    return k % 2 == 0 ? kNan : values[k / 2];
+  };
+  with_strand(1, objective, [&](Strand& strand) {
+    double worst = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 2 * values.size(); ++k) {
+      const Answer answer = strand(std::vector{static_cast<double>(k) / 1000});
+      EXPECT_EQ(answer.feasible, k % 2 == 1);
+      EXPECT_TRUE(std::isfinite(answer.value * answer.value)) << "libraries square";
+      EXPECT_GT(answer.value, worst) << k;  // of finite ones because the list ascends
+      if (answer.feasible) worst = answer.value;
+    }
+  });
+}
+
+TEST(Answers, InTheDarkArePenaltiesAboveAnyValueToCome) {
+  with_strand(
+      1, [](auto x) { return x[0] < 0.5 ? kNan : std::numeric_limits<double>::max(); },
+      [](Strand& strand) {
+        const Answer dark = strand(std::vector{0.1});
+        EXPECT_GT(dark.value, strand(std::vector{0.9}).value);
+      });
+}
+
+TEST(Answers, AreOfTheSizeOfTheValuesSeen) {
+  with_strand(
+      1, [](auto x) { return x[0] > 0.5 ? kNan : x[0]; },
+      [](Strand& strand) {
+        strand(std::vector{0.1});
+        strand(std::vector{0.4});
+        EXPECT_LT(strand(std::vector{0.9}).value, 10);
+      });
+}
+
+TEST(Answers, ToKnownPointsAreFree) {
+  with_strand(
+      1, [](auto x) { return x[0]; },
+      [](Strand& strand) {
+        for (int i = 0; i < 10; ++i) EXPECT_EQ(strand(std::vector{0.25}).value, 0.25);
+        EXPECT_EQ(strand.evaluations(), 1);
+        EXPECT_EQ(strand(std::vector{-0.0}).value, 0);
+        EXPECT_EQ(strand(std::vector{0.0}).value, 0);
+        EXPECT_EQ(strand(std::vector{-1e-17}).value, 0);  // outside by a rounding error
+        EXPECT_EQ(strand.evaluations(), 2);
+      });
+}
+
+TEST(Answers, EndASearchThatGoesInCircles) {
+  with_strand(
+      1, [](auto x) { return x[0]; },
+      [](Strand& strand) {
+        const auto circle = [&] {
+          for (int i = 0; i < 1'000'000; ++i) strand(std::vector{i % 2 == 0 ? 0.25 : 0.75});
+        };
+        EXPECT_THROW(circle(), Cut);
+        EXPECT_FALSE(strand.over()) << "the budget is left for another search";
+        strand.begin_search();
+        EXPECT_EQ(strand(std::vector{0.5}).value, 0.5);
+      });
+}
+
+TEST(Answers, ToNanCoordinatesAreThoseOfTheMiddle) {
+  with_strand(
+      1, [](auto x) { return x[0]; }, [](Strand& strand) { EXPECT_EQ(strand(std::vector{kNan}).value, 0.5); });
+}
+
+TEST(Answers, EndWithTheBudget) {
+  with_strand(
+      1, [](auto x) { return x[0]; },
+      [](Strand& strand) {
+        strand(std::vector{0.1});
+        strand(std::vector{0.2});
+        EXPECT_TRUE(strand.over());
+        EXPECT_THROW(strand(std::vector{0.3}), Cut);
+        EXPECT_THROW(strand(std::vector{0.1}), Cut) << "once cut, a library is not to go on among known points";
+      },
+      2);
+}
+
+// Rounding of values of order 1 over a step of 1e-3.
+constexpr double kDifferenceRounding = 1e-12;
+
+TEST(Gradient, OfAParabolaIsExactInsideAndAtTheBounds) {
+  const auto parabola = [](std::span<const double> x) { return 3 * x[0] * x[0] - x[0] + 2 * x[1] * (1 - x[1]); };
+  with_strand(2, parabola, [](Strand& strand) {
+    for (const double u : {0.0, 1e-9, 0.0005, 0.3, 0.9995, 1.0}) {
+      std::vector<double> gradient(2);
+      strand.gradient(std::vector{u, 1 - u}, gradient);
+      EXPECT_NEAR(gradient[0], 6 * u - 1, kDifferenceRounding);
+      EXPECT_NEAR(gradient[1], 2 - 4 * (1 - u), kDifferenceRounding);
+    }
+  });
+}
+
+TEST(Gradient, LooksAwayFromInfeasiblePoints) {
+  const auto line = [](std::span<const double> x) { return x[0] < 0.5 ? kNan : 2 * x[0]; };
+  with_strand(1, line, [](Strand& strand) {
+    std::vector<double> gradient(1);
+    strand.gradient(std::vector{0.5}, gradient);
+    EXPECT_NEAR(gradient[0], 2, kDifferenceRounding);
+    strand.gradient(std::vector{0.1}, gradient);
+    EXPECT_EQ(gradient[0], 0);
+  });
+}
+
+TEST(Gradient, CountsAgainstTheBudget) {
+  with_strand(
+      3, [](auto x) { return x[0]; },
+      [](Strand& strand) {
+        std::vector<double> gradient(3);
+        strand.gradient(std::vector{0.5, 0.5, 0.5}, gradient);
+        EXPECT_EQ(strand.evaluations(), 7);
+      });
+}
+
+}  // namespace
+}  // namespace softland::internal
