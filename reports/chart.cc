@@ -1,12 +1,12 @@
 #include "reports/chart.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "reports/findings.h"
 #include "reports/quantity.h"
@@ -23,23 +23,30 @@ constexpr std::array<std::pair<const char*, Role>, 2> runs{std::pair{"baseline",
 
 const char* role_name(Role role) {
   switch (role) {
-    case Role::best: return "best";
-    case Role::baseline: return "baseline";
-    case Role::evaluations: break;
+    case Role::best:
+      return "best";
+    case Role::baseline:
+      return "baseline";
+    case Role::evaluations:
+      break;
   }
   return "evaluations";
 }
 
 const char* scale_name(Scale scale) {
   switch (scale) {
-    case Scale::linear: return "linear";
-    case Scale::logarithmic: return "log";
-    case Scale::symlog: break;
+    case Scale::linear:
+      return "linear";
+    case Scale::logarithmic:
+      return "log";
+    case Scale::symlog:
+      break;
   }
   return "symlog";
 }
 
-/// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left out.
+/// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
+/// out.
 Table curve_table(const json& curve) {
   const std::vector<double> times = numbers(at(curve, {"time_s"}));
   std::vector<std::size_t> sound;
@@ -54,7 +61,8 @@ Table curve_table(const json& curve) {
     std::vector<double> values;
     values.reserve(sound.size());
     for (const std::size_t row : sound) values.push_back(column[row]);
-    if (std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) table[name] = std::move(values);
+    if (std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
+      table[name] = std::move(values);
   }
   return table;
 }
@@ -128,7 +136,8 @@ double landing_end(const json& result, const Tables& tables, double window) {
   for (const auto& [name, table] : tables) {
     if (!name.starts_with("best/")) continue;
     Points points;
-    for (std::size_t row = 0; row < table.at("time_s").size(); ++row) points.push_back({table.at("time_s")[row], table.at("volts_V")[row]});
+    for (std::size_t row = 0; row < table.at("time_s").size(); ++row)
+      points.push_back({table.at("time_s")[row], table.at("volts_V")[row]});
     if (last_move(points) < 0.5 * window) cover(last_move(points));
   }
   for (const char* run : {"baseline", "best"}) {
@@ -217,6 +226,7 @@ void add_time_charts(const json& result, Picture& out) {
   keep(std::move(gap));
 
   near.id = "landing";
+  near.zero_label.clear();  // the curves lie on it
   near.title = "Gap: the landing, enlarged";
   near.caption = landing_caption(result);
   near.x_home = {0, landing};
@@ -289,7 +299,8 @@ void add_search_chart(const json& result, Picture& out) {
   out.charts.push_back(std::move(chart));
 }
 
-/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and adds nothing.
+/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and
+/// adds nothing.
 json packed(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
   double largest = 0;
   for (const std::size_t row : rows) {
@@ -341,16 +352,24 @@ json chart_json(const Picture& picture, std::size_t rows) {
       series.push_back({{"table", one.table}, {"column", one.column}, {"label", one.label}, {"role", role_name(one.role)}});
     }
     json marks = json::array();
-    for (const Mark& mark : chart.marks) marks.push_back({{"x", mark.x}, {"y", mark.y}, {"role", role_name(mark.role)}, {"text", mark.text}});
-    charts.push_back({{"id", chart.id},
-                      {"group", chart.group},
-                      {"height", chart.height},
-                      {"x", {{"column", chart.x_column}, {"label", chart.x_label}, {"unit", chart.x_unit}, {"home", chart.x_home}, {"whole", chart.x_whole}}},
-                      {"y", {{"label", chart.y_label}, {"unit", chart.y_unit}, {"scale", scale_name(chart.scale)}, {"threshold", chart.threshold}}},
-                      {"zero", chart.zero_line},
-                      {"zeroLabel", chart.zero_label},
-                      {"series", series},
-                      {"marks", marks}});
+    for (const Mark& mark : chart.marks)
+      marks.push_back({{"x", mark.x}, {"y", mark.y}, {"role", role_name(mark.role)}, {"text", mark.text}});
+    charts.push_back(
+        {{"id", chart.id},
+         {"group", chart.group},
+         {"height", chart.height},
+         {"x",
+          {{"column", chart.x_column},
+           {"label", chart.x_label},
+           {"unit", chart.x_unit},
+           {"home", chart.x_home},
+           {"whole", chart.x_whole}}},
+         {"y",
+          {{"label", chart.y_label}, {"unit", chart.y_unit}, {"scale", scale_name(chart.scale)}, {"threshold", chart.threshold}}},
+         {"zero", chart.zero_line},
+         {"zeroLabel", chart.zero_label},
+         {"series", series},
+         {"marks", marks}});
     if (chart.y_home) charts.back()["y"]["home"] = *chart.y_home;
   }
   return {{"tables", tables}, {"charts", charts}};

@@ -3,11 +3,10 @@
 
 #include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace softland::internal {
 
@@ -63,8 +62,8 @@ struct Picture {
 /// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, search. What has no data is left out.
 [[nodiscard]] Picture picture(const nlohmann::json& result);
 
-/// Tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps of a unit
-/// fine enough to be invisible (one part in ten million of the largest value).
+/// Tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps of a
+/// unit fine enough to be invisible (one part in ten million of the largest value).
 [[nodiscard]] nlohmann::json chart_json(const Picture& picture, std::size_t rows);
 
 /// The chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own colours.

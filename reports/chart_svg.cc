@@ -1,9 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include <fmt/format.h>
 
 #include "reports/chart.h"
 #include "reports/escape.h"
@@ -30,9 +30,12 @@ struct Stroke {
 
 Stroke stroke(Role role) {
   switch (role) {
-    case Role::best: return {"#0072b2", 2.2, ""};
-    case Role::baseline: return {"#d55e00", 1.3, "7 2.5"};
-    case Role::evaluations: break;
+    case Role::best:
+      return {"#0072b2", 2.2, ""};
+    case Role::baseline:
+      return {"#d55e00", 1.3, "7 2.5"};
+    case Role::evaluations:
+      break;
   }
   return {"#8a949e", 1, ""};
 }
@@ -41,14 +44,17 @@ Stroke stroke(Role role) {
 struct Axis {
   Scale scale = Scale::linear;
   double threshold = 1;
-  double low = 0, high = 1;               // data
+  double low = 0, high = 1;  // data
   double pixel_low = 0, pixel_high = 1;
 
   [[nodiscard]] double transformed(double value) const {
     switch (scale) {
-      case Scale::linear: return value;
-      case Scale::logarithmic: return std::log10(value);
-      case Scale::symlog: break;
+      case Scale::linear:
+        return value;
+      case Scale::logarithmic:
+        return std::log10(value);
+      case Scale::symlog:
+        break;
     }
     return std::asinh(value / threshold);
   }
@@ -89,7 +95,8 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
 }
 
 /// Rows of a table in view plus one on either side, thinned to first, lowest, highest and last per pixel column.
-std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const std::vector<double>& xs, const std::vector<double>& ys) {
+std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const std::vector<double>& xs,
+                                           const std::vector<double>& ys) {
   std::vector<std::array<double, 2>> out;
   std::size_t begin = static_cast<std::size_t>(std::lower_bound(xs.begin(), xs.end(), x.low) - xs.begin());
   std::size_t end = static_cast<std::size_t>(std::upper_bound(xs.begin(), xs.end(), x.high) - xs.begin());
@@ -98,8 +105,10 @@ std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const s
   std::vector<std::array<double, 2>> column;
   const auto flush = [&] {
     if (column.empty()) return;
-    const auto [low, high] = std::minmax_element(column.begin(), column.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
-    std::vector<std::size_t> kept{0, static_cast<std::size_t>(low - column.begin()), static_cast<std::size_t>(high - column.begin()), column.size() - 1};
+    const auto [low, high] =
+        std::minmax_element(column.begin(), column.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
+    std::vector<std::size_t> kept{0, static_cast<std::size_t>(low - column.begin()),
+                                  static_cast<std::size_t>(high - column.begin()), column.size() - 1};
     std::sort(kept.begin(), kept.end());
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
     for (const std::size_t i : kept) out.push_back(column[i]);
@@ -138,12 +147,20 @@ std::array<double, 2> range_in_view(const Tables& tables, const Chart& chart) {
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* colour, const char* extra = "") {
-  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"{}/>\n", x1, y1, x2, y2, colour, extra);
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"{}/>\n", x1, y1, x2, y2, colour,
+                     extra);
 }
 
-std::string label(double x, double y, const char* anchor, const char* colour, double size, std::string_view words, const char* extra = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" font-size=\"{}\"{}>{}</text>\n", x, y, anchor, colour, size, extra,
-                     escaped(words));
+std::string label(double x, double y, const char* anchor, const char* colour, double size, std::string_view words,
+                  const char* extra = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" font-size=\"{}\"{}>{}</text>\n", x, y,
+                     anchor, colour, size, extra, escaped(words));
+}
+
+/// With a true minus sign, and no negative zero.
+std::string tick_text(double value) {
+  const std::string size = fmt::format("{:.6g}", std::abs(value));
+  return value < 0 && size != "0" ? "−" + size : size;
 }
 
 /// "Time (µs)", "Gap (nm)", "cost".
@@ -188,17 +205,18 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
   for (const double tick : ticks(x, 8)) {
     const double at_pixel = x.pixel(tick);
     out += line(at_pixel, y.pixel_low, at_pixel, y.pixel_high, grid);
-    out += label(at_pixel, y.pixel_low + 17, "middle", muted, 12, fmt::format("{:.6g}", tick / x_prefix.factor));
+    out += label(at_pixel, y.pixel_low + 17, "middle", muted, 12, tick_text(tick / x_prefix.factor));
   }
-  const Prefix y_prefix = chart.y_unit.empty()              ? Prefix{}
+  const Prefix y_prefix = chart.y_unit.empty()           ? Prefix{}
                           : chart.scale == Scale::symlog ? prefix_for(chart.threshold)
                                                          : prefix_for(std::max(std::abs(y.low), std::abs(y.high)) / 1.1);
-  for (const double tick : ticks(y, std::max(2, chart.height / 50))) {
+  for (const double tick : ticks(y, std::max(3, chart.height / 45))) {
     const double at_pixel = y.pixel(tick);
     out += line(left, at_pixel, width - right, at_pixel, grid);
-    out += label(left - 8, at_pixel + 4, "end", muted, 12, fmt::format("{:.6g}", tick / y_prefix.factor));
+    out += label(left - 8, at_pixel + 4, "end", muted, 12, tick_text(tick / y_prefix.factor));
   }
-  out += label((left + width - right) / 2, y.pixel_low + 36, "middle", muted, 12.5, axis_title(chart.x_label, chart.x_unit, x_prefix));
+  out += label((left + width - right) / 2, y.pixel_low + 36, "middle", muted, 12.5,
+               axis_title(chart.x_label, chart.x_unit, x_prefix));
   const double middle = (y.pixel_low + y.pixel_high) / 2;
   out += label(16, middle, "middle", muted, 12.5, axis_title(chart.y_label, chart.y_unit, y_prefix),
                fmt::format(" transform=\"rotate(-90 16 {:.1f})\"", middle).c_str());
@@ -207,8 +225,8 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
     out += line(left, y.pixel(0), width - right, y.pixel(0), ink, " stroke-width=\"1\"");
     if (!chart.zero_label.empty()) out += label(width - right - 4, y.pixel(0) - 5, "end", muted, 11.5, chart.zero_label);
   }
-  out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n", chart.id, left,
-                     y.pixel_high, x.pixel_high - x.pixel_low, chart.height);
+  out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n",
+                     chart.id, left, y.pixel_high, x.pixel_high - x.pixel_low, chart.height);
   out += fmt::format("<g clip-path=\"url(#clip-{})\">\n", chart.id);
   for (const Series& one : chart.series) {
     const Stroke pen = stroke(one.role);
@@ -218,19 +236,22 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
     std::string path;
     if (one.role == Role::evaluations) {
       for (const auto& [px, py] : points) path += fmt::format("M{:.1f} {:.1f}h0", px, py);
-      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"3\" stroke-linecap=\"round\" stroke-opacity=\"0.55\"/>\n", path,
-                         pen.colour);
+      out += fmt::format(
+          "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"3\" stroke-linecap=\"round\" stroke-opacity=\"0.55\"/>\n",
+          path, pen.colour);
       continue;
     }
-    for (const auto& [px, py] : points) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : path.size() < 14 ? "L" : " ", px, py);
+    for (const auto& [px, py] : points)
+      path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : path.size() < 14 ? "L" : " ", px, py);
     out += fmt::format(
-        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>\n", path, pen.colour, pen.width,
-        *pen.dash ? pen.dash : "none");
+        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>\n",
+        path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
   }
   for (const Mark& mark : chart.marks) {
     if (mark.x < x.low || mark.x > x.high) continue;
     const Stroke pen = stroke(mark.role);
-    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x.pixel(mark.x), y.pixel(mark.y), pen.colour);
+    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x.pixel(mark.x), y.pixel(mark.y),
+                       pen.colour);
     if (mark.text.empty()) continue;
     out += label(x.pixel(mark.x), y.pixel(mark.y) - 7, "middle", pen.colour, 12.5, mark.text, " font-weight=\"600\"");
   }

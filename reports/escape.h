@@ -1,18 +1,18 @@
 // Text from scene files and command lines, made harmless inside HTML, SVG and <script>.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 namespace softland::internal {
 
-/// & < > " ' as entities: safe in element text and in quoted attributes of HTML and XML. Control characters that XML forbids become spaces.
+/// & < > " ' as entities: safe in element text and in quoted attributes of HTML and XML. Control characters that XML forbids
+/// become spaces.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-/// JSON for the inside of <script type="application/json">: every < is written \u003c, so that neither </script nor <!-- can occur.
-/// Bytes that are not UTF-8 become U+FFFD.
+/// JSON for the inside of <script type="application/json">: every < is written \u003c, so that neither </script nor <!-- can
+/// occur. Bytes that are not UTF-8 become U+FFFD.
 [[nodiscard]] std::string script_json(const nlohmann::json& value);
 
 }  // namespace softland::internal

@@ -1,17 +1,16 @@
 #include "reports/files.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <vector>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <fmt/format.h>
 
 #include "base/require.h"
 
@@ -91,7 +90,8 @@ void write_whole(const std::filesystem::path& path, std::string_view content) {
 }
 
 std::string trajectory_csv(const json& curves) {
-  require(curves.is_object() && curves.contains("time_s") && curves["time_s"].is_array(), "trajectory_csv: the curves hold no array time_s");
+  require(curves.is_object() && curves.contains("time_s") && curves["time_s"].is_array(),
+          "trajectory_csv: the curves hold no array time_s");
   const std::size_t rows = curves["time_s"].size();
   std::vector<std::string> names;
   const auto add = [&](const std::string& name) {

@@ -2,21 +2,21 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 namespace softland {
 
-/// Writes `content` to `path` whole: a temporary name in the same folder, fsync, rename, fsync of the folder. Whatever goes wrong, an existing
-/// file stays as it was and the temporary one is removed. Throws InvalidInput with path and reason when the folder does not exist or is not
-/// writable, `path` is a folder, or the disk is full.
+/// Writes `content` to `path` whole: a temporary name in the same folder, fsync, rename, fsync of the folder. Whatever goes
+/// wrong, an existing file stays as it was and the temporary one is removed. Throws InvalidInput with path and reason when the
+/// folder does not exist or is not writable, `path` is a folder, or the disk is full.
 void write_whole(const std::filesystem::path& path, std::string_view content);
 
-/// Curves of a run ({"time_s": [], "tip_gap_m": [], ...}) as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those that exist),
-/// then any other numeric column by name; one line per row, shortest text that reads back to the same number, an empty field for null.
-/// Arrays of another length than time_s (such as rebounds) are left out. Throws InvalidInput when there is no time_s.
+/// Curves of a run ({"time_s": [], "tip_gap_m": [], ...}) as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those
+/// that exist), then any other numeric column by name; one line per row, shortest text that reads back to the same number, an
+/// empty field for null. Arrays of another length than time_s (such as rebounds) are left out. Throws InvalidInput when there is
+/// no time_s.
 [[nodiscard]] std::string trajectory_csv(const nlohmann::json& curves);
 
 }  // namespace softland

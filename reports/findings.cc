@@ -1,9 +1,9 @@
 #include "reports/findings.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "reports/quantity.h"
 #include "reports/result_view.h"
@@ -33,8 +33,11 @@ bool settles(const json& metrics) {
   return truth(metrics, {"settled"}).value_or(true) && std::isfinite(number(metrics, {"permanent_contact_time_s"}));
 }
 
+bool clean(const json& metrics) { return touches(metrics) && settles(metrics) && number(metrics, {"bounce_count"}) == 0; }
+
 std::string closes(const Actor& actor, const std::string& when) {
-  return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, when) : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
+  return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, when)
+                              : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
 }
 
 /// What one closing does, as a clause without full stop.
@@ -48,7 +51,7 @@ std::string clause(const Actor& actor, const json& metrics, const json& errors, 
   const double first = number(metrics, {"initial_contact_time_s"});
   const double count = number(metrics, {"bounce_count"});
   const double height = number(metrics, {"major_bounce_height_m"});
-  if (settles(metrics) && count == 0) {
+  if (clean(metrics)) {
     std::string words = closes(actor, "at " + quantity(first, "s")) + " with no rebound";
     if (height > 0) words += " above " + quantity(height, "m");
     return words;
@@ -114,34 +117,41 @@ Headline headline(const json& result) {
   const std::string status = text(result, {"status"});
   if (!is_optimize(result)) {
     if (status == "interrupted") return {"The simulation was interrupted.", ""};
-    return {capitalised(clause({"the switch", ""}, best_metrics(result), at(result, {"errors"}), run_status(result), window)) + ".", ""};
+    return {
+        capitalised(clause({"the switch", ""}, best_metrics(result), at(result, {"errors"}), run_status(result), window)) + ".",
+        ""};
   }
   if (status == "collapsed_at_rest") return {"The switch has no stable rest position: it collapses before it is driven.", ""};
   Headline line;
   if (status == "interrupted") line.main = "The search was interrupted; this is its best so far. ";
   if (status != "interrupted" && truth(result, {"goal_met"}) == false) line.main = "The goal was not met. ";
-  line.main += best_metrics(result).is_object()
-                   ? capitalised(clause({own_subject, "the switch"}, best_metrics(result), at(result, {"errors"}), run_status(result), window))
-                   : "No feasible waveform was found";
+  line.main += best_metrics(result).is_object() ? capitalised(clause({own_subject, "the switch"}, best_metrics(result),
+                                                                     at(result, {"errors"}), run_status(result), window))
+                                                : "No feasible waveform was found";
   const json& baseline = baseline_metrics(result);
   if (baseline.is_object()) {
-    line.rest = "; " + clause({step_subject, "it"}, baseline, at(result, {"baseline", "errors"}), text(baseline, {"status"}), window);
+    line.rest =
+        "; " + clause({step_subject, "it"}, baseline, at(result, {"baseline", "errors"}), text(baseline, {"status"}), window);
   }
   (line.rest.empty() ? line.main : line.rest) += ".";
   return line;
 }
 
-Change change(double before, double after, bool lower_is_better) {
+Change change(double before, double after, bool lower_is_better, Kind kind) {
   if (!std::isfinite(before) || !std::isfinite(after)) return {};
   constexpr double visible = 0.005;  // a ratio nearer to 1 than half a per cent is no change worth a word
   if (std::abs(after - before) <= visible * std::abs(before)) return {"unchanged", Verdict::same};
   const bool lower = after < before;
   const Verdict verdict = !lower_is_better ? Verdict::neutral : lower ? Verdict::better : Verdict::worse;
-  if (after == 0 && before > 0) return {"gone", verdict};
-  if (!(before > 0) || !(after > 0)) return {lower ? "lower" : "higher", verdict};
+  if (after == 0 && before > 0) return {"none left", verdict};
+  const char* word = kind == Kind::time    ? (lower ? "shorter" : "longer")
+                     : kind == Kind::count ? (lower ? "fewer" : "more")
+                     : lower               ? "lower"
+                                           : "higher";
+  if (!(before > 0) || !(after > 0)) return {word, verdict};
   const double ratio = lower ? before / after : after / before;
-  if (ratio < 1.095) return {fmt::format("{:.1f} % {}", 100 * std::abs(after / before - 1), lower ? "lower" : "higher"), verdict};
-  return {fmt::format("{} times {}", ratio < 9.95 ? fmt::format("{:.1f}", ratio) : plain_number(std::round(ratio), 3), lower ? "lower" : "higher"),
+  if (ratio < 1.095) return {fmt::format("{:.1f} % {}", 100 * std::abs(after / before - 1), word), verdict};
+  return {fmt::format("{} times {}", ratio < 9.95 ? fmt::format("{:.1f}", ratio) : plain_number(std::round(ratio), 3), word),
           verdict};
 }
 
@@ -162,26 +172,34 @@ const std::vector<Figure>& figures() {
   return all;
 }
 
-std::string figure_text(const json& metrics, const Figure& figure) {
+std::string figure_text(const json& metrics, const json& beside, const Figure& figure) {
   if (figure.unit == "bool") {
     const auto value = truth(metrics, {figure.key});
     return value ? (*value ? "yes" : "no") : "—";
   }
   constexpr int digits = 4;
-  return quantity(number(metrics, {figure.key}), figure.unit, digits);
+  return quantity_beside(number(metrics, {figure.key}), number(beside, {figure.key}), figure.unit, digits);
+}
+
+Change figure_change(const json& before, const json& after, const Figure& figure) {
+  return change(number(before, {figure.key}), number(after, {figure.key}), figure.lower_is_better, figure.kind());
 }
 
 std::string gap_caption(const json& result) {
-  const std::string what = fmt::format(
-      "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above {}.", quantity(significant_rebound(result), "m", 1));
-  const std::string found = is_optimize(result) ? joined(aftermath(step_subject, baseline_metrics(result)), aftermath(own_subject, best_metrics(result)))
+  const std::string what =
+      fmt::format("Distance of the contact point to the contact plane (positive: open); dots mark rebounds above {}.",
+                  quantity(significant_rebound(result), "m", 1));
+  const std::string found = is_optimize(result) ? joined(aftermath(step_subject, baseline_metrics(result)),
+                                                         aftermath(own_subject, best_metrics(result)))
                                                 : joined(aftermath("the switch", best_metrics(result)), "");
   return found.empty() ? what : what + " " + found;
 }
 
 std::string landing_caption(const json& result) {
-  return fmt::format("The same gap, enlarged: the scale is logarithmic above {} and linear below, so that rebounds of a few nanometres show beside the whole travel.",
-                     quantity(significant_rebound(result), "m", 1));
+  return fmt::format(
+      "The same gap, enlarged: the scale is logarithmic above {} and linear below, so that rebounds of a few nanometres show "
+      "beside the whole travel.",
+      quantity(significant_rebound(result), "m", 1));
 }
 
 std::string velocity_caption(const json& result) {
@@ -192,8 +210,8 @@ std::string velocity_caption(const json& result) {
     return std::isfinite(own) ? fmt::format("{} It lands with {}.", what, quantity(own, "m/s")) : what;
   }
   if (!std::isfinite(own)) return fmt::format("{} The plain step lands with {}.", what, quantity(step, "m/s"));
-  return fmt::format("{} The plain step lands with {}, softland's waveform with {}{}.", what, quantity(step, "m/s"), quantity(own, "m/s"),
-                     in_brackets(change(step, own, true)));
+  return fmt::format("{} The plain step lands with {}, softland's waveform with {}{}.", what, quantity(step, "m/s"),
+                     quantity(own, "m/s"), in_brackets(change(step, own, true)));
 }
 
 std::string force_caption(const json& result) {
@@ -212,6 +230,8 @@ std::string force_caption(const json& result) {
 }
 
 std::string waveform_caption(const json& result, const std::string& drive) {
+  const json& shape = at(result, {"best", "waveforms", drive});
+  const bool equal = is_optimize(result) && !shape.is_null() && shape == at(result, {"baseline", "waveforms", drive});
   const auto range = [&](const char* run) -> std::string {
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -lowest;
@@ -221,13 +241,16 @@ std::string waveform_caption(const json& result, const std::string& drive) {
       highest = std::max(highest, number(point[1]));
     }
     if (lowest > highest) return {};
-    if (lowest == highest) return "stays at " + quantity(lowest, "V");
-    return fmt::format("runs between {} and {}", quantity(lowest, "V"), quantity(highest, "V"));
+    if (lowest == highest) return fmt::format("{} at {}", equal ? "stay" : "stays", quantity(lowest, "V"));
+    return fmt::format("{} between {} and {}", equal ? "run" : "runs", quantity_beside(lowest, highest, "V"),
+                       quantity_beside(highest, lowest, "V"));
   };
   const std::string own = range("best");
+  if (equal && !own.empty()) return fmt::format("Voltage of the drive “{}”. Both waveforms {}.", drive, own);
   const std::string step = range("baseline");
   const std::string name = is_optimize(result) ? own_subject : "the waveform";
-  const std::string found = joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
+  const std::string found =
+      joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
   return fmt::format("Voltage of the drive “{}”.{}", drive, found.empty() ? "" : " " + found);
 }
 
@@ -252,20 +275,29 @@ std::string search_caption(const json& result) {
   if (!std::isfinite(first)) return words;
   const double evaluations = number(result, {"evaluations"});
   const Change lowered = change(first, last, true);
-  words += std::isfinite(evaluations) ? fmt::format(" In {:.0f} evaluations the {} fell", evaluations, name) : fmt::format(" The {} fell", name);
-  return words + fmt::format(" from {} to {}{}; the winner is evaluation {:.0f}.", plain_number(first), plain_number(last), in_brackets(lowered), found_at);
+  words += std::isfinite(evaluations) ? fmt::format(" In {:.0f} evaluations the {} fell", evaluations, name)
+                                      : fmt::format(" The {} fell", name);
+  return words + fmt::format(" from {} to {}{}; the winner is evaluation {:.0f}.", plain_number(first), plain_number(last),
+                             in_brackets(lowered), found_at);
+}
+
+bool checks_agree(const json& result) {
+  const json& checks = at(result, {"checks"});
+  if (!checks.is_array()) return true;
+  return number(best_metrics(result), {"bounce_count"}) != 0 ||
+         std::all_of(checks.begin(), checks.end(), [](const json& check) { return clean(at(check, {"metrics"})); });
 }
 
 std::string checks_caption(const json& result) {
   const json& checks = at(result, {"checks"});
   if (!checks.is_array() || checks.empty()) return {};
-  std::size_t clean = 0;
+  std::size_t clean_runs = 0;
   std::string worst;
   double worst_height = -1;
   for (const json& check : checks) {
     const json& metrics = at(check, {"metrics"});
-    if (touches(metrics) && settles(metrics) && number(metrics, {"bounce_count"}) == 0) {
-      ++clean;
+    if (clean(metrics)) {
+      ++clean_runs;
       continue;
     }
     const double height = number(metrics, {"major_bounce_height_m"});
@@ -275,11 +307,14 @@ std::string checks_caption(const json& result) {
     }
   }
   const char* noun = checks.size() == 1 ? "confirmation" : "confirmations";
-  if (clean == checks.size()) {
-    return checks.size() == 1 ? "The winner was simulated again another way; that run closes without a rebound too."
-                              : fmt::format("The winner was simulated again in {} other ways; all of them close without a rebound.", checks.size());
+  if (clean_runs == checks.size()) {
+    return checks.size() == 1
+               ? "The winner was simulated again another way; that run closes without a rebound too."
+               : fmt::format("The winner was simulated again in {} other ways; all of them close without a rebound.",
+                             checks.size());
   }
-  std::string words = fmt::format("{} of {} {} of the winner {} without a rebound", clean, checks.size(), noun, clean == 1 ? "closes" : "close");
+  std::string words = fmt::format("{} of {} {} of the winner {} without a rebound", clean_runs, checks.size(), noun,
+                                  clean_runs == 1 ? "closes" : "close");
   if (worst_height > 0) words += fmt::format("; the highest rebound is {} (“{}”)", quantity(worst_height, "m"), worst);
   return words + ".";
 }

@@ -1,15 +1,14 @@
 // What a result says, in words computed from its numbers.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 namespace softland::internal {
 
-/// The finding in one sentence, in two parts so that a page can weigh them differently: `main` is about the winner or the single run,
-/// `rest` about the baseline (empty for a single run). main + rest is the whole sentence, with its full stop.
+/// The finding in one sentence, in two parts so that a page can weigh them differently: `main` is about the winner or the single
+/// run, `rest` about the baseline (empty for a single run). main + rest is the whole sentence, with its full stop.
 struct Headline {
   std::string main;
   std::string rest;
@@ -25,16 +24,20 @@ struct Headline {
 [[nodiscard]] std::string waveform_caption(const nlohmann::json& result, const std::string& drive);
 [[nodiscard]] std::string search_caption(const nlohmann::json& result);
 [[nodiscard]] std::string checks_caption(const nlohmann::json& result);
+/// False when the winner is free of rebounds but one of its confirmations is not.
+[[nodiscard]] bool checks_agree(const nlohmann::json& result);
 
 enum class Verdict { better, worse, same, neutral };
 
-/// How a figure changed from baseline to winner: "8.4 times lower", "gone" when it became 0, "unchanged"; empty when either is missing.
+/// How a figure changed from baseline to winner: "8.4 times lower" (a time: shorter, a count: fewer), "none left" when it became
+/// 0, "unchanged"; empty when either is missing.
 struct Change {
   std::string words;
   Verdict verdict = Verdict::neutral;
 };
+enum class Kind { size, time, count };
 /// `lower_is_better`: otherwise the change is neutral, neither good nor bad.
-[[nodiscard]] Change change(double before, double after, bool lower_is_better);
+[[nodiscard]] Change change(double before, double after, bool lower_is_better, Kind kind = Kind::size);
 
 /// One line of the table of figures.
 struct Figure {
@@ -42,10 +45,12 @@ struct Figure {
   std::string label;
   std::string unit;  ///< empty: a count; "bool": yes or no
   bool lower_is_better = false;
+  [[nodiscard]] Kind kind() const { return unit == "s" ? Kind::time : unit.empty() ? Kind::count : Kind::size; }
 };
 [[nodiscard]] const std::vector<Figure>& figures();
-/// The value of a figure as text, an em dash when not available.
-[[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const Figure& figure);
+/// The value of a figure as text, an em dash when not available; `beside` are the metrics shown next to it.
+[[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& beside, const Figure& figure);
+[[nodiscard]] Change figure_change(const nlohmann::json& before, const nlohmann::json& after, const Figure& figure);
 
 /// "Softland's waveform" and "plain step", or "closing" for a single run.
 [[nodiscard]] std::string best_label(const nlohmann::json& result);

@@ -1,10 +1,10 @@
 #include "reports/html.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "base/require.h"
 #include "reports/chart.h"
@@ -43,15 +43,19 @@ std::string filled(std::string_view page, const std::map<std::string, std::strin
 /// Text cut to `most_text` bytes at a line end, with a word about it.
 std::string shortened(const std::string& words) {
   if (words.size() <= most_text) return words;
-  return words.substr(0, words.rfind('\n', most_text)) + fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
+  return words.substr(0, words.rfind('\n', most_text)) +
+         fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
 }
 
 std::string verdict_class(Verdict verdict) {
   switch (verdict) {
-    case Verdict::better: return "better";
-    case Verdict::worse: return "worse";
+    case Verdict::better:
+      return "better";
+    case Verdict::worse:
+      return "worse";
     case Verdict::same:
-    case Verdict::neutral: break;
+    case Verdict::neutral:
+      break;
   }
   return "neutral";
 }
@@ -64,11 +68,14 @@ std::string key_number(const json& result, std::string_view key, std::string_vie
   const Figure& shown = figure(key);
   const json& own = best_metrics(result);
   const json& step = baseline_metrics(result);
-  const auto words = [&](const json& metrics) { return quantity(number(metrics, {key}), shown.unit); };
+  const auto words = [&](const json& metrics, const json& beside) {
+    return quantity_beside(number(metrics, {key}), number(beside, {key}), shown.unit);
+  };
   std::string out = fmt::format("<div class=\"key\"><dt>{}</dt><dd>", label);
-  if (is_optimize(result) && step.is_object()) out += fmt::format("<span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> ", words(step));
-  out += fmt::format("<span class=\"after\">{}</span>", words(own));
-  if (const Change changed = change(number(step, {key}), number(own, {key}), shown.lower_is_better); !changed.words.empty()) {
+  if (is_optimize(result) && step.is_object())
+    out += fmt::format("<span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> ", words(step, own));
+  out += fmt::format("<span class=\"after\">{}</span>", words(own, step));
+  if (const Change changed = figure_change(step, own, shown); !changed.words.empty()) {
     out += fmt::format("<span class=\"change {}\">{}</span>", verdict_class(changed.verdict), changed.words);
   }
   return out + "</dd></div>\n";
@@ -76,7 +83,8 @@ std::string key_number(const json& result, std::string_view key, std::string_vie
 
 std::string key_numbers(const json& result) {
   return key_number(result, "permanent_contact_time_s", "Settling time") + key_number(result, "bounce_count", "Rebounds") +
-         key_number(result, "major_bounce_height_m", "Highest rebound") + key_number(result, "impact_velocity_m_s", "Impact speed");
+         key_number(result, "major_bounce_height_m", "Highest rebound") +
+         key_number(result, "impact_velocity_m_s", "Impact speed");
 }
 
 std::string figures_table(const json& result) {
@@ -85,8 +93,10 @@ std::string figures_table(const json& result) {
   const json& errors = at(result, {"errors"});
   if (!own.is_object() && !step.is_object()) return {};
   const bool pair = is_optimize(result) && step.is_object();
-  const bool estimated = errors.is_object() && std::any_of(errors.begin(), errors.end(), [](const json& error) { return error.is_number(); });
-  std::string out = "<section id=\"figures\"><h2>Figures</h2>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
+  const bool estimated =
+      errors.is_object() && std::any_of(errors.begin(), errors.end(), [](const json& error) { return error.is_number(); });
+  std::string out =
+      "<section id=\"figures\"><h2>Figures</h2>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
   if (pair) out += "<th scope=\"col\">Plain step</th>";
   out += pair ? "<th scope=\"col\">Softland</th><th scope=\"col\">Change</th>" : "<th scope=\"col\">Value</th>";
   if (estimated) out += "<th scope=\"col\">Estimated error</th>";
@@ -94,10 +104,10 @@ std::string figures_table(const json& result) {
   for (const Figure& one : figures()) {
     if (at(own, {one.key}).is_null() && at(step, {one.key}).is_null()) continue;
     out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label);
-    if (pair) out += fmt::format("<td>{}</td>", figure_text(step, one));
-    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, one));
+    if (pair) out += fmt::format("<td>{}</td>", figure_text(step, own, one));
+    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, step, one));
     if (pair) {
-      const Change changed = change(number(step, {one.key}), number(own, {one.key}), one.lower_is_better);
+      const Change changed = figure_change(step, own, one);
       out += fmt::format("<td class=\"{}\">{}</td>", verdict_class(changed.verdict), changed.words);
     }
     if (estimated) {
@@ -117,20 +127,24 @@ std::string charts(const Picture& drawn) {
   std::string time_charts;
   std::string search;
   for (const Chart& chart : drawn.charts) {
-    std::string words = fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n", chart.id, escaped(chart.title));
-    words += fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width, chart_svg_height(chart),
-                         escaped(chart.title + ". " + chart.caption), chart_svg(drawn.tables, chart, width, 0));
+    std::string words = fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n",
+                                    chart.id, escaped(chart.title));
+    words += fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
+                         chart_svg_height(chart), escaped(chart.title + ". " + chart.caption),
+                         chart_svg(drawn.tables, chart, width, 0));
     words += fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(chart.caption));
     (chart.group.empty() ? search : time_charts) += words;
   }
   std::string out;
   if (!time_charts.empty()) {
-    out += "<section id=\"charts\"><h2>The closing</h2>\n<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
-           "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview and landing</button>"
-           "<button type=\"button\" data-view=\"landing\" aria-pressed=\"false\">Landing</button>"
-           "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
-           "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 back.</span></div>\n" +
-           time_charts + "</section>\n";
+    out +=
+        "<section id=\"charts\"><h2>The closing</h2>\n<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
+        "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview and landing</button>"
+        "<button type=\"button\" data-view=\"landing\" aria-pressed=\"false\">Landing</button>"
+        "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
+        "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 "
+        "back.</span></div>\n" +
+        time_charts + "</section>\n";
   }
   if (!search.empty()) out += "<section id=\"search\"><h2>The search</h2>\n" + search + "</section>\n";
   return out;
@@ -154,13 +168,18 @@ std::string list_of(const json& lines, std::string_view heading, std::string_vie
 std::string checks_table(const json& result) {
   const json& checks = at(result, {"checks"});
   if (!checks.is_array() || checks.empty()) return {};
-  const std::vector<std::string_view> keys{"initial_contact_time_s", "permanent_contact_time_s", "bounce_count", "major_bounce_height_m", "impact_velocity_m_s"};
-  std::string out = "<section id=\"checks\"><h2>Confirmations</h2>\n<p>" + escaped(checks_caption(result)) + "</p>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Simulated with</th>";
-  for (const std::string_view key : keys) out += fmt::format("<th scope=\"col\">{}</th>", figure(key).label);
+  const std::vector<std::string_view> keys{"initial_contact_time_s", "permanent_contact_time_s", "bounce_count",
+                                           "major_bounce_height_m", "impact_velocity_m_s"};
+  std::string out = "<section id=\"checks\"><h2>Confirmations</h2>\n<p>" + escaped(checks_caption(result)) +
+                    "</p>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Simulated with</th>";
+  for (const char* label : {"First contact", "Permanent contact", "Rebounds", "Highest rebound", "Impact speed"}) {
+    out += fmt::format("<th scope=\"col\">{}</th>", label);
+  }
   out += "</tr></thead><tbody>\n";
   const auto row = [&](const std::string& name, const json& metrics) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(name));
-    for (const std::string_view key : keys) out += fmt::format("<td>{}</td>", figure_text(metrics, figure(key)));
+    for (const std::string_view key : keys)
+      out += fmt::format("<td>{}</td>", figure_text(metrics, baseline_metrics(result), figure(key)));
     out += "</tr>\n";
   };
   row("as searched", best_metrics(result));
@@ -171,11 +190,15 @@ std::string checks_table(const json& result) {
 std::string parameters_table(const json& result) {
   const json& parameters = at(result, {"best", "parameters"});
   if (!parameters.is_object() || parameters.empty()) return {};
-  std::string out = "<section id=\"parameters\"><h2>The waveform found</h2>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Parameter</th><th scope=\"col\">Value</th></tr></thead><tbody>\n";
+  std::string out =
+      "<section id=\"parameters\"><h2>The waveform found</h2>\n<div class=\"scroll\"><table><thead><tr><th "
+      "scope=\"col\">Parameter</th><th scope=\"col\">Value</th></tr></thead><tbody>\n";
   std::size_t shown = 0;
   for (const auto& [name, value] : parameters.items()) {
     if (shown++ == most_lines) break;
-    const std::string words = value.is_number() ? plain_number(value.get<double>(), 7) : value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string words = value.is_number()   ? plain_number(value.get<double>(), 7)
+                              : value.is_string() ? value.get<std::string>()
+                                                  : value.dump();
     out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(words));
   }
   return out + "</tbody></table></div></section>\n";
@@ -222,7 +245,8 @@ std::string facts(const json& result) {
   fact("Right-hand sides", any({"work", "rhs_evaluations"}));
   fact("Computing time", measured({"work", "wall_s"}, "s", 3));
   fact("softland", any({"version"}));
-  return out.empty() ? out : "<section id=\"facts\"><h2>About this result</h2>\n<dl class=\"facts\">\n" + out + "</dl></section>\n";
+  return out.empty() ? out
+                     : "<section id=\"facts\"><h2>About this result</h2>\n<dl class=\"facts\">\n" + out + "</dl></section>\n";
 }
 
 std::string reproduce(const json& result) {
@@ -235,15 +259,17 @@ std::string reproduce(const json& result) {
   }
   if (commands.empty()) commands = text(result, {"command"});
   return commands.empty() ? commands
-                          : "<section id=\"reproduce\"><h2>Reproduce it</h2>\n<pre><code>" + escaped(shortened(commands)) + "</code></pre></section>\n";
+                          : "<section id=\"reproduce\"><h2>Reproduce it</h2>\n<pre><code>" + escaped(shortened(commands)) +
+                                "</code></pre></section>\n";
 }
 
 std::string scene(const json& result) {
   std::string words = text(result, {"scene_toml"});
-  if (words.empty() && at(result, {"scene"}).is_object()) words = at(result, {"scene"}).dump(2, ' ', false, json::error_handler_t::replace);
+  if (words.empty() && at(result, {"scene"}).is_object())
+    words = at(result, {"scene"}).dump(2, ' ', false, json::error_handler_t::replace);
   if (words.empty()) return {};
-  return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" + escaped(shortened(words)) +
-         "</code></pre></details></section>\n";
+  return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
+         escaped(shortened(words)) + "</code></pre></details></section>\n";
 }
 
 }  // namespace
@@ -267,6 +293,7 @@ std::string html_report(const json& result) {
                                               {"title", escaped(title)},
                                               {"headline", escaped(line.main)},
                                               {"headline_rest", escaped(line.rest)},
+                                              {"doubt", checks_agree(result) ? "" : escaped(checks_caption(result))},
                                               {"keys", key_numbers(result)},
                                               {"warnings", list_of(at(result, {"warnings"}), "Warnings", "warnings")},
                                               {"charts", charts(drawn)},

@@ -1,16 +1,18 @@
 #include "reports/quantity.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 
-#include <fmt/format.h>
-
 namespace softland::internal {
 namespace {
 
-constexpr std::array prefixes{Prefix{1e-18, "a"}, Prefix{1e-15, "f"}, Prefix{1e-12, "p"}, Prefix{1e-9, "n"}, Prefix{1e-6, "µ"}, Prefix{1e-3, "m"},
-                              Prefix{1.0, ""},    Prefix{1e3, "k"},   Prefix{1e6, "M"},   Prefix{1e9, "G"},  Prefix{1e12, "T"}};
+constexpr std::array prefixes{Prefix{1e-18, "a"}, Prefix{1e-15, "f"}, Prefix{1e-12, "p"}, Prefix{1e-9, "n"},
+                              Prefix{1e-6, "µ"},  Prefix{1e-3, "m"},  Prefix{1.0, ""},    Prefix{1e3, "k"},
+                              Prefix{1e6, "M"},   Prefix{1e9, "G"},   Prefix{1e12, "T"}};
 
 /// `value` rounded to `digits` significant digits, still a double.
 double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}e}", value, digits - 1).c_str(), nullptr); }
@@ -38,6 +40,11 @@ std::string quantity(double value, std::string_view unit, int digits) {
   const int whole_digits = number != 0 ? static_cast<int>(std::floor(std::log10(std::abs(number)) + 1e-9)) + 1 : 1;
   const int decimals = std::max(0, digits - whole_digits);
   return fmt::format("{:.{}f}{}{}{}", number, decimals, no_break_space, prefix.symbol, unit);
+}
+
+std::string quantity_beside(double value, double neighbour, std::string_view unit, int digits) {
+  if (value != 0 || unit.empty() || !std::isfinite(neighbour)) return quantity(value, unit, digits);
+  return fmt::format("0\u00a0{}{}", prefix_for(neighbour).symbol, unit);
 }
 
 std::string plain_number(double value, int digits) {

@@ -1,8 +1,8 @@
 #include "reports/svg.h"
 
-#include <vector>
-
 #include <fmt/format.h>
+
+#include <vector>
 
 #include "base/require.h"
 #include "reports/chart.h"
@@ -35,12 +35,13 @@ std::string svg_gap_chart(const nlohmann::json& result) {
   constexpr double margin = 24;
   constexpr double between = 14;
   constexpr double line_height = 24;
-  constexpr std::size_t columns = 96;
+  constexpr std::size_t columns = 84;
 
   std::string body;
   double top = margin;
   for (const std::string& line : wrapped(headline(result).whole(), columns)) {
-    body += fmt::format("<text x=\"0\" y=\"{:.1f}\" fill=\"#1b1f24\" font-size=\"17\" font-weight=\"600\">{}</text>\n", top, escaped(line));
+    body += fmt::format("<text x=\"0\" y=\"{:.1f}\" fill=\"#1b1f24\" font-size=\"17\" font-weight=\"600\">{}</text>\n", top,
+                        escaped(line));
     top += line_height;
   }
   if (const std::string title = text(result, {"title"}); !title.empty()) {
@@ -60,7 +61,8 @@ std::string svg_gap_chart(const nlohmann::json& result) {
   }
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" viewBox=\"0 0 {0} {1:.0f}\" role=\"img\" "
-      "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
+      "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n<rect width=\"100%\" "
+      "height=\"100%\" fill=\"#fff\"/>\n"
       "<g transform=\"translate({3} {4})\">\n{5}</g>\n</svg>\n",
       width, top + margin, escaped(headline(result).whole()), margin, 10, body);
 }

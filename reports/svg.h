@@ -1,15 +1,14 @@
 // A picture of a result for documents that cannot run a page.
 #pragma once
 
-#include <string>
-
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace softland {
 
-/// A static SVG document, 900 px wide: the finding in words, gap against time of baseline and winner (the whole closing and the landing
-/// enlarged) and the drive waveforms below. `result` is the JSON that simulate and optimize write; what it lacks is left out.
-/// Throws InvalidInput when `result` is not a JSON object.
+/// A static SVG document, 900 px wide: the finding in words, gap against time of baseline and winner (the whole closing and the
+/// landing enlarged) and the drive waveforms below. `result` is the JSON that simulate and optimize write; what it lacks is left
+/// out. Throws InvalidInput when `result` is not a JSON object.
 [[nodiscard]] std::string svg_gap_chart(const nlohmann::json& result);
 
 }  // namespace softland

@@ -19,6 +19,7 @@
   const quantity = (value, unit, digits = 4) => {
     if (value == null || !isFinite(value)) return "";
     if (!unit) return String(+value.toPrecision(digits));
+    if (value === 0) return "0" + noBreak + unit;
     const [factor, symbol] = prefix(Math.abs(value));
     return (value / factor).toPrecision(digits).replace("-", "\u2212") + noBreak + symbol + unit;
   };
@@ -26,8 +27,9 @@
 
   // One x axis for curves with knots of their own: the union of all knots, values in between on the straight line. A jump (two knots at one
   // x) stays a jump.
-  const aligned = (curves) => {
-    const count = new Map();
+  // A few knots far apart get company (`extra`), so that the read-out follows the cursor.
+  const aligned = (curves, extra) => {
+    const count = new Map(extra.map((x) => [x, 1]));
     for (const {xs} of curves) {
       for (let i = 0; i < xs.length; ) {
         let next = i;
@@ -56,6 +58,8 @@
     });
     return [x, ...rows];
   };
+
+  const grid = ({whole, home}) => [whole, home].flatMap(([low, high]) => Array.from({length: 1001}, (none, i) => low + ((high - low) * i) / 1000));
 
   const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
   const pens = {
@@ -190,7 +194,7 @@
         ...(chart.group ? {sync: {key: chart.group, setSeries: false, scales: ["x", null], filters: {pub: (type) => type === "mousemove" || type === "mouseleave"}}} : {}),
         bind: {dblclick: () => () => goHome(chart)},
       },
-      legend: {live: true, markers: {width: 3}},
+      legend: {live: true, markers: {width: 3, dash: (u, index) => (u.series[index].dash ? "dashed" : "solid")}},
       scales: {x: {time: false, min: start[0], max: start[1], range: (u, min, max) => [min, max]}, y: {...distribution, ...(range ? {range} : {})}},
       axes: [
         axis("x", x.unit, {
@@ -230,6 +234,7 @@
             if (key !== "x" || chart.group !== "time" || (min === low && max === high)) return;
             press(null);
             spread(() => [min, max]);
+            for (const other of timeCharts()) drawn.get(other.id).setCursor({left: -10, top: -10}, false);
           },
         ],
       },
@@ -241,7 +246,7 @@
     drawn.clear();
     for (const chart of charts) {
       const place = document.querySelector(`[data-chart="${chart.id}"]`);
-      const data = aligned(chart.series.map(({table, column: key}) => ({xs: tables[table][chart.x.column], ys: tables[table][key]})));
+      const data = aligned(chart.series.map(({table, column: key}) => ({xs: tables[table][chart.x.column], ys: tables[table][key]})), chart.group ? grid(chart.x) : []);
       const range = wanted.get(chart.id) || chart.x.home;
       wanted.set(chart.id, range);
       const u = new uPlot(options(chart, place.clientWidth, range), data, place);

@@ -101,7 +101,10 @@ Sample soft_landing(double time) {
 
 template <class Motion>
 json curve(std::size_t rows, const Motion& motion) {
-  json out{{"time_s", json::array()}, {"tip_gap_m", json::array()}, {"tip_velocity_m_s", json::array()}, {"contact_force_N", json::array()},
+  json out{{"time_s", json::array()},
+           {"tip_gap_m", json::array()},
+           {"tip_velocity_m_s", json::array()},
+           {"contact_force_N", json::array()},
            {"rebounds", json::array()}};
   for (std::size_t row = 0; row < rows; ++row) {
     const double time = window * static_cast<double>(row) / static_cast<double>(rows - 1);
@@ -115,9 +118,18 @@ json curve(std::size_t rows, const Motion& motion) {
 }
 
 json metrics(double first, double settled, int count, double height, double speed, double force) {
-  return {{"initial_contact_time_s", first}, {"permanent_contact_time_s", settled}, {"bounce_time_s", settled - first}, {"bounce_count", count},
-          {"major_bounce_height_m", height}, {"impact_velocity_m_s", speed},        {"peak_contact_force_N", force},   {"impact_energy_J", 3e-12 * speed},
-          {"hold_force_N", 2.1e-6},          {"drive_energy_J", 41.3e-12},          {"peak_voltage_V", 28.087},        {"peak_slew_V_s", nullptr},
+  return {{"initial_contact_time_s", first},
+          {"permanent_contact_time_s", settled},
+          {"bounce_time_s", settled - first},
+          {"bounce_count", count},
+          {"major_bounce_height_m", height},
+          {"impact_velocity_m_s", speed},
+          {"peak_contact_force_N", force},
+          {"impact_energy_J", 3e-12 * speed},
+          {"hold_force_N", 2.1e-6},
+          {"drive_energy_J", 41.3e-12},
+          {"peak_voltage_V", 28.087},
+          {"peak_slew_V_s", nullptr},
           {"settled", true}};
 }
 
@@ -164,21 +176,31 @@ json sample_optimize_result(std::size_t rows_per_curve) {
               {"warnings", {"The width exceeds five thicknesses and plate_strain is off: the stiffness may be up to 10 % low."}},
               {"scene_toml", scene_text},
               {"scene", {{"metrics", {{"significant_rebound", "1 nm"}}}}},
-              {"reproduce", {"softland optimize scenes/mem-gold-pzt.toml --target bounce --actuator pzt --seed 1", "softland simulate out/best.toml"}}};
+              {"reproduce",
+               {"softland optimize scenes/mem-gold-pzt.toml --target bounce --actuator pzt --seed 1",
+                "softland simulate out/best.toml"}}};
   result["best"]["metrics"] = metrics(44.5e-6, 44.5e-6, 0, 0, 0.9e-3, 2.7e-6);
-  result["best"]["parameters"] = {{"piezo.level_1_V", 0.17327}, {"piezo.level_2_V", 0.60281}, {"piezo.time_1_s", 19.74662e-6}, {"piezo.time_2_s", 40.90419e-6}};
+  result["best"]["parameters"] = {{"piezo.level_1_V", 0.17327},
+                                  {"piezo.level_2_V", 0.60281},
+                                  {"piezo.time_1_s", 19.74662e-6},
+                                  {"piezo.time_2_s", 40.90419e-6}};
   result["metrics"] = result["best"]["metrics"];
-  result["errors"] = {{"initial_contact_time_s", 2.1e-9}, {"permanent_contact_time_s", 2.1e-9}, {"impact_velocity_m_s", 1.4e-4}, {"major_bounce_height_m", nullptr}};
+  result["errors"] = {{"initial_contact_time_s", 2.1e-9},
+                      {"permanent_contact_time_s", 2.1e-9},
+                      {"impact_velocity_m_s", 1.4e-4},
+                      {"major_bounce_height_m", nullptr}};
   result["baseline"]["metrics"] = metrics(23.186e-6, 374e-6, 57, 803.1e-9, 0.1328, 290e-6);
-  result["best"]["waveforms"] = {{"main", {{0, 28.087}}},
-                                 {"piezo",
-                                  {{0, 0}, {5e-6, 0.17327}, {19.74662e-6, 0.17327}, {24.74662e-6, 0.60281}, {40.90419e-6, 0.60281}, {45.90419e-6, 0}}}};
+  result["best"]["waveforms"] = {
+      {"main", {{0, 28.087}}},
+      {"piezo",
+       {{0, 0}, {5e-6, 0.17327}, {19.74662e-6, 0.17327}, {24.74662e-6, 0.60281}, {40.90419e-6, 0.60281}, {45.90419e-6, 0}}}};
   result["baseline"]["waveforms"] = {{"main", {{0, 28.087}}}, {"piezo", {{0, 0}}}};
   result["checks"] = {{{"name", "tolerance 1e-9"}, {"metrics", metrics(44.502e-6, 44.502e-6, 0, 0, 0.88e-3, 2.7e-6)}},
                       {{"name", "6 modes"}, {"metrics", metrics(44.31e-6, 47.92e-6, 1, 3.2e-9, 2.3e-3, 4.1e-6)}}};
   result["curves"]["baseline"] = curve(rows_per_curve, [&](double time) { return plain_step(time, arcs); });
   result["curves"]["best"] = curve(rows_per_curve, soft_landing);
-  for (const Arc& arc : arcs) result["curves"]["baseline"]["rebounds"].push_back({arc.begin, arc.end, arc.height, (arc.begin + arc.end) / 2});
+  for (const Arc& arc : arcs)
+    result["curves"]["baseline"]["rebounds"].push_back({arc.begin, arc.end, arc.height, (arc.begin + arc.end) / 2});
 
   json tried = json::array();
   json best_so_far = json::array();
@@ -198,13 +220,17 @@ json sample_simulate_result(std::size_t rows_per_curve) {
   json result = sample_optimize_result(rows_per_curve);
   result["kind"] = "simulate";
   result["metrics"] = result["baseline"]["metrics"];
-  result["errors"] = {{"initial_contact_time_s", 3e-10}, {"permanent_contact_time_s", 21e-6}, {"bounce_count", 6}, {"major_bounce_height_m", 8e-10}};
+  result["errors"] = {{"initial_contact_time_s", 3e-10},
+                      {"permanent_contact_time_s", 21e-6},
+                      {"bounce_count", 6},
+                      {"major_bounce_height_m", 8e-10}};
   result["curves"]["best"] = result["curves"]["baseline"];
   result["curves"].erase("baseline");
   result["best"] = {{"waveforms", result["baseline"]["waveforms"]}};
   result["command"] = "softland simulate scenes/mem-gold-pzt.toml";
   result["reproduce"] = {"softland simulate scenes/mem-gold-pzt.toml"};
-  for (const char* key : {"baseline", "search", "checks", "target", "actuator", "optimizer", "evaluations", "budget", "termination", "goal_met", "seed"}) {
+  for (const char* key : {"baseline", "search", "checks", "target", "actuator", "optimizer", "evaluations", "budget",
+                          "termination", "goal_met", "seed"}) {
     result.erase(key);
   }
   return result;

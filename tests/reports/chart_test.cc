@@ -1,0 +1,103 @@
+#include "reports/chart.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sample_result.h"
+
+namespace softland::internal {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::string> ids(const Picture& drawn) {
+  std::vector<std::string> out;
+  for (const Chart& chart : drawn.charts) out.push_back(chart.id);
+  return out;
+}
+
+std::vector<double> unpacked(const json& column) {
+  std::vector<double> out;
+  long long sum = 0;
+  for (const json& step : column.at("steps")) {
+    if (step.is_null()) {
+      out.push_back(std::nan(""));
+      continue;
+    }
+    sum += step.get<long long>();
+    out.push_back(static_cast<double>(sum) * column.at("unit").get<double>());
+  }
+  return out;
+}
+
+TEST(Charts, FollowTheParts) {
+  json result = softland::testing::sample_optimize_result(600);
+  EXPECT_EQ(ids(picture(result)),
+            (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity", "force", "search"}));
+  result.erase("search");
+  result["curves"]["best"].erase("contact_force_N");
+  result["curves"]["baseline"]["contact_force_N"] = {1, 2, 3};  // of another length than its times
+  EXPECT_EQ(ids(picture(result)), (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity"}));
+  EXPECT_TRUE(picture(json::object()).charts.empty());
+}
+
+TEST(Charts, EnlargeTheLandingAndTheHighestRebound) {
+  const Picture drawn = picture(softland::testing::sample_optimize_result(6000));
+  EXPECT_EQ(drawn.charts[0].x_home[1], 600e-6);
+  EXPECT_GT(drawn.charts[1].x_home[1], 60e-6);
+  EXPECT_LT(drawn.charts[1].x_home[1], 150e-6);
+}
+
+TEST(Charts, DropRowsWithoutATimeAndTimesThatRunBackwards) {
+  const json result{
+      {"kind", "simulate"},
+      {"curves", {{"best", {{"time_s", {0, 1e-6, nullptr, 0.5e-6, 2e-6}}, {"tip_gap_m", {2e-6, 1e-6, 7, 8, nullptr}}}}}}};
+  const Table table = picture(result).tables.at("best");
+  EXPECT_EQ(table.at("time_s"), (std::vector<double>{0, 1e-6, 2e-6}));
+  EXPECT_EQ(table.at("tip_gap_m")[1], 1e-6);
+  EXPECT_TRUE(std::isnan(table.at("tip_gap_m")[2]));
+}
+
+TEST(Charts, DrawADriveFromRestToTheEndOfTheWindow) {
+  const Picture drawn = picture(softland::testing::sample_optimize_result(600));
+  const Table& main = drawn.tables.at("best/main");
+  EXPECT_EQ(main.at("time_s"), (std::vector<double>{0, 0, 600e-6}));
+  EXPECT_EQ(main.at("volts_V"), (std::vector<double>{0, 28.087, 28.087}));
+}
+
+TEST(Charts, SurvivePackingToOnePartInTenMillion) {
+  const Picture drawn = picture(softland::testing::sample_optimize_result(5000));
+  const json packed = chart_json(drawn, 6000);
+  const std::vector<double>& gap = drawn.tables.at("best").at("tip_gap_m");
+  const std::vector<double> back = unpacked(packed.at("tables").at("best").at("tip_gap_m"));
+  ASSERT_EQ(back.size(), gap.size());
+  constexpr double resolution = 1e-7 * 2e-6;  // of the largest gap; integer steps do not accumulate error
+  for (std::size_t row = 0; row < gap.size(); ++row) ASSERT_LE(std::abs(back[row] - gap[row]), resolution) << row;
+}
+
+TEST(Charts, KeepExtremesWhenThinned) {
+  const Picture drawn = picture(softland::testing::sample_optimize_result(20000));
+  const json packed = chart_json(drawn, 6000);
+  for (const char* column : {"tip_gap_m", "contact_force_N", "tip_velocity_m_s"}) {
+    const std::vector<double>& before = drawn.tables.at("baseline").at(column);
+    const std::vector<double> after = unpacked(packed.at("tables").at("baseline").at(column));
+    EXPECT_LE(after.size(), 6000u);
+    const double top = *std::max_element(before.begin(), before.end());
+    const double bottom = *std::min_element(before.begin(), before.end());
+    const double resolution = 1e-7 * std::max(std::abs(top), std::abs(bottom));
+    EXPECT_NEAR(*std::max_element(after.begin(), after.end()), top, resolution);
+    EXPECT_NEAR(*std::min_element(after.begin(), after.end()), bottom, resolution);
+  }
+}
+
+TEST(Charts, OfCostsThatReachZeroAreLinear) {
+  json result{{"search", {{"best_so_far", {{1, 3.0}, {9, 0.0}}}}}};
+  EXPECT_EQ(picture(result).charts.at(0).scale, Scale::linear);
+  result["search"]["best_so_far"][1][1] = 0.1;
+  EXPECT_EQ(picture(result).charts.at(0).scale, Scale::logarithmic);
+}
+
+}  // namespace
+}  // namespace softland::internal

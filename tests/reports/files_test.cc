@@ -1,0 +1,120 @@
+#include "reports/files.h"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <iterator>
+
+#include "base/require.h"
+#include "temporary_folder.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+std::string refusal(const fs::path& path, std::string_view words) {
+  try {
+    write_whole(path, words);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "was not refused";
+}
+
+TEST(WriteWhole, WritesReplacesAndLeavesNothingElse) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "with space" / "result.json";
+  fs::create_directory(file.parent_path());
+  const std::string binary("one\0two\n", 8);
+  write_whole(file, binary);
+  EXPECT_EQ(content(file), binary);
+  write_whole(file, "");
+  EXPECT_EQ(content(file), "");
+  EXPECT_EQ(entries(file.parent_path()), 1u);
+}
+
+TEST(WriteWhole, KeepsTheRightsOfTheFileItReplaces) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "a";
+  write_whole(file, "old");
+  fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+  write_whole(file, "new");
+  EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(WriteWhole, NamesPathAndReasonWhenThereIsNoFolder) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "missing" / "report.html";
+  EXPECT_THAT(refusal(file, "x"), HasSubstr(file.string()));
+  EXPECT_THAT(refusal(file, "x"), HasSubstr("No such file or directory"));
+}
+
+TEST(WriteWhole, RemovesItsTemporaryFileWhenTheTargetIsAFolder) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.path() / "taken";
+  fs::create_directory(target);
+  EXPECT_THAT(refusal(target, "x"), HasSubstr("cannot replace it: Is a directory"));
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(WriteWhole, KeepsTheOldFileWhenTheFolderIsReadOnly) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "kept";
+  write_whole(file, "old");
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THAT(refusal(file, "new"), HasSubstr("Permission denied"));
+  fs::permissions(folder.path(), fs::perms::owner_all);
+  EXPECT_EQ(content(file), "old");
+}
+
+TEST(WriteWhole, KeepsTheOldFileWhenThereIsNoRoomForTheNewOne) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "kept";
+  write_whole(file, "old");
+  // A limit on file size stands for a full disk: write gives fewer bytes, then an error.
+  struct rlimit usual {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
+  struct rlimit tight = usual;
+  tight.rlim_cur = 4096;
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const std::string message = refusal(file, std::string(10'000, 'x'));
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &usual), 0);
+  std::signal(SIGXFSZ, before);
+  EXPECT_THAT(message, HasSubstr("kept: cannot write: File too large"));
+  EXPECT_EQ(content(file), "old");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(TrajectoryCsv, HasOneLinePerRowAndReadsBackExactly) {
+  const json curves{{"tip_velocity_m_s", {0.1, 0.2}},
+                    {"time_s", {0.0, 1.0 / 3.0}},
+                    {"tip_gap_m", {2e-6, nullptr}},
+                    {"another", {5, 6}},
+                    {"rebounds", {{1, 2, 3, 4}, {1, 2, 3, 4}}},
+                    {"short", {1}}};
+  EXPECT_EQ(trajectory_csv(curves), "time_s,tip_gap_m,tip_velocity_m_s,another\n0,2e-06,0.1,5\n0.3333333333333333,,0.2,6\n");
+}
+
+TEST(TrajectoryCsv, RefusesCurvesWithoutTime) { EXPECT_THROW((void)trajectory_csv({{"tip_gap_m", {1}}}), InvalidInput); }
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,159 @@
+#include "reports/findings.h"
+
+#include <gtest/gtest.h>
+
+#include "sample_result.h"
+
+namespace softland::internal {
+namespace {
+
+using nlohmann::json;
+using softland::testing::sample_optimize_result;
+using softland::testing::sample_simulate_result;
+
+constexpr std::size_t few_rows = 601;
+
+/// No-break spaces as plain ones, so that a test reads like the page.
+std::string plain(std::string words) {
+  constexpr std::string_view no_break = "\u00a0";
+  for (std::size_t at = 0; (at = words.find(no_break, at)) != std::string::npos;) words.replace(at, no_break.size(), " ");
+  return words;
+}
+
+std::string sentence(const json& result) { return plain(headline(result).whole()); }
+
+TEST(Headline, OfASoftLandingNamesBothClosings) {
+  EXPECT_EQ(sentence(sample_optimize_result(few_rows)),
+            "Softland's waveform closes the switch at 44.5 µs with no rebound; the plain step first touches at 23.2 µs, then "
+            "bounces 57 times up to "
+            "803 nm and settles after 374 µs.");
+}
+
+TEST(Headline, SaysWhenTheGoalWasNotMet) {
+  json result = sample_optimize_result(few_rows);
+  result["goal_met"] = false;
+  json& metrics = result["best"]["metrics"];
+  metrics["bounce_count"] = 1;
+  metrics["major_bounce_height_m"] = 12.3e-9;
+  metrics["permanent_contact_time_s"] = 61e-6;
+  result["errors"] = nullptr;
+  EXPECT_EQ(sentence(result),
+            "The goal was not met. Softland's waveform first touches at 44.5 µs, then bounces once up to 12.3 nm and settles "
+            "after 61.0 µs; the plain step "
+            "first touches at 23.2 µs, then bounces 57 times up to 803 nm and settles after 374 µs.");
+}
+
+TEST(Headline, SaysWhenNothingTouches) {
+  json result = sample_optimize_result(few_rows);
+  result["goal_met"] = false;
+  result["baseline"]["metrics"] = {
+      {"initial_contact_time_s", nullptr}, {"permanent_contact_time_s", nullptr}, {"bounce_count", nullptr}, {"settled", false}};
+  EXPECT_EQ(sentence(result),
+            "The goal was not met. Softland's waveform closes the switch at 44.5 µs with no rebound; the plain step does not "
+            "close it within 600 µs.");
+  json single = sample_simulate_result(few_rows);
+  single["status"] = "no_contact";
+  single["metrics"] = {{"initial_contact_time_s", nullptr}, {"settled", false}};
+  EXPECT_EQ(sentence(single), "The switch does not close within 600 µs.");
+}
+
+TEST(Headline, SaysWhenASwitchHasNotSettled) {
+  json result = sample_simulate_result(few_rows);
+  result["status"] = "not_settled";
+  result["metrics"]["settled"] = false;
+  result["metrics"]["permanent_contact_time_s"] = nullptr;
+  result["errors"] = nullptr;
+  EXPECT_EQ(sentence(result),
+            "The switch first touches at 23.2 µs, then bounces 57 times up to 803 nm and has not settled when the window ends at "
+            "600 µs.");
+}
+
+TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
+  EXPECT_EQ(sentence(sample_simulate_result(few_rows)),
+            "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and settles after about 374 µs.");
+}
+
+TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
+  json result = sample_optimize_result(few_rows);
+  result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
+  EXPECT_EQ(plain(headline(result).main), "Softland's waveform closes the switch at 44.5 µs with no rebound above 420 pm");
+}
+
+TEST(Headline, SaysWhyThereIsNoClosing) {
+  EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
+            "The switch has no stable rest position: it collapses before it is driven.");
+  EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "numerical_failure"}}), "The switch could not be simulated to the end.");
+  EXPECT_EQ(sentence({{"kind", "simulate"}}), "There are no figures for the switch.");
+  json result = sample_optimize_result(few_rows);
+  result["best"] = nullptr;
+  result["metrics"] = nullptr;
+  result["goal_met"] = false;
+  result["baseline"]["metrics"]["bounce_count"] = 0;
+  result["baseline"]["metrics"]["major_bounce_height_m"] = 0;
+  EXPECT_EQ(sentence(result),
+            "The goal was not met. No feasible waveform was found; the plain step closes it at 23.2 µs with no rebound.");
+}
+
+TEST(Headline, OfAnInterruptedSearchIsAboutItsBestSoFar) {
+  json result = sample_optimize_result(few_rows);
+  result["status"] = "interrupted";
+  EXPECT_TRUE(sentence(result).starts_with(
+      "The search was interrupted; this is its best so far. Softland's waveform closes the switch at 44.5 µs"))
+      << sentence(result);
+}
+
+TEST(Captions, StateWhatTheNumbersSay) {
+  const json result = sample_optimize_result(few_rows);
+  EXPECT_EQ(plain(gap_caption(result)),
+            "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The plain step "
+            "bounces for 351 µs after its "
+            "first touch; softland's waveform stays closed from its first touch on.");
+  EXPECT_EQ(plain(velocity_caption(result)),
+            "Velocity of the contact point, positive towards the contact. The plain step lands with 133 mm/s, softland's "
+            "waveform with 900 µm/s (148 times lower).");
+  EXPECT_EQ(plain(force_caption(result)),
+            "Force of the contact on the beam. The plain step peaks at 290 µN, softland's waveform at 2.70 µN (107 times lower). "
+            "Closed and at rest, the contact "
+            "carries 2.10 µN.");
+  EXPECT_EQ(plain(waveform_caption(result, "piezo")),
+            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV; the plain step stays at 0 V.");
+  EXPECT_EQ(plain(waveform_caption(result, "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
+  EXPECT_EQ(plain(checks_caption(result)),
+            "1 of 2 confirmations of the winner closes without a rebound; the highest rebound is 3.20 nm (“6 modes”).");
+  EXPECT_FALSE(checks_agree(result));
+}
+
+TEST(Captions, OfASearchNameTheWinner) {
+  const json result{{"evaluations", 300},
+                    {"search", {{"value_name", "cost"}, {"best_so_far", {{1, 2.0}, {17, nullptr}, {120, 0.5}, {240, 0.5}}}}}};
+  EXPECT_EQ(search_caption(result),
+            "Cost of every waveform tried (dots) and of the best so far (line). In 300 evaluations the cost fell from 2 to 0.5 "
+            "(4.0 times lower); the winner is "
+            "evaluation 120.");
+}
+
+TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
+  const json result = sample_simulate_result(few_rows);
+  EXPECT_EQ(plain(gap_caption(result)),
+            "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
+            "bounces for 351 µs after its first "
+            "touch.");
+  EXPECT_EQ(plain(force_caption(result)),
+            "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
+}
+
+TEST(Change, KnowsBetterFromWorse) {
+  EXPECT_EQ(change(374, 44.5, true, Kind::time).words, "8.4 times shorter");
+  EXPECT_EQ(change(374, 44.5, true, Kind::time).verdict, Verdict::better);
+  EXPECT_EQ(change(1, 2, true).words, "2.0 times higher");
+  EXPECT_EQ(change(1, 2, true).verdict, Verdict::worse);
+  EXPECT_EQ(change(1, 2, false).verdict, Verdict::neutral);
+  EXPECT_EQ(change(57, 0, true, Kind::count).words, "none left");
+  EXPECT_EQ(change(0, 3, true, Kind::count).words, "more");
+  EXPECT_EQ(change(0, 0, true).words, "unchanged");
+  EXPECT_EQ(change(100, 95, true).words, "5.0 % lower");
+  EXPECT_EQ(change(1, std::nan(""), true).words, "");
+}
+
+}  // namespace
+}  // namespace softland::internal

@@ -1,0 +1,167 @@
+#include "reports/html.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "base/require.h"
+#include "reports/escape.h"
+#include "reports/page_files.h"
+#include "sample_result.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::size_t megabyte = 1'000'000;
+
+std::size_t occurrences(const std::string& text, std::string_view what) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+/// What a browser would load: values of src and href, url(...) and @import, other than fragments of the page itself.
+std::vector<std::string> loads(const std::string& page) {
+  static const std::regex pattern(
+      R"re((?:\b(?:src|href|srcset)\s*=\s*["']?|url\(\s*["']?|@import\s+["']?)([^"'\s)>]+))re");
+  std::vector<std::string> out;
+  for (auto at = std::sregex_iterator(page.begin(), page.end(), pattern); at != std::sregex_iterator(); ++at) {
+    if (const std::string target = (*at)[1]; !target.starts_with('#')) out.push_back(target);
+  }
+  return out;
+}
+
+TEST(HtmlReport, LoadsNothing) {
+  EXPECT_THAT(loads(html_report(testing::sample_optimize_result(2000))), ::testing::IsEmpty());
+  EXPECT_THAT(loads("<img src=\"https://a\"> <p style='background:url(x.png)'>"), ::testing::ElementsAre("https://a", "x.png"));
+}
+
+TEST(HtmlReport, ForbidsTheBrowserToLoadAnything) {
+  EXPECT_THAT(html_report(json::object()),
+              HasSubstr("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"));
+}
+
+TEST(HtmlReport, StaysBelowAMegabyteForTwentyThousandRowsPerCurveAndALongScene) {
+  json result = testing::sample_optimize_result(20000);
+  // Noise on every column, so that no row looks dispensable.
+  for (const char* run : {"best", "baseline"}) {
+    for (const char* column : {"tip_gap_m", "tip_velocity_m_s", "contact_force_N"}) {
+      std::uint64_t state = 5;
+      for (json& value : result["curves"][run][column]) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        value = value.get<double>() + 1e-6 * static_cast<double>(state >> 40) / 16777216.0;
+      }
+    }
+  }
+  std::string scene;
+  while (scene.size() < 2 * megabyte) scene += "key = \"a <line> of a long table\"\n";
+  result["scene_toml"] = scene;
+  const std::string page = html_report(result);
+  EXPECT_LT(page.size(), megabyte);
+  EXPECT_THAT(page, HasSubstr("bytes are not shown"));
+}
+
+TEST(HtmlReport, EscapesHostileText) {
+  const std::string hostile = "</title></script><script>alert(1)</script><img src=x onerror='alert(2)'>\" {{data}} <!--";
+  json result = testing::sample_optimize_result(600);
+  for (const char* key :
+       {"title", "command", "version", "target", "actuator", "optimizer", "termination", "budget", "scene_toml"})
+    result[key] = hostile;
+  result["warnings"] = {hostile};
+  result["reproduce"] = {hostile};
+  result["checks"][0]["name"] = hostile;
+  result["checks"][1]["name"] = hostile;
+  result["best"]["parameters"][hostile] = hostile;
+  result["best"]["waveforms"][hostile] = {{0, 0}, {1e-6, 1}};
+  result["search"]["value_name"] = hostile;
+  const std::string page = html_report(result);
+  const std::string tame = html_report(testing::sample_optimize_result(600));
+  for (const char* tag : {"<script", "</script", "<img", "<title", "</title", "<!--"})
+    EXPECT_EQ(occurrences(page, tag), occurrences(tame, tag)) << tag;
+  EXPECT_THAT(page, HasSubstr("&lt;/title&gt;&lt;/script&gt;&lt;script&gt;alert(1)"));
+}
+
+TEST(HtmlReport, SaysEverythingWithoutAScript) {
+  const std::string page = html_report(testing::sample_optimize_result(600));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<h1>Softland&#39;s waveform closes the switch at 44.5\u00a0µs with no rebound<span class=\"rest\">; the plain step"));
+  EXPECT_EQ(occurrences(page, "<svg class=\"still\""), 7u);
+  for (const char* words : {"8.4 times shorter", "803.1\u00a0nm", "ill-conditioned", "tolerance 1e-9", "piezo.level_1_V",
+                            "multi-start Nelder-Mead", "0.1.0", "youngs_modulus = &quot;78 GPa&quot;",
+                            "softland simulate out/best.toml", "plate_strain is off", "15.46\u00a0kHz"}) {
+    EXPECT_THAT(page, HasSubstr(words));
+  }
+  EXPECT_THAT(page, Not(HasSubstr("{{")));
+}
+
+TEST(HtmlReport, OfASingleRunHasNoBaselineAndNoSearch) {
+  const std::string page = html_report(testing::sample_simulate_result(600));
+  EXPECT_THAT(page, HasSubstr("<h1>The switch first touches at 23.2\u00a0µs"));
+  for (const char* words : {"id=\"figure-search\"", "Plain step</th>", "class=\"before\"", "<h2>Confirmations"})
+    EXPECT_THAT(page, Not(HasSubstr(words)));
+}
+
+TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
+  const json whole = testing::sample_optimize_result(300);
+  for (const auto& [key, value] : whole.items()) {
+    for (const json& stand_in : {json(), json("text"), json(3.5), json::array(), json::object(), json{{1, 2}, "x", nullptr}}) {
+      json result = whole;
+      result[key] = stand_in;
+      EXPECT_NO_THROW((void)html_report(result)) << key << " = " << stand_in;
+    }
+    json result = whole;
+    result.erase(key);
+    EXPECT_NO_THROW((void)html_report(result)) << "without " << key;
+  }
+  for (const char* run : {"best", "baseline"}) {
+    for (const auto& [key, value] : whole["curves"][run].items()) {
+      json result = whole;
+      result["curves"][run][key] = json::array({nullptr, "x", 1});
+      EXPECT_NO_THROW((void)html_report(result)) << run << " " << key;
+    }
+  }
+  EXPECT_NO_THROW((void)html_report(json::object()));
+  EXPECT_THROW((void)html_report(json::array()), InvalidInput);
+}
+
+TEST(HtmlReport, ShowsADashForWhatIsNotAvailable) {
+  json result = testing::sample_optimize_result(300);
+  result["best"]["metrics"]["permanent_contact_time_s"] = nullptr;
+  result["best"]["metrics"]["settled"] = false;
+  EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after\">—</span>"));
+}
+
+TEST(HtmlReport, BearsTextThatIsNotUtf8) {
+  json result = testing::sample_optimize_result(300);
+  result["title"] = "\xff\xfe";
+  result["best"]["waveforms"]["\xff"] = {{0, 1}};
+  result["scene_toml"] = nullptr;
+  result["scene"] = {{"title", "\xff"}};
+  EXPECT_NO_THROW((void)html_report(result));
+}
+
+TEST(ScriptJson, CannotEndTheScript) {
+  EXPECT_EQ(internal::script_json({{"a", "</script><!--"}}), R"({"a":"\u003c/script>\u003c!--"})");
+}
+
+TEST(PageFiles, AreTheFilesOfTheSourceTree) {
+  for (const char* name :
+       {"page/page.html", "page/page.css", "page/page.js", "uplot/uPlot.iife.min.js", "uplot/uPlot.min.css", "uplot/LICENSE"}) {
+    std::ifstream file(std::string(SOFTLAND_SOURCE_DIR) + "/reports/" + name, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_FALSE(text.empty()) << name;
+    EXPECT_EQ(internal::page_file(name), text) << name;
+  }
+  EXPECT_THROW((void)internal::page_file("page/none"), std::logic_error);
+}
+
+}  // namespace
+}  // namespace softland

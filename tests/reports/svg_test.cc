@@ -1,0 +1,54 @@
+#include "reports/svg.h"
+
+#include <gmock/gmock.h>
+
+#include "base/require.h"
+#include "sample_result.h"
+#include "xml.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(SvgPicture, IsWellFormedAndTellsTheFinding) {
+  const std::string svg = svg_gap_chart(testing::sample_optimize_result(6000));
+  EXPECT_EQ(testing::xml_fault(svg), "");
+  EXPECT_THAT(svg, HasSubstr("<title>Softland&#39;s waveform closes the switch at 44.5\u00a0µs with no rebound; the plain step"));
+  EXPECT_THAT(svg, HasSubstr("Time (µs)"));
+  EXPECT_THAT(svg, HasSubstr("Gap (nm)"));
+  EXPECT_THAT(svg, HasSubstr("Voltage (mV)"));
+  EXPECT_THAT(svg, HasSubstr("803\u00a0nm"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST(SvgPicture, IsWellFormedForHostileAndForEmptyResults) {
+  json result = testing::sample_simulate_result(600);
+  result["title"] = "a <b> & \"c\" \x01 <script>";
+  result["best"]["waveforms"]["]]> <x>"] = {{0, 1}};
+  EXPECT_EQ(testing::xml_fault(svg_gap_chart(result)), "");
+  EXPECT_EQ(testing::xml_fault(svg_gap_chart(json::object())), "");
+  EXPECT_THROW((void)svg_gap_chart(json::array()), InvalidInput);
+}
+
+TEST(SvgPicture, OfACurveThatStandsStillHasFiniteCoordinates) {
+  const json still{
+      {"kind", "simulate"},
+      {"curves", {{"best", {{"time_s", {0, 1e-6, 2e-6}}, {"tip_gap_m", {0, 0, 0}}, {"contact_force_N", {0, 0, 0}}}}}}};
+  const std::string svg = svg_gap_chart(still);
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST(XmlFault, FindsFaults) {
+  EXPECT_EQ(testing::xml_fault("<a b=\"1\"><c/>x &amp; y</a>\n"), "");
+  for (const char* bad : {"", "<a>", "<a></b>", "<a b=1/>", "<a b=\"1\" b=\"2\"/>", "<a>&x</a>", "<a/><b/>", "<a b=\"<\"/>"}) {
+    EXPECT_NE(testing::xml_fault(bad), "") << bad;
+  }
+}
+
+}  // namespace
+}  // namespace softland
