@@ -123,18 +123,25 @@ Signal::Signal(std::vector<SignalPiece> pieces) : pieces_(std::move(pieces)) {
   require(!pieces_.empty(), "a signal has no pieces; it must have at least one");
   require(pieces_.front().begin == 0,
           fmt::format("the first piece of a signal begins at {} s; it must begin at 0 s", pieces_.front().begin));
+  // Measured tables have very many pieces: no message is composed before it is needed.
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const SignalPiece& piece = pieces_[i];
     for (const auto& [name, number] :
          {std::pair{"begin", piece.begin}, std::pair{"value", piece.value}, std::pair{"slope", piece.slope},
           std::pair{"amplitude", piece.amplitude}, std::pair{"amplitude_slope", piece.amplitude_slope},
           std::pair{"angular_frequency", piece.angular_frequency}, std::pair{"phase", piece.phase}}) {
-      require(std::isfinite(number), fmt::format("{} of piece {} of a signal is {}; it must be finite", name, i + 1, number));
+      if (!std::isfinite(number)) {
+        throw InvalidInput(fmt::format("{} of piece {} of a signal is {}; it must be finite", name, i + 1, number));
+      }
     }
-    require(i == 0 || piece.begin > pieces_[i - 1].begin,
-            fmt::format("piece {} of a signal begins at {} s; it must begin after the piece before it", i + 1, piece.begin));
-    require(!piece.oscillates() || piece.angular_frequency > 0,
-            fmt::format("angular_frequency of piece {} of a signal is {} rad/s; it must be > 0", i + 1, piece.angular_frequency));
+    if (!(i == 0 || piece.begin > pieces_[i - 1].begin)) {
+      throw InvalidInput(
+          fmt::format("piece {} of a signal begins at {} s; it must begin after the piece before it", i + 1, piece.begin));
+    }
+    if (piece.oscillates() && !(piece.angular_frequency > 0)) {
+      throw InvalidInput(
+          fmt::format("angular_frequency of piece {} of a signal is {} rad/s; it must be > 0", i + 1, piece.angular_frequency));
+    }
   }
   const SignalPiece& last = pieces_.back();
   require(last.slope == 0,
@@ -158,8 +165,10 @@ Signal Signal::piecewise_linear(const std::vector<std::pair<double, double>>& po
       break;
     }
     const auto& [next_time, next_voltage] = points[i + 1];
-    require(next_time >= time, fmt::format("the time of point {} is {} s; it must be at least the {} s of the point before",
-                                           i + 2, next_time, time));
+    if (!(next_time >= time)) {
+      throw InvalidInput(
+          fmt::format("the time of point {} is {} s; it must be at least the {} s of the point before", i + 2, next_time, time));
+    }
     if (next_time == time) continue;
     pieces.push_back({.begin = time, .value = voltage, .slope = (next_voltage - voltage) / (next_time - time)});
   }

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -40,13 +41,13 @@ std::size_t column(const std::vector<std::string_view>& header, std::string_view
   return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
 }
 
-double number(std::string_view text, std::string_view name, const std::string& place) {
+/// A finite number, or nothing.
+std::optional<double> number(std::string_view text) {
   // from_chars reads every decimal number to the nearest double whatever the locale, but knows no leading plus.
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
   double value = 0;
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  require(error == std::errc() && stop == digits.data() + digits.size() && std::isfinite(value),
-          fmt::format("{}: {} is \"{}\"; it must be a finite number", place, name, text));
+  if (error != std::errc() || stop != digits.data() + digits.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
@@ -61,11 +62,13 @@ Signal signal(const Table& table) {
   std::vector<std::pair<double, double>> points;
   points.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    require(std::isfinite(table.time[i]) && (i == 0 || table.time[i] >= table.time[i - 1]),
-            fmt::format("the time of row {} of a table is {} s; it must be finite and not before the row above", i + 1,
-                        table.time[i]));
-    require(std::isfinite(table.voltage[i]),
-            fmt::format("the voltage of row {} of a table is {} V; it must be finite", i + 1, table.voltage[i]));
+    if (!(std::isfinite(table.time[i]) && (i == 0 || table.time[i] >= table.time[i - 1]))) {
+      throw InvalidInput(fmt::format("the time of row {} of a table is {} s; it must be finite and not before the row above",
+                                     i + 1, table.time[i]));
+    }
+    if (!std::isfinite(table.voltage[i])) {
+      throw InvalidInput(fmt::format("the voltage of row {} of a table is {} V; it must be finite", i + 1, table.voltage[i]));
+    }
     points.emplace_back(table.time[i], table.voltage[i]);
   }
   return Signal::piecewise_linear(points);
@@ -87,24 +90,33 @@ Table read_table(const std::string& file, const std::string& drive) {
     text = trimmed(text);
     if (text.empty() || text.starts_with('#')) continue;
 
-    const std::string place = fmt::format("{}:{}", file, line_number);
+    // Measured files are long: a message, and the place in it, is composed only when a row is refused.
+    const auto place = [&] { return fmt::format("{}:{}", file, line_number); };
     const std::vector<std::string_view> row = cells(text);
     if (columns == 0) {
-      time_column = column(row, "time_s", place);
-      drive_column = column(row, drive, place);
+      time_column = column(row, "time_s", place());
+      drive_column = column(row, drive, place());
       columns = row.size();
       continue;
     }
-    require(row.size() == columns,
-            fmt::format("{}: the row has {} cells; it must have {} as the header", place, row.size(), columns));
-    const double time = number(row[time_column], "time_s", place);
-    if (table.time.empty()) require(time == 0, fmt::format("{}: the first time_s is {} s; it must be 0", place, time));
-    if (!table.time.empty()) {
-      require(time >= table.time.back(),
-              fmt::format("{}: time_s is {} s; it must not be before the {} s of the row above", place, time, table.time.back()));
+    if (row.size() != columns) {
+      throw InvalidInput(fmt::format("{}: the row has {} cells; it must have {} as the header", place(), row.size(), columns));
+    }
+    const auto cell = [&](std::size_t at, std::string_view name) {
+      const std::optional<double> value = number(row[at]);
+      if (!value) throw InvalidInput(fmt::format("{}: {} is \"{}\"; it must be a finite number", place(), name, row[at]));
+      return *value;
+    };
+    const double time = cell(time_column, "time_s");
+    if (table.time.empty() && time != 0) {
+      throw InvalidInput(fmt::format("{}: the first time_s is {} s; it must be 0", place(), time));
+    }
+    if (!table.time.empty() && time < table.time.back()) {
+      throw InvalidInput(
+          fmt::format("{}: time_s is {} s; it must not be before the {} s of the row above", place(), time, table.time.back()));
     }
     table.time.push_back(time);
-    table.voltage.push_back(number(row[drive_column], drive, place));
+    table.voltage.push_back(cell(drive_column, drive));
   }
   require(!stream.bad(), fmt::format("{}: the file cannot be read", file));
   require(columns > 0, fmt::format("{}: the file has no header; its first line must be time_s and one column per drive", file));
