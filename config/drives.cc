@@ -29,16 +29,12 @@ std::vector<std::string_view> drive_names(const Device& device) {
 
 /// Every [section.NAME] must name a drive of the device.
 void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
-  const toml::node* node = file.find({section});
-  if (!node) return;
-  if (!node->is_table()) file.fail(section, fmt::format("expected sections [{}.NAME]", section));
   const std::vector<std::string_view> known = drive_names(device);
-  for (const auto& [key, value] : *node->as_table()) {
-    const std::string path = join_path(section, key.str());
-    if (!value.is_table()) file.fail(path, fmt::format("expected a section [{}.NAME]", section));
-    if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-    if (key.str() == piezo_drive) file.fail_section(path, "there is no [piezo] layer to drive");
-    file.fail_section(path, "no such electrode" + hint(key.str(), known));
+  for (const std::string& name : file.names_in(section)) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string path = join_path(section, name);
+    if (name == piezo_drive) file.fail_section(path, "there is no [piezo] layer to drive");
+    file.fail_section(path, "no such electrode" + hint(name, known));
   }
 }
 
@@ -126,11 +122,10 @@ Signal compile(const SceneFile::Impl& file, const SectionReader& in, const Wavef
   }
 }
 
-/// Nothing when the drive has no limits. `pull_in` is null where it is not known: then there is no default limit.
-std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages* pull_in) {
-  const PullInVoltages known = pull_in ? *pull_in : PullInVoltages{};
+/// Nothing when the drive has no limits. Without a pull-in voltage there is no default limit.
+std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages& known) {
   DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
-  if (pull_in && drive != piezo_drive) {
+  if (known.dynamic_pull_in > 0 && drive != piezo_drive) {
     limits.max_voltage = default_max_voltage * known.dynamic_pull_in;
   } else if (!in.is_present()) {
     return std::nullopt;
@@ -164,7 +159,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
   for (const std::string_view drive : drive_names(device)) {  // the piezo comes last: it may refer to the main hold level
     const std::string name(drive);
     const auto found = pull_in.find(name);
-    const PullInVoltages* known = found == pull_in.end() ? nullptr : &found->second;
+    const PullInVoltages known = found == pull_in.end() ? PullInVoltages{} : found->second;
 
     const SectionReader driver(file, "driver", drive);
     const std::optional<DriverLimits> limits = read_limits(driver, drive, known);
@@ -174,11 +169,15 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    const Waveform waveform = read_waveform(file, in, drive, known ? *known : PullInVoltages{}, main_hold);
+    const Waveform waveform = read_waveform(file, in, drive, known, main_hold);
     const Signal compiled = compile(file, in, waveform);
     if (drive == main_electrode(device)) main_hold = compiled.hold_level();
     if (limits && checks == LimitChecks::all) {
-      if (const std::string broken = violation(compiled, *limits); !broken.empty()) file.fail_section(in.path(), broken);
+      if (std::string broken = violation(compiled, *limits); !broken.empty()) {
+        if (!driver.is_present())
+          broken += fmt::format("; without [{}] the limits are 0 V and {} Vdp", driver.path(), default_max_voltage);
+        file.fail_section(in.path(), broken);
+      }
     }
     drives.waveforms[name] = waveform;
   }

@@ -22,19 +22,6 @@ Fringing fringing(const std::string& name) {
   return Fringing::meijs_fokkema;
 }
 
-std::vector<std::string> names_in(const SceneFile::Impl& file, const std::string& section) {
-  std::vector<std::string> names;
-  const toml::node* node = file.find({section});
-  if (!node) return names;
-  if (!node->is_table()) file.fail(section, fmt::format("expected sections [{}.NAME]", section));
-  for (const auto& [name, value] : *node->as_table()) {
-    if (!value.is_table())
-      file.fail(internal::join_path(section, name.str()), fmt::format("expected a section [{}.NAME]", section));
-    names.emplace_back(name.str());
-  }
-  return names;
-}
-
 void check_section_names(const SceneFile::Impl& file) {
   std::vector<std::string_view> known;
   for (const internal::Section& section : internal::schema()) {
@@ -100,7 +87,7 @@ Contact read_contact(const SectionReader& in, const SectionReader& structure) {
 Device read_device(const SceneFile::Impl& file) {
   const SectionReader structure(file, "structure");
   Device device{.structure = read_structure(structure), .gap = read_gap(SectionReader(file, "gap"))};
-  for (const std::string& name : names_in(file, "electrode")) {
+  for (const std::string& name : file.names_in("electrode")) {
     internal::check_drive_name(file, name);
     const SectionReader in(file, "electrode", name);
     const auto [begin, end] = read_span(in, structure);
@@ -131,31 +118,38 @@ SimulateOptions read_simulate(const SectionReader& in) {
   return options;
 }
 
+/// The key that [spread."NAME"] varies. Throws InvalidInput unless it is a number that is in force in this scene.
+const internal::Key& varied_key(const SceneFile::Impl& file, const SectionReader& in, const std::string& name) {
+  std::vector<std::string> parts;
+  try {
+    parts = internal::split_path(name);
+  } catch (const InvalidInput& error) {
+    file.fail_section(in.path(), error.what());
+  }
+  std::vector<std::string_view> candidates;
+  const internal::Section* section = internal::find_section(parts.front());
+  const std::size_t depth = section && section->is_named ? 3 : 2;
+  if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
+    const SectionReader varied(file, parts[0], section->is_named ? parts[1] : std::string());
+    for (const internal::Key& key : section->keys) {
+      if (key.type == internal::KeyType::quantity && varied.has_value(key.name)) candidates.push_back(key.name);
+    }
+    if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) return *varied.find(parts.back());
+  }
+  file.fail_section(in.path(), fmt::format("'{}' is not a key of this scene that holds one number of the device{}", name,
+                                           internal::hint(parts.back(), candidates)));
+}
+
 /// Returns whether there is a spread.
 bool check_spread(const SceneFile::Impl& file) {
-  const std::vector<std::string> names = names_in(file, "spread");
+  const std::vector<std::string> names = file.names_in("spread");
   for (const std::string& name : names) {
     const SectionReader in(file, "spread", name);
-    std::vector<std::string> parts;
-    try {
-      parts = internal::split_path(name);
-    } catch (const InvalidInput& error) {
-      file.fail_section(in.path(), error.what());
-    }
-    const internal::Section* section = internal::find_section(parts.front());
-    const internal::Key* key = nullptr;
-    if (section && file.find({parts.begin(), parts.end() - 1}) && parts.size() == (section->is_named ? 3U : 2U)) {
-      const SectionReader varied(file, parts[0], section->is_named ? parts[1] : std::string());
-      if (varied.has_value(parts.back())) key = varied.find(parts.back());
-    }
-    const bool can_vary =
-        key && key->type == internal::KeyType::quantity && !section->always_in_force && section->name != "spread";
-    if (!can_vary)
-      file.fail_section(in.path(), fmt::format("'{}' is not a key of this scene that holds one number of the device", name));
+    const auto& allowed = varied_key(file, in, name).dimensions;
     if (!in.is_given("half_width")) continue;
     const Dimension given = in.quantities("half_width").front().dimension;
-    const auto& allowed = key->dimensions;
-    in.require(given == dimension::none || std::find(allowed.begin(), allowed.end(), given) != allowed.end(), "half_width",
+    const bool is_percentage = given == dimension::none;
+    in.require(is_percentage || std::find(allowed.begin(), allowed.end(), given) != allowed.end(), "half_width",
                fmt::format("expected {}, got {}", describe(allowed.front()), describe(given)));
   }
   return !names.empty();
@@ -229,7 +223,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
       if (in.is_present() || section.always_in_force) root.insert(name, in.with_defaults());
     } else {
       toml::table named;
-      for (const std::string& entry : names_in(impl, name)) {
+      for (const std::string& entry : impl.names_in(name)) {
         toml::table keys = SectionReader(impl, name, entry).with_defaults();
         keys.is_inline(name == "spread");
         named.insert(entry, std::move(keys));
@@ -250,8 +244,8 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   }
   if (!drivers.empty()) root.insert("driver", std::move(drivers));
 
-  // Written and read once more: the result then has lines to cite, like any other file.
-  SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name, impl.directory);
+  // Written and read once more: like any other file, the result then has lines to cite.
+  SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
   for (const auto& [name, waveform] : drives.waveforms) file.set_waveform(name, waveform);
   return file;
 }

@@ -26,10 +26,12 @@ class SceneFile {
   static SceneFile parse(std::string_view text, std::string name, std::filesystem::path directory = ".");
 
   /// Applies one `--set key.path=value`. The value is read as TOML; bare text that is not TOML is a string. May create sections.
-  /// Messages about such a key name the option ("--set gap.contact=...") instead of file and line.
+  /// Where a quantity can be given in one of two ways (accuracy or tolerance), the option takes the place of the other way. about
+  /// such a key name the option ("--set gap.contact=...") instead of file and line. Throws InvalidInput for an assignment that is
+  /// none.
   void set(std::string_view assignment);
-  /// Replaces [waveform.DRIVE] by this waveform, volts and seconds with 17 significant digits (a Table is written as a pulse-free
-  /// table of rows).
+  /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a
+  /// Table stand in the scene itself. Throws InvalidInput for a waveform outside its family's rules.
   void set_waveform(const std::string& drive, const Waveform& waveform);
 
   /// The scene as TOML text: parsing it again gives the same scene, digit for digit.
@@ -87,7 +89,8 @@ struct Scene {
 /// Everything is checked here, waveforms included (up to what needs the pull-in voltages).
 [[nodiscard]] Scene read_scene(const SceneFile& file);
 
-/// The scene with every default written out and every voltage in volts.
+/// The scene with every default written out and every voltage in volts; what has no fixed default (a duration that is chosen)
+/// stays absent. Throws as Scene::drives does. Its messages say "NAME (resolved)", because its lines are not those of the file.
 [[nodiscard]] SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltages>& pull_in);
 
 }  // namespace softland

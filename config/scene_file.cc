@@ -21,24 +21,60 @@ namespace {
 
 constexpr std::size_t deepest_path = 16;
 
+/// Past the string that begins at `begin`; a single-line string ends with its line at the latest.
+std::size_t end_of_string(std::string_view text, std::size_t begin) {
+  const char quote = text[begin];
+  const std::string triple(3, quote);
+  const bool is_multiline = text.substr(begin).starts_with(triple);
+  for (std::size_t i = begin + (is_multiline ? 3 : 1); i < text.size(); ++i) {
+    if (text[i] == '\\' && quote == '"') {
+      ++i;
+    } else if (is_multiline && text.substr(i).starts_with(triple)) {
+      const auto rest = text.find_first_not_of(quote, i);  // up to two quotes may stand before the closing three
+      return rest == std::string_view::npos ? text.size() : rest;
+    } else if (!is_multiline && (text[i] == quote || text[i] == '\n')) {
+      return i + 1;
+    }
+  }
+  return text.size();
+}
+
 /// toml++ bounds nested values but not dotted keys, and a table some ten thousand levels deep overflows the stack when it is
 /// destroyed.
-bool has_deep_dotted_key(std::string_view text) {
+/// Returns where such a key gets too long, npos if there is none.
+std::size_t find_deep_dotted_key(std::string_view text) {
+  constexpr std::string_view ends_of_key = "\n=,[]{}";
   std::size_t dots = 0;
-  for (const char c : text) {
-    if (c == '.' && ++dots >= deepest_path) return true;
-    if (constexpr std::string_view ends = "\n=,[]{}#"; ends.find(c) != std::string_view::npos) dots = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (c == '"' || c == '\'') {
+      i = end_of_string(text, i);
+      continue;
+    }
+    if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+      continue;
+    }
+    if (c == '.' && ++dots >= deepest_path) return i;
+    if (ends_of_key.find(c) != std::string_view::npos) dots = 0;
+    ++i;
   }
-  return false;
+  return std::string_view::npos;
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
-  if (has_deep_dotted_key(text)) throw InvalidInput(fmt::format("{}: a key has more than {} parts", name, deepest_path));
+  if (const auto at = find_deep_dotted_key(text); at != std::string_view::npos) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    throw InvalidInput(fmt::format("{}:{}: a key has more than {} parts", name, line, deepest_path));
+  }
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}", name, at.line, at.column, error.description()));
+    // The usual slip of a newcomer, which the parser reports in its own terms only: length = 2 um.
+    const bool may_miss_quotes = error.description().find("expected a comment or whitespace") != std::string_view::npos;
+    throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, error.description(),
+                                   may_miss_quotes ? " (a quantity needs quotes: \"2 um\")" : ""));
   }
 }
 
@@ -205,9 +241,9 @@ std::vector<std::string> split_path(std::string_view path) {
     const toml::table parsed = parse_toml(std::string(path) + " = 0", "");
     for (const toml::table* table = &parsed; table != nullptr;) {
       if (table->size() != 1) throw InvalidInput(rule);
-      const auto& [key, node] = *table->begin();
-      parts.emplace_back(key.str());
-      table = node.as_table();
+      const auto first = table->begin();  // kept: what it points to lives in the iterator itself
+      parts.emplace_back(first->first.str());
+      table = first->second.as_table();
     }
   } catch (const InvalidInput&) {
     throw InvalidInput(rule);
@@ -235,8 +271,17 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
 
 /// Control characters and broken UTF-8 stay out of messages.
 std::string printable(std::string_view text) {
+  bool is_utf8 = true;
+  try {
+    static_cast<void>(internal::parse_value(internal::toml_string(text)));
+  } catch (const InvalidInput&) {
+    is_utf8 = false;
+  }
   std::string out;
-  for (const char c : text) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    out += byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !is_utf8) ? '?' : c;
+  }
   return out;
 }
 
@@ -295,7 +340,22 @@ void SceneFile::Impl::fail(std::string_view path, std::string_view rule) const {
 }
 
 void SceneFile::Impl::fail_section(std::string_view path, std::string_view rule) const {
-  throw InvalidInput(fmt::format("{}: [{}]: {}", origin(path).text, path, rule));
+  const auto is_option_below = [&](const auto& entry) { return entry.second.is_option && is_below(entry.first, path); };
+  const auto option = std::find_if(origins.begin(), origins.end(), is_option_below);
+  const Origin place = option == origins.end() ? origin(path) : option->second;
+  throw InvalidInput(fmt::format("{}: [{}]: {}", place.text, path, rule));
+}
+
+std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) const {
+  std::vector<std::string> names;
+  const toml::node* node = find({section});
+  if (!node) return names;
+  if (!node->is_table()) fail(section, fmt::format("expected sections [{}.NAME]", section));
+  for (const auto& [key, value] : *node->as_table()) {
+    if (!value.is_table()) fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]", section));
+    names.emplace_back(key.str());
+  }
+  return names;
 }
 
 SceneFile::SceneFile(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

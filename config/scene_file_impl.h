@@ -52,8 +52,11 @@ struct SceneFile::Impl {
   [[nodiscard]] std::string written(std::string_view path) const;
   /// Throws InvalidInput: where, key path, value as written, rule.
   [[noreturn]] void fail(std::string_view path, std::string_view rule) const;
-  /// The same about a section: the value is not shown.
+  /// The same about a section: the value is not shown, and an option that set something in the section is cited first.
   [[noreturn]] void fail_section(std::string_view path, std::string_view rule) const;
+
+  /// NAME of every [section.NAME], sorted. Throws InvalidInput when something else stands there.
+  [[nodiscard]] std::vector<std::string> names_in(const std::string& section) const;
 
   /// Forgets where the keys at and below `path` were written.
   void forget(std::string_view path);

@@ -21,6 +21,7 @@ std::vector<Section> make_schema() {
       {.name = "", .keys = {{.name = "title", .type = text, .fallback = "''", .about = "one line that names the switch"}}},
       {.name = "structure",
        .required = true,
+       .may_vary = true,
        .selector = "kind",
        .keys =
            {
@@ -75,6 +76,7 @@ std::vector<Section> make_schema() {
        .about = "the moving part"},
       {.name = "gap",
        .required = true,
+       .may_vary = true,
        .keys = {{.name = "electrode",
                  .dimensions = {dimension::length},
                  .range = positive,
@@ -88,6 +90,7 @@ std::vector<Section> make_schema() {
        .about = "rest distances"},
       {.name = "electrode",
        .is_named = true,
+       .may_vary = true,
        .keys = {{.name = "span",
                  .type = quantities,
                  .dimensions = {dimension::length},
@@ -102,6 +105,7 @@ std::vector<Section> make_schema() {
                  .about = "law of the fringing field"}},
        .about = "an electrode under the beam"},
       {.name = "gas",
+       .may_vary = true,
        .selector = "model",
        .keys = {{.name = "model",
                  .type = choice,
@@ -116,6 +120,7 @@ std::vector<Section> make_schema() {
                  .about = "dynamic viscosity of the gas"}},
        .about = "gas between beam and electrode; absent: none"},
       {.name = "contact",
+       .may_vary = true,
        .selector = "model",
        .keys =
            {
@@ -163,6 +168,7 @@ std::vector<Section> make_schema() {
            },
        .about = "contact under the tip; absent: the tip meets nothing"},
       {.name = "piezo",
+       .may_vary = true,
        .keys =
            {
                {.name = "span",
@@ -197,6 +203,7 @@ std::vector<Section> make_schema() {
       {.name = "surface", .pending = true, .about = "surface elasticity and residual stress"},
       {.name = "waveform",
        .is_named = true,
+       .may_vary = true,
        .selector = "family",
        .keys =
            {

@@ -50,6 +50,7 @@ struct Section {
   bool is_named = false;  ///< [name.NAME], any number of them
   bool required = false;
   bool always_in_force = false;    ///< its defaults hold when the section is absent
+  bool may_vary = false;           ///< [spread] may name its numbers
   bool pending = false;            ///< part of the design that does not exist yet
   std::string_view selector = {};  ///< the key whose choice decides which other keys there are
   std::vector<Key> keys = {};

@@ -137,11 +137,12 @@ void SectionReader::read_key(const Key& key) {
   }
   if (is_replaced(key)) return;
   if (key.required) {
-    std::string names = fmt::format("'{}'", key.name);
+    std::string others;
     for (const std::string_view other : key.instead_of) {
-      if (section_.find(other, choice_)->belongs_to(choice_)) names += fmt::format(" or '{}'", other);
+      if (section_.find(other, choice_)->belongs_to(choice_)) others += fmt::format(" or '{}'", other);
     }
-    file_.fail_section(path_, fmt::format("missing key {} ({})", names, wanted(key)));
+    const std::string value = others.empty() ? fmt::format(" ({})", wanted(key)) : std::string();
+    file_.fail_section(path_, fmt::format("missing key '{}'{}{}", key.name, others, value));
   }
   if (!key.fallback.empty()) values_[key.name] = parse(key, *parse_value(key.fallback).get(value_key));
 }

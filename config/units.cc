@@ -68,6 +68,8 @@ constexpr std::array names{
     Name{dimension::angle, "an angle", "rad", "90 deg"},
     Name{dimension::static_pull_in, "a multiple of static pull-in", "Vsp", "1.1 Vsp"},
     Name{dimension::dynamic_pull_in, "a multiple of dynamic pull-in", "Vdp", "1.25 Vdp"},
+    Name{dimension::area, "an area", "m^2", "100 um^2"},
+    Name{dimension::velocity, "a velocity", "m/s", "0.1 m/s"},
     Name{dimension::area_density, "a number per area", "1/m^2", "100 1/um^2"},
     Name{dimension::density, "a density", "kg/m^3", "19300 kg/m^3"},
     Name{dimension::frequency, "a frequency", "Hz", "30 kHz"},

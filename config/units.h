@@ -32,6 +32,8 @@ inline constexpr Dimension temperature{{0, 0, 0, 0, 1}};
 inline constexpr Dimension angle{{0, 0, 0, 0, 0, 1}};
 inline constexpr Dimension static_pull_in{{0, 0, 0, 0, 0, 0, 1}};
 inline constexpr Dimension dynamic_pull_in{{0, 0, 0, 0, 0, 0, 0, 1}};
+inline constexpr Dimension area{{2}};
+inline constexpr Dimension velocity{{1, 0, -1}};
 inline constexpr Dimension area_density{{-2}};
 inline constexpr Dimension density{{-3, 1}};
 inline constexpr Dimension frequency{{0, 0, -1}};

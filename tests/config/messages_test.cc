@@ -1,0 +1,244 @@
+// Bad input, one case each, with the whole message: where, key path, value as written, rule, nearest known name.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "base/require.h"
+#include "config/scene.h"
+#include "tests/config/small_scene.h"
+
+namespace softland {
+namespace {
+
+/// What the user is told about this text and these options; empty when nothing is wrong.
+std::string message(const std::string& text, const std::vector<std::string>& options = {}) {
+  try {
+    SceneFile file = SceneFile::parse(text, "x.toml");
+    for (const std::string& option : options) file.set(option);
+    const Scene scene = read_scene(file);
+    static_cast<void>(scene.drives({{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}));
+    return {};
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+}
+
+TEST(Messages, TheSmallSceneItselfIsFine) { EXPECT_EQ(message(std::string(small_scene)), ""); }
+
+struct Edit {
+  std::string from;
+  std::string to;
+  std::string expected;
+};
+
+std::ostream& operator<<(std::ostream& out, const Edit& edit) { return out << edit.from << " -> " << edit.to; }
+
+class BadFile : public testing::TestWithParam<Edit> {};
+
+TEST_P(BadFile, IsRefusedWithThisMessage) {
+  ASSERT_NE(small_scene.find(GetParam().from), std::string_view::npos) << GetParam().from;
+  EXPECT_EQ(message(edited(small_scene, GetParam().from, GetParam().to)), GetParam().expected);
+}
+
+const std::string main_waveform = "family = \"step\"\nlevel = \"1.25 Vdp\"";
+const std::string harmonic = "family = \"harmonic\"\n";
+const std::string table = "family = \"table\"\n";
+
+/// A line in [structure] that is not in the small scene.
+Edit structure_line(const std::string& line, const std::string& expected) { return {"[gap]", line + "\n[gap]", expected}; }
+
+/// A line in [spread].
+Edit spread_line(const std::string& line, const std::string& expected) { return {"[gas]", "[spread]\n" + line + "\n[gas]", expected}; }
+
+// clang-format off
+INSTANTIATE_TEST_SUITE_P(Quantities, BadFile, testing::Values(
+    Edit{R"("4 um")", R"("4 u")", R"(x.toml:6: structure.thickness = "4 u": unknown unit 'u' (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("4um")", R"(x.toml:6: structure.thickness = "4um": not a number, a space and a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("4")", R"(x.toml:6: structure.thickness = "4": no unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"(4)", R"(x.toml:6: structure.thickness = 4: no unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"(4e-6)", R"(x.toml:6: structure.thickness = 4e-06: no unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"(true)", R"(x.toml:6: structure.thickness = true: not a number with a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"(["4 um"])", R"(x.toml:6: structure.thickness = ["4 um"]: not a number with a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("")", R"(x.toml:6: structure.thickness = "": not a number, a space and a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("4 GPa")", R"(x.toml:6: structure.thickness = "4 GPa": expected a length [m], got a pressure [Pa])"},
+    Edit{R"("4 um")", R"("4 um s/V")", R"(x.toml:6: structure.thickness = "4 um s/V": expected a length [m], got a quantity [m^-1 kg^-1 s^4 A])"},
+    Edit{R"("4 um")", R"("-4 um")", R"(x.toml:6: structure.thickness = "-4 um": must be greater than 0 m)"},
+    Edit{R"("4 um")", R"("0 um")", R"(x.toml:6: structure.thickness = "0 um": must be greater than 0 m)"},
+    Edit{R"("4 um")", R"("4e999 um")", R"(x.toml:6: structure.thickness = "4e999 um": 4e999 is outside the range of double precision (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("4 um/s/s")", R"(x.toml:6: structure.thickness = "4 um/s/s": more than one '/' in the unit 'um/s/s' (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("4 um^x")", R"(x.toml:6: structure.thickness = "4 um^x": 'um^x' needs an integer power between -9 and 9, not 0 (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("nan um")", R"(x.toml:6: structure.thickness = "nan um": not a number, a space and a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"(2020-01-01)", R"(x.toml:6: structure.thickness = 2020-01-01: not a number with a unit (expected a length such as "2 um"))"}));
+
+INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
+    Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
+    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio))"},
+    Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
+    Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
+    Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, piezo, waveform, driver, simulate, metrics, spread)"},
+    Edit{"[gap]", "[dispersion]", "x.toml:9: [dispersion]: not available yet"},
+    Edit{R"(kind = "cantilever")", R"(kind = "cantilver")", R"(x.toml:3: structure.kind = "cantilver": unknown value (did you mean 'cantilever'?))"},
+    Edit{R"(kind = "cantilever")", R"(kind = "plate")", R"(x.toml:3: structure.kind = "plate": not available yet (available: cantilever))"},
+    Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever"},
+    structure_line(R"(modes = "auto")", R"(x.toml:9: structure.modes = "auto": not available yet)"),
+    Edit{R"(model = "strip")", R"(model = "veijola")", R"(x.toml:15: gas.model = "veijola": not available yet (available: strip))"},
+    Edit{R"(model = "linear")", R"(model = "asperity-uniform")", R"(x.toml:20: contact.stiffness = "100 N/m": belongs to model = "linear", not to "asperity-uniform")"},
+    Edit{R"([electrode.main])", R"([electrode.piezo])", "x.toml:12: [electrode.piezo]: the name 'piezo' is reserved for the piezo layer"},
+    Edit{R"([electrode.main])", R"([electrode."a b"])", R"(x.toml:12: [electrode."a b"]: a name may hold letters, digits, '_' and '-')"},
+    Edit{R"([electrode.main])", R"([electrode])", R"(x.toml:13: electrode.span = ["60 um", "240 um"]: expected a section [electrode.NAME])"},
+    Edit{R"([electrode.main])", R"([[electrode]])", R"(x.toml:12: electrode = [{ span = ["60 um", "240 um"] }]: expected sections [electrode.NAME])"},
+    Edit{R"([waveform.main])", R"([waveform.mian])", "x.toml:27: [waveform.mian]: no such electrode (did you mean 'main'?)"},
+    Edit{R"([driver.piezo])", R"([driver.other])", "x.toml:35: [driver.other]: no such electrode (known: main, piezo)"},
+    Edit{R"(family = "step")", R"(family = "pulses")", R"(x.toml:28: waveform.main.family = "pulses": unknown value (did you mean 'pulse'?))"},
+    Edit{R"(level = "1.25 Vdp")", R"(levels = ["1.25 Vdp"])", R"(x.toml:29: waveform.main.levels = ["1.25 Vdp"]: belongs to family = "pulse", not to "step")"}));
+
+INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
+    Edit{R"(thickness = "4 um")", "", R"(x.toml:2: [structure]: missing key 'thickness' (a length such as "2 um"))"},
+    Edit{R"(family = "step")", "", "x.toml:27: [waveform.main]: missing key 'family' (one of step, harmonic, pulse, table)"},
+    Edit{"[gap]\nelectrode = \"3.5 um\"\ncontact = \"2 um\"\n", "", "x.toml: section [gap] is missing"},
+    Edit{"title =", "metrics = 3\ntitle =", "x.toml:1: metrics = 3: expected a section [metrics]"},
+    structure_line("modes = 21", "x.toml:9: structure.modes = 21: must be in [1, 20]"),
+    structure_line("modes = 4.0", "x.toml:9: structure.modes = 4.0: expected a whole number"),
+    structure_line("damping_ratio = 1.0", "x.toml:9: structure.damping_ratio = 1.0: must be in [0, 1)"),
+    structure_line("damping_ratio = inf", "x.toml:9: structure.damping_ratio = inf: must be finite"),
+    structure_line(R"(damping_ratio = "2 s")", R"(x.toml:9: structure.damping_ratio = "2 s": expected a plain number, got a time [s])"),
+    structure_line("plate_strain = true", "x.toml:9: structure.plate_strain = true: needs structure.poissons_ratio"),
+    structure_line(R"(plate_strain = "yes")", R"(x.toml:9: structure.plate_strain = "yes": expected true or false)"),
+    structure_line("poissons_ratio = 0.5", "x.toml:9: structure.poissons_ratio = 0.5: must be in (-1, 0.5)"),
+    Edit{R"(contact = "2 um")", R"(contact = "3.5 um")", R"(x.toml:11: gap.contact = "3.5 um": must be less than gap.electrode = "3.5 um")"},
+    Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", "251 um"])", R"(x.toml:13: electrode.main.span = ["60 um", "251 um"]: must end on the beam: structure.length = "250 um")"},
+    Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", "60 um"])", R"(x.toml:13: electrode.main.span = ["60 um", "60 um"]: the end must lie beyond the begin)"},
+    Edit{R"(span = ["60 um", "240 um"])", R"(span = ["-60 um", "60 um"])", R"(x.toml:13: electrode.main.span = ["-60 um", "60 um"]: value 1: must be at least 0 m)"},
+    Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um"])", R"(x.toml:13: electrode.main.span = ["60 um"]: needs 2 values, got 1)"},
+    Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", 240])", R"(x.toml:13: electrode.main.span = ["60 um", 240]: value 2: no unit (expected a list such as ["2 um", "2 um"]))"},
+    Edit{R"(span = ["60 um", "240 um"])", R"(span = "60 um")", R"(x.toml:13: electrode.main.span = "60 um": expected a list such as ["2 um", "2 um"])"},
+    Edit{R"(span = ["5 um", "240 um"])", R"(span = ["5 um", "0.3 mm"])", R"(x.toml:22: piezo.span = ["5 um", "0.3 mm"]: must end on the beam: structure.length = "250 um")"},
+    Edit{R"(pad_length = "5 um")", R"(pad_length = "250 um")", R"(x.toml:19: contact.pad_length = "250 um": must be less than structure.length = "250 um")"},
+    Edit{R"(title = "small")", R"(title = 3)", "x.toml:1: title = 3: expected a text in quotes"},
+    Edit{R"(accuracy = 1e-5)", "accuracy = 0.2", "x.toml:39: simulate.accuracy = 0.2: must be in (0, 0.1]"},
+    Edit{R"(accuracy = 1e-5)", "accuracy = 1e-5\ntolerance = 1e-9", "x.toml:39: simulate.accuracy = 1e-05: cannot stand beside simulate.tolerance = 1e-09: give one of them"},
+    Edit{R"(accuracy = 1e-5)", "[metrics]\nsignificant_rebound = \"0 nm\"", R"(x.toml:40: metrics.significant_rebound = "0 nm": must be greater than 0 m)"}));
+
+INSTANTIATE_TEST_SUITE_P(Drives, BadFile, testing::Values(
+    Edit{R"(level = "1.25 Vdp")", R"(level = "1.6 Vdp")", "x.toml:27: [waveform.main]: the voltage reaches 64 V, above the driver's max_voltage of 60 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
+    Edit{R"(level = "1.25 Vdp")", R"(level = "-1 V")", "x.toml:27: [waveform.main]: the voltage reaches -1 V, below the driver's min_voltage of 0 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
+    Edit{R"(level = "1.25 Vdp")", "level = \"1.25 Vdp\"\nrise_time = \"-1 us\"", R"(x.toml:30: waveform.main.rise_time = "-1 us": must be at least 0 s)"},
+    Edit{R"("0.6 V", "0 V"])", R"("0.6 Vdp", "0 V"])", R"(x.toml:32: waveform.piezo.levels = ["0.2 V", "0.6 Vdp", "0 V"]: pull-in voltages belong to electrodes; give the piezo volts [V])"},
+    Edit{R"("0.6 V", "0 V"])", R"("0.6 V"])", R"(x.toml:33: waveform.piezo.times = ["20 us", "41 us"]: times of a pulse are 2 for 2 levels; there must be one fewer than levels)"},
+    Edit{R"("0.6 V", "0 V"])", R"("1.6 V", "0 V"])", "x.toml:30: [waveform.piezo]: the voltage reaches 1.6 V, above the driver's max_voltage of 1 V"},
+    Edit{R"(times = ["20 us", "41 us"])", R"(times = ["41 us", "20 us"])", R"(x.toml:33: waveform.piezo.times = ["41 us", "20 us"]: time 2 of a pulse is 2e-05 s; it must be at least 4.6e-05 s, where the edge before it ends)"},
+    Edit{R"(min_voltage = "-1 V")", "", R"(x.toml:35: [driver.piezo]: missing key 'min_voltage' (a voltage such as "1 V"))"},
+    Edit{R"(min_voltage = "-1 V")", R"(min_voltage = "2 V")", R"(x.toml:36: driver.piezo.min_voltage = "2 V": min_voltage of 2 V must be less than max_voltage of 1 V)"},
+    Edit{R"(min_voltage = "-1 V")", R"(min_voltage = "-1 Vsp")", R"(x.toml:36: driver.piezo.min_voltage = "-1 Vsp": pull-in voltages belong to electrodes; give the piezo volts [V])"},
+    Edit{R"(max_voltage = "1 V")", "max_voltage = \"1 V\"\nmax_slew = \"3 V\"", R"(x.toml:38: driver.piezo.max_slew = "3 V": expected a slew rate [V/s], got a voltage [V])"},
+    Edit{R"(max_voltage = "1 V")", "max_voltage = \"1 V\"\nmax_slew = \"1 mV/us\"", "x.toml:30: [waveform.piezo]: the voltage changes at 120000 V/s, faster than the driver's max_slew of 1000 V/s"},
+    Edit{"[piezo]\nspan = [\"5 um\", \"240 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n", "", "x.toml:24: [waveform.piezo]: there is no [piezo] layer to drive"}));
+
+INSTANTIATE_TEST_SUITE_P(Families, BadFile, testing::Values(
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"", "x.toml:27: [waveform.main]: missing key 'angular_frequency' or 'frequency'"},
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nfrequency = \"30 kHz\"\nangular_frequency = \"180543 rad/s\"", R"(x.toml:32: waveform.main.angular_frequency = "180543 rad/s": cannot stand beside waveform.main.frequency = "30 kHz": give one of them)"},
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nfrequency = \"180543 rad/s\"", R"(x.toml:31: waveform.main.frequency = "180543 rad/s": expected a frequency [Hz], got an angular frequency [rad/s])"},
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 kHz\"", R"(x.toml:31: waveform.main.angular_frequency = "30 kHz": expected an angular frequency [rad/s], got a frequency [Hz])"},
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = 0.15\nangular_frequency = \"30 krad/s\"", R"(x.toml:30: waveform.main.amplitude = 0.15: no unit (expected a voltage such as "45 V" or "1.1 Vsp" or "1.25 Vdp" or "15 %"))"},
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"0.15\"\nangular_frequency = \"30 krad/s\"", R"(x.toml:30: waveform.main.amplitude = "0.15": no unit (expected a voltage such as "45 V" or "1.1 Vsp" or "1.25 Vdp" or "15 %"))"},
+    Edit{main_waveform, harmonic + "amplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"", R"(x.toml:29: waveform.main.amplitude = "15 %": is a percentage of the base, which is 0 V)"},
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"\nstart = \"2 us\"\nend = \"1 us\"", R"(x.toml:33: waveform.main.end = "1 us": end of a harmonic is 1e-06 s; it must be after its start, 2e-06 s)"},
+    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"\nend = \"1 us\"\nfade = \"1 us\"", R"(x.toml:33: waveform.main.fade = "1 us": fade of a harmonic is 1e-06 s; it must be at most half of end - start, 1e-06 s)"},
+    Edit{main_waveform, table, "x.toml:27: [waveform.main]: missing key 'file' or 'times' or 'voltages'"},
+    Edit{main_waveform, table + "times = [\"0 s\"]", "x.toml:27: [waveform.main]: missing key 'voltages' or 'file'"},
+    Edit{main_waveform, table + "file = \"absent.csv\"\ntimes = [\"0 s\"]\nvoltages = [\"1 V\"]", R"(x.toml:29: waveform.main.file = "absent.csv": cannot stand beside waveform.main.times = ["0 s"]: give one of them)"},
+    Edit{main_waveform, table + "file = \"absent.csv\"", R"(x.toml:29: waveform.main.file = "absent.csv": ./absent.csv: the file cannot be opened for reading)"},
+    Edit{main_waveform, table + "times = [\"0 s\", \"1 s\"]\nvoltages = [\"1 V\"]", "x.toml:27: [waveform.main]: a table has 2 times and 1 voltages; there must be as many of both"}));
+
+INSTANTIATE_TEST_SUITE_P(Spread, BadFile, testing::Values(
+    spread_line(R"("structure.thicknes" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."structure.thicknes"]: 'structure.thicknes' is not a key of this scene that holds one number of the device (did you mean 'thickness'?))"),
+    spread_line(R"("structure.kind" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."structure.kind"]: 'structure.kind' is not a key of this scene that holds one number of the device (known: length, width, thickness, youngs_modulus, density, damping_ratio))"),
+    spread_line(R"("simulate.accuracy" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."simulate.accuracy"]: 'simulate.accuracy' is not a key of this scene that holds one number of the device)"),
+    spread_line(R"("a b c" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."a b c"]: 'a b c' is not a key path such as structure.length)"),
+    spread_line(R"("structure.thickness" = "2 %")", R"(x.toml:15: spread."structure.thickness" = "2 %": expected a section [spread.NAME])"),
+    spread_line(R"("structure.thickness" = { distribution = "normal" })", R"(x.toml:15: [spread."structure.thickness"]: missing key 'cov' (a plain number such as 0.02))"),
+    spread_line(R"("structure.thickness" = { distribution = "gaussian", cov = "2 %" })", R"(x.toml:15: spread."structure.thickness".distribution = "gaussian": unknown value (known: normal, lognormal, uniform))"),
+    spread_line(R"("structure.thickness" = { distribution = "uniform" })", R"(x.toml:15: [spread."structure.thickness"]: missing key 'cov' or 'half_width')"),
+    spread_line(R"("structure.thickness" = { distribution = "normal", half_width = "1 um" })", R"(x.toml:15: spread."structure.thickness".half_width = "1 um": belongs to distribution = "uniform", not to "normal")"),
+    spread_line(R"("structure.thickness" = { distribution = "uniform", half_width = "1 GPa" })", R"(x.toml:15: spread."structure.thickness".half_width = "1 GPa": expected a length [m], got a pressure [Pa])"),
+    spread_line(R"("structure.thickness" = { distribution = "normal", cov = "200 %" })", R"(x.toml:15: spread."structure.thickness".cov = "200 %": must be in (0, 1])"),
+    Edit{"title =", "spread = 3\ntitle =", "x.toml:1: spread = 3: expected sections [spread.NAME]"}));
+
+INSTANTIATE_TEST_SUITE_P(Toml, BadFile, testing::Values(
+    Edit{R"("4 um")", "4 um", R"(x.toml:6:15: not TOML: Error while parsing key-value pair: expected a comment or whitespace, saw 'u' (a quantity needs quotes: "2 um"))"},
+    Edit{R"("4 um")", "\"4 um", "x.toml:6:18: not TOML: Error while parsing string: unescaped control characters other than TAB (U+0009) are explicitly prohibited"},
+    Edit{R"("4 um")", "", R"(x.toml:6:13: not TOML: Error while parsing key-value pair: expected value, saw '\n')"},
+    Edit{R"("4 um")", "\"\xff um\"", "x.toml:6:13: not TOML: Encountered invalid utf-8 sequence"},
+    Edit{R"("4 um")", std::string("\"4 um\" #\0", 9), "x.toml:6:21: not TOML: Error while parsing comment: control characters other than TAB (U+0009) are explicitly prohibited in comments"},
+    Edit{R"("4 um")", std::string(1000, '['), "x.toml:6:269: not TOML: Error while parsing value: exceeded maximum nested value depth of 256 (TOML_MAX_NESTED_VALUES)"},
+    Edit{"thickness =", "length =", "x.toml:6:10: not TOML: Error while parsing key-value pair: cannot redefine existing string 'length'"},
+    Edit{"[gas]", "[gap]", "x.toml:14:1: not TOML: Error while parsing table header: cannot redefine existing table 'gap'"},
+    Edit{"[gas]", "[a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q]", "x.toml:14: a key has more than 16 parts"}));
+// clang-format on
+
+struct Options {
+  std::vector<std::string> options;
+  std::string expected;
+};
+
+std::ostream& operator<<(std::ostream& out, const Options& bad) { return out << testing::PrintToString(bad.options); }
+
+class BadOption : public testing::TestWithParam<Options> {};
+
+TEST_P(BadOption, IsRefusedWithThisMessage) {
+  EXPECT_EQ(message(std::string(small_scene), GetParam().options), GetParam().expected);
+}
+
+// clang-format off
+INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
+    Options{{"structure.thickness=2 u"}, R"(--set structure.thickness=2 u: unknown unit 'u' (expected a length such as "2 um"))"},
+    Options{{"structure.thickness=2"}, R"(--set structure.thickness=2: no unit (expected a length such as "2 um"))"},
+    Options{{"structure.thickness="}, R"(--set structure.thickness=: not a number, a space and a unit (expected a length such as "2 um"))"},
+    Options{{"structure.thicknes=2 um"}, "--set structure.thicknes=2 um: unknown key (did you mean 'thickness'?)"},
+    Options{{"structure.thickness"}, "--set structure.thickness: not of the form key.path=value"},
+    Options{{"=2 um"}, "--set =2 um: '' is not a key path such as structure.length"},
+    Options{{"structure..thickness=2 um"}, "--set structure..thickness=2 um: 'structure..thickness' is not a key path such as structure.length"},
+    Options{{"structure.length.x=2 um"}, R"(--set structure.length.x=2 um: structure.length = "250 um" is not a section)"},
+    Options{{"surface.residual_stress=1 MPa"}, "--set surface.residual_stress=1 MPa: [surface]: not available yet"},
+    Options{{"gas=3"}, "--set gas=3: expected a section [gas]"},
+    Options{{"gap={electrode=\"1 um\", contact=\"2 um\"}"}, R"(--set gap={electrode="1 um", contact="2 um"}: gap.contact = "2 um": must be less than gap.electrode = "1 um")"},
+    Options{{"gap={electrode=\"1 um\"}"}, R"(--set gap={electrode="1 um"}: [gap]: missing key 'contact' (a length such as "2 um"))"},
+    Options{{"gap.contact=4 um"}, R"(--set gap.contact=4 um: must be less than gap.electrode = "3.5 um")"},
+    Options{{"gap.electrode=1 um"}, R"(x.toml:11: gap.contact = "2 um": must be less than gap.electrode = "1 um")"},
+    Options{{"electrode.side.fringing=none"}, R"(--set electrode.side.fringing=none: [electrode.side]: missing key 'span' (a list such as ["2 um", "2 um"]))"},
+    Options{{"waveform.main.level=70 V"}, "--set waveform.main.level=70 V: [waveform.main]: the voltage reaches 70 V, above the driver's max_voltage of 60 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
+    Options{{"waveform.side.family=step"}, "--set waveform.side.family=step: [waveform.side]: no such electrode (known: main, piezo)"},
+    Options{{"title=\xff"}, "--set title: the value is not UTF-8 text"},
+    Options{{"structure.modes=4\nstructure.modes=5"}, "--set structure.modes=4?structure.modes=5: expected a whole number"},
+    Options{{"structure.thickness=\x1b[31m"}, R"(--set structure.thickness=?[31m: not a number, a space and a unit (expected a length such as "2 um"))"},
+    Options{{"structure.thickness=2 um", "structure.thickness=3 m/s"}, "--set structure.thickness=3 m/s: expected a length [m], got a velocity [m/s]"},
+    Options{{"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1"}, "--set a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1: 'a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q' is not a key path such as structure.length"}));
+// clang-format on
+
+TEST(Messages, AnEmptyFileMissesItsFirstSection) { EXPECT_EQ(message(""), "x.toml: section [structure] is missing"); }
+
+TEST(Messages, AFileThatIsNotThere) {
+  try {
+    SceneFile::load("no/such.toml");
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_STREQ(error.what(), "no/such.toml: cannot be opened: No such file or directory");
+  }
+}
+
+TEST(Messages, ADirectoryIsNotAFile) {
+  const std::string directory = testing::TempDir() + "scene.toml";
+  std::filesystem::create_directory(directory);
+  try {
+    SceneFile::load(directory);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.what(), directory + ": is a directory, not a scene file");
+  }
+}
+
+}  // namespace
+}  // namespace softland
