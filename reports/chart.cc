@@ -156,6 +156,16 @@ double landing_end(const json& result, const Tables& tables, double window) {
   return end > 0 ? std::min(window, margin * end) : window;
 }
 
+/// Whether any gap gets below this [m]: without that there is no landing to enlarge.
+bool comes_near(const Tables& tables, double distance) {
+  return std::any_of(runs.begin(), runs.end(), [&](const auto& run) {
+    const auto table = tables.find(run.first);
+    if (table == tables.end() || !table->second.contains("tip_gap_m")) return false;
+    const std::vector<double>& gaps = table->second.at("tip_gap_m");
+    return std::any_of(gaps.begin(), gaps.end(), [&](double gap) { return gap < distance; });
+  });
+}
+
 std::array<double, 2> symlog_range(const Tables& tables, double threshold) {
   double lowest = 0;
   double highest = threshold;
@@ -233,7 +243,7 @@ void add_time_charts(const json& result, Picture& out) {
   near.scale = Scale::symlog;
   near.threshold = significant_rebound(result);
   near.y_home = symlog_range(out.tables, near.threshold);
-  keep(std::move(near));
+  if (comes_near(out.tables, near.threshold)) keep(std::move(near));
 
   int index = 0;
   for (const std::string& drive : drives) {

@@ -181,14 +181,22 @@ std::string figure_text(const json& metrics, const json& beside, const Figure& f
   return quantity_beside(number(metrics, {figure.key}), number(beside, {figure.key}), figure.unit, digits);
 }
 
+std::string missing_reason(const json& metrics, std::string_view key) {
+  if (!metrics.is_object() || std::isfinite(number(metrics, {key}))) return {};
+  if (!touches(metrics)) return "no contact";
+  return key == "permanent_contact_time_s" && !settles(metrics) ? "not settled" : "";
+}
+
 Change figure_change(const json& before, const json& after, const Figure& figure) {
   return change(number(before, {figure.key}), number(after, {figure.key}), figure.lower_is_better, figure.kind());
 }
 
 std::string gap_caption(const json& result) {
-  const std::string what =
-      fmt::format("Distance of the contact point to the contact plane (positive: open); dots mark rebounds above {}.",
-                  quantity(significant_rebound(result), "m", 1));
+  std::string what = "Distance of the contact point to the contact plane (positive: open)";
+  if (number(best_metrics(result), {"bounce_count"}) > 0 || number(baseline_metrics(result), {"bounce_count"}) > 0) {
+    what += fmt::format("; dots mark rebounds above {}", quantity(significant_rebound(result), "m", 1));
+  }
+  what += ".";
   const std::string found = is_optimize(result) ? joined(aftermath(step_subject, baseline_metrics(result)),
                                                          aftermath(own_subject, best_metrics(result)))
                                                 : joined(aftermath("the switch", best_metrics(result)), "");
@@ -207,10 +215,10 @@ std::string velocity_caption(const json& result) {
   const double step = number(baseline_metrics(result), {"impact_velocity_m_s"});
   const std::string what = "Velocity of the contact point, positive towards the contact.";
   if (!is_optimize(result) || !std::isfinite(step)) {
-    return std::isfinite(own) ? fmt::format("{} It lands with {}.", what, quantity(own, "m/s")) : what;
+    return std::isfinite(own) ? fmt::format("{} It lands at {}.", what, quantity(own, "m/s")) : what;
   }
-  if (!std::isfinite(own)) return fmt::format("{} The plain step lands with {}.", what, quantity(step, "m/s"));
-  return fmt::format("{} The plain step lands with {}, softland's waveform with {}{}.", what, quantity(step, "m/s"),
+  if (!std::isfinite(own)) return fmt::format("{} The plain step lands at {}.", what, quantity(step, "m/s"));
+  return fmt::format("{} The plain step lands at {}, softland's waveform at {}{}.", what, quantity(step, "m/s"),
                      quantity(own, "m/s"), in_brackets(change(step, own, true)));
 }
 

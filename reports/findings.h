@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace softland::internal {
@@ -50,6 +51,8 @@ struct Figure {
 [[nodiscard]] const std::vector<Figure>& figures();
 /// The value of a figure as text, an em dash when not available; `beside` are the metrics shown next to it.
 [[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& beside, const Figure& figure);
+/// The same in words when a number is not available but the reason is: "no contact", "not settled"; else empty.
+[[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, std::string_view key);
 [[nodiscard]] Change figure_change(const nlohmann::json& before, const nlohmann::json& after, const Figure& figure);
 
 /// "Softland's waveform" and "plain step", or "closing" for a single run.

@@ -69,12 +69,13 @@ std::string key_number(const json& result, std::string_view key, std::string_vie
   const json& own = best_metrics(result);
   const json& step = baseline_metrics(result);
   const auto words = [&](const json& metrics, const json& beside) {
-    return quantity_beside(number(metrics, {key}), number(beside, {key}), shown.unit);
+    const std::string reason = missing_reason(metrics, key);
+    return reason.empty() ? quantity_beside(number(metrics, {key}), number(beside, {key}), shown.unit) : reason;
   };
   std::string out = fmt::format("<div class=\"key\"><dt>{}</dt><dd>", label);
   if (is_optimize(result) && step.is_object())
     out += fmt::format("<span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> ", words(step, own));
-  out += fmt::format("<span class=\"after\">{}</span>", words(own, step));
+  out += fmt::format("<span class=\"after{}\">{}</span>", missing_reason(own, key).empty() ? "" : " words", words(own, step));
   if (const Change changed = figure_change(step, own, shown); !changed.words.empty()) {
     out += fmt::format("<span class=\"change {}\">{}</span>", verdict_class(changed.verdict), changed.words);
   }

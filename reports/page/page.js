@@ -220,6 +220,7 @@
           stroke: colour(role),
           ...pens[role],
           spanGaps: false,
+          pxAlign: 0,
           points: role === "evaluations" ? {show: true, size: 3, width: 0, fill: colour(role), space: 0} : {show: false},
           ...(role === "evaluations" ? {paths: () => null} : {}),
           value: (u, value) => quantity(value, y.unit, 4),

@@ -50,6 +50,12 @@ TEST(Charts, EnlargeTheLandingAndTheHighestRebound) {
   EXPECT_LT(drawn.charts[1].x_home[1], 150e-6);
 }
 
+TEST(Charts, EnlargeNoLandingWhereThereIsNone) {
+  json result = softland::testing::sample_simulate_result(600);
+  for (json& gap : result["curves"]["best"]["tip_gap_m"]) gap = 1e-6 + std::abs(gap.get<double>());
+  EXPECT_EQ(ids(picture(result)), (std::vector<std::string>{"gap", "drive-0", "drive-1", "velocity", "force"}));
+}
+
 TEST(Charts, DropRowsWithoutATimeAndTimesThatRunBackwards) {
   const json result{
       {"kind", "simulate"},

@@ -109,8 +109,8 @@ TEST(Captions, StateWhatTheNumbersSay) {
             "bounces for 351 µs after its "
             "first touch; softland's waveform stays closed from its first touch on.");
   EXPECT_EQ(plain(velocity_caption(result)),
-            "Velocity of the contact point, positive towards the contact. The plain step lands with 133 mm/s, softland's "
-            "waveform with 900 µm/s (148 times lower).");
+            "Velocity of the contact point, positive towards the contact. The plain step lands at 133 mm/s, softland's "
+            "waveform at 900 µm/s (148 times lower).");
   EXPECT_EQ(plain(force_caption(result)),
             "Force of the contact on the beam. The plain step peaks at 290 µN, softland's waveform at 2.70 µN (107 times lower). "
             "Closed and at rest, the contact "

@@ -28,8 +28,7 @@ std::size_t occurrences(const std::string& text, std::string_view what) {
 
 /// What a browser would load: values of src and href, url(...) and @import, other than fragments of the page itself.
 std::vector<std::string> loads(const std::string& page) {
-  static const std::regex pattern(
-      R"re((?:\b(?:src|href|srcset)\s*=\s*["']?|url\(\s*["']?|@import\s+["']?)([^"'\s)>]+))re");
+  static const std::regex pattern(R"re((?:\b(?:src|href|srcset)\s*=\s*["']?|url\(\s*["']?|@import\s+["']?)([^"'\s)>]+))re");
   std::vector<std::string> out;
   for (auto at = std::sregex_iterator(page.begin(), page.end(), pattern); at != std::sregex_iterator(); ++at) {
     if (const std::string target = (*at)[1]; !target.starts_with('#')) out.push_back(target);
@@ -132,10 +131,15 @@ TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
   EXPECT_THROW((void)html_report(json::array()), InvalidInput);
 }
 
-TEST(HtmlReport, ShowsADashForWhatIsNotAvailable) {
+TEST(HtmlReport, SaysWhyAFigureIsMissing) {
   json result = testing::sample_optimize_result(300);
   result["best"]["metrics"]["permanent_contact_time_s"] = nullptr;
   result["best"]["metrics"]["settled"] = false;
+  EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">not settled</span>"));
+  result["best"]["metrics"]["initial_contact_time_s"] = nullptr;
+  EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">no contact</span>"));
+  result["best"]["metrics"] = json::object();
+  result["best"]["metrics"]["initial_contact_time_s"] = 1e-6;
   EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after\">—</span>"));
 }
 
