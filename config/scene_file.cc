@@ -235,7 +235,7 @@ std::string join_path(const std::string& path, std::string_view key) {
 
 std::vector<std::string> split_path(std::string_view path) {
   // TOML itself reads the keys, so that quoting means the same here and in a file.
-  const std::string rule = fmt::format("'{}' is not a key path such as structure.length", path);
+  const std::string rule = "not a key path such as structure.length";
   std::vector<std::string> parts;
   try {
     const toml::table parsed = parse_toml(std::string(path) + " = 0", "");

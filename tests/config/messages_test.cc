@@ -51,7 +51,9 @@ const std::string table = "family = \"table\"\n";
 Edit structure_line(const std::string& line, const std::string& expected) { return {"[gap]", line + "\n[gap]", expected}; }
 
 /// A line in [spread].
-Edit spread_line(const std::string& line, const std::string& expected) { return {"[gas]", "[spread]\n" + line + "\n[gas]", expected}; }
+Edit spread_line(const std::string& line, const std::string& expected) {
+  return {"[gas]", "[spread]\n" + line + "\n[gas]", expected};
+}
 
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Quantities, BadFile, testing::Values(
@@ -157,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Spread, BadFile, testing::Values(
     spread_line(R"("structure.thicknes" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."structure.thicknes"]: 'structure.thicknes' is not a key of this scene that holds one number of the device (did you mean 'thickness'?))"),
     spread_line(R"("structure.kind" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."structure.kind"]: 'structure.kind' is not a key of this scene that holds one number of the device (known: length, width, thickness, youngs_modulus, density, damping_ratio))"),
     spread_line(R"("simulate.accuracy" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."simulate.accuracy"]: 'simulate.accuracy' is not a key of this scene that holds one number of the device)"),
-    spread_line(R"("a b c" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."a b c"]: 'a b c' is not a key path such as structure.length)"),
+    spread_line(R"("a b c" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."a b c"]: not a key path such as structure.length)"),
     spread_line(R"("structure.thickness" = "2 %")", R"(x.toml:15: spread."structure.thickness" = "2 %": expected a section [spread.NAME])"),
     spread_line(R"("structure.thickness" = { distribution = "normal" })", R"(x.toml:15: [spread."structure.thickness"]: missing key 'cov' (a plain number such as 0.02))"),
     spread_line(R"("structure.thickness" = { distribution = "gaussian", cov = "2 %" })", R"(x.toml:15: spread."structure.thickness".distribution = "gaussian": unknown value (known: normal, lognormal, uniform))"),
@@ -199,8 +201,8 @@ INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
     Options{{"structure.thickness="}, R"(--set structure.thickness=: not a number, a space and a unit (expected a length such as "2 um"))"},
     Options{{"structure.thicknes=2 um"}, "--set structure.thicknes=2 um: unknown key (did you mean 'thickness'?)"},
     Options{{"structure.thickness"}, "--set structure.thickness: not of the form key.path=value"},
-    Options{{"=2 um"}, "--set =2 um: '' is not a key path such as structure.length"},
-    Options{{"structure..thickness=2 um"}, "--set structure..thickness=2 um: 'structure..thickness' is not a key path such as structure.length"},
+    Options{{"=2 um"}, "--set =2 um: not a key path such as structure.length"},
+    Options{{"structure..thickness=2 um"}, "--set structure..thickness=2 um: not a key path such as structure.length"},
     Options{{"structure.length.x=2 um"}, R"(--set structure.length.x=2 um: structure.length = "250 um" is not a section)"},
     Options{{"surface.residual_stress=1 MPa"}, "--set surface.residual_stress=1 MPa: [surface]: not available yet"},
     Options{{"gas=3"}, "--set gas=3: expected a section [gas]"},
@@ -215,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
     Options{{"structure.modes=4\nstructure.modes=5"}, "--set structure.modes=4?structure.modes=5: expected a whole number"},
     Options{{"structure.thickness=\x1b[31m"}, R"(--set structure.thickness=?[31m: not a number, a space and a unit (expected a length such as "2 um"))"},
     Options{{"structure.thickness=2 um", "structure.thickness=3 m/s"}, "--set structure.thickness=3 m/s: expected a length [m], got a velocity [m/s]"},
-    Options{{"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1"}, "--set a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1: 'a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q' is not a key path such as structure.length"}));
+    Options{{"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1"}, "--set a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1: not a key path such as structure.length"}));
 // clang-format on
 
 TEST(Messages, AnEmptyFileMissesItsFirstSection) { EXPECT_EQ(message(""), "x.toml: section [structure] is missing"); }

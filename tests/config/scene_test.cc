@@ -3,16 +3,165 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "base/literals.h"
+#include "base/require.h"
+#include "tests/config/small_scene.h"
+
 namespace softland {
 namespace {
 
-TEST(Scene, ReadsTheReferenceScenes) {
-  for (const char* name : {"mem-gold", "mem-gold-pzt"}) {
-    const Scene scene = read_scene(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + name + ".toml"));
-    EXPECT_EQ(scene.device.structure.length, 250e-6);
-    EXPECT_EQ(scene.device.contact->asperity_density, 1e11);
-    EXPECT_THAT(scene.need_pull_in, testing::ElementsAre("main"));
-    static_cast<void>(resolved(scene, {{"main", {50, 45}}}));
+using namespace literals;
+
+Scene read(const std::string& text) { return read_scene(SceneFile::parse(text, "x.toml")); }
+
+Scene read_file(const std::string& name) {
+  return read_scene(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + name));
+}
+
+TEST(Scene, EverySectionOfTheSmallSceneArrives) {
+  const Scene scene = read(std::string(small_scene));
+  EXPECT_EQ(scene.title, "small");
+  const Structure& structure = scene.device.structure;
+  EXPECT_EQ(structure.length, 250e-6);
+  EXPECT_EQ(structure.width, 20e-6);
+  EXPECT_EQ(structure.thickness, 4e-6);
+  EXPECT_EQ(structure.youngs_modulus, 78e9);
+  EXPECT_EQ(structure.density, 19300);
+  EXPECT_EQ(scene.device.gap.electrode, 3.5e-6);
+  EXPECT_EQ(scene.device.gap.contact, 2e-6);
+  ASSERT_EQ(scene.device.electrodes.size(), 1U);
+  EXPECT_EQ(scene.device.electrodes[0].name, "main");
+  EXPECT_EQ(scene.device.electrodes[0].begin, 60e-6);
+  EXPECT_EQ(scene.device.electrodes[0].end, 240e-6);
+  ASSERT_TRUE(scene.device.gas);
+  EXPECT_EQ(scene.device.gas->model, GasModel::strip);
+  EXPECT_EQ(scene.device.gas->viscosity, 1.86e-5);
+  ASSERT_TRUE(scene.device.contact);
+  EXPECT_EQ(scene.device.contact->model, ContactModel::linear);
+  EXPECT_EQ(scene.device.contact->pad_length, 5e-6);
+  EXPECT_EQ(scene.device.contact->stiffness, 100);
+  ASSERT_TRUE(scene.device.piezo);
+  EXPECT_EQ(scene.device.piezo->begin, 5e-6);
+  EXPECT_EQ(scene.device.piezo->end, 240e-6);
+  EXPECT_EQ(scene.device.piezo->thickness, 1e-6);
+  EXPECT_EQ(scene.device.piezo->youngs_modulus, 61e9);
+  EXPECT_EQ(scene.device.piezo->density, 7750);
+  EXPECT_EQ(scene.device.piezo->d31, -171e-12);
+  EXPECT_EQ(scene.simulate.accuracy, 1e-5);
+  EXPECT_THAT(scene.need_pull_in, testing::ElementsAre("main"));
+  EXPECT_THAT(scene.warnings, testing::IsEmpty());
+}
+
+TEST(Scene, WhatIsNotGivenTakesTheDefaultsOfTheStructs) {
+  const Scene scene = read(edited(small_scene, "[simulate]\naccuracy = 1e-5\n", ""));
+  EXPECT_EQ(scene.device.structure.modes, Structure{}.modes);
+  EXPECT_EQ(scene.device.structure.damping_ratio, Structure{}.damping_ratio);
+  EXPECT_EQ(scene.device.structure.plate_strain, Structure{}.plate_strain);
+  EXPECT_TRUE(std::isnan(scene.device.structure.poissons_ratio));
+  EXPECT_EQ(scene.device.electrodes[0].fringing, Electrode{}.fringing);
+  EXPECT_EQ(scene.simulate.duration, SimulateOptions{}.duration);
+  EXPECT_EQ(scene.simulate.accuracy, SimulateOptions{}.accuracy);
+  EXPECT_EQ(scene.simulate.tolerance, SimulateOptions{}.tolerance);
+  EXPECT_EQ(scene.metrics.significant_rebound, MetricsOptions{}.significant_rebound);
+}
+
+TEST(Scene, OptionalKeysArrive) {
+  std::string text =
+      edited(small_scene, "[gap]", "modes = 7\ndamping_ratio = \"2 %\"\nplate_strain = true\npoissons_ratio = 0.44\n[gap]");
+  text = edited(text, "accuracy = 1e-5", "duration = \"600 us\"\ntolerance = 1e-9\n[metrics]\nsignificant_rebound = \"2 nm\"");
+  const Scene scene = read(text);
+  EXPECT_EQ(scene.device.structure.modes, 7);
+  EXPECT_EQ(scene.device.structure.damping_ratio, 0.02);
+  EXPECT_TRUE(scene.device.structure.plate_strain);
+  EXPECT_EQ(scene.device.structure.poissons_ratio, 0.44);
+  EXPECT_EQ(scene.simulate.duration, 600e-6);
+  EXPECT_EQ(scene.simulate.tolerance, 1e-9);
+  EXPECT_EQ(scene.metrics.significant_rebound, 2e-9);
+}
+
+TEST(Scene, EveryFringingLawHasAName) {
+  for (const auto& [name, law] : std::map<std::string, Fringing>{{"none", Fringing::none},
+                                                                 {"bao-2001", Fringing::bao_2001},
+                                                                 {"meijs-fokkema", Fringing::meijs_fokkema},
+                                                                 {"linear", Fringing::linear}}) {
+    const Scene scene = read(edited(small_scene, "[gas]", "fringing = \"" + name + "\"\n[gas]"));
+    EXPECT_EQ(scene.device.electrodes[0].fringing, law) << name;
+  }
+}
+
+TEST(Scene, AsperitiesArrive) {
+  const Contact contact = *read_file("mem-gold.toml").device.contact;
+  EXPECT_EQ(contact.model, ContactModel::asperity_uniform);
+  EXPECT_EQ(contact.asperity_radius, 100e-9);
+  EXPECT_EQ(contact.asperity_density, 1e11);
+  EXPECT_EQ(contact.asperity_height, 100e-9);
+  EXPECT_EQ(contact.effective_modulus, 48e9);
+}
+
+TEST(Scene, ElectrodesComeSortedByName) {
+  const Scene scene = read(edited(small_scene, "[gas]", "[electrode.back]\nspan = [\"0 m\", \"50 um\"]\n[gas]"));
+  ASSERT_EQ(scene.device.electrodes.size(), 2U);
+  EXPECT_EQ(scene.device.electrodes[0].name, "back");
+  EXPECT_EQ(scene.device.electrodes[1].name, "main");
+}
+
+TEST(Scene, AnAbsentSectionIsAnEffectThatIsNotSimulated) {
+  const Scene scene = read(R"([structure]
+kind = "cantilever"
+length = "250 um"
+width = "20 um"
+thickness = "4 um"
+youngs_modulus = "78 GPa"
+density = "19300 kg/m^3"
+[gap]
+electrode = "3.5 um"
+contact = "2 um"
+)");
+  EXPECT_TRUE(scene.device.electrodes.empty());
+  EXPECT_FALSE(scene.device.gas);
+  EXPECT_FALSE(scene.device.contact);
+  EXPECT_FALSE(scene.device.piezo);
+  EXPECT_TRUE(scene.drives({}).waveforms.empty());
+  EXPECT_TRUE(scene.drives({}).limits.empty());
+  EXPECT_THAT(scene.warnings, testing::ElementsAre("x.toml: neither an electrode nor a piezo layer: nothing drives this switch"));
+}
+
+TEST(Scene, AWideBeamWithoutPlateStrainIsWarnedAbout) {
+  // Exactly five thicknesses is not wide yet.
+  EXPECT_THAT(read(edited(small_scene, "\"20 um\"", "\"20.00 um\"")).warnings, testing::IsEmpty());
+  EXPECT_THAT(read(edited(small_scene, "\"20 um\"", "\"20.1 um\"")).warnings,
+              testing::ElementsAre(
+                  "x.toml:5: structure.width = \"20.1 um\": more than five thicknesses; youngs_modulus is used as given, "
+                  "plate_strain = true with poissons_ratio would use E / (1 - nu^2)"));
+  EXPECT_THAT(
+      read(edited(edited(small_scene, "\"20 um\"", "\"20.1 um\""), "[gap]", "plate_strain = true\npoissons_ratio = 0.44\n[gap]"))
+          .warnings,
+      testing::IsEmpty());
+}
+
+TEST(Scene, ASpreadIsCheckedKeptAndSaidToBeUnused) {
+  const Scene scene = read(edited(small_scene, "[gas]", R"([spread]
+"structure.thickness" = { distribution = "normal", cov = "2 %" }
+"structure.damping_ratio" = { distribution = "lognormal", cov = 0.1 }
+"gap.contact" = { distribution = "uniform", half_width = "50 nm" }
+"gap.electrode" = { distribution = "uniform", half_width = "2 %" }
+[gas])"));
+  EXPECT_THAT(scene.warnings,
+              testing::ElementsAre("x.toml:14: [spread] describes device variation and is not used by this command"));
+  EXPECT_THAT(scene.file.text(), testing::HasSubstr("\"gap.contact\" = { distribution = \"uniform\", half_width = \"50 nm\" }"));
+  EXPECT_EQ(resolved(scene, {{"main", {50, 40}}}).json()["spread"], scene.file.json()["spread"]);
+}
+
+TEST(Scene, TheReferenceScenesAreFine) {
+  for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml"}) {
+    const Scene scene = read_file(name);
+    EXPECT_EQ(scene.device.structure.length, 250e-6) << name;
+    EXPECT_THAT(scene.need_pull_in, testing::ElementsAre("main")) << name;
+    const Drives drives = scene.drives({{"main", {.static_pull_in = 50_V, .dynamic_pull_in = 45_V}}});
+    EXPECT_EQ(std::get<Step>(drives.waveforms.at("main")).level, 1.25 * 45) << name;
+    EXPECT_EQ(drives.limits.at("main").max_voltage, 1.5 * 45) << name;
   }
 }
 

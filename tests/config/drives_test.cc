@@ -1,0 +1,193 @@
+// Waveforms and limits in volts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "base/require.h"
+#include "config/scene.h"
+#include "tests/config/small_scene.h"
+
+namespace softland {
+namespace {
+
+const std::map<std::string, PullInVoltages> pull_in{{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}};
+const std::string main_waveform = "family = \"step\"\nlevel = \"1.25 Vdp\"\n";
+const std::string piezo_waveform =
+    "family = \"pulse\"\nlevels = [\"0.2 V\", \"0.6 V\", \"0 V\"]\ntimes = [\"20 us\", \"41 us\"]\nedge = \"5 us\"\n";
+
+Scene with_main(const std::string& waveform) {
+  return read_scene(SceneFile::parse(edited(small_scene, main_waveform, waveform), "x.toml"));
+}
+
+Scene with_piezo(const std::string& waveform) {
+  return read_scene(SceneFile::parse(edited(small_scene, piezo_waveform, waveform), "x.toml"));
+}
+
+template <class Family>
+Family main_drive(const std::string& waveform) {
+  return std::get<Family>(with_main(waveform).drives(pull_in).waveforms.at("main"));
+}
+
+TEST(Drives, StepInVoltsAndInPullInVoltages) {
+  EXPECT_EQ(main_drive<Step>("family = \"step\"\nlevel = \"45 V\"\n").level, 45);
+  EXPECT_EQ(main_drive<Step>("family = \"step\"\nlevel = \"1.25 Vdp\"\n").level, 1.25 * 40);
+  EXPECT_EQ(main_drive<Step>("family = \"step\"\nlevel = \"1.1 Vsp\"\n").level, 1.1 * 50);
+  EXPECT_EQ(main_drive<Step>("family = \"step\"\nlevel = \"45 V\"\n").rise_time, 0);
+  EXPECT_EQ(main_drive<Step>("family = \"step\"\nlevel = \"45 V\"\nrise_time = \"2 us\"\n").rise_time, 2e-6);
+}
+
+TEST(Drives, HarmonicTakesEitherFrequency) {
+  const std::string base = "family = \"harmonic\"\nbase = \"1 Vdp\"\namplitude = \"15 %\"\n";
+  const auto angular = main_drive<Harmonic>(base + "angular_frequency = \"180543 rad/s\"\n");
+  EXPECT_EQ(angular.base, 40);
+  EXPECT_EQ(angular.amplitude, 0.15 * 40);
+  EXPECT_EQ(angular.angular_frequency, 180543);
+  EXPECT_EQ(angular.phase, 0);
+  EXPECT_EQ(angular.start, 0);
+  EXPECT_TRUE(std::isinf(angular.end));
+  EXPECT_EQ(angular.fade, 0);
+  const auto cyclic = main_drive<Harmonic>(base +
+                                           "frequency = \"30 kHz\"\nphase = \"90 deg\"\nstart = \"1 us\"\nend = \"9 us\"\n"
+                                           "fade = \"2 us\"\n");
+  EXPECT_EQ(cyclic.angular_frequency, 2 * std::numbers::pi * 30e3);
+  EXPECT_DOUBLE_EQ(cyclic.phase, std::numbers::pi / 2);
+  EXPECT_EQ(cyclic.start, 1e-6);
+  EXPECT_EQ(cyclic.end, 9e-6);
+  EXPECT_EQ(cyclic.fade, 2e-6);
+}
+
+TEST(Drives, APercentageForThePiezoIsOfTheMainHoldLevel) {
+  const Scene scene = with_piezo("family = \"harmonic\"\namplitude = \"1 %\"\nfrequency = \"30 kHz\"\n");
+  const auto harmonic = std::get<Harmonic>(scene.drives(pull_in).waveforms.at("piezo"));
+  EXPECT_EQ(harmonic.base, 0);
+  EXPECT_EQ(harmonic.amplitude, 0.01 * 1.25 * 40);
+}
+
+TEST(Drives, APercentageForThePiezoNeedsAMainElectrode) {
+  const std::string text =
+      edited(edited(small_scene, piezo_waveform, "family = \"harmonic\"\namplitude = \"1 %\"\nfrequency = \"30 kHz\"\n"),
+             "[waveform.main]\n" + main_waveform, "");
+  const auto message = [](const std::string& scene) -> std::string {
+    try {
+      static_cast<void>(read_scene(SceneFile::parse(scene, "x.toml")));
+      return {};
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(message(text), "x.toml:29: waveform.piezo.amplitude = \"1 %\": is a percentage of the main hold level, which is 0 V");
+  const std::string two = edited(text, "[electrode.main]", "[electrode.left]\nspan = [\"0 m\", \"50 um\"]\n[electrode.right]");
+  EXPECT_EQ(
+      message(two),
+      "x.toml:31: waveform.piezo.amplitude = \"1 %\": is a percentage of the main hold level, but there is neither an electrode "
+      "'main' nor only one electrode");
+}
+
+TEST(Drives, PulseLevelsMayMixVoltsAndPullInVoltages) {
+  const auto pulse = main_drive<Pulse>(
+      "family = \"pulse\"\nlevels = [\"50 V\", \"0.5 Vdp\", \"1.1 Vsp\"]\ntimes = [\"10 us\", \"20 us\"]\nedge = \"1 us\"\n");
+  EXPECT_THAT(pulse.levels, testing::ElementsAre(50, 0.5 * 40, 1.1 * 50));
+  EXPECT_THAT(pulse.times, testing::ElementsAre(10e-6, 20e-6));
+  EXPECT_EQ(pulse.edge, 1e-6);
+  EXPECT_THAT(main_drive<Pulse>("family = \"pulse\"\nlevels = [\"50 V\"]\n").times, testing::IsEmpty());
+}
+
+TEST(Drives, ATableStandsInTheSceneOrInAFileBesideIt) {
+  const auto inline_table =
+      main_drive<Table>("family = \"table\"\ntimes = [\"0 s\", \"10 us\"]\nvoltages = [\"0 V\", \"1 Vdp\"]\n");
+  EXPECT_THAT(inline_table.time, testing::ElementsAre(0, 10e-6));
+  EXPECT_THAT(inline_table.voltage, testing::ElementsAre(0, 40));
+
+  const std::filesystem::path directory = std::filesystem::path(testing::TempDir()) / "softland tables";
+  std::filesystem::create_directories(directory);
+  std::ofstream(directory / "drive.csv") << "time_s,main\n0,0\n1e-05,40\n";
+  std::ofstream(directory / "scene.toml") << edited(small_scene, main_waveform, "family = \"table\"\nfile = \"drive.csv\"\n");
+  const Scene scene = read_scene(SceneFile::load(directory / "scene.toml"));
+  const auto file_table = std::get<Table>(scene.drives(pull_in).waveforms.at("main"));
+  EXPECT_EQ(file_table.time, inline_table.time);
+  EXPECT_EQ(file_table.voltage, inline_table.voltage);
+  // What is resolved no longer needs the file.
+  std::filesystem::remove(directory / "drive.csv");
+  const Scene again =
+      read_scene(SceneFile::parse(resolved(with_main("family = \"table\"\ntimes = [\"0 s\", \"10 us\"]\nvoltages = [\"0 V\", "
+                                                     "\"1 Vdp\"]\n"),
+                                           pull_in)
+                                      .text(),
+                                  "y.toml"));
+  EXPECT_EQ(std::get<Table>(again.drives(pull_in).waveforms.at("main")).voltage, inline_table.voltage);
+}
+
+TEST(Drives, WhatIsNotDrivenHasNoWaveform) {
+  const Scene scene = read_scene(SceneFile::parse(edited(small_scene, "[waveform.main]\n" + main_waveform, ""), "x.toml"));
+  EXPECT_THAT(scene.drives({}).waveforms, testing::SizeIs(1));
+  EXPECT_THAT(scene.need_pull_in, testing::IsEmpty());
+}
+
+TEST(Drives, AnElectrodeIsLimitedByDefaultWhereItsPullInIsKnown) {
+  const Scene scene = with_main("family = \"step\"\nlevel = \"45 V\"\n");
+  EXPECT_THAT(scene.need_pull_in, testing::IsEmpty());
+  EXPECT_FALSE(scene.drives({}).limits.contains("main"));
+  const DriverLimits limits = scene.drives(pull_in).limits.at("main");
+  EXPECT_EQ(limits.min_voltage, 0);
+  EXPECT_EQ(limits.max_voltage, 1.5 * 40);
+  EXPECT_TRUE(std::isinf(limits.max_slew));
+}
+
+TEST(Drives, WrittenLimitsReplaceTheDefaultsOneByOne) {
+  SceneFile file = SceneFile::parse(small_scene, "x.toml");
+  file.set("driver.main.min_voltage=-0.1 Vsp");
+  file.set("driver.main.max_slew=60 V/us");
+  file.set("waveform.main.rise_time=1 us");
+  const DriverLimits limits = read_scene(file).drives(pull_in).limits.at("main");
+  EXPECT_EQ(limits.min_voltage, -0.1 * 50);
+  EXPECT_EQ(limits.max_voltage, 1.5 * 40);
+  EXPECT_EQ(limits.max_slew, 60e6);
+}
+
+TEST(Drives, ThePiezoHasNoDefaultLimits) {
+  const Scene scene = read_scene(
+      SceneFile::parse(edited(small_scene, "[driver.piezo]\nmin_voltage = \"-1 V\"\nmax_voltage = \"1 V\"\n", ""), "x.toml"));
+  EXPECT_FALSE(scene.drives(pull_in).limits.contains("piezo"));
+}
+
+TEST(Drives, PullInIsNeededForWrittenLimitsToo) {
+  SceneFile file = SceneFile::parse(edited(small_scene, main_waveform, "family = \"step\"\nlevel = \"45 V\"\n"), "x.toml");
+  EXPECT_THAT(read_scene(file).need_pull_in, testing::IsEmpty());
+  file.set("driver.main.max_voltage=1.2 Vdp");
+  EXPECT_THAT(read_scene(file).need_pull_in, testing::ElementsAre("main"));
+}
+
+TEST(Drives, AMissingOrMeaninglessPullInVoltageIsRefused) {
+  const Scene scene = read_scene(SceneFile::parse(small_scene, "x.toml"));
+  const auto message = [&](const std::map<std::string, PullInVoltages>& voltages) -> std::string {
+    try {
+      static_cast<void>(scene.drives(voltages));
+      return {};
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(message({}), "x.toml: the pull-in voltages of electrode 'main' are needed");
+  EXPECT_EQ(message({{"main", {50, std::nan("")}}}),
+            "x.toml: electrode 'main' has no pull-in voltage (static 50 V, dynamic nan V) to multiply");
+}
+
+TEST(Drives, WrittenLimitsAreOrderedOnceVoltsAreKnown) {
+  SceneFile file = SceneFile::parse(small_scene, "x.toml");
+  file.set("driver.main.min_voltage=45 V");
+  file.set("driver.main.max_voltage=1 Vdp");
+  const Scene scene = read_scene(file);
+  try {
+    static_cast<void>(scene.drives(pull_in));
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_STREQ(error.what(), "--set driver.main.min_voltage=45 V: min_voltage of 45 V must be less than max_voltage of 40 V");
+  }
+}
+
+}  // namespace
+}  // namespace softland

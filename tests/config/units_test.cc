@@ -1,0 +1,222 @@
+#include "config/units.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+struct Good {
+  std::string text;
+  double value;
+  Dimension dimension;
+};
+
+std::ostream& operator<<(std::ostream& out, const Good& good) { return out << good.text; }
+
+class GoodQuantity : public testing::TestWithParam<Good> {};
+
+// Exact equality throughout: a decimal prefix must not cost a bit.
+TEST_P(GoodQuantity, IsReadExactly) {
+  const Quantity quantity = parse_quantity(GetParam().text);
+  EXPECT_EQ(quantity.value, GetParam().value);
+  EXPECT_EQ(quantity.dimension, GetParam().dimension) << describe(quantity.dimension);
+}
+
+// clang-format off
+INSTANTIATE_TEST_SUITE_P(Units, GoodQuantity, testing::Values(
+    Good{"2 m", 2, dimension::length},
+    Good{"2 um", 2e-6, dimension::length},
+    Good{"2e0 um", 2e-6, dimension::length},
+    Good{"+2.0 um", 2e-6, dimension::length},
+    Good{"  2\tum ", 2e-6, dimension::length},
+    Good{".5 m", 0.5, dimension::length},
+    Good{"5. m", 5, dimension::length},
+    Good{"1E3 fm", 1e-12, dimension::length},
+    Good{"1 km", 1e3, dimension::length},
+    Good{"1 mm", 1e-3, dimension::length},
+    Good{"1e+2 nm", 1e-7, dimension::length},
+    Good{"1 kg", 1, dimension::mass},
+    Good{"1 g", 1e-3, dimension::mass},
+    Good{"1 mg", 1e-6, dimension::mass},
+    Good{"1 us", 1e-6, dimension::time},
+    Good{"1 mPa", 1e-3, dimension::pressure},
+    Good{"1 m Pa", 1, dimension::stiffness},
+    Good{"1 m*Pa", 1, dimension::stiffness},
+    Good{"1 Pa * m", 1, dimension::stiffness},
+    Good{"78 GPa", 78e9, dimension::pressure},
+    Good{"1 MN/m^2", 1e6, dimension::pressure},
+    Good{"1.86e-5 Pa s", 1.86e-5, dimension::viscosity},
+    Good{"1.86e-5 kg/m s", 1.86e-5, dimension::viscosity},
+    Good{"19300 kg/m^3", 19300, dimension::density},
+    Good{"19.3 g m^-3", 19.3e-3, dimension::density},
+    Good{"100 1/um^2", 1e14, dimension::area_density},
+    Good{"100 um^-2", 1e14, dimension::area_density},
+    Good{"-171 pm/V", -171e-12, dimension::piezo_coefficient},
+    Good{"-171 pC/N", -171e-12, dimension::piezo_coefficient},
+    Good{"3 V/us", 3e6, dimension::slew_rate},
+    Good{"30 kHz", 30e3, dimension::frequency},
+    Good{"30 1/s", 30, dimension::frequency},
+    Good{"180543 rad/s", 180543, dimension::angular_frequency},
+    Good{"1 Mrad/s", 1e6, dimension::angular_frequency},
+    Good{"180 deg", std::numbers::pi, dimension::angle},
+    Good{"20 degC", 293.15, dimension::temperature},
+    Good{"-273.15 degC", 0, dimension::temperature},
+    Good{"1 mK", 1e-3, dimension::temperature},
+    Good{"15 %", 0.15, dimension::none},
+    Good{"0.15", 0.15, dimension::none},
+    Good{"1.25 Vdp", 1.25, dimension::dynamic_pull_in},
+    Good{"1.25 Vsp", 1.25, dimension::static_pull_in},
+    Good{"2 N m", 2, dimension::energy},
+    Good{"2 J", 2, dimension::energy},
+    Good{"2 W s", 2, dimension::energy},
+    Good{"2 C V", 2, dimension::energy},
+    Good{"2 V/A", 2, dimension::resistance},
+    Good{"2 C/V", 2, dimension::capacitance},
+    Good{"2 1/ohm", 2, dimension::conductance},
+    Good{"2 m/m", 2, dimension::none}));
+// clang-format on
+
+struct Bad {
+  std::string text;
+  std::string message;
+};
+
+std::ostream& operator<<(std::ostream& out, const Bad& bad) { return out << bad.text; }
+
+class BadQuantity : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadQuantity, IsRefusedWithTheRule) {
+  try {
+    const Quantity quantity = parse_quantity(GetParam().text);
+    FAIL() << quantity.value << " " << describe(quantity.dimension);
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(error.what(), GetParam().message);
+  }
+}
+
+constexpr const char* no_number = "not a number, a space and a unit";
+
+// clang-format off
+INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(
+    Bad{"", no_number},
+    Bad{"um", no_number},
+    Bad{"2um", no_number},
+    Bad{"2,5 um", no_number},
+    Bad{"--2 um", no_number},
+    Bad{"2e um", no_number},
+    Bad{"0x2 um", no_number},
+    Bad{"inf m", no_number},
+    Bad{"nan m", no_number},
+    Bad{"1_000 m", no_number},
+    Bad{". m", no_number},
+    Bad{"2 u", "unknown unit 'u'"},
+    Bad{"2 UM", "unknown unit 'UM'"},
+    Bad{"2 min", "unknown unit 'min'"},
+    Bad{"2 cm", "unknown unit 'cm'"},
+    Bad{"2 \xc2\xb5m", "unknown unit '\xc2\xb5m'"},
+    Bad{"2 mVdp", "unknown unit 'mVdp'"},
+    Bad{"2 k%", "unknown unit 'k%'"},
+    Bad{"2 kdeg", "unknown unit 'kdeg'"},
+    Bad{"2 1", "unknown unit '1'"},
+    Bad{"2 m 1", "unknown unit '1'"},
+    Bad{"2 3 m", "unknown unit '3'"},
+    Bad{"2 m^", "'m^' needs an integer power between -9 and 9, not 0"},
+    Bad{"2 m^0", "'m^0' needs an integer power between -9 and 9, not 0"},
+    Bad{"2 m^2.5", "'m^2.5' needs an integer power between -9 and 9, not 0"},
+    Bad{"2 m^10", "'m^10' needs an integer power between -9 and 9, not 0"},
+    Bad{"2 m^99999999999", "'m^99999999999' needs an integer power between -9 and 9, not 0"},
+    Bad{"2 m ^2", "unknown unit ''"},
+    Bad{"2 m/s/s", "more than one '/' in the unit 'm/s/s'"},
+    Bad{"2 m/", "a factor is missing in the unit 'm/'"},
+    Bad{"2 /m", "a factor is missing in the unit '/m'"},
+    Bad{"2 m**s", "a factor is missing in the unit 'm**s'"},
+    Bad{"2 *m", "a factor is missing in the unit '*m'"},
+    Bad{"2 J/degC", "'degC' has an offset and can only stand alone; use K here"},
+    Bad{"2 mdegC", "unknown unit 'mdegC'"},
+    Bad{"1e400 m", "1e400 is outside the range of double precision"},
+    Bad{"1e99999999999 m", "1e99999999999 is outside the range of double precision"},
+    Bad{"1e308 km", "1e308 is outside the range of double precision"},
+    Bad{"1e308 deg^-9", "1e308 deg^-9 is outside the range of double precision"}));
+// clang-format on
+
+TEST(Units, TwoWaysToWriteANumberGiveTheSameBits) {
+  EXPECT_EQ(parse_quantity("0.1 um").value, parse_quantity("100 nm").value);
+  EXPECT_EQ(parse_quantity("0.3 mm").value, parse_quantity("3e-4 m").value);
+}
+
+TEST(Units, AreNamedForPeople) {
+  EXPECT_EQ(describe(dimension::length), "a length [m]");
+  EXPECT_EQ(describe(dimension::none), "a plain number");
+  EXPECT_EQ(describe(parse_quantity("1 m/s^2").dimension), "a quantity [m s^-2]");
+  EXPECT_EQ(unit_symbol(dimension::density), "kg/m^3");
+}
+
+TEST(Units, TheExampleOfADimensionHasThatDimension) {
+  for (const Dimension& dimension : {dimension::none,
+                                     dimension::length,
+                                     dimension::mass,
+                                     dimension::time,
+                                     dimension::current,
+                                     dimension::temperature,
+                                     dimension::angle,
+                                     dimension::static_pull_in,
+                                     dimension::dynamic_pull_in,
+                                     dimension::area,
+                                     dimension::velocity,
+                                     dimension::area_density,
+                                     dimension::density,
+                                     dimension::frequency,
+                                     dimension::angular_frequency,
+                                     dimension::force,
+                                     dimension::energy,
+                                     dimension::power,
+                                     dimension::pressure,
+                                     dimension::viscosity,
+                                     dimension::stiffness,
+                                     dimension::voltage,
+                                     dimension::slew_rate,
+                                     dimension::charge,
+                                     dimension::capacitance,
+                                     dimension::resistance,
+                                     dimension::conductance,
+                                     dimension::piezo_coefficient}) {
+    EXPECT_EQ(parse_quantity(example(dimension)).dimension, dimension) << example(dimension);
+    EXPECT_EQ(parse_quantity("1 " + unit_symbol(dimension)).dimension, dimension) << unit_symbol(dimension);
+    EXPECT_EQ(parse_quantity("1 " + unit_symbol(dimension)).value, 1) << unit_symbol(dimension);
+  }
+}
+
+TEST(Units, AnyFiniteNumberReadsBackToTheSameBits) {
+  const bool holds = rc::check([](std::uint64_t bits) {
+    double value = 0;
+    std::memcpy(&value, &bits, sizeof value);
+    RC_PRE(std::isfinite(value));
+    for (const Dimension& dimension : {dimension::length, dimension::density, dimension::piezo_coefficient, dimension::none}) {
+      const double read = parse_quantity(quantity_text(value, dimension)).value;
+      RC_ASSERT(std::memcmp(&read, &value, sizeof value) == 0);
+    }
+  });
+  EXPECT_TRUE(holds);
+}
+
+TEST(Units, ExtremeNumbersReadBackToTheSameBits) {
+  for (const double value : {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::min(),
+                             std::numeric_limits<double>::max(), -0.0, 0.1, 1.0 / 3.0}) {
+    const double read = parse_quantity(quantity_text(value, dimension::voltage)).value;
+    EXPECT_EQ(std::memcmp(&read, &value, sizeof value), 0) << value;
+  }
+}
+
+}  // namespace
+}  // namespace softland
