@@ -7,17 +7,18 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <thread>
 
 #include "optimizers/backends.h"
 
 namespace softland::internal {
 namespace {
 
-std::timed_mutex& one_solve_at_a_time() {
-  static std::timed_mutex mutex;
+std::mutex& one_solve_at_a_time() {
+  static std::mutex mutex;
   return mutex;
 }
-constexpr std::chrono::milliseconds kLookUp{20};  ///< while waiting: how often to see whether there is still time
+constexpr std::chrono::milliseconds kLookUp{1};  // while waiting: how often to see whether it is our turn, or too late
 
 class BoxProblem final : public Ipopt::TNLP {
  public:
@@ -98,8 +99,9 @@ RunReport report_of(Ipopt::ApplicationReturnStatus status) {
 
 RunReport run_ipopt(const Run& run, Strand& strand) {
   std::unique_lock turn(one_solve_at_a_time(), std::defer_lock);
-  while (!turn.try_lock_for(kLookUp)) {
+  while (!turn.try_lock()) {
     if (strand.over()) return {.converged = false, .message = "Ipopt: stopped by us while waiting for another solve"};
+    std::this_thread::sleep_for(kLookUp);
   }
   strand.begin_search();
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
