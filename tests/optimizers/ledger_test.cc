@@ -1,8 +1,11 @@
 // What libraries are told.
 #include "optimizers/ledger.h"
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "tests/optimizers/landscapes.h"
@@ -105,6 +108,35 @@ TEST(Answers, EndWithTheBudget) {
         EXPECT_THROW(strand(std::vector{0.1}), Cut) << "once cut, a library is not to go on among known points";
       },
       2);
+}
+
+TEST(Rounds, EndWithTheFirstTaskAtTheTargetEvenWhenALaterOneIsThereSooner) {
+  std::atomic<int> tasks_there = 0;
+  const Problem problem = box(1, 0, 1, [](auto x) { return x[0]; });
+  const OptimizerOptions options{.jobs = 3, .target = 0.2};
+  Ledger ledger(problem, options);
+  // The last task is the first to get there, then the second, then the first.
+  const auto reach = [&tasks_there](int place, double goal) {
+    return [&tasks_there, place, goal](Strand& strand) {
+      strand(std::vector{goal + 0.7});
+      while (tasks_there < place) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      strand(std::vector{goal + 0.6});  // an earlier task goes on
+      try {
+        strand(std::vector{goal});
+      } catch (const Cut&) {
+        ++tasks_there;
+        throw;
+      }
+    };
+  };
+  ledger.run(
+      {{.budget = 5, .body = reach(2, 0.15)}, {.budget = 5, .body = reach(1, 0.1)}, {.budget = 5, .body = reach(0, 0.05)}});
+  const OptimizerResult result = ledger.result(false, "");
+  EXPECT_EQ(result.termination, Termination::target_reached);
+  EXPECT_EQ(result.value, 0.15);
+  EXPECT_EQ(result.evaluations, 3);
+  EXPECT_EQ(result.improvements.size(), 3u);
+  EXPECT_TRUE(ledger.over());
 }
 
 // Rounding of values of order 1 over a step of 1e-3.

@@ -132,7 +132,8 @@ TEST_P(Minimize, EvaluatesOnceWhenAllVariablesAreHeld) {
 TEST_P(Minimize, WorksInOneVariable) {
   const OptimizerResult result = minimize(box(1, -3, 5, bowl), {.optimizer = GetParam(), .max_evaluations = 200});
   ASSERT_EQ(result.x.size(), 1u);
-  EXPECT_NEAR(result.x[0], 0.3, 0.05);
+  const bool coarse = GetParam() == "isres" || GetParam() == "esch";
+  EXPECT_NEAR(result.x[0], 0.3, coarse ? 0.05 : 1e-3);
 }
 
 TEST_P(Minimize, KeepsToTheTimeBudget) {
@@ -167,13 +168,17 @@ TEST_P(Minimize, EndsWhenTheStopFlagIsSet) {
 
 TEST_P(Minimize, EvaluatesTheStartsFirstAndToTheLastDigit) {
   Problem problem = box(2, 1e-6, 9.7e-5, [](std::span<const double> x) { return x[0] + x[1]; });
-  problem.starts = {{4.1e-5, 2.3e-5}, {3.7e-5, 1.0}};  // the second lies outside: moved to the bound
+  // Several, because scaling there and back happens to keep the digits of some.
+  for (int k = 1; k <= 10; ++k) problem.starts.push_back({k * 0.91e-5, k * 0.37e-5});
+  auto expected = problem.starts;
+  problem.starts.push_back({3.7e-5, 1.0});  // outside: moved to the bound
+  expected.push_back({3.7e-5, 9.7e-5});
   std::vector<std::vector<double>> points;
   const auto note = [&](const Evaluation& evaluation) { points.push_back(evaluation.x); };
   static_cast<void>(minimize(problem, {.optimizer = GetParam(), .max_evaluations = 20, .on_evaluation = note}));
-  ASSERT_GE(points.size(), 2u);
-  EXPECT_EQ(points[0], problem.starts[0]);
-  EXPECT_EQ(points[1], (std::vector{3.7e-5, 9.7e-5}));
+  ASSERT_GE(points.size(), expected.size());
+  points.resize(expected.size());
+  EXPECT_EQ(points, expected);
 }
 
 TEST_P(Minimize, NeverEvaluatesAPointTwice) {
