@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/literals.h"
-#include "base/require.h"
 #include "tests/config/small_scene.h"
 
 namespace softland {
