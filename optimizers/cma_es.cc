@@ -1,10 +1,9 @@
 // Covariance matrix adaptation evolution strategy, (mu/mu_w, lambda) with rank-one and rank-mu updates and cumulative step length
 // control. Draws lambda points m + sigma A z from a normal distribution, moves its mean m to the weighted best half and learns
 // its shape from the steps that succeeded. Only the order of the values counts, so that it follows curved valleys over kinks and
-// jumps. Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, algorithm in Fig. 6 and defaults in Table
-// 1 (without negative weights). Points beyond a bound are mirrored back into the box.
-#include <fmt/format.h>
-
+// jumps. Points beyond a bound are mirrored back into the box.
+// Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, algorithm and default parameters of appendix A,
+// without negative weights.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -67,10 +66,7 @@ void eigen_decompose(Matrix a, std::size_t n, Matrix& v, std::vector<double>& va
 }
 
 /// Folds the real line onto [0, 1].
-double mirror(double u) {
-  u = std::abs(std::remainder(u, 2.0));
-  return u;
-}
+double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
 class Normals {
  public:

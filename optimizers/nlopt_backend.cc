@@ -1,10 +1,8 @@
 // NLopt 2.7.1. What its methods need that its interface does not say:
 // - Its own limits are not enough: several methods report success on NaN, hang, or swallow exceptions. The Strand counts, keeps
-// the best
-//   point and cuts; nothing that NLopt returns but the words is used.
-// - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in that
-// thread.
-// - BOBYQA refuses problems in one variable: it gets a second one which does nothing. MLSL starts BOBYQA.
+//   the best point and cuts; nothing that NLopt returns but the words is used.
+// - Random numbers come from a generator of the calling thread, seeded from the clock unless nlopt::srand is called in it.
+// - MLSL is the one that starts from random points: the Sobol sequence of its variant cannot be seeded.
 // - DIRECT divides the box at fixed places; a bent scale per variable, drawn from the seed, moves them.
 #include <fmt/format.h>
 
@@ -24,11 +22,10 @@ constexpr double kStepToleranceInsideMlsl = 1e-4;
 
 struct Callback {
   Strand& strand;
-  std::size_t dimension;            ///< of the problem; the library may have one more
   std::vector<double> bent_middle;  ///< where 0.5 goes; empty for a straight scale
 
   [[nodiscard]] Point to_point(const std::vector<double>& x) const {
-    Point point(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(dimension));
+    Point point = x;
     for (std::size_t i = 0; i < bent_middle.size(); ++i) {
       const double t = point[i];
       const double middle = bent_middle[i];
@@ -43,7 +40,7 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   try {
     const Point point = callback.to_point(x);
     const double value = callback.strand(point).value;
-    if (!gradient.empty()) callback.strand.gradient(point, std::span(gradient).first(callback.dimension));
+    if (!gradient.empty()) callback.strand.gradient(point, gradient);
     return value;
   } catch (const Cut&) {
     throw nlopt::forced_stop();
@@ -68,9 +65,8 @@ std::string_view name_of(nlopt::result result) {
 RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
   const auto algorithm = static_cast<nlopt::algorithm>(method.nlopt_algorithm);
   const bool is_mlsl = algorithm == nlopt::G_MLSL;
-  Callback callback{.strand = strand, .dimension = run.start.size(), .bent_middle = {}};
+  Callback callback{.strand = strand, .bent_middle = {}};
   std::vector<double> x = run.start;
-  if (x.size() == 1 && (algorithm == nlopt::LN_BOBYQA || is_mlsl)) x.push_back(0.5);
   if (algorithm == nlopt::GN_DIRECT_L) {
     for (std::size_t i = 0; i < x.size(); ++i) {
       callback.bent_middle.push_back(0.4 + 0.2 * draw_uniform(run.seed, Draw::skew, i));

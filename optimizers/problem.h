@@ -18,8 +18,8 @@ struct Variable {
   double upper = 1;
 };
 
-/// minimise objective(x) subject to lower <= x <= upper. Optimizers work on x scaled to [0, 1]; a variable with lower == upper is
-/// held.
+/// minimise objective(x) subject to lower <= x <= upper. Optimizers work on x scaled to [0, 1]; a variable with lower == upper
+/// is held at it.
 struct Problem {
   std::vector<Variable> variables = {};
   /// Called from several threads at once when jobs > 1, each call with its own x, which lies within the bounds exactly. May
