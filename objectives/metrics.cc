@@ -145,8 +145,7 @@ std::vector<Node> nodes(const Trajectory& trajectory) {
     const auto advance = [&](double high, const Node& node) {
       const double before = result.back().separation;
       if ((before < 0 && node.separation > 0) || (before > 0 && node.separation < 0)) {
-        const bool bracketed = (curve(low) > 0) != (curve(high) > 0);
-        result.push_back(node_at(h > 0 && bracketed ? monotone_root(curve, slope, low, high) : high, 0));
+        result.push_back(node_at(monotone_root(curve, slope, low, high), 0));
       }
       result.push_back(node);
       low = high;

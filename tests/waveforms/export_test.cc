@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -98,6 +99,17 @@ TEST(Csv, ReadsBackToTheSameSignalBitForBit) {
     const Signal original = signal(waveform);
     const std::string file = folder.write("one.csv", csv({{"main", original}}, 60));
     EXPECT_EQ(signal(read_table(file, "main")).pieces(), original.pieces()) << family(waveform);
+  }
+}
+
+TEST(Csv, RampBeforeAJumpReadsBackBitForBit) {
+  // Ramps whose end, computed from the slope, is a rounding off: their slope must survive all the same.
+  const TemporaryFolder folder;
+  for (const auto& [t0, v0, t1, v1] :
+       {std::array{9.6, 1.6, 14.8, 9.3}, {7.2, 4.9, 13.9, 3.1}, {0.5, 2.1, 6.2, 8.0}, {1.9, 0.3, 9.0, 4.0}}) {
+    const Signal original = signal(Table{.time = {0, t0, t1, t1}, .voltage = {0, v0, v1, -1}});
+    const std::string file = folder.write("ramp.csv", csv({{"main", original}}, 60));
+    EXPECT_EQ(signal(read_table(file, "main")).pieces(), original.pieces()) << t0;
   }
 }
 
