@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/require.h"
-#include "model/pull_in.h"
 #include "model/quintic.h"
 #include "model/stepper.h"
 
@@ -209,10 +208,22 @@ class Run {
     if (out_.work.steps >= options_.max_steps) return fail(fmt::format("more than {} steps needed", options_.max_steps));
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);
     if (options_.observer && options_.observer(here_.time, here_.state.data(), here_.state.data() + n_)) return end(Status::done);
+    measure_landing();
     if (out_.touches.empty() ? here_.time >= options_.no_contact_before
                              : here_.time >= out_.touches.front().begin + options_.after_contact) {
       return end(Status::done);
     }
+  }
+
+  void measure_landing() {
+    if (!std::isfinite(options_.closed_potential) || std::isfinite(out_.landing_excess) || out_.touches.empty()) return;
+    for (std::size_t k = 0; k < drives_.size(); ++k) {
+      if (pieces_[k] + 1 < drives_[k].pieces().size()) return;  // a drive is still on its way
+    }
+    set_volts(here_.time);
+    const double* q = here_.state.data();
+    out_.landing_excess =
+        device_.kinetic_energy(q + n_) + device_.potential(q, volts_, in_contact_, work_) - options_.closed_potential;
   }
 
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
@@ -368,11 +379,6 @@ class Run {
             fmt::format("contact law asperity-uniform: interference {:.3g} m exceeds the asperity height {:.3g} m",
                         out_.deepest_penetration, c->height));
       }
-    }
-    if (out_.status == Status::done && !out_.touches.empty() && device_.has_contact()) {
-      std::vector<double> hold;
-      for (const Signal& signal : drives_) hold.push_back(signal.hold_level());
-      out_.hold_force = closed_contact_force(device_, hold);
     }
   }
 

@@ -31,7 +31,10 @@ struct ClosingOptions {
   Integrator integrator = Integrator::dormand_prince;
   double after_contact = std::numeric_limits<double>::infinity();      ///< end this long after first touch [s]
   double no_contact_before = std::numeric_limits<double>::infinity();  ///< end here if nothing has touched [s]
-  long max_steps = 2'000'000;               ///< work bound: a run that needs more ends as numerical_failure
+  long max_steps = 2'000'000;  ///< work bound: a run that needs more ends as numerical_failure
+  /// Potential of the closed equilibrium under the hold levels [J]: when given, Trajectory::landing_excess is measured against
+  /// it.
+  double closed_potential = std::numeric_limits<double>::quiet_NaN();
   bool audit = false;                       ///< integrate dissipation for Trajectory::energy
   const std::atomic<bool>* stop = nullptr;  ///< set from outside: ends the run as `interrupted`
   /// Called after every step with time [s], q and v; true ends the run (status done).

@@ -190,19 +190,25 @@ double release_voltage(const Switch& device, std::size_t drive) {
   return lowest > 0 ? std::sqrt(lowest) : nan;
 }
 
-double closed_contact_force(const Switch& device, std::span<const double> volts) {
-  if (!device.has_contact()) return nan;
+std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts) {
+  if (!device.has_contact()) return std::nullopt;
   Statics statics(device);
   const double plane = device.device().gap.contact;
   const auto surplus = [&](double s) {
     const auto held = statics.pinned(volts, s);
     return held ? held->unknown - contact_force(device.contact(), s - plane) : nan;
   };
-  if (!(surplus(plane) > 0)) return nan;
+  if (!(surplus(plane) > 0)) return std::nullopt;
   double deep = plane + device.penetration_scale();
   for (int i = 0; i < 40 && surplus(deep) > 0; ++i) deep = plane + 2 * (deep - plane);
-  if (!(surplus(deep) < 0)) return nan;
-  return contact_force(device.contact(), bracketed_zero(surplus, plane, deep) - plane);
+  if (!(surplus(deep) < 0)) return std::nullopt;
+  const double s = bracketed_zero(surplus, plane, deep);
+  const auto held = statics.pinned(volts, s);
+  if (!held) return std::nullopt;
+  Switch::Workspace work = device.workspace();
+  return ClosedEquilibrium{.q = held->q,
+                           .contact_force = contact_force(device.contact(), s - plane),
+                           .potential = device.potential(held->q.data(), volts, true, work)};
 }
 
 DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result, double tolerance) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -31,8 +32,14 @@ struct StaticPullIn {
 /// be followed.
 [[nodiscard]] double release_voltage(const Switch& device, std::size_t drive);
 
-/// Contact force [N] of the closed equilibrium under constant voltages; NaN if there is none.
-[[nodiscard]] double closed_contact_force(const Switch& device, std::span<const double> volts);
+/// Where the beam comes to rest on the contact.
+struct ClosedEquilibrium {
+  Eigen::VectorXd q;         ///< modal coordinates [m kg^(1/2)]
+  double contact_force = 0;  ///< [N]
+  double potential = 0;      ///< Switch::potential there [J]
+};
+/// The closed equilibrium under constant voltages, if there is one with a contact force above zero.
+[[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts);
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest whose contact point reaches the contact plane, whether
 /// or not it stays, within 100 periods of the first mode; to 1e-7 relative. NaN with a status when static pull-in fails.

@@ -22,11 +22,11 @@ PointRange points_in(const Eigen::ArrayXd& positions, double begin, double end) 
 }
 
 template <class Law>
-std::unique_ptr<const DistributedLaw> erased(Law law, PointRange range, double floor) {
-  return std::make_unique<DistributedLawOf<Law>>(law, range.begin, range.end, floor);
+std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double floor) {
+  return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
 
-std::unique_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, PointRange range, double floor) {
+std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, PointRange range, double floor) {
   switch (fringing) {
     case Fringing::none:
       return erased(ElectrostaticForce<NoFringing>{{.width = s.width}}, range, floor);

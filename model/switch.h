@@ -92,8 +92,8 @@ class Switch {
   Eigen::ArrayXd positions_, weights_;
   Eigen::MatrixXd shapes_;                                             // phi_i(x_p), points x modes
   Eigen::MatrixXd weighted_shapes_;                                    // w_p phi_i(x_p)
-  std::vector<std::unique_ptr<const DistributedLaw>> electrode_laws_;  // one per electrode
-  std::vector<std::unique_ptr<const DistributedLaw>> passive_laws_;    // not driven by a voltage
+  std::vector<std::shared_ptr<const DistributedLaw>> electrode_laws_;  // one per electrode
+  std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;    // not driven by a voltage
   std::optional<ContactLaw> contact_;
   double in_contact_period_ = 0;
   double penetration_scale_ = 0;

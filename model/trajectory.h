@@ -53,10 +53,13 @@ struct Trajectory {
       std::numeric_limits<double>::quiet_NaN();  ///< 2 pi over the first frequency of the beam pinned at x_c [s]
   double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< integral of V dQ over all drives [J]
   double hold_force =
-      std::numeric_limits<double>::quiet_NaN();  ///< contact force of the closed equilibrium under the hold levels [N]
+      std::numeric_limits<double>::quiet_NaN();  ///< of the closed equilibrium under the hold levels, if computed [N]
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();  ///< beam to electrode, anywhere, ever [m]
-  double deepest_penetration = 0;                                  ///< [m]
-  EnergyAudit energy;                                              ///< filled when asked for
+  /// Energy above that of the closed equilibrium once the switch has touched and the drives stand at their hold levels [J]: what
+  /// has to be dissipated, by bouncing or otherwise, before the switch rests.
+  double landing_excess = std::numeric_limits<double>::quiet_NaN();
+  double deepest_penetration = 0;  ///< [m]
+  EnergyAudit energy;              ///< filled when asked for
   Work work;
   std::vector<std::string> warnings;
 };

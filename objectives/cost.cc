@@ -1,0 +1,89 @@
+#include "objectives/cost.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace softland {
+namespace {
+
+constexpr std::array<std::pair<Target, std::string_view>, 6> target_names{{{Target::bounce, "bounce"},
+                                                                           {Target::settling, "settling"},
+                                                                           {Target::rebound, "rebound"},
+                                                                           {Target::count, "count"},
+                                                                           {Target::impact, "impact"},
+                                                                           {Target::energy, "energy"}}};
+
+// A step that lands softly by itself must not turn the ratios into infinities.
+double ratio(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
+
+}  // namespace
+
+std::string_view to_string(Target target) {
+  for (const auto& [t, name] : target_names) {
+    if (t == target) return name;
+  }
+  return "unknown";
+}
+
+std::optional<Target> target_from(std::string_view name) {
+  for (const auto& [target, n] : target_names) {
+    if (n == name) return target;
+  }
+  return std::nullopt;
+}
+
+CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options) {
+  CostFigures f;
+  f.touched = !trajectory.touches.empty();
+  if (!f.touched) {
+    f.closest = trajectory.contact_gap;
+    for (const TrajectoryPoint& p : trajectory.points) f.closest = std::min(f.closest, trajectory.contact_gap - p.position);
+    return f;
+  }
+  f.first_touch = f.last_rebound_end = trajectory.touches.front().begin;
+  for (const Touch& touch : trajectory.touches) {
+    f.touch_speed = std::max(f.touch_speed, touch.impact_velocity);
+    f.impact_energy += touch.peak_energy;
+  }
+  // A drive that never comes to rest inside the run leaves the energy unmeasured: the other figures must do.
+  if (std::isfinite(trajectory.landing_excess)) f.landing_excess = std::max(0.0, trajectory.landing_excess);
+  const double end = trajectory.points.back().time;
+  for (const Rebound& r : rebounds(trajectory)) {
+    const double until = std::isfinite(r.end) ? r.end : end;
+    f.separated += until - r.begin;
+    f.rebound_height = std::max(f.rebound_height, r.height);
+    f.soft_count += r.height / (r.height + options.significant_rebound);
+    if (r.height > options.significant_rebound) f.last_rebound_end = until;
+  }
+  return f;
+}
+
+double cost(Target target, const Trajectory& trajectory, const CostScale& scale, const MetricsOptions& options) {
+  if (trajectory.status != Status::done) return std::numeric_limits<double>::infinity();
+  const CostFigures f = cost_figures(trajectory, options);
+  if (!f.touched) return 10 + f.closest / scale.contact_gap;
+  const double h = ratio(f.rebound_height, scale.step.rebound_height);
+  const double v = ratio(f.touch_speed, scale.step.touch_speed);
+  const double k = std::sqrt(ratio(f.landing_excess, scale.step.landing_excess));
+  const double t = ratio(f.first_touch, scale.step.first_touch);
+  switch (target) {
+    case Target::bounce:
+      return 0.2 * h + 0.15 * v + 0.45 * k + 0.1 * f.separated / scale.score_window + 0.1 * t;
+    case Target::settling:
+      return 0.4 * ratio(f.last_rebound_end, scale.step.first_touch) + 0.2 * h + 0.1 * v + 0.3 * k;
+    case Target::rebound:
+      return 0.5 * h + 0.1 * v + 0.35 * k + 0.05 * t;
+    case Target::count:
+      return 0.3 * ratio(f.soft_count, scale.step.soft_count) + 0.2 * h + 0.1 * v + 0.35 * k + 0.05 * t;
+    case Target::impact:
+      return 0.6 * v + 0.1 * h + 0.2 * k + 0.1 * t;
+    case Target::energy:
+      return 0.5 * ratio(f.impact_energy, scale.step.impact_energy) + 0.1 * h + 0.1 * v + 0.2 * k + 0.1 * t;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace softland

@@ -1,0 +1,170 @@
+#include "studies/optimize.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/require.h"
+#include "model/constants.h"
+
+namespace softland {
+namespace {
+
+constexpr double latest_touch = 2.5;        // times the baseline's first touch
+constexpr double search_tolerance = 1e-6;   // of the integrator: costs good to about 1e-4
+constexpr double tight_tolerance = 1e-9;    // of the confirming run
+constexpr int more_modes = 2;               // of the confirming run
+constexpr std::size_t most_candidates = 8;  // verified at the most
+
+// The scene with other waveforms on some drives.
+SceneFile with_waveforms(const Prepared& p, const std::map<std::string, Waveform>& waveforms) {
+  SceneFile file = resolved(p.scene, p.voltage_units());
+  for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
+  return file;
+}
+
+// Text of the scene, read back: what a user's `simulate best.toml` will run.
+Prepared read_back(const SceneFile& file, const std::string& name) { return prepare(SceneFile::parse(file.text(), name)); }
+
+// Better or worse as a user would rank two closings: the target's own figure, unsettled last.
+double figure(Target target, const Metrics& m) {
+  const double none = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(m.initial_contact_time)) return none;
+  const auto finite = [&](double v) { return std::isfinite(v) ? v : none; };
+  switch (target) {
+    case Target::settling:
+      return finite(m.permanent_contact_time);
+    case Target::impact:
+      return finite(m.impact_velocity);
+    case Target::energy:
+      return finite(m.impact_energy);
+    case Target::count:
+      return m.bounce_count;
+    case Target::bounce:
+    case Target::rebound:
+      break;
+  }
+  return finite(m.major_bounce_height);
+}
+
+}  // namespace
+
+bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
+  if (!best.settled) return false;
+  if (target == Target::bounce || target == Target::rebound || target == Target::count) return best.bounce_count == 0;
+  return figure(target, best) < figure(target, baseline);
+}
+
+OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
+  Prepared given = prepare(file, true);
+  require(given.device.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
+
+  // The baseline: plain steps to the hold levels the scene describes.
+  std::map<std::string, Waveform> plain;
+  const auto hold = [&](const std::string& drive) {
+    const auto found = given.drives.waveforms.find(drive);
+    return found == given.drives.waveforms.end() ? 0 : signal(found->second).hold_level();
+  };
+  if (options.actuator != Actuator::pzt) {
+    const std::string electrode = searched_electrode(given.scene.device);
+    plain[electrode] = Step{.level = hold(electrode)};
+  }
+  if (given.device.has_piezo()) plain[std::string(piezo_drive)] = Step{.level = 0};
+  Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml");
+  OptimizeResult result{
+      .scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true, options.stop)};
+  if (options.on_baseline) options.on_baseline(result.baseline);
+
+  // How candidates are scored.
+  const double period = 2 * pi / given.device.angular_frequencies()[0];
+  const MetricsOptions& metrics_options = given.scene.metrics;
+  CostScale scale{.step = {},
+                  .score_window = std::max(period, 3 * given.device.in_contact_period()),
+                  .contact_gap = given.scene.device.gap.contact};
+  ClosingOptions run{
+      .duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window, .stop = options.stop};
+  std::vector<double> rest;
+  for (const Signal& s : baseline_scene.signals()) rest.push_back(s.hold_level());
+  if (const auto closed = closed_equilibrium(given.device, rest)) run.closed_potential = closed->potential;
+  const Trajectory step = simulate_closing(given.device, baseline_scene.signals(), run);
+  scale.step = cost_figures(step, metrics_options);
+  if (!scale.step.touched) {
+    // A hold level that a plain step does not close with may still close with a throw: scale by what a closing of this beam would
+    // be like.
+    scale.step = {.touched = true,
+                  .first_touch = period / 2,
+                  .touch_speed = given.scene.device.gap.contact * given.device.angular_frequencies()[0],
+                  .rebound_height = given.scene.device.gap.contact,
+                  .soft_count = 1,
+                  .impact_energy = 0};
+  }
+  result.baseline_cost = cost(options.target, step, scale, metrics_options);
+  run.no_contact_before = latest_touch * scale.step.first_touch;
+  run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
+
+  const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);
+  const std::vector<std::string> names = given.drive_names();
+  const std::vector<Signal> standing = baseline_scene.signals();
+  const auto evaluate = [&](std::span<const double> x) {
+    std::vector<Signal> signals = standing;
+    for (const auto& [drive, waveform] : space.waveforms(x)) {
+      const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin());
+      signals[at] = signal(waveform);
+      if (!violation(signals[at], given.drives.limits.at(drive)).empty()) return std::numeric_limits<double>::infinity();
+    }
+    return cost(options.target, simulate_closing(given.device, signals, run), scale, metrics_options);
+  };
+
+  const Problem problem{.variables = space.variables(), .objective = evaluate, .starts = space.starts()};
+  OptimizeProgress progress;
+  OptimizerOptions search{.optimizer = options.optimizer,
+                          .max_evaluations = options.max_evaluations,
+                          .max_seconds = options.max_seconds,
+                          .seed = options.seed,
+                          .jobs = options.jobs,
+                          .stop = options.stop};
+  search.on_evaluation = [&](const Evaluation& e) {
+    ++progress.evaluations;
+    if (options.on_evaluation) options.on_evaluation(e, progress);
+  };
+  search.on_improvement = [&](const Evaluation& e) {
+    progress.best_cost = e.value;
+    if (options.on_improvement) options.on_improvement(e, with_waveforms(baseline_scene, space.waveforms(e.x)));
+  };
+  result.search = minimize(problem, search);
+
+  // Believe no candidate before it has been run over the whole window, as its file says, at the accuracy the scene asks for.
+  const auto& found = result.search.improvements;
+  for (std::size_t i = 0; i < std::min(most_candidates, found.size()); ++i) {
+    const Evaluation& candidate = found[found.size() - 1 - i];
+    if (!(candidate.value < 10)) break;  // never touched
+    Prepared scene = read_back(with_waveforms(baseline_scene, space.waveforms(candidate.x)), "best.toml");
+    Closing closing = simulate(scene, true, options.stop);
+    const bool met = goal_met(options.target, closing.metrics, result.baseline.metrics);
+    if (result.best && !met) continue;
+    result.best_scene = std::move(scene);
+    result.best = std::move(closing);
+    result.best_cost = candidate.value;
+    result.goal_met = met;
+    result.parameters.clear();
+    for (std::size_t k = 0; k < problem.variables.size(); ++k) result.parameters[problem.variables[k].name] = candidate.x[k];
+    if (met) break;
+  }
+  if (!result.best) return result;
+  result.better_than_baseline = figure(options.target, result.best->metrics) < figure(options.target, result.baseline.metrics);
+
+  const Prepared& winner = *result.best_scene;
+  const std::vector<Signal> signals = winner.signals();
+  ClosingOptions tight{.duration = winner.duration, .tolerance = tight_tolerance, .stop = options.stop};
+  result.checks.push_back({fmt::format("tolerance {:g}", tight_tolerance),
+                           metrics(simulate_closing(winner.device, signals, tight), metrics_options)});
+  Device richer = winner.scene.device;
+  richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
+  tight.tolerance = winner.tolerance;
+  result.checks.push_back({fmt::format("{} modes", richer.structure.modes),
+                           metrics(simulate_closing(Switch(richer), signals, tight), metrics_options)});
+  return result;
+}
+
+}  // namespace softland

@@ -1,0 +1,77 @@
+// The search for a drive waveform: scene -> baseline -> search -> verified winner.
+//
+// Baseline: a rise-free step of the searched electrode to the scene's hold level, piezo 0 V. Every candidate is scored over a
+// fixed time after its own first contact, must touch within 2.5 times the baseline's first-touch time, stays inside the driver's
+// limits, and is infeasible if the beam comes near the electrode. The winner is believed only after a run over the whole window
+// at the scene's accuracy, read back from the very text of best.toml; runs with a tighter integrator and with two more modes
+// confirm it. If the best candidate fails there, the next ones of the search are tried.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "objectives/cost.h"
+#include "optimizers/problem.h"
+#include "studies/search_space.h"
+#include "studies/simulate.h"
+
+namespace softland {
+
+/// What is known while a search runs.
+struct OptimizeProgress {
+  long evaluations = 0;
+  double best_cost = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct OptimizeOptions {
+  Target target = Target::bounce;
+  Actuator actuator = Actuator::electrostatic;
+  std::string family = "pulse";
+  std::string optimizer = "auto";
+  long max_evaluations = 2000;
+  double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
+  std::uint64_t seed = 1;
+  int jobs = 1;
+  const std::atomic<bool>* stop = nullptr;
+  /// Called once, when the baseline is known.
+  std::function<void(const Closing&)> on_baseline = {};
+  /// Called under a lock after every evaluation.
+  std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
+  /// Called under the same lock at every improvement with the scene file that gives it.
+  std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
+};
+
+struct ConfirmingRun {
+  std::string name;  ///< "tolerance 1e-9", "6 modes"
+  Metrics metrics;
+};
+
+struct OptimizeResult {
+  Prepared scene;  ///< as given
+  Prepared baseline_scene;
+  Closing baseline;
+  std::optional<Prepared> best_scene;  ///< what best.toml says
+  std::optional<Closing> best;
+  std::vector<ConfirmingRun> checks;
+  std::map<std::string, double> parameters;  ///< of the winner, by drive.name
+  double best_cost = std::numeric_limits<double>::quiet_NaN();
+  double baseline_cost = std::numeric_limits<double>::quiet_NaN();
+  OptimizerResult search;
+  bool goal_met = false;
+  bool better_than_baseline = false;
+};
+
+/// Throws InvalidInput for a scene or options that cannot be searched. Numerical trouble is in the result.
+[[nodiscard]] OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options);
+
+/// Goal of a target: bounce, rebound, count: no significant rebound; settling, impact, energy: settled and better than the
+/// baseline.
+[[nodiscard]] bool goal_met(Target target, const Metrics& best, const Metrics& baseline);
+
+}  // namespace softland

@@ -1,0 +1,61 @@
+#include "studies/prepared.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/require.h"
+#include "model/constants.h"
+
+namespace softland {
+
+std::vector<std::string> Prepared::drive_names() const {
+  std::vector<std::string> names;
+  for (const Electrode& e : scene.device.electrodes) names.push_back(e.name);
+  if (scene.device.piezo) names.emplace_back(piezo_drive);
+  return names;
+}
+
+std::vector<Signal> Prepared::signals() const {
+  std::vector<Signal> result;
+  for (const std::string& name : drive_names()) {
+    const auto found = drives.waveforms.find(name);
+    result.push_back(found == drives.waveforms.end() ? Signal() : signal(found->second));
+  }
+  return result;
+}
+
+std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
+  std::map<std::string, PullInVoltages> units;
+  for (const auto& [name, p] : pull_in) {
+    units[name] = {.static_pull_in = p.statically.voltage, .dynamic_pull_in = p.dynamically.voltage};
+  }
+  return units;
+}
+
+// Measured on the reference closing: B_H, the worst of the three figures, carries about a hundred times the integrator's
+// tolerance.
+double tolerance_for(double accuracy) { return std::clamp(accuracy / 100, 1e-12, 1e-4); }
+
+Prepared prepare(const SceneFile& file, bool default_limits) {
+  Scene scene = read_scene(file);
+  Prepared p{.scene = scene, .device = Switch(scene.device)};
+  for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) {
+    const std::string& name = scene.device.electrodes[k].name;
+    const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
+    if (!needed && !default_limits) continue;
+    ElectrodePullIn found{.statically = static_pull_in(p.device, k)};
+    found.dynamically = dynamic_pull_in(p.device, k, found.statically);
+    const bool ok = found.dynamically.status == Status::done;
+    require(ok || !needed,
+            fmt::format("{}: electrode.{}: its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found",
+                        file.name(), name));
+    if (ok) p.pull_in.emplace(name, found);
+  }
+  p.drives = scene.drives(p.voltage_units());
+  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.device.angular_frequencies()[0];
+  p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance : tolerance_for(scene.simulate.accuracy);
+  return p;
+}
+
+}  // namespace softland

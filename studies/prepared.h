@@ -1,0 +1,49 @@
+// A scene made ready to run: the switch composed, its pull-in voltages known where a unit needs them, every drive a signal in
+// volts.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/scene.h"
+#include "model/pull_in.h"
+#include "model/switch.h"
+#include "waveforms/signal.h"
+
+namespace softland {
+
+struct ElectrodePullIn {
+  StaticPullIn statically;
+  DynamicPullIn dynamically;
+};
+
+/// The name of the piezo among the drives.
+inline constexpr std::string_view piezo_drive = "piezo";
+
+struct Prepared {
+  Scene scene;
+  Switch device;
+  std::map<std::string, ElectrodePullIn> pull_in;  ///< electrodes whose pull-in was needed
+  Drives drives;                                   ///< in volts
+  double duration = 0;                             ///< window [s]
+  double tolerance = 0;                            ///< of the integrator
+
+  /// Names of the drives in the order of Switch::drives().
+  [[nodiscard]] std::vector<std::string> drive_names() const;
+  /// One signal per drive in that order; what is not driven stays at 0 V.
+  [[nodiscard]] std::vector<Signal> signals() const;
+  /// The pull-in voltages as units.
+  [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
+};
+
+/// Integrator tolerance that delivers a relative `accuracy` of t_i, v_i and B_H.
+[[nodiscard]] double tolerance_for(double accuracy);
+
+/// Reads, composes and resolves a scene; pull-in voltages are computed for the electrodes that need them (and, with
+/// `default_limits`, for all that have no written limit). Throws InvalidInput for a bad scene, or one whose pull-in voltage is
+/// needed and does not exist.
+[[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false);
+
+}  // namespace softland

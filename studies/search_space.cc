@@ -1,0 +1,159 @@
+#include "studies/search_space.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/require.h"
+#include "model/constants.h"
+
+namespace softland {
+namespace {
+
+double hold_level(const Prepared& p, const std::string& drive) {
+  const auto found = p.drives.waveforms.find(drive);
+  return found == p.drives.waveforms.end() ? 0 : signal(found->second).hold_level();
+}
+
+// Voltage whose static effect on the contact point alone is `lift` away from the contact [m].
+double lifting_voltage(const Prepared& p, double lift) {
+  const Eigen::VectorXd squares = p.device.angular_frequencies().cwiseAbs2();
+  const double per_volt = p.device.contact_shape().dot(p.device.piezo_shape().cwiseQuotient(squares));
+  return -lift / per_volt;
+}
+
+void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
+  const double period = 2 * pi / p.device.angular_frequencies()[0];
+  s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
+                 {"level_2_V", s.limits.min_voltage, s.limits.max_voltage},
+                 {"time_1_s", 0.05 * t0, 1.6 * t0},
+                 {"duration_2_s", 0.05 * t0, 1.6 * t0},
+                 {"edge_s", 0.005 * period, 0.1 * period}};
+  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
+  if (s.drive == piezo_drive) {
+    // Brake late in the flight and let go at touch: lifts of a part of the contact gap.
+    const double gap = p.scene.device.gap.contact;
+    for (const double brake : {0.3, 0.6}) {
+      s.starts.push_back(
+          {inside(lifting_voltage(p, 0.1 * gap)), inside(lifting_voltage(p, brake * gap)), 0.9 * t0, 0.7 * t0, 0.05 * period});
+    }
+  } else {
+    // Throw, coast on less than the hold level, catch.
+    for (const double throwing : {1.0, 1.1}) {
+      s.starts.push_back({inside(throwing * s.hold), inside(0.6 * s.hold), 0.85 * t0, 0.5 * t0, 0.01 * period});
+    }
+  }
+}
+
+void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
+  const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
+  require(room > 0,
+          fmt::format("driver.{}: the hold level {:.6g} V stands at the driver's limit, which leaves no room for a dither",
+                      s.drive, s.hold));
+  const Eigen::VectorXd& omega = p.device.angular_frequencies();
+  const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
+  const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];
+  s.variables = {{"amplitude_V", 0, room},           {"angular_frequency_rad_s", 0.2 * omega[0], upper},
+                 {"phase_rad", 0, 2 * pi},           {"start_s", 0, t0},
+                 {"duration_s", 0.1 * t0, 2.5 * t0}, {"fade", 0, 0.5}};
+  for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2});
+}
+
+}  // namespace
+
+std::string searched_electrode(const Device& device) {
+  require(!device.electrodes.empty(), "optimize --actuator electrostatic|both needs an electrode, and the scene has none");
+  for (const Electrode& e : device.electrodes) {
+    if (e.name == "main") return e.name;
+  }
+  return device.electrodes.front().name;
+}
+
+Waveform DriveSearch::waveform(std::span<const double> x) const {
+  const double slew = limits.max_slew;
+  if (family == "step") return Step{.level = hold, .rise_time = std::max(x[0], std::abs(hold) / slew)};
+  if (family == "harmonic") {
+    const double omega = x[1], duration = x[4], fade = x[5] * duration;
+    // The envelope's slope adds to the sine's.
+    const double steepest = omega + (fade > 0 ? 1 / fade : 0);
+    return Harmonic{.base = hold,
+                    .amplitude = std::min(x[0], slew / steepest),
+                    .angular_frequency = omega,
+                    .phase = x[2],
+                    .start = x[3],
+                    .end = x[3] + duration,
+                    .fade = fade};
+  }
+  const double steps = std::max({std::abs(x[0]), std::abs(x[1] - x[0]), std::abs(hold - x[1])});
+  const double edge = std::max(x[4], steps / slew);
+  const double first = std::max(x[2], edge);
+  return Pulse{.levels = {x[0], x[1], hold}, .times = {first, first + std::max(x[3], edge)}, .edge = edge};
+}
+
+SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch) {
+  const auto add = [&](const std::string& drive) {
+    const auto limits = prepared.drives.limits.find(drive);
+    require(
+        limits != prepared.drives.limits.end(),
+        fmt::format("optimize needs [driver.{}] with min_voltage and max_voltage: it never searches an unlimited drive", drive));
+    DriveSearch s{.drive = drive,
+                  .family = family,
+                  .hold = hold_level(prepared, drive),
+                  .limits = limits->second,
+                  .variables = {},
+                  .starts = {}};
+    require(s.limits.max_voltage > s.limits.min_voltage,
+            fmt::format("driver.{}: max_voltage must exceed min_voltage to search between them", drive));
+    if (family == "pulse") {
+      add_pulse(s, prepared, first_touch);
+    } else if (family == "harmonic") {
+      add_harmonic(s, prepared, first_touch);
+    } else {
+      require(family == "step", fmt::format("--waveform {}: only step, pulse and harmonic have parameters to search", family));
+      s.variables = {{"rise_time_s", 0, 2.5 * first_touch}};
+      s.starts = {{0.5 * first_touch}};
+    }
+    drives_.push_back(std::move(s));
+  };
+  if (actuator != Actuator::pzt) add(searched_electrode(prepared.scene.device));
+  if (actuator != Actuator::electrostatic) {
+    require(prepared.device.has_piezo(), "optimize --actuator pzt|both needs a [piezo] section, and the scene has none");
+    add(std::string(piezo_drive));
+  }
+}
+
+std::vector<Variable> SearchSpace::variables() const {
+  std::vector<Variable> all;
+  for (const DriveSearch& d : drives_) {
+    for (const Variable& v : d.variables) all.push_back({d.drive + "." + v.name, v.lower, v.upper});
+  }
+  return all;
+}
+
+std::vector<std::vector<double>> SearchSpace::starts() const {
+  std::vector<std::vector<double>> all{{}};
+  for (const DriveSearch& d : drives_) {
+    std::vector<std::vector<double>> longer;
+    for (const auto& head : all) {
+      for (const auto& tail : d.starts) {
+        longer.push_back(head);
+        longer.back().insert(longer.back().end(), tail.begin(), tail.end());
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::map<std::string, Waveform> SearchSpace::waveforms(std::span<const double> x) const {
+  std::map<std::string, Waveform> result;
+  std::size_t at = 0;
+  for (const DriveSearch& d : drives_) {
+    result.emplace(d.drive, d.waveform(x.subspan(at, d.variables.size())));
+    at += d.variables.size();
+  }
+  return result;
+}
+
+}  // namespace softland

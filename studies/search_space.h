@@ -1,0 +1,57 @@
+// What a search may vary: the parameters of the waveforms of one or several drives, with bounds and starting points that come
+// from the scene (driver limits, natural frequencies, closing time of the plain step).
+//
+// Times below are in units of T0, the first touch of the plain step, and T1, the period of the first mode.
+//   step      rise_time in [0, 2.5 T0]
+//   pulse     level_1, level_2 within the driver's limits, time_1 and duration_2 (= time_2 - time_1) in [0.05, 1.6] T0, edge in
+//   [0.005, 0.1] T1 harmonic  amplitude within the limits about the hold level, angular_frequency in [0.2 omega_1, upper], phase
+//   in [0, 2 pi], start in [0, T0],
+//             duration in [0.1, 2.5] T0, fade in [0, 0.5] of the duration. upper: the second natural frequency for an electrode,
+//             the third for the piezo (dither above them shakes without steering: Bognash 2019)
+// The hold level is the scene's own and never varied. A slew limit lengthens edges, fades nothing and caps amplitudes.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "optimizers/problem.h"
+#include "studies/prepared.h"
+#include "waveforms/waveform.h"
+
+namespace softland {
+
+enum class Actuator { electrostatic, pzt, both };
+
+/// The waveform parameters of one drive.
+struct DriveSearch {
+  std::string drive;
+  std::string family;  ///< step | pulse | harmonic
+  double hold = 0;     ///< [V]
+  DriverLimits limits;
+  std::vector<Variable> variables;
+  std::vector<std::vector<double>> starts;
+  [[nodiscard]] Waveform waveform(std::span<const double> x) const;
+};
+
+class SearchSpace {
+ public:
+  /// `first_touch` of the plain step [s]. Throws InvalidInput when the scene lacks the drive, a piezo limit, or the family cannot
+  /// be searched.
+  SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch);
+
+  [[nodiscard]] std::vector<Variable> variables() const;
+  [[nodiscard]] std::vector<std::vector<double>> starts() const;
+  /// Waveforms of the searched drives.
+  [[nodiscard]] std::map<std::string, Waveform> waveforms(std::span<const double> x) const;
+
+ private:
+  std::vector<DriveSearch> drives_;
+};
+
+/// The electrode that a search drives: `main` if there is one, else the first. Throws InvalidInput when there is none.
+[[nodiscard]] std::string searched_electrode(const Device& device);
+
+}  // namespace softland
