@@ -149,7 +149,8 @@ TEST(SpicePwl, HasOneSubcircuitPerDrive) {
 
 TEST(SpicePwl, TimesIncreaseStrictlyEvenWhenJumpsAreARoundingErrorApart) {
   const double next = std::nextafter(1.0, 2.0);
-  const std::string text = spice_pwl({{"a", signal(Pulse{.levels = {1, 2, 3, 4}, .times = {1, next, 1.5}})}}, 2);
+  const std::string text =
+      spice_pwl({{"a", signal(Table{.time = {0, 1, 1, next, next, 1.5}, .voltage = {1, 1, 2, 2, 3, 4}})}}, 2);
   double last = -1;
   for (std::size_t at = text.find("\n+ "); text.compare(at, 4, "\n+ )") != 0; at = text.find("\n+ ", at + 1)) {
     const double time = std::strtod(text.c_str() + at + 3, nullptr);

@@ -66,6 +66,8 @@ TEST(Harmonic, FadesAreContinuousAndMeetWithoutAPieceBetween) {
   EXPECT_NEAR(both.breakpoints()[2], 0.4, kRounding);
   EXPECT_TRUE(std::isfinite(both.peak_slew()));
   EXPECT_EQ(both.voltage_before(0.7), 0);
+  // 0.1 + 0.5 is below 1.1 - 0.5: they miss each other by rounding only.
+  EXPECT_EQ(signal(Harmonic{.amplitude = 1, .angular_frequency = 50, .start = 0.1, .end = 1.1, .fade = 0.5}).pieces().size(), 4U);
 }
 
 TEST(Harmonic, HardSwitchIsAJump) {

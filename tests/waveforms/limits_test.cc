@@ -23,9 +23,9 @@ TEST(DriverLimits, AllowWhatReachesThemExactly) {
   EXPECT_THAT(violation(signal(Pulse{.levels = {1, -1, 0}, .times = {2, 4}, .edge = 1}),
                         {.min_voltage = -1, .max_voltage = 1, .max_slew = 2}),
               IsEmpty());
-  // 30 V + 15 V sin reaches 45 V only to rounding.
+  // 0.2 V + 0.1 V sin is above 0.3 V by rounding.
   EXPECT_THAT(
-      violation(signal(Harmonic{.base = 30, .amplitude = 15, .angular_frequency = 3e5, .phase = 0.1}), {.max_voltage = 45}),
+      violation(signal(Harmonic{.base = 0.2, .amplitude = 0.1, .angular_frequency = 3e5, .phase = 0.1}), {.max_voltage = 0.3}),
       IsEmpty());
 }
 
