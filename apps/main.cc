@@ -1,1 +1,192 @@
-int main() {}
+// The command line: what is asked, and nothing else.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+
+#include "apps/verbs.h"
+#include "base/require.h"
+#include "optimizers/problem.h"
+#include "version.h"
+
+namespace {
+
+using namespace softland;
+using namespace softland::apps;
+
+std::atomic<bool> stop_requested{false};
+
+extern "C" void on_signal(int number) {
+  // The second Ctrl-C ends the program at once.
+  if (stop_requested.exchange(true)) std::signal(number, SIG_DFL);
+}
+
+// Quoted so that the line can be pasted into a shell.
+std::string command_line(int argc, char** argv) {
+  std::string line = "softland";
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool plain =
+        !word.empty() &&
+        word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+%") == std::string::npos;
+    std::string quoted;
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += " " + (plain ? word : "'" + quoted + "'");
+  }
+  return line;
+}
+
+std::string optimizer_help() {
+  std::string text = "optimizers:\n";
+  for (const std::string_view name : optimizer_names()) {
+    text += "  " + std::string(name) + std::string(14 - std::min<std::size_t>(13, name.size()), ' ') +
+            std::string(optimizer_description(name)) + "\n";
+  }
+  return text;
+}
+
+const std::vector<std::string> coming{"effects", "explore", "robustness", "accuracy"};
+
+int run(int argc, char** argv) {
+  Common common{.command = command_line(argc, argv), .stop = &stop_requested};
+  OptimizeRequest request;
+  std::string kind = "cantilever", result, format = "csv", report_out;
+
+  // Called by the name `optimize`, the program is that verb.
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (std::filesystem::path(argv[0]).filename() == "optimize") {
+    words.insert(words.begin(), "optimize");
+    common.command.insert(8, " optimize");
+  }
+  for (const std::string& verb : coming) {
+    if (!words.empty() && words.front() == verb) throw InvalidInput("the verb '" + verb + "' is not available yet");
+  }
+  for (const std::string& word : words) {
+    for (const char* option : {"--certify", "--robust", "--samples", "--resume", "--shard"}) {
+      if (word == option || word.starts_with(std::string(option) + "="))
+        throw InvalidInput("the option " + std::string(option) + " is not available yet");
+    }
+  }
+
+  CLI::App app{
+      "softland lands MEMS switches softly: it simulates the closing of a described switch and searches the open-loop drive\n"
+      "waveform that closes it fast and without bounce."};
+  app.name("softland");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "softland " + std::string(version));
+  app.footer(
+      "Examples:\n"
+      "  softland optimize --target bounce --actuator pzt\n"
+      "  softland new > my-switch.toml\n"
+      "  softland check my-switch.toml\n"
+      "  softland simulate my-switch.toml --set gap.contact=\"1.8 um\" --out closing\n"
+      "  softland optimize my-switch.toml --actuator electrostatic --waveform pulse --budget \"90 s\"\n"
+      "Exit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 130 interrupted (best so far is "
+      "written).");
+
+  const auto with_scene = [&](CLI::App* verb, bool required) {
+    verb->add_option("scene", common.scene, "scene file (TOML)")->required(required);
+    verb->add_option("--set", common.set, "change one key: --set gap.contact=\"1.8 um\" (may be repeated)")
+        ->allow_extra_args(false);
+    verb->add_flag("--quiet", common.quiet, "no progress and no notes on standard error");
+  };
+  const auto with_json = [&](CLI::App* verb) {
+    verb->add_option("--json", common.json, "write the result as JSON to this file, or - for standard output");
+  };
+
+  CLI::App* simulate = app.add_subcommand("simulate", "simulate the closing that a scene describes");
+  with_scene(simulate, true);
+  with_json(simulate);
+  simulate->add_option("--out", common.out, "folder for result.json, trajectory.csv and report.html");
+  simulate->footer("Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -");
+
+  CLI::App* pull_in = app.add_subcommand("pull-in", "static and dynamic pull-in voltage and release voltage of every electrode");
+  with_scene(pull_in, true);
+  with_json(pull_in);
+  pull_in->footer("Example:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"");
+
+  CLI::App* modes = app.add_subcommand("modes", "natural frequencies");
+  with_scene(modes, true);
+  with_json(modes);
+  modes->footer("Example:\n  softland modes scenes/mem-gold-pzt.toml --set structure.modes=8");
+
+  CLI::App* check = app.add_subcommand("check", "validate a scene and print derived numbers and warnings");
+  with_scene(check, true);
+  check->footer("Example:\n  softland check my-switch.toml");
+
+  CLI::App* optimize = app.add_subcommand("optimize", "search the drive waveform that closes without bounce");
+  with_scene(optimize, false);
+  with_json(optimize);
+  optimize->add_option("--target", request.target, "bounce | settling | rebound | count | impact | energy")
+      ->capture_default_str();
+  optimize->add_option("--actuator", request.actuator, "electrostatic | pzt | both: which drives the search may shape")
+      ->capture_default_str();
+  optimize->add_option("--waveform", request.waveform, "family to search: pulse | harmonic | step")->capture_default_str();
+  optimize->add_option("--optimizer", request.optimizer, "auto, or one of the names below")->capture_default_str();
+  optimize->add_option("--budget", request.budget, "number of evaluations (2500) or time (\"90 s\")");
+  optimize->add_option("--seed", request.seed, "same seed, same result, whatever --jobs is")->capture_default_str();
+  optimize->add_option("--jobs", request.jobs, "threads; one per core if not given");
+  optimize->add_option("--out", common.out,
+                       "folder for best.toml, best.csv, report.html, result.json, evaluations.csv (default: softland-out)");
+  optimize->footer(
+      "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n" +
+      optimizer_help() +
+      "Examples:\n  softland optimize --target bounce --actuator pzt\n"
+      "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3");
+
+  CLI::App* fresh = app.add_subcommand("new", "print a commented scene to start from");
+  fresh->add_option("kind", kind, "cantilever | cantilever-pzt")->capture_default_str();
+  fresh->footer("Example:\n  softland new cantilever > my-switch.toml");
+
+  CLI::App* exporting = app.add_subcommand("export", "print the waveforms of a result for a generator or a circuit simulator");
+  exporting->add_option("result", result, "folder of optimize, result.json, or a scene file")->required();
+  exporting->add_option("--format", format, "csv | spice-pwl")->capture_default_str();
+  exporting->footer("Example:\n  softland export softland-out --format spice-pwl > drive.cir");
+
+  CLI::App* report = app.add_subcommand("report", "make report.html of a result.json again");
+  report->add_option("result", result, "folder, or result.json")->required();
+  report->add_option("--out", report_out, "folder to write to (default: beside the result)");
+  report->footer("Example:\n  softland report softland-out");
+
+  try {
+    std::reverse(words.begin(), words.end());  // CLI11 takes the words from the back
+    app.parse(words);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    std::cout << (chosen.empty() ? app : *chosen.front()).help();
+    return exit_done;
+  } catch (const CLI::CallForVersion&) {
+    std::cout << app.version() << "\n";
+    return exit_done;
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
+                       "--help)");
+  }
+
+  if (*simulate) return simulate_verb(common);
+  if (*pull_in) return pull_in_verb(common);
+  if (*modes) return modes_verb(common);
+  if (*check) return check_verb(common);
+  if (*optimize) return optimize_verb(common, request);
+  if (*fresh) return new_verb(kind);
+  if (*exporting) return export_verb(result, format);
+  return report_verb(result, report_out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  try {
+    return run(argc, argv);
+  } catch (const InvalidInput& error) {
+    std::cerr << "softland: " << error.what() << "\n";
+    return exit_bad_input;
+  } catch (const std::exception& error) {
+    std::cerr << "softland: internal error: " << error.what() << "\n";
+    return exit_numerical_failure;
+  }
+}

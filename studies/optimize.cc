@@ -100,7 +100,10 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
                   .impact_energy = 0};
   }
   result.baseline_cost = cost(options.target, step, scale, metrics_options);
-  run.no_contact_before = latest_touch * scale.step.first_touch;
+  // A landing so late that the window ends before the switch could bounce would look like a soft one.
+  run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.device.in_contact_period());
+  require(run.no_contact_before > 0, fmt::format("simulate.duration = {:.3g} s is too short to judge a landing: it needs more than {:.3g} s", given.duration,
+                                                 2 * given.device.in_contact_period()));
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
 
   const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);
@@ -117,6 +120,11 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   };
 
   const Problem problem{.variables = space.variables(), .objective = evaluate, .starts = space.starts()};
+  if (options.on_variables) {
+    std::vector<std::string> variable_names;
+    for (const Variable& v : problem.variables) variable_names.push_back(v.name);
+    options.on_variables(variable_names);
+  }
   OptimizeProgress progress;
   OptimizerOptions search{.optimizer = options.optimizer,
                           .max_evaluations = options.max_evaluations,

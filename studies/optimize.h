@@ -41,6 +41,8 @@ struct OptimizeOptions {
   const std::atomic<bool>* stop = nullptr;
   /// Called once, when the baseline is known.
   std::function<void(const Closing&)> on_baseline = {};
+  /// Called once, with the names of the searched parameters in the order of Evaluation::x.
+  std::function<void(const std::vector<std::string>&)> on_variables = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
   /// Called under the same lock at every improvement with the scene file that gives it.

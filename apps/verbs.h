@@ -1,0 +1,43 @@
+// One function per verb of the command line. Each returns the exit status; bad input is an InvalidInput.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace softland::apps {
+
+/// What every verb may be told.
+struct Common {
+  std::string command;           ///< the command line, for provenance
+  std::string scene;             ///< path of the scene file
+  std::vector<std::string> set;  ///< --set key=value, in order
+  std::string json;              ///< file for the JSON, "-" for standard output, empty for none
+  std::string out;               ///< folder for everything, empty for none
+  bool quiet = false;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+struct OptimizeRequest {
+  std::string target = "bounce";
+  std::string actuator = "electrostatic";
+  std::string waveform = "pulse";
+  std::string optimizer = "auto";
+  std::string budget;  ///< evaluations ("2500") or time ("90 s"); empty: the default
+  std::uint64_t seed = 1;
+  int jobs = 0;  ///< 0: one per core
+};
+
+inline constexpr int exit_done = 0, exit_bad_input = 2, exit_numerical_failure = 3, exit_no_success = 4, exit_interrupted = 130;
+
+int simulate_verb(const Common& common);
+int pull_in_verb(const Common& common);
+int modes_verb(const Common& common);
+int check_verb(const Common& common);
+int optimize_verb(const Common& common, const OptimizeRequest& request);
+int new_verb(const std::string& kind);
+int export_verb(const std::string& result, const std::string& format);
+int report_verb(const std::string& result, const std::string& out);
+
+}  // namespace softland::apps

@@ -1,0 +1,207 @@
+#include "reports/result_json.h"
+
+#include <cmath>
+
+#include "model/quintic.h"
+#include "version.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json pull_in_json(const Prepared& p) {
+  if (p.pull_in.empty()) return nullptr;
+  const auto one = [](const ElectrodePullIn& e) {
+    return json{{"static_V", number(e.statically.voltage)}, {"dynamic_V", number(e.dynamically.voltage)}};
+  };
+  // One electrode is the usual case; several are told apart by name.
+  if (p.pull_in.size() == 1) return one(p.pull_in.begin()->second);
+  json all = json::object();
+  for (const auto& [name, e] : p.pull_in) all[name] = one(e);
+  return all;
+}
+
+json frequencies_json(const Prepared& p) {
+  json list = json::array();
+  for (const double omega : p.device.angular_frequencies()) list.push_back(omega);
+  return list;
+}
+
+// Straight pieces that a reader can draw: exact for steps, pulses and tables, a thousandth of the swing for sines.
+json waveforms_json(const Prepared& p, double end) {
+  json all = json::object();
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> signals = p.signals();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const double swing = signals[k].maximum(end) - signals[k].minimum(end);
+    json points = json::array();
+    for (const auto& [t, v] : polyline(signals[k], end, 1e-3 * swing, 0)) points.push_back({t, v});
+    all[names[k]] = std::move(points);
+  }
+  return all;
+}
+
+// Knots, and points of the interpolant where knots are far apart.
+json curves_json(const Trajectory& t, const MetricsOptions& options) {
+  json time = json::array(), gap = json::array(), speed = json::array(), force = json::array(), bounces = json::array();
+  const auto add = [&](double at, double position, double velocity, double contact) {
+    time.push_back(at);
+    gap.push_back(t.contact_gap - position);
+    speed.push_back(velocity);
+    force.push_back(contact);
+  };
+  const double longest = t.points.empty() ? 0 : t.points.back().time / 2000;
+  for (std::size_t i = 0; i < t.points.size(); ++i) {
+    const TrajectoryPoint& a = t.points[i];
+    add(a.time, a.position, a.velocity, a.contact_force);
+    if (i + 1 == t.points.size()) break;
+    const TrajectoryPoint& b = t.points[i + 1];
+    const double h = b.time - a.time;
+    if (!(h > longest)) continue;
+    const Quintic between(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
+    const int parts = static_cast<int>(std::ceil(h / longest));
+    for (int k = 1; k < parts; ++k) {
+      const double at = a.time + h * k / parts;
+      add(at, between.position(at), between.velocity(at), a.contact_force + (b.contact_force - a.contact_force) * k / parts);
+    }
+  }
+  for (const Rebound& r : rebounds(t)) {
+    if (r.height > options.significant_rebound) bounces.push_back({r.begin, number(r.end), r.height, r.time_of_height});
+  }
+  return {{"time_s", std::move(time)},
+          {"tip_gap_m", std::move(gap)},
+          {"tip_velocity_m_s", std::move(speed)},
+          {"contact_force_N", std::move(force)},
+          {"rebounds", std::move(bounces)}};
+}
+
+json figures_json(const Closing& c) {
+  json m = metrics_json(c.metrics);
+  m["peak_voltage_V"] = number(c.peak_voltage);
+  m["peak_slew_V_s"] = number(c.peak_slew);
+  return m;
+}
+
+json errors_json(const Closing& c) {
+  json e = metrics_json(c.errors);
+  e.erase("settled");
+  e.erase("status");
+  if (!std::isfinite(c.errors.initial_contact_time)) e["bounce_count"] = nullptr;
+  e["peak_voltage_V"] = e["peak_slew_V_s"] = nullptr;
+  return e;
+}
+
+json work_json(const Work& w) { return {{"steps", w.steps}, {"rhs_evaluations", w.rhs_evaluations}, {"wall_s", w.wall}}; }
+
+void add_scene(json& j, const Prepared& p) {
+  const SceneFile file = resolved(p.scene, p.voltage_units());
+  j["title"] = p.scene.title;
+  j["scene"] = file.json();
+  j["scene_toml"] = file.text();
+  j["natural_frequencies_rad_s"] = frequencies_json(p);
+  j["tolerance"] = p.tolerance;
+}
+
+json started(std::string_view kind, const Provenance& provenance) {
+  return {{"kind", kind}, {"version", version}, {"command", provenance.command}};
+}
+
+}  // namespace
+
+std::string_view to_string(Actuator actuator) {
+  switch (actuator) {
+    case Actuator::electrostatic:
+      return "electrostatic";
+    case Actuator::pzt:
+      return "pzt";
+    case Actuator::both:
+      return "both";
+  }
+  return "unknown";
+}
+
+json metrics_json(const Metrics& m) {
+  const bool touched = std::isfinite(m.initial_contact_time);
+  return {{"status", to_string(m.status)},
+          {"initial_contact_time_s", number(m.initial_contact_time)},
+          {"permanent_contact_time_s", number(m.permanent_contact_time)},
+          {"bounce_time_s", number(m.bounce_time)},
+          {"bounce_count", touched ? json(m.bounce_count) : json(nullptr)},
+          {"major_bounce_height_m", number(m.major_bounce_height)},
+          {"impact_velocity_m_s", number(m.impact_velocity)},
+          {"peak_contact_force_N", number(m.peak_contact_force)},
+          {"impact_energy_J", number(m.impact_energy)},
+          {"hold_force_N", number(m.hold_force)},
+          {"drive_energy_J", number(m.drive_energy)},
+          {"settled", m.settled}};
+}
+
+json result_json(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {
+  json j = started("simulate", provenance);
+  j["status"] = to_string(closing.metrics.status);
+  if (!closing.trajectory.message.empty()) j["message"] = closing.trajectory.message;
+  j["metrics"] = figures_json(closing);
+  j["metrics"].erase("status");
+  j["errors"] = errors_json(closing);
+  j["pull_in"] = pull_in_json(prepared);
+  j["work"] = work_json(closing.trajectory.work);
+  j["warnings"] = closing.warnings;
+  j["best"] = {{"metrics", figures_json(closing)}, {"waveforms", waveforms_json(prepared, prepared.duration)}};
+  j["curves"] = {{"best", curves_json(closing.trajectory, prepared.scene.metrics)}};
+  add_scene(j, prepared);
+  return j;
+}
+
+json result_json(const OptimizeResult& r, const OptimizeOptions& options, const Provenance& provenance) {
+  json j = started("optimize", provenance);
+  const bool interrupted = r.search.termination == Termination::interrupted;
+  j["status"] = interrupted ? std::string_view("interrupted")
+                : r.best    ? to_string(r.best->metrics.status)
+                            : to_string(Status::no_contact);
+  j["target"] = to_string(options.target);
+  j["actuator"] = to_string(options.actuator);
+  j["waveform"] = options.family;
+  j["seed"] = options.seed;
+  j["optimizer"] = options.optimizer;
+  j["evaluations"] = r.search.evaluations;
+  j["termination"] = to_string(r.search.termination);
+  j["termination_message"] = r.search.message;
+  j["goal_met"] = r.goal_met;
+  j["better_than_baseline"] = r.better_than_baseline;
+  j["pull_in"] = pull_in_json(r.scene);
+  j["baseline"] = {{"metrics", figures_json(r.baseline)},
+                   {"errors", errors_json(r.baseline)},
+                   {"waveforms", waveforms_json(r.baseline_scene, r.baseline_scene.duration)},
+                   {"cost", number(r.baseline_cost)}};
+  j["curves"] = {{"baseline", curves_json(r.baseline.trajectory, r.scene.scene.metrics)}};
+  json history = json::array();
+  for (const Evaluation& e : r.search.improvements) history.push_back({e.index, number(e.value)});
+  j["search"] = {{"best_so_far", std::move(history)}, {"value_name", "cost"}};
+  // Warnings of the scene come with every closing: once is enough.
+  std::vector<std::string> warnings = r.best ? r.best->warnings : r.baseline.warnings;
+  j["warnings"] = warnings;
+  if (!r.best) {
+    add_scene(j, r.scene);
+    return j;
+  }
+  j["metrics"] = figures_json(*r.best);
+  j["metrics"].erase("status");
+  j["errors"] = errors_json(*r.best);
+  j["work"] = work_json(r.best->trajectory.work);
+  j["best"] = {{"parameters", r.parameters},
+               {"metrics", figures_json(*r.best)},
+               {"waveforms", waveforms_json(*r.best_scene, r.best_scene->duration)},
+               {"cost", number(r.best_cost)}};
+  j["curves"]["best"] = curves_json(r.best->trajectory, r.scene.scene.metrics);
+  json checks = json::array();
+  for (const ConfirmingRun& c : r.checks) checks.push_back({{"name", c.name}, {"metrics", metrics_json(c.metrics)}});
+  j["checks"] = std::move(checks);
+  add_scene(j, *r.best_scene);
+  return j;
+}
+
+}  // namespace softland

@@ -1,0 +1,55 @@
+#include "reports/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/findings.h"
+#include "reports/quantity.h"
+#include "reports/result_view.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+// Columns on a terminal: UTF-8 continuation bytes take no room.
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string padded(const std::string& text, std::size_t columns) {
+  return text + std::string(columns > width(text) ? columns - width(text) : 0, ' ');
+}
+
+}  // namespace
+
+std::string text_report(const json& result) {
+  std::string out = internal::headline(result).whole() + "\n\n";
+  const bool compares = internal::is_optimize(result);
+  const json& best = internal::best_metrics(result);
+  const json& baseline = internal::baseline_metrics(result);
+  out += compares ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
+                  : fmt::format("{:<36}{:>16}   {}\n", "", "value", "estimated error");
+  for (const internal::Figure& f : internal::figures()) {
+    const auto right = [](const std::string& text) { return std::string(width(text) < 16 ? 16 - width(text) : 0, ' ') + text; };
+    if (compares) {
+      const internal::Change change = internal::figure_change(baseline, best, f);
+      out += padded(f.label, 36) + right(internal::figure_text(baseline, best, f)) +
+             right(internal::figure_text(best, baseline, f)) + "   " + change.words;
+    } else {
+      const double error = internal::number(result, {"errors", f.key});
+      const std::string shown = std::isfinite(error) ? internal::quantity(error, f.unit, 2) : std::string();
+      out += padded(f.label, 36) + right(internal::figure_text(best, json::object(), f)) + "   " + shown;
+    }
+    while (!out.empty() && out.back() == ' ') out.pop_back();
+    out += "\n";
+  }
+  if (compares && result.contains("checks") && !result["checks"].empty()) out += "\n" + internal::checks_caption(result) + "\n";
+  for (const json& warning : result.value("warnings", json::array())) out += "\nwarning: " + warning.get<std::string>() + "\n";
+  return out;
+}
+
+}  // namespace softland
