@@ -159,10 +159,11 @@ StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
     const double s = end * k / branch_steps, square = branch(s);
     if (!std::isfinite(square)) return {.status = Status::numerical_failure};
     if (square <= best) {
-      // The top is flat: 1e-9 of the deflection is far more than the voltage needs.
-      const auto [at, value] = boost::math::tools::brent_find_minima(
-          [&](double x) { return -branch(x); }, std::max(0.0, end * (k - 2) / branch_steps) + 1e-6 * end, s, 30);
-      return {.status = Status::done, .voltage = std::sqrt(-value), .deflection = at, .kind = StaticKind::fold};
+      // In units of the gap: Brent's tolerance is partly absolute. The top is flat, so that of the deflection is far more than
+      // the voltage needs.
+      const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
+                                                                     std::max(1e-6, (k - 2.0) / branch_steps), s / end, 30);
+      return {.status = Status::done, .voltage = std::sqrt(-value), .deflection = at * end, .kind = StaticKind::fold};
     }
     best = square;
   }
@@ -184,7 +185,9 @@ double release_voltage(const Switch& device, std::size_t drive) {
     at = plane + k * step;
   }
   if (at > plane) {
-    const auto minimum = boost::math::tools::brent_find_minima([&](double x) { return branch(x); }, at - step, at + step, 30);
+    const double k = (at - plane) / step;
+    const auto minimum =
+        boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, k - 1, k + 1, 30);
     lowest = std::min(lowest, minimum.second);
   }
   return lowest > 0 ? std::sqrt(lowest) : nan;

@@ -1,0 +1,53 @@
+// The ideal cantilever of the pull-in literature: one electrode, no gas, no contact, nothing but beam and field.
+#pragma once
+
+#include <cmath>
+
+#include "base/literals.h"
+#include "model/constants.h"
+#include "model/device.h"
+
+namespace softland::test {
+
+struct IdealCantilever {
+  int modes = 4;
+  Fringing fringing = Fringing::none;
+  double gap_over_width = 0.1;
+  double electrode_begin = 0;      ///< over the length
+  double electrode_end = 1;        ///< over the length
+  double contact_over_gap = 0.97;  ///< tip deflection at which a run has closed
+};
+
+/// The numbers in metres cancel in every dimensionless figure; they only have to be a possible beam.
+[[nodiscard]] inline Device device(const IdealCantilever& ideal) {
+  using namespace literals;
+  constexpr double length = 1000_um, gap = 2_um;
+  return {.structure = {.length = length,
+                        .width = gap / ideal.gap_over_width,
+                        .thickness = 3_um,
+                        .youngs_modulus = 100_GPa,
+                        .density = 2000_kg_m3,
+                        .modes = ideal.modes},
+          .gap = {.electrode = gap, .contact = ideal.contact_over_gap * gap},
+          .electrodes = {{.name = "ideal",
+                          .begin = ideal.electrode_begin * length,
+                          .end = ideal.electrode_end * length,
+                          .fringing = ideal.fringing}}};
+}
+
+/// beta = eps0 a V^2 L^4 / (2 E I g^3), the voltage parameter of the literature.
+[[nodiscard]] inline double beta(const Device& d, double volts) {
+  const Structure& s = d.structure;
+  const double rigidity = s.youngs_modulus * s.width * std::pow(s.thickness, 3) / 12;
+  return vacuum_permittivity * s.width * volts * volts * std::pow(s.length, 4) / (2 * rigidity * std::pow(d.gap.electrode, 3));
+}
+
+/// The inverse of beta().
+[[nodiscard]] inline double volts(const Device& d, double beta_value) { return std::sqrt(beta_value / beta(d, 1)); }
+
+/// Static pull-in of the full-length electrode without fringing, from a Green's function solution with displacement control
+/// (independent program).
+inline constexpr double full_length_beta = 1.680841;
+inline constexpr double full_length_tip = 0.446536;  // over the gap
+
+}  // namespace softland::test

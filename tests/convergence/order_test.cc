@@ -1,0 +1,105 @@
+// Observed orders: modes, quadrature points and integrator tolerance each bring the answer closer at the rate theory gives.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/literals.h"
+#include "model/closing.h"
+#include "model/pull_in.h"
+#include "objectives/metrics.h"
+#include "tests/convergence/ideal_cantilever.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+constexpr double reference_step = 17.771;  // [V], about 1.25 Vdp
+
+double pull_in_beta(int modes, double points_per_length = 48) {
+  const Device d = test::device({.modes = modes});
+  return test::beta(d, static_pull_in(Switch(d, {.points_per_length = points_per_length}), 0).voltage);
+}
+
+TEST(Order, OfTheModesIsSeven) {
+  // The modal forces of a load that does not vanish at the clamp fall like 1/N; the null vector of the fold, whose load vanishes
+  // there together with its slope, like 1/N^7. What N modes leave out therefore sums to 1/N^7.
+  const double exact = pull_in_beta(20);
+  const double four = std::abs(pull_in_beta(4) - exact), eight = std::abs(pull_in_beta(8) - exact);
+  const double order = std::log2(four / eight);
+  EXPECT_GT(order, 6.5);
+  EXPECT_LT(order, 8.5);
+}
+
+TEST(Order, OfTheQuadratureIsExponential) {
+  const double exact = pull_in_beta(4, 64);
+  // Gauss points on a smooth load: each further point takes the error down by more than a factor of ten, until rounding.
+  constexpr double rounding = 1e-13;
+  double previous = 1;
+  for (const double points : {4.0, 5.0, 6.0, 7.0, 8.0}) {
+    const double error = std::abs(pull_in_beta(4, points) - exact) / exact;
+    EXPECT_LT(error, previous / 10) << points << " points";
+    EXPECT_GT(error, rounding) << points << " points: nothing left to observe";
+    previous = error;
+  }
+}
+
+struct Figures {
+  double contact_time, impact_velocity, bounce_height;
+};
+
+Figures closing(const SwitchOptions& options, double tolerance) {
+  const Switch device(test::gold_cantilever(), options);
+  const std::vector<Signal> drives{Signal::constant(reference_step)};
+  const Metrics m = metrics(simulate_closing(device, drives, {.duration = 60_us, .tolerance = tolerance}));
+  return {m.initial_contact_time, m.impact_velocity, m.major_bounce_height};
+}
+
+TEST(Order, OrdinaryQuadratureLeavesNineDigitsOfTheReferenceClosing) {
+  // The mesh error stays far below what any integrator tolerance in use leaves.
+  constexpr double left = 3e-9, left_of_velocity = 3e-8;  // relative; the bounce height follows the velocities
+  constexpr double finest = 1e-12;
+  const Figures ordinary = closing({}, finest), fine = closing({.points_per_length = 96}, finest);
+  EXPECT_NEAR(ordinary.contact_time, fine.contact_time, left * fine.contact_time);
+  EXPECT_NEAR(ordinary.impact_velocity, fine.impact_velocity, left_of_velocity * fine.impact_velocity);
+  EXPECT_NEAR(ordinary.bounce_height, fine.bounce_height, left_of_velocity * fine.bounce_height);
+}
+
+// Slope of the least-squares line through (log tolerance, log error).
+double slope(const std::vector<double>& tolerances, const std::vector<double>& errors) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const auto n = static_cast<double>(tolerances.size());
+  for (std::size_t i = 0; i < tolerances.size(); ++i) {
+    const double x = std::log(tolerances[i]), y = std::log(errors[i]);
+    sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+TEST(Order, ErrorsOfAClosingAreProportionalToTheTolerance) {
+  // A run is a chain of smooth stretches, restarted at every make and break: no event costs an order.
+  const std::vector<double> tolerances{1e-7, 3e-8, 1e-8, 3e-9, 1e-9, 3e-10, 1e-10};
+  const Figures exact = closing({}, 1e-13);
+  std::vector<double> contact_time, impact_velocity, bounce_height;
+  for (const double tolerance : tolerances) {
+    const Figures found = closing({}, tolerance);
+    contact_time.push_back(std::abs(found.contact_time / exact.contact_time - 1));
+    impact_velocity.push_back(std::abs(found.impact_velocity / exact.impact_velocity - 1));
+    bounce_height.push_back(std::abs(found.bounce_height / exact.bounce_height - 1));
+  }
+  for (const std::vector<double>& errors : {contact_time, impact_velocity, bounce_height}) {
+    const double observed = slope(tolerances, errors);
+    EXPECT_GT(observed, 0.75);
+    EXPECT_LT(observed, 1.25);
+  }
+  // What a user may expect of a tolerance: t_i better than it, v_i and B_H within a few hundred times it.
+  EXPECT_LT(contact_time.front(), tolerances.front());
+  EXPECT_LT(impact_velocity.front(), 100 * tolerances.front());
+  EXPECT_LT(bounce_height.front(), 1000 * tolerances.front());
+}
+
+}  // namespace
+}  // namespace softland
