@@ -27,7 +27,9 @@ TEST(DynamicPullIn, OfAnUndampedStepIsNinePercentBelowTheStaticOne) {
     const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
     ASSERT_EQ(found.status, Status::done);
     EXPECT_NEAR(found.voltage / test::volts(d, test::full_length_beta), ratio, printed) << modes << " modes";
-    if (modes == 3) EXPECT_NEAR(test::beta(d, found.voltage), 1.39009, printed * 1.39009);
+    if (modes == 3) {
+      EXPECT_NEAR(test::beta(d, found.voltage), 1.39009, printed * 1.39009);
+    }
   }
 }
 
