@@ -1,0 +1,189 @@
+#!/bin/sh
+# What the launcher does before, around and instead of a build:  launcher_test.sh PROJECT
+# Compiles and installs nothing: it works on a project of one file, with stand-ins for the tools that note how they were called.
+# shellcheck disable=SC2016,SC2030,SC2031 # the bodies of the stand-ins are quoted on purpose; each run has its own PATH
+set -u
+launcher=$1/softland
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+failed=0
+
+project="$work/a project/softland"
+tools="$work/tools"
+mkdir -p "$project/base" "$project/cmake" "$tools" "$work/home" "$work/else where"
+cp "$launcher" "$project/softland"
+echo 'add_subdirectory(base)' >"$project/CMakeLists.txt"
+touch "$project/CMakePresets.json" "$project/base/one.cc"
+
+tool() {  # NAME: a stand-in whose body is standard input; it notes its arguments in calls
+  { printf '#!/bin/sh\necho "%s $*" >>"%s/calls"\n' "$1" "$work" && cat; } >"$tools/$1"
+  chmod +x "$tools/$1"
+}
+every_package_installed() {
+  tool dpkg-query <<'BODY'
+shift 2
+for package; do echo "installed $package"; done
+BODY
+}
+packages_missing() {  # NAME...
+  tool dpkg-query <<BODY
+shift 2
+for package; do case " $* " in *" \$package "*) echo "not-installed \$package" ;; *) echo "installed \$package" ;; esac; done
+BODY
+}
+tool cmake <<'BODY'
+previous=
+for word; do
+  [ "$previous" != -B ] || touch "$word/build.ninja"
+  previous=$word
+done
+BODY
+tool ninja <<'BODY'
+[ ! -e "${2%/build/release}/base/broken" ] || { echo 'one.cc:1:1: error: broken'; exit 1; }
+mkdir -p "$2/apps"
+printf '#!/bin/sh\n[ "${1:-}" != status ] || exit "$2"\nprintf "in %%s:" "$PWD"; for word; do printf " <%%s>" "$word"; done; echo\n' >"$2/apps/softland.new"
+chmod +x "$2/apps/softland.new"
+[ ! -e "$2/slow" ] || sleep 1
+mv "$2/apps/softland.new" "$2/apps/softland"
+echo '[1/1] Linking softland'
+BODY
+tool id <<'BODY'
+echo 1000
+BODY
+tool apt-get <<'BODY'
+echo "E: no network" >&2; exit 100
+BODY
+tool sudo <<'BODY'
+exit 100
+BODY
+
+run() {  # COMMAND...: its output in out and err, its exit status in status
+  : >"$work/calls"
+  (PATH="$tools:$PATH" HOME="$work/home" && unset XDG_CACHE_HOME SOFTLAND_NO_APT SOFTLAND_WERROR && export PATH HOME && "$@") \
+    >"$work/out" 2>"$work/err" </dev/null
+  status=$?
+}
+
+check() {  # SENTENCE CONDITION...: the condition is a command
+  sentence=$1
+  shift
+  if "$@"; then
+    echo "ok      $sentence"
+  else
+    failed=$((failed + 1))
+    echo "FAILED  $sentence"
+    echo "        status $status; $*"
+    sed 's/^/        out: /' "$work/out"
+    sed 's/^/        err: /' "$work/err"
+  fi
+}
+out_is() { [ "$(cat "$work/out")" = "$1" ]; }
+err_is() { [ "$(cat "$work/err")" = "$1" ]; }
+err_has() { grep -qF -e "$1" "$work/err"; }
+called() { grep -qe "^$1" "$work/calls"; }
+not() { ! "$@"; }
+status_is() { [ "$status" = "$1" ]; }
+
+# Missing packages, not root.
+packages_missing libnlopt-dev libfmt-dev
+cd "$work/else where" || exit 1
+run "$project/softland" simulate
+check 'missing packages end with status 2' status_is 2
+check 'missing packages are named' err_has 'missing packages: libnlopt-dev libfmt-dev'
+check 'the exact command is printed' \
+  err_has '  sudo apt-get update && sudo apt-get install -y --no-install-recommends libnlopt-dev libfmt-dev'
+check 'nothing is installed without root' not called 'apt-get'
+check 'sudo is never called' not called 'sudo'
+check 'nothing is written when packages are missing' [ ! -e "$project/build" ]
+check 'standard output stays empty' out_is ''
+
+packages_missing librapidcheck-dev
+run "$project/softland" test
+check 'packages of the tests are needed by test' err_has 'missing packages: librapidcheck-dev'
+
+# First build.
+run "$project/softland" simulate 'my scene.toml' --set a=b
+check 'packages of the tests are not needed by other verbs' status_is 0
+check 'the first run tells that it builds' err_has 'softland: building (first run, about 1 min)'
+check 'arguments and folder reach the program unchanged' out_is "in $work/else where: <simulate> <my scene.toml> <--set> <a=b>"
+check 'the release preset is configured' called 'cmake --preset release'
+check 'tests are not built' called 'ninja .* softland$'
+
+# Up to date.
+run "$project/softland" modes
+check 'nothing is told when nothing is to be done' err_is ''
+check 'no tool is called when nothing is to be done' [ ! -s "$work/calls" ]
+run "$project/softland" status 4
+check 'the exit status of the program is kept' status_is 4
+ln -s "../a project/softland/softland" link
+run ./link modes
+check 'a link to the launcher works' out_is "in $work/else where: <modes>"
+ln -s "$project/softland" optimize
+run ./optimize --target bounce
+check 'under the name optimize it optimizes' out_is "in $work/else where: <optimize> <--target> <bounce>"
+for shell in dash bash; do
+  command -v "$shell" >/dev/null || continue
+  run "$shell" "$project/softland" modes
+  check "$shell runs it" out_is "in $work/else where: <modes>"
+done
+
+# Sources change.
+sleep 0.01
+touch "$project/base/one.cc"
+run "$project/softland" modes
+check 'a changed source is built' called ninja
+check 'an unchanged configuration is kept' not called cmake
+mv "$project/base/one.cc" "$project/base/two.cc"
+run "$project/softland" modes
+check 'a renamed source is built' called ninja
+touch "$project/base/broken"
+run "$project/softland" modes
+check 'a failed build ends with status 5' status_is 5
+check 'a failed build shows the end of its log' err_has 'one.cc:1:1: error: broken'
+check 'the old program is not run after a failed build' out_is ''
+rm "$project/base/broken"
+run "$project/softland" modes
+check 'a repaired build recovers' out_is "in $work/else where: <modes>"
+touch "$project/base/two.cc"
+run env SOFTLAND_WERROR=ON "$project/softland" modes
+check 'warnings become errors when asked' grep -qxF 'werror=ON' "$project/build/release/.options"
+
+# Missing packages, root. The stand-in for apt-get installs by exchanging dpkg-query.
+tool id <<'BODY'
+echo 0
+BODY
+packages_missing libnlopt-dev
+touch "$project/base/two.cc"
+run "$project/softland" modes
+check 'a failed installation ends with status 2' status_is 2
+check 'a failed installation shows the reason' err_has 'E: no network'
+check 'a failed installation prints the command' err_has '  apt-get update && apt-get install -y --no-install-recommends libnlopt-dev'
+every_package_installed
+mv "$tools/dpkg-query" "$work/dpkg-query"
+packages_missing libnlopt-dev
+tool apt-get <<BODY
+[ "\$1" = update ] || mv "$work/dpkg-query" "$tools/dpkg-query"
+echo 'pmstatus:libnlopt-dev:50.0000:Unpacking libnlopt-dev'
+BODY
+run "$project/softland" modes
+check 'root installs what is missing and goes on' out_is "in $work/else where: <modes>"
+check 'only what is missing is installed' called 'apt-get install .* libnlopt-dev$'
+check 'progress is told' err_has 'softland: installing 50 %'
+
+# Moved.
+mv "$project" "$work/moved"
+cd / || exit 1
+run "$work/moved/softland" modes
+check 'a moved project is configured again' called cmake
+check 'a moved project works' out_is 'in /: <modes>'
+
+# Two at once.
+touch "$work/moved/base/two.cc" "$work/moved/build/release/slow"
+: >"$work/calls"
+PATH="$tools:$PATH" HOME="$work/home" "$work/moved/softland" modes >"$work/first" 2>&1 &
+PATH="$tools:$PATH" HOME="$work/home" "$work/moved/softland" modes >"$work/second" 2>&1
+wait
+check 'two at once build once' [ "$(grep -c ^ninja "$work/calls")" = 1 ]
+check 'two at once both run' [ "$(cat "$work/first" "$work/second" | grep -c 'in /: <modes>')" = 2 ]
+
+[ "$failed" = 0 ]
