@@ -1,0 +1,272 @@
+#include "model/beam.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <boost/math/quadrature/gauss.hpp>
+#include <cmath>
+#include <vector>
+
+#include "base/literals.h"
+#include "model/constants.h"
+#include "model/quintic.h"
+#include "tests/model/expect_refused.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+using test::expect_refused;
+
+constexpr double mode_digits = 1e-8;  // relative, of mode numbers and frequencies
+
+constexpr BeamSection uniform{.begin = 0, .end = 2, .rigidity = 3, .mass_per_length = 5};
+
+/// beta_i L of the uniform cantilever: root number `mode` (from 0) of cos x cosh x = -1, written without overflow.
+double cantilever_number(int mode) {
+  const double middle = (mode + 0.5) * pi;
+  return bracketed_zero([](double x) { return std::cos(x) + 1 / std::cosh(x); }, middle - 1, middle + 1);
+}
+
+/// The same, clamped and pinned: tan x = tanh x.
+double clamped_pinned_number(int mode) {
+  const double middle = (mode + 1.25) * pi;
+  return bracketed_zero([](double x) { return std::sin(x) - std::tanh(x) * std::cos(x); }, middle - 0.3, middle + 0.3);
+}
+
+/// [rad/s] of a mode number of the uniform section above.
+double uniform_frequency(double number) {
+  return number * number * std::sqrt(uniform.rigidity / uniform.mass_per_length) / (uniform.end * uniform.end);
+}
+
+/// Characteristic determinant of a stepped cantilever by transfer matrices of (deflection, slope, moment, shear), section by
+/// section in closed form: zero at the natural frequencies.
+double characteristic(const std::vector<BeamSection>& sections, double omega) {
+  Eigen::Matrix4d transfer = Eigen::Matrix4d::Identity();
+  for (const BeamSection& s : sections) {
+    const double ei = s.rigidity, k = std::pow(s.mass_per_length * omega * omega / ei, 0.25), x = k * (s.end - s.begin);
+    const double a = (std::cosh(x) + std::cos(x)) / 2, b = (std::sinh(x) + std::sin(x)) / 2;
+    const double c = (std::cosh(x) - std::cos(x)) / 2, d = (std::sinh(x) - std::sin(x)) / 2;
+    Eigen::Matrix4d m;
+    m << a, b / k, c / (ei * k * k), d / (ei * k * k * k),  //
+        k * d, a, b / (ei * k), c / (ei * k * k),           //
+        ei * k * k * c, ei * k * d, a, b / k,               //
+        ei * k * k * k * b, ei * k * k * c, k * d, a;
+    transfer = m * transfer;
+  }
+  return transfer.bottomRightCorner<2, 2>().determinant();
+}
+
+TEST(BeamModes, OfTheUniformCantileverHaveTheClosedFormNumbers) {
+  const BeamModes beam({uniform}, 20);
+  EXPECT_NEAR(cantilever_number(0), 1.87510407, 1e-8);
+  for (int i = 0; i < 20; ++i) {
+    const double expected = uniform_frequency(cantilever_number(i));
+    EXPECT_NEAR(beam.angular_frequencies()[i], expected, mode_digits * expected) << "mode " << i;
+  }
+}
+
+TEST(BeamModes, DoNotDependOnHowTheBeamIsCut) {
+  std::vector<BeamSection> pieces{uniform, uniform, uniform};
+  pieces[0].end = pieces[1].begin = 0.013;  // a short root among long elements must not cost the low modes their digits
+  pieces[1].end = pieces[2].begin = 1.7;
+  const BeamModes whole({uniform}, 8), cut(pieces, 8);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_NEAR(cut.angular_frequencies()[i], whole.angular_frequencies()[i], mode_digits * whole.angular_frequencies()[i]);
+    EXPECT_NEAR(cut.value(1.3)[i], whole.value(1.3)[i], 1e-7 * whole.value(uniform.end)[i]) << "mode " << i;
+  }
+}
+
+TEST(BeamModes, OfASteppedBeamAreTheZerosOfTheTransferDeterminant) {
+  const std::vector<BeamSection> sections = beam_sections(test::gold_pzt_cantilever());
+  ASSERT_EQ(sections.size(), 3u);
+  const BeamModes beam(sections, 6);
+  const auto determinant = [&](double omega) { return characteristic(sections, omega); };
+  // All zeros up to the sixth mode, from a scan fine enough for their spacing.
+  std::vector<double> zeros;
+  const double step = beam.angular_frequencies()[0] / 4;
+  for (double omega = step; zeros.size() < 6; omega += step) {
+    if ((determinant(omega) < 0) != (determinant(omega + step) < 0)) {
+      zeros.push_back(bracketed_zero(determinant, omega, omega + step));
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    const double expected = zeros[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(beam.angular_frequencies()[i], expected, mode_digits * expected) << "mode " << i;
+  }
+}
+
+TEST(BeamModes, AreOrthonormalInTheMassOfTheBeam) {
+  constexpr int modes = 6;
+  constexpr double rounding = 1e-9;
+  const std::vector<BeamSection> sections = beam_sections(test::gold_pzt_cantilever());
+  const BeamModes beam(sections, modes);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(modes, modes);
+  for (const BeamSection& s : sections) {
+    constexpr int parts = 12;  // of thirty Gauss points each: far more than the shapes need
+    using Rule = boost::math::quadrature::gauss<double, 30>;
+    const double width = (s.end - s.begin) / parts;
+    for (int p = 0; p < parts; ++p) {
+      for (std::size_t g = 0; g < Rule::abscissa().size(); ++g) {
+        for (const double sign : {-1.0, 1.0}) {
+          const double x = s.begin + width * (p + 0.5 + sign * Rule::abscissa()[g] / 2);
+          const Eigen::VectorXd phi = beam.value(x);
+          gram += s.mass_per_length * Rule::weights()[g] * width / 2 * phi * phi.transpose();
+        }
+      }
+    }
+  }
+  EXPECT_LT((gram - Eigen::MatrixXd::Identity(modes, modes)).cwiseAbs().maxCoeff(), rounding) << gram;
+}
+
+TEST(BeamModes, OfTheUniformCantileverEndAtTwoOverRootMass) {
+  const BeamModes beam({uniform}, 10);
+  const double expected = 2 / std::sqrt(uniform.mass_per_length * uniform.end);
+  for (int i = 0; i < 10; ++i) EXPECT_NEAR(beam.value(uniform.end)[i], expected, 1e-7 * expected) << "mode " << i;
+}
+
+TEST(BeamModes, AreClampedAndRiseToAPositiveTip) {
+  const BeamModes beam(beam_sections(test::gold_pzt_cantilever()), 8);
+  constexpr double rounding = 1e-12;
+  const double length = 250_um, tip = beam.value(length)[0];
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_NEAR(beam.value(0)[i], 0, rounding * tip);
+    EXPECT_NEAR(beam.slope(0)[i], 0, rounding * tip / length);
+    EXPECT_GT(beam.value(length)[i], 0.1 * tip);
+  }
+}
+
+TEST(BeamModes, SlopeIsTheDerivativeOfTheShape) {
+  const BeamModes beam(beam_sections(test::gold_pzt_cantilever()), 6);
+  const double h = 0.01_um;
+  for (const double x : {3_um, 5_um, 100_um, 239_um, 249_um}) {
+    const Eigen::VectorXd difference =
+        (8 * (beam.value(x + h) - beam.value(x - h)) - (beam.value(x + 2 * h) - beam.value(x - 2 * h))) / (12 * h);
+    const Eigen::VectorXd slope = beam.slope(x);
+    // At a change of section the curvature jumps: the slope there is the mean of one-sided differences to first order in h.
+    const double tolerance = (x == 5_um ? 1e-3 : 1e-7) * slope.cwiseAbs().maxCoeff();
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(slope[i], difference[i], tolerance) << "mode " << i << " at " << x;
+  }
+}
+
+TEST(PinnedBeam, HasTheClampedPinnedFrequencyWhenHeldAtTheTip) {
+  const BeamModes beam({uniform}, 4);
+  EXPECT_NEAR(clamped_pinned_number(0), 3.92660231, 1e-8);
+  const double expected = uniform_frequency(clamped_pinned_number(0));
+  EXPECT_NEAR(beam.pinned_frequency(uniform.end), expected, mode_digits * expected);
+}
+
+TEST(PinnedBeam, HasTheFreeFrequencyWhenHeldAtANode) {
+  // Held where its second mode does not move the beam keeps that frequency.
+  const BeamModes beam({uniform}, 4);
+  const double node = bracketed_zero([&](double x) { return beam.value(x)[1]; }, 1.2, uniform.end);
+  EXPECT_NEAR(beam.pinned_frequency(node), beam.angular_frequencies()[1], 1e-6 * beam.angular_frequencies()[1]);
+}
+
+TEST(BeamSections, FollowTheLayer) {
+  const Device device = test::gold_pzt_cantilever();
+  const std::vector<BeamSection> s = beam_sections(device);
+  ASSERT_EQ(s.size(), 3u);
+  EXPECT_EQ(s[0].begin, 0);
+  EXPECT_EQ(s[1].begin, device.piezo->begin);
+  EXPECT_EQ(s[2].begin, device.piezo->end);
+  EXPECT_EQ(s[2].end, device.structure.length);
+  EXPECT_EQ(s[0].rigidity, s[2].rigidity);
+  EXPECT_GT(s[1].rigidity, s[0].rigidity);
+  EXPECT_EQ(beam_sections(test::gold_cantilever()).size(), 1u);
+  Device full = device;
+  full.piezo->begin = 0;
+  full.piezo->end = full.structure.length;
+  EXPECT_EQ(beam_sections(full).size(), 1u);
+}
+
+// Zheng, Chen & Chen 2017: silicon beam with a PZT-4 layer; published neutral axis and rigidity.
+Device zheng_cantilever() {
+  return {.structure = {.length = 100_um, .width = 15_um, .thickness = 3_um, .youngs_modulus = 169_GPa, .density = 2331_kg_m3},
+          .gap = {.electrode = 1_um, .contact = 0.9_um},
+          .piezo = Piezo{.begin = 0,
+                         .end = 100_um,
+                         .thickness = 0.5_um,
+                         .youngs_modulus = 78.6_GPa,
+                         .density = 7500_kg_m3,
+                         .d31 = -9.29 / 78.6_GPa}};
+}
+
+TEST(CompositeSection, IsThePublishedOne) {
+  const Device d = zheng_cantilever();
+  const CompositeSection s = layered_section(d.structure, *d.piezo);
+  EXPECT_NEAR(s.neutral_axis, 1.874_um, 0.001_um);
+  EXPECT_NEAR(s.rigidity, 7.3915e-12, 1e-4 * 7.3915e-12);
+  EXPECT_NEAR(plain_section(d.structure).rigidity, 5.704e-12, 1e-4 * 5.704e-12);
+  EXPECT_DOUBLE_EQ(s.mass_per_length, 15_um * (2331 * 3_um + 7500 * 0.5_um));
+  EXPECT_DOUBLE_EQ(plain_section(d.structure).mass_per_length, 15_um * 2331 * 3_um);
+}
+
+TEST(CompositeSection, OfTwoEqualMaterialsIsAThickerBeam) {
+  Structure s = zheng_cantilever().structure;
+  const Piezo same{.begin = 0, .end = s.length, .thickness = 2_um, .youngs_modulus = s.youngs_modulus, .density = s.density};
+  const CompositeSection layered = layered_section(s, same);
+  s.thickness += same.thickness;
+  const CompositeSection thick = plain_section(s);
+  EXPECT_NEAR(layered.neutral_axis, s.thickness / 2, 1e-12 * s.thickness);
+  EXPECT_NEAR(layered.rigidity, thick.rigidity, 1e-12 * thick.rigidity);
+  EXPECT_NEAR(layered.mass_per_length, thick.mass_per_length, 1e-12 * thick.mass_per_length);
+}
+
+TEST(BendingModulus, IsUsedAsGivenUnlessPlateStrainIsAskedFor) {
+  Structure s = zheng_cantilever().structure;
+  s.poissons_ratio = 0.3;
+  EXPECT_EQ(bending_modulus(s), s.youngs_modulus);
+  s.plate_strain = true;
+  EXPECT_DOUBLE_EQ(bending_modulus(s), s.youngs_modulus / 0.91);
+}
+
+TEST(PiezoMoment, OfTheGoldDeviceIsTheReference) {
+  const Device d = test::gold_pzt_cantilever();
+  constexpr double reference = -2.24964e-10;  // [N m / V], independent program
+  EXPECT_NEAR(piezo_moment_per_volt(d.structure, *d.piezo), reference, 1e-5 * std::abs(reference));
+}
+
+TEST(PiezoMoment, BendsTheBeamIntoACircularArcAsFarAsTheLayerReaches) {
+  const Device d = test::gold_pzt_cantilever();
+  const double begin = d.piezo->begin, end = d.piezo->end, tip_position = d.contact_position();
+  const double moment = piezo_moment_per_volt(d.structure, *d.piezo);
+  const auto tip = [&](int modes) {
+    const BeamModes beam(beam_sections(d), modes);
+    const Eigen::VectorXd force = moment * (beam.slope(end) - beam.slope(begin));
+    return force.cwiseQuotient(beam.angular_frequencies().cwiseAbs2()).dot(beam.value(tip_position));
+  };
+  // Constant curvature M / EI over the layer, straight beyond it.
+  const double exact =
+      moment / layered_section(d.structure, *d.piezo).rigidity * (end - begin) * (tip_position - (begin + end) / 2);
+  EXPECT_NEAR(exact, -2.121_um, 0.001_um);  // independent program, per volt
+  EXPECT_NEAR(tip(4), -2.109_um, 0.001_um);
+  EXPECT_NEAR(tip(40), exact, 1e-4 * std::abs(exact));
+  EXPECT_LT(std::abs(tip(12) - exact), std::abs(tip(4) - exact));
+}
+
+TEST(BeamModes, RefuseSectionsThatAreNoBeam) {
+  const auto build = [](std::vector<BeamSection> sections, int modes) { return [=] { (void)BeamModes(sections, modes); }; };
+  expect_refused(build({uniform}, 0), "modes = 0: must be from 1 to 40");
+  expect_refused(build({uniform}, 41), "modes = 41: must be from 1 to 40");
+  expect_refused(build({}, 4), "beam sections must start at x = 0");
+  BeamSection late = uniform;
+  late.begin = 0.1;
+  expect_refused(build({late}, 4), "beam sections must start at x = 0");
+  const std::string positive = "beam section 0: needs end > begin, rigidity > 0 and mass_per_length > 0";
+  for (double BeamSection::*member : {&BeamSection::end, &BeamSection::rigidity, &BeamSection::mass_per_length}) {
+    for (const double bad : {0.0, -1.0, std::nan("")}) {
+      BeamSection broken = uniform;
+      broken.*member = bad;
+      expect_refused(build({broken}, 4), positive);
+    }
+  }
+  BeamSection next = uniform;
+  next.begin = 2.5, next.end = 3;
+  expect_refused(build({uniform, next}, 4), "beam section 1 must begin where the one before it ends");
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,379 @@
+// Every force law: its value in closed form, its derivative, and the energy that belongs to it.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "base/literals.h"
+#include "model/contact/contact_law.h"
+#include "model/distributed_law.h"
+#include "model/dual.h"
+#include "model/forces/electrostatic.h"
+#include "model/gas/strip.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+/// f'(x) by central differences of eighth order with step h.
+template <class F>
+double derivative(F&& f, double x, double h) {
+  return (672 * (f(x + h) - f(x - h)) - 168 * (f(x + 2 * h) - f(x - 2 * h)) + 32 * (f(x + 3 * h) - f(x - 3 * h)) -
+          3 * (f(x + 4 * h) - f(x - 4 * h))) /
+         (840 * h);
+}
+
+// ---- fringing: the same checks for every factor
+
+template <class Law>
+Law fringing(double width, double thickness) {
+  if constexpr (requires { Law{.width = width, .thickness = thickness}; }) {
+    return Law{.width = width, .thickness = thickness};
+  } else {
+    return Law{.width = width};
+  }
+}
+
+template <class Law>
+class FringingLaw : public testing::Test {};
+using FringingLaws = testing::Types<NoFringing, LinearFringing, MeijsFokkemaFringing, Bao2001Fringing>;
+TYPED_TEST_SUITE(FringingLaw, FringingLaws);
+
+constexpr std::array gaps{0.03_um, 0.2_um, 1_um, 3.5_um, 20_um};
+
+TYPED_TEST(FringingLaw, ForceIsMinusHalfTheSlopeOfTheCapacitance) {
+  constexpr double differences = 1e-9;  // relative: rounding of the difference quotient
+  const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
+  for (const double h : gaps) {
+    const double slope = derivative([&](double x) { return law.capacitance(x); }, h, h / 200);
+    const double force = law.load(h, 0.0);
+    EXPECT_NEAR(-slope / 2, force, differences * force) << "gap " << h;
+  }
+}
+
+TYPED_TEST(FringingLaw, DualSlopeIsTheComplexStepDerivative) {
+  constexpr double step = 1e-30;  // no difference is taken, so no step is too small
+  const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
+  for (const double h : gaps) {
+    const Dual dual = law.load(Dual(h, 1), Dual(0.1));
+    const std::complex<double> at = law.load(std::complex<double>(h, step), std::complex<double>(0.1));
+    EXPECT_DOUBLE_EQ(dual.value, at.real());
+    EXPECT_NEAR(dual.slope, at.imag() / step, 1e-13 * std::abs(dual.slope)) << "gap " << h;
+    EXPECT_EQ(law.load(Dual(h), Dual(0.1, 1)).slope, 0) << "no dependence on the velocity";
+  }
+}
+
+TYPED_TEST(FringingLaw, PullsAndPullsHarderAtSmallerGaps) {
+  const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
+  double previous = 0;
+  for (double h = 20_um; h > 0.01_um; h /= 1.1) {
+    const double force = law.load(h, 0.0);
+    EXPECT_GT(force, previous);
+    previous = force;
+  }
+}
+
+TYPED_TEST(FringingLaw, BecomesTheParallelPlateAtVanishingGap) {
+  const TypeParam law = fringing<TypeParam>(20_um, 2_um);
+  EXPECT_NEAR(law.factor(1e-6 * 20_um), 1, 2e-3);  // the face term of van der Meijs & Fokkema vanishes like the root of h
+  EXPECT_GE(law.factor(1_nm), 1);
+}
+
+TEST(ParallelPlate, IsEps0AreaOverTwoGapSquared) {
+  const ElectrostaticForce<NoFringing> law{{.width = 20_um}};
+  EXPECT_NEAR(law.load(2_um, 0.0), 8.8541878128e-12 * 20e-6 / (2 * 4e-12), 1e-18);
+  EXPECT_NEAR(law.capacitance(2_um), 8.8541878128e-12 * 10, 1e-24);
+}
+
+TEST(FringingFactor, IsTheTabulatedOne) {
+  constexpr double printed = 6e-5;         // four decimals
+  constexpr double differentiated = 2e-4;  // the table took this column from a difference quotient of the capacitance
+  struct Row {
+    double a_over_h, b_over_h, bao, linear, meijs_fokkema;
+  };
+  constexpr std::array<Row, 9> table{{{50, 0.5, 1.0406, 1.0130, 1.0217},
+                                      {20, 1, 1.0940, 1.0325, 1.0546},
+                                      {10, 0.1, 1.1295, 1.0650, 1.0640},
+                                      {10, 0.5, 1.1517, 1.0650, 1.0847},
+                                      {10, 1, 1.1658, 1.0650, 1.1002},
+                                      {5, 0.5, 1.2592, 1.1300, 1.1543},
+                                      {2, 0.5, 1.5021, 1.3250, 1.3451},
+                                      {2, 1, 1.5731, 1.3250, 1.4227},
+                                      {1, 1, 1.9255, 1.6500, 1.7951}}};
+  constexpr double h = 2_um;
+  for (const Row& row : table) {
+    const double a = row.a_over_h * h, b = row.b_over_h * h;
+    EXPECT_NEAR(fringing<Bao2001Fringing>(a, b).factor(h), row.bao, printed) << row.a_over_h << " " << row.b_over_h;
+    EXPECT_NEAR(fringing<LinearFringing>(a, b).factor(h), row.linear, printed) << row.a_over_h;
+    EXPECT_NEAR(fringing<MeijsFokkemaFringing>(a, b).factor(h), row.meijs_fokkema, differentiated)
+        << row.a_over_h << " " << row.b_over_h;
+  }
+}
+
+TEST(FringingFactor, OfMeijsAndFokkemaHasTheirExponents) {
+  // At h = a = b the factor is one plus both coefficients; each term has its own power of h/a and b/h.
+  EXPECT_DOUBLE_EQ(fringing<MeijsFokkemaFringing>(1, 1).factor(1.0), 1 + 0.265 + 0.53);
+  EXPECT_DOUBLE_EQ(fringing<MeijsFokkemaFringing>(16, 1).factor(1.0), 1 + 0.265 / 8 + 0.53 / 16);
+  EXPECT_DOUBLE_EQ(fringing<MeijsFokkemaFringing>(16, 0.25).factor(1.0), 1 + 0.265 / 8 + 0.53 / 32);
+}
+
+TEST(FringingFactor, OfMeijsAndFokkemaIsCloseToTheBoundaryElementSolution) {
+  // Two-dimensional boundary elements, computed independently; the header claims 1.5 % for b <= h.
+  struct Row {
+    double a_over_h, b_over_h, truth;
+  };
+  constexpr std::array<Row, 9> table{{{50, 0.5, 1.0173},
+                                      {20, 1, 1.0466},
+                                      {10, 0.1, 1.0631},
+                                      {10, 0.5, 1.0800},
+                                      {10, 1, 1.0903},
+                                      {5, 0.5, 1.1520},
+                                      {2, 0.5, 1.3505},
+                                      {2, 1, 1.4122},
+                                      {1, 1, 1.8003}}};
+  for (const Row& row : table) {
+    const double factor = fringing<MeijsFokkemaFringing>(row.a_over_h, row.b_over_h).factor(1.0);
+    EXPECT_NEAR(factor, row.truth, 0.015 * row.truth) << row.a_over_h << " " << row.b_over_h;
+    const double bao = fringing<Bao2001Fringing>(row.a_over_h, row.b_over_h).factor(1.0);
+    EXPECT_GT(bao, 1.02 * row.truth) << "the header says 2 to 11 % too much force";
+    EXPECT_LT(bao, 1.115 * row.truth);
+  }
+}
+
+// ---- gas
+
+TEST(StripSqueezeFilm, OpposesTheMotionAndTakesItsEnergy) {
+  const StripSqueezeFilm film{.viscosity = 1.86e-5_Pa_s, .width = 20_um};
+  for (const double h : gaps) {
+    for (const double v : {-1.0, -1e-3, 1e-3, 1.0}) {
+      EXPECT_LE(film.load(h, v) * v, 0);
+      EXPECT_EQ(film.load(h, v), -film.load(h, -v));
+      EXPECT_NEAR(film.load(h, v), -1.86e-5 * std::pow(20_um / h, 3) * v, 1e-14 * std::abs(film.load(h, v)));
+    }
+    EXPECT_EQ(film.load(h, 0.0), 0);
+    EXPECT_EQ(film.capacitance(h), 0);
+  }
+}
+
+TEST(StripSqueezeFilm, DualSlopesAreTheComplexStepDerivatives) {
+  constexpr double step = 1e-30;
+  const StripSqueezeFilm film{.viscosity = 1.86e-5_Pa_s, .width = 20_um};
+  using Complex = std::complex<double>;
+  for (const double h : gaps) {
+    const double by_gap = film.load(Complex(h, step), Complex(0.2)).imag() / step;
+    const double by_velocity = film.load(Complex(h), Complex(0.2, step)).imag() / step;
+    EXPECT_NEAR(film.load(Dual(h, 1), Dual(0.2)).slope, by_gap, 1e-13 * std::abs(by_gap));
+    EXPECT_NEAR(film.load(Dual(h), Dual(0.2, 1)).slope, by_velocity, 1e-13 * std::abs(by_velocity));
+  }
+}
+
+// ---- contact
+
+constexpr Contact gold_pad{.model = ContactModel::asperity_uniform,
+                           .pad_length = 5_um,
+                           .asperity_radius = 100_nm,
+                           .asperity_density = 1e11_per_m2,
+                           .asperity_height = 100_nm,
+                           .effective_modulus = 48_GPa};
+constexpr double beam_width = 20_um;
+
+std::vector<ContactLaw> contact_laws() {
+  return {contact_law({.model = ContactModel::linear, .pad_length = 5_um, .stiffness = 1e4_N_m}, beam_width),
+          contact_law(gold_pad, beam_width)};
+}
+
+constexpr std::array interferences{0.1_nm, 3_nm, 40_nm, 99_nm, 101_nm, 250_nm};
+
+TEST(ContactLaw, ForceIsTheSlopeOfTheStoredEnergy) {
+  constexpr double differences = 1e-9;
+  for (const ContactLaw& law : contact_laws()) {
+    for (const double d : interferences) {
+      const double h = std::abs(d - 100_nm) < 2_nm ? 0.05_nm : d / 100;  // not across the end of the asperities
+      const double slope = derivative([&](double x) { return contact_energy(law, x); }, d, h);
+      EXPECT_NEAR(slope, contact_force(law, d), differences * contact_force(law, d)) << "d = " << d << ", law " << law.index();
+    }
+  }
+}
+
+TEST(ContactLaw, DualSlopeIsTheStiffness) {
+  constexpr double differences = 1e-9;
+  for (const ContactLaw& law : contact_laws()) {
+    for (const double sign : {1.0, -1.0}) {
+      for (const double d : interferences) {
+        const double h = std::abs(d - 100_nm) < 2_nm ? 0.05_nm : d / 100;
+        const double expected = derivative([&](double x) { return contact_force(law, x); }, sign * d, h);
+        const double slope = std::visit([&](const auto& l) { return l.force(Dual(sign * d, 1)).slope; }, law);
+        EXPECT_NEAR(slope, expected, differences * expected) << "d = " << sign * d << ", law " << law.index();
+      }
+    }
+  }
+}
+
+TEST(ContactLaw, BeginsAtZeroAndIsOdd) {
+  for (const ContactLaw& law : contact_laws()) {
+    EXPECT_EQ(contact_force(law, 0), 0);
+    EXPECT_EQ(contact_energy(law, 0), 0);
+    for (const double d : interferences) {
+      EXPECT_GT(contact_force(law, d), 0);
+      EXPECT_EQ(contact_force(law, -d), -contact_force(law, d));
+      EXPECT_EQ(contact_energy(law, -d), contact_energy(law, d));
+    }
+  }
+}
+
+TEST(ContactLaw, LinearIsASpring) {
+  const ContactLaw law = contact_laws()[0];
+  EXPECT_DOUBLE_EQ(contact_force(law, 2_nm), 1e4 * 2e-9);
+  EXPECT_DOUBLE_EQ(contact_energy(law, 2_nm), 1e4 * 4e-18 / 2);
+}
+
+TEST(UniformAsperities, CarryTheHertzLawIntegratedOverTheirHeights) {
+  // eta An / Hm times the integral of (4/3) E* sqrt(R) (d - s)^1.5 over the depths s of the summits, by quadrature.
+  const ContactLaw law = contact_law(gold_pad, beam_width);
+  boost::math::quadrature::tanh_sinh<double> integrator;
+  for (const double d : interferences) {
+    const double per_depth = 1e11 * beam_width * 5_um / 100_nm * 4.0 / 3 * 48e9 * std::sqrt(100_nm);
+    // In units of d: the integrator's absolute floor is not for metres.
+    const double deepest = std::min(1.0, 100_nm / d);
+    const double sum = integrator.integrate([](double s) { return std::pow(1 - s, 1.5); }, 0.0, deepest);
+    const double expected = per_depth * std::pow(d, 2.5) * sum;
+    EXPECT_NEAR(contact_force(law, d), expected, 1e-9 * expected) << "d = " << d;
+  }
+}
+
+TEST(UniformAsperities, HaveTwoContinuousDerivativesAtFirstTouch) {
+  const auto law = std::get<UniformAsperityContact>(contact_law(gold_pad, beam_width));
+  const auto slope = [&](double d) { return law.force(Dual(d, 1)).slope; };
+  EXPECT_EQ(slope(0), 0);
+  // P'' at 0 is the limit of P'(d) / d, which falls like the root of d from both sides.
+  for (const double d : {1_nm, 0.01_nm, 1e-4 * 1_nm}) {
+    EXPECT_NEAR((slope(d) / d) / (slope(d / 100) / (d / 100)), 10, 1e-6);
+    EXPECT_EQ(slope(-d), slope(d));
+  }
+}
+
+TEST(UniformAsperities, GoOnSmoothlyWhenTheLastSummitTouches) {
+  const auto law = std::get<UniformAsperityContact>(contact_law(gold_pad, beam_width));
+  const auto slope = [&](double d) { return law.force(Dual(d, 1)).slope; };
+  const double hm = 100_nm, little = 1e-9 * hm;
+  constexpr double near = 1e-8;
+  EXPECT_NEAR(law.force(hm + little), law.force(hm - little), near * law.force(hm));
+  EXPECT_NEAR(slope(hm + little), slope(hm - little), near * slope(hm));
+  const double curvature_below = (slope(hm) - slope(hm - 0.001 * hm)) / (0.001 * hm);
+  const double curvature_above = (slope(hm + 1e-6 * hm) - slope(hm)) / (1e-6 * hm);
+  EXPECT_NEAR(curvature_above, curvature_below, 0.01 * curvature_below);
+  // Beyond, all summits share the load: stiffer than linear, softer than while summits were still joining.
+  EXPECT_GT(law.force(2 * hm), 2 * law.force(hm));
+  EXPECT_LT(law.force(2 * hm), std::pow(2, 2.5) * law.force(hm));
+}
+
+// ---- dual numbers
+
+TEST(Dual, FollowsTheRulesOfDifferentiation) {
+  const Dual x(3, 1), y(0.7, -2);
+  const auto expect = [](Dual found, double value, double slope) {
+    EXPECT_DOUBLE_EQ(found.value, value);
+    EXPECT_DOUBLE_EQ(found.slope, slope);
+  };
+  expect(x + y, 3.7, -1);
+  expect(x - y, 2.3, 3);
+  expect(-x, -3, -1);
+  expect(x * y, 2.1, 0.7 - 6);
+  expect(x / y, 3 / 0.7, (0.7 + 6) / 0.49);
+  expect(sqrt(x), std::sqrt(3.0), 1 / (2 * std::sqrt(3.0)));
+  expect(log(y), std::log(0.7), -2 / 0.7);
+  expect(abs(Dual(-3, 5)), 3, -5);
+  expect(abs(Dual(3, 5)), 3, 5);
+  expect(2 * x + 1, 7, 2);
+  expect(1 / x, 1.0 / 3, -1.0 / 9);
+  EXPECT_TRUE(x > 2.9);
+  EXPECT_TRUE(x < 3.1);
+  EXPECT_FALSE(x < 3);
+}
+
+TEST(Dual, RootAtZeroHasNoInfiniteSlope) {
+  EXPECT_EQ(sqrt(Dual(0, 1)).value, 0);
+  EXPECT_EQ(sqrt(Dual(0, 1)).slope, 0);
+}
+
+// ---- a law along the beam
+
+GapField field(const std::vector<double>& gap, double velocity) {
+  GapField f;
+  f.gap = Eigen::Map<const Eigen::ArrayXd>(gap.data(), static_cast<Eigen::Index>(gap.size()));
+  f.velocity = Eigen::ArrayXd::Constant(f.gap.size(), velocity);
+  f.smallest_gap = f.gap.minCoeff();
+  return f;
+}
+
+template <class Law>
+double load_at(const DistributedLawOf<Law>& law, double gap, double velocity) {
+  double load = 0;
+  law.add_load(field({gap}, velocity), 1, &load);
+  return load;
+}
+
+template <class Law>
+void expect_tangent_below(const Law& physics, double floor, double velocity) {
+  const DistributedLawOf<Law> law(physics, 0, 1, floor);
+  const double value = physics.load(floor, velocity), slope = physics.load(Dual(floor, 1), Dual(velocity)).slope;
+  EXPECT_DOUBLE_EQ(load_at(law, floor, velocity), value);
+  constexpr double close = 1e-6;  // of the floor: how near the two sides are compared
+  EXPECT_NEAR(load_at(law, floor * (1 - close), velocity), value, 10 * close * std::abs(value));
+  for (const double below : {0.5 * floor, 0.0, -3 * floor}) {
+    const double expected = value + slope * (below - floor);
+    EXPECT_NEAR(load_at(law, below, velocity), expected, 1e-14 * std::abs(expected)) << "gap " << below;
+    double by_deflection = 0, by_velocity = 0;
+    law.add_derivatives(field({below}, velocity), 1, &by_deflection, &by_velocity);
+    EXPECT_DOUBLE_EQ(by_deflection, -slope);
+  }
+}
+
+TEST(DistributedLaw, GoesOnAlongItsTangentBelowTheFloor) {
+  constexpr double floor = 35_nm;
+  expect_tangent_below(ElectrostaticForce<NoFringing>{fringing<NoFringing>(20_um, 2_um)}, floor, 0.1);
+  expect_tangent_below(ElectrostaticForce<LinearFringing>{fringing<LinearFringing>(20_um, 2_um)}, floor, 0.1);
+  expect_tangent_below(ElectrostaticForce<MeijsFokkemaFringing>{fringing<MeijsFokkemaFringing>(20_um, 2_um)}, floor, 0.1);
+  expect_tangent_below(ElectrostaticForce<Bao2001Fringing>{fringing<Bao2001Fringing>(20_um, 2_um)}, floor, 0.1);
+  expect_tangent_below(StripSqueezeFilm{.viscosity = 1.86e-5_Pa_s, .width = 20_um}, floor, 0.1);
+}
+
+TEST(DistributedLaw, ActsAtItsOwnPointsOnly) {
+  const DistributedLawOf law(ElectrostaticForce<NoFringing>{{.width = 20_um}}, 1, 3, 35_nm);
+  const std::vector<double> gap{1_um, 2_um, 3_um, 4_um};
+  constexpr double drive = 9;  // V^2
+  std::vector<double> load(4, 1.0), by_deflection(4, 1.0), by_velocity(4, 1.0);
+  law.add_load(field(gap, 0), drive, load.data());
+  law.add_derivatives(field(gap, 0), drive, by_deflection.data(), by_velocity.data());
+  EXPECT_EQ(load[0], 1);
+  EXPECT_EQ(load[3], 1);
+  EXPECT_DOUBLE_EQ(load[1], 1 + drive * ElectrostaticForce<NoFringing>{{.width = 20_um}}.load(2_um, 0.0));
+  EXPECT_EQ(by_deflection[0], 1);
+  EXPECT_GT(by_deflection[1], 1) << "the force grows as the beam deflects";
+  EXPECT_EQ(by_velocity, std::vector<double>(4, 1.0));
+  const Eigen::ArrayXd weights = Eigen::ArrayXd::Constant(4, 10_um);
+  EXPECT_DOUBLE_EQ(law.capacitance(field(gap, 0), weights), vacuum_permittivity * 20e-6 * 10e-6 * (1 / 2e-6 + 1 / 3e-6));
+}
+
+TEST(DistributedLaw, OnePointBelowTheFloorChangesNothingAtTheOthers) {
+  const DistributedLawOf law(ElectrostaticForce<MeijsFokkemaFringing>{fringing<MeijsFokkemaFringing>(20_um, 2_um)}, 0, 2, 35_nm);
+  std::vector<double> alone(2, 0.0), beside(2, 0.0);
+  law.add_load(field({2_um, 3_um}, 0), 1, alone.data());
+  law.add_load(field({2_um, 10_nm}, 0), 1, beside.data());
+  EXPECT_DOUBLE_EQ(alone[0], beside[0]);
+}
+
+TEST(PassiveLaw, IgnoresTheDrive) {
+  const StripSqueezeFilm film{.viscosity = 1.86e-5_Pa_s, .width = 20_um};
+  const DistributedLawOf law(film, 0, 1, 35_nm);
+  double load = 0;
+  law.add_load(field({1_um}, 0.3), 0, &load);
+  EXPECT_DOUBLE_EQ(load, film.load(1_um, 0.3));
+}
+
+}  // namespace
+}  // namespace softland
