@@ -1,0 +1,85 @@
+#include "model/device.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "base/literals.h"
+#include "model/status.h"
+#include "model/switch.h"
+#include "tests/model/expect_refused.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+void expect_message(const std::function<void(Device&)>& damage, const std::string& message) {
+  Device device = test::gold_pzt_cantilever();
+  damage(device);
+  test::expect_refused([&] { validate(device); }, message);
+  test::expect_refused([&] { (void)Switch(device); }, message);
+}
+
+TEST(Device, OfTheReferenceIsValid) {
+  EXPECT_NO_THROW(validate(test::gold_cantilever()));
+  EXPECT_NO_THROW(validate(test::gold_pzt_cantilever()));
+}
+
+TEST(Device, NamesWhatIsWrongWithIt) {
+  expect_message([](Device& d) { d.structure.length = 0; }, "structure.length = 0: must be positive");
+  expect_message([](Device& d) { d.structure.width = -1e-6; }, "structure.width = -1e-06: must be positive");
+  expect_message([](Device& d) { d.structure.thickness = std::nan(""); }, "structure.thickness = nan: must be positive");
+  expect_message([](Device& d) { d.structure.youngs_modulus = INFINITY; }, "structure.youngs_modulus = inf: must be positive");
+  expect_message([](Device& d) { d.structure.density = 0; }, "structure.density = 0: must be positive");
+  expect_message([](Device& d) { d.structure.modes = 0; }, "structure.modes = 0: must be from 1 to 20");
+  expect_message([](Device& d) { d.structure.modes = 21; }, "structure.modes = 21: must be from 1 to 20");
+  expect_message([](Device& d) { d.structure.damping_ratio = -0.1; }, "structure.damping_ratio = -0.1: must not be negative");
+  expect_message([](Device& d) { d.structure.plate_strain = true; },
+                 "structure.poissons_ratio = nan: plate_strain needs one between -1 and 0.5");
+  expect_message([](Device& d) { d.gap.electrode = 0; }, "gap.electrode = 0: must be positive");
+  expect_message([](Device& d) { d.gap.contact = 4e-6; },
+                 "gap.contact = 4e-06 m: must be positive and below gap.electrode = 3.5e-06 m");
+  expect_message([](Device& d) { d.gap.contact = 0; }, "gap.contact = 0 m: must be positive and below gap.electrode = 3.5e-06 m");
+  expect_message([](Device& d) { d.electrodes[0] = {.name = "left", .begin = 0, .end = 0.1}; },
+                 "electrode.left.span = [0, 0.1] m: must increase and lie on the beam [0, 0.00025] m");
+  expect_message([](Device& d) { d.electrodes[0].begin = d.electrodes[0].end = 1e-4; },
+                 "electrode.main.span = [0.0001, 0.0001] m: must increase and lie on the beam [0, 0.00025] m");
+  expect_message([](Device& d) { d.gas->viscosity = 0; }, "gas.viscosity = 0: must be positive");
+  expect_message([](Device& d) { d.contact->pad_length = 1; },
+                 "contact.pad_length = 1 m: must be positive and below the length 0.00025 m");
+  expect_message([](Device& d) { d.contact->asperity_radius = 0; }, "contact.asperity_radius = 0: must be positive");
+  expect_message([](Device& d) { d.contact->asperity_density = 0; }, "contact.asperity_density = 0: must be positive");
+  expect_message([](Device& d) { d.contact->asperity_height = 0; }, "contact.asperity_height = 0: must be positive");
+  expect_message([](Device& d) { d.contact->effective_modulus = 0; }, "contact.effective_modulus = 0: must be positive");
+  expect_message([](Device& d) { d.contact->model = ContactModel::linear; }, "contact.stiffness = 0: must be positive");
+  expect_message([](Device& d) { d.piezo->begin = -1e-6, d.piezo->end = 2e-4; },
+                 "piezo.span = [-1e-06, 0.0002] m: must increase and lie on the beam [0, 0.00025] m");
+  expect_message([](Device& d) { d.piezo->thickness = 0; }, "piezo.thickness = 0: must be positive");
+  expect_message([](Device& d) { d.piezo->youngs_modulus = 0; }, "piezo.youngs_modulus = 0: must be positive");
+  expect_message([](Device& d) { d.piezo->density = 0; }, "piezo.density = 0: must be positive");
+  expect_message([](Device& d) { d.piezo->d31 = std::nan(""); }, "piezo.d31 = nan m/V: must be a finite number below 1 m/V");
+}
+
+TEST(Device, TakesItsFiguresAtTheCentreOfThePad) {
+  Device device = test::gold_cantilever();
+  EXPECT_DOUBLE_EQ(device.contact_position(), 247.5_um);
+  device.contact.reset();
+  EXPECT_DOUBLE_EQ(device.contact_position(), 250_um);
+}
+
+TEST(Status, HasItsNames) {
+  EXPECT_EQ(to_string(Status::not_run), "not_run");
+  EXPECT_EQ(to_string(Status::done), "done");
+  EXPECT_EQ(to_string(Status::no_contact), "no_contact");
+  EXPECT_EQ(to_string(Status::not_settled), "not_settled");
+  EXPECT_EQ(to_string(Status::collapsed_at_rest), "collapsed_at_rest");
+  EXPECT_EQ(to_string(Status::numerical_failure), "numerical_failure");
+  EXPECT_EQ(to_string(Status::interrupted), "interrupted");
+}
+
+}  // namespace
+}  // namespace softland

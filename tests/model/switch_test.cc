@@ -1,0 +1,290 @@
+// The composed switch: exact Jacobian, potential and dissipation of any combination of effects, from one generic test.
+#include "model/switch.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "base/literals.h"
+#include "model/constants.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+struct Combination {
+  std::string name;
+  Device device;
+};
+
+std::vector<Combination> combinations() {
+  std::vector<Combination> all;
+  for (const Fringing fringing : {Fringing::none, Fringing::linear, Fringing::meijs_fokkema, Fringing::bao_2001}) {
+    for (const bool layer : {false, true}) {
+      for (const bool gas : {false, true}) {
+        for (const double damping : {0.0, 0.03}) {
+          for (const ContactModel contact : {ContactModel::linear, ContactModel::asperity_uniform}) {
+            Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
+            d.electrodes[0].fringing = fringing;
+            d.structure.damping_ratio = damping;
+            if (!gas) d.gas.reset();
+            d.contact->model = contact;
+            d.contact->stiffness = 1e4;
+            all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {}", static_cast<int>(fringing), layer,
+                                       gas, damping, static_cast<int>(contact)),
+                           d});
+          }
+        }
+      }
+    }
+  }
+  Device two = test::gold_cantilever();  // two electrodes that overlap on a part of the beam
+  two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
+  all.push_back({"two electrodes", two});
+  return all;
+}
+
+/// Random coordinates whose deflection stays well inside the electrode gap, with the tip short of the contact plane or pressed
+/// into the contact where the law is smooth; velocities as in a closing.
+struct State {
+  Eigen::VectorXd q, v;
+  std::vector<double> volts;
+};
+
+State random_state(const Switch& device, bool in_contact, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const Eigen::Index n = device.modes();
+  State s{Eigen::VectorXd(n), Eigen::VectorXd(n), {}};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double share = device.contact_shape()[i] * static_cast<double>(1 + i * i);
+    s.q[i] = 0.3_um * uniform(random) / share;
+    s.v[i] = 0.1 * uniform(random) / share;
+  }
+  const double plane = device.device().gap.contact;
+  const double wanted = in_contact ? plane + 60_nm + 25_nm * uniform(random) : plane * (0.5 + 0.4 * uniform(random));
+  s.q[0] += (wanted - device.contact_deflection(s.q.data())) / device.contact_shape()[0];
+  for (std::size_t k = 0; k < device.drives(); ++k) s.volts.push_back(10 * uniform(random));
+  if (device.has_piezo()) s.volts.back() /= 20;
+  return s;
+}
+
+constexpr int states_per_combination = 4;
+
+TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
+  constexpr double differences = 1e-7;  // of the largest entry in the column: rounding of the difference quotient
+  std::mt19937_64 random(1);
+  for (const Combination& c : combinations()) {
+    const Switch device(c.device);
+    Switch::Workspace work = device.workspace();
+    const Eigen::Index n = device.modes();
+    for (int k = 0; k < states_per_combination; ++k) {
+      const bool in_contact = k % 2 == 1;
+      State s = random_state(device, in_contact, random);
+      Eigen::MatrixXd by_q(n, n), by_v(n, n);
+      device.jacobian(s.q.data(), s.v.data(), s.volts, in_contact, work, by_q, by_v);
+      const auto column = [&](Eigen::VectorXd& unknown, Eigen::Index i, double h) {
+        const double at = unknown[i];
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(n), a(n);
+        for (const auto& [offset, weight] : {std::pair{1, 8.0}, {-1, -8.0}, {2, -1.0}, {-2, 1.0}}) {
+          unknown[i] = at + offset * h;
+          device.accelerations(s.q.data(), s.v.data(), s.volts, in_contact, work, a.data());
+          sum += weight * a;
+        }
+        unknown[i] = at;
+        return Eigen::VectorXd(sum / (12 * h));
+      };
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::VectorXd q_column = column(s.q, i, 0.1_nm / device.contact_shape().maxCoeff());
+        EXPECT_LT((q_column - by_q.col(i)).cwiseAbs().maxCoeff(), differences * by_q.cwiseAbs().maxCoeff()) << c.name;
+        const Eigen::VectorXd v_column = column(s.v, i, 0.01 / device.contact_shape().maxCoeff());
+        EXPECT_LE((v_column - by_v.col(i)).cwiseAbs().maxCoeff(),
+                  differences * (by_v.cwiseAbs().maxCoeff() + device.angular_frequencies()[0]))
+            << c.name;
+      }
+    }
+  }
+}
+
+TEST(Switch, StaticForceIsMinusTheGradientOfThePotential) {
+  constexpr double differences = 1e-7;
+  std::mt19937_64 random(2);
+  for (const Combination& c : combinations()) {
+    const Switch device(c.device);
+    Switch::Workspace work = device.workspace();
+    const Eigen::Index n = device.modes();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n);
+    for (int k = 0; k < states_per_combination; ++k) {
+      const bool in_contact = k % 2 == 1;
+      State s = random_state(device, in_contact, random);
+      Eigen::VectorXd force(n), gradient(n);
+      device.accelerations(s.q.data(), rest.data(), s.volts, in_contact, work, force.data());
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const double at = s.q[i], h = 2_nm / device.contact_shape().maxCoeff();
+        double sum = 0;
+        for (const auto& [offset, weight] : {std::pair{1, 672.0}, {2, -168.0}, {3, 32.0}, {4, -3.0}}) {
+          s.q[i] = at + offset * h;
+          sum += weight * device.potential(s.q.data(), s.volts, in_contact, work);
+          s.q[i] = at - offset * h;
+          sum -= weight * device.potential(s.q.data(), s.volts, in_contact, work);
+        }
+        s.q[i] = at;
+        gradient[i] = sum / (840 * h);
+      }
+      EXPECT_LT((force + gradient).cwiseAbs().maxCoeff(), differences * force.cwiseAbs().maxCoeff()) << c.name;
+    }
+  }
+}
+
+TEST(Switch, DissipatedPowerIsWhatTheVelocityDependentForcesTakeOut) {
+  constexpr double rounding = 1e-9;
+  std::mt19937_64 random(3);
+  for (const Combination& c : combinations()) {
+    const Switch device(c.device);
+    Switch::Workspace work = device.workspace();
+    const Eigen::Index n = device.modes();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n);
+    const State s = random_state(device, false, random);
+    Eigen::VectorXd moving(n), still(n);
+    device.accelerations(s.q.data(), s.v.data(), s.volts, false, work, moving.data());
+    device.accelerations(s.q.data(), rest.data(), s.volts, false, work, still.data());
+    const double power = device.dissipated_power(s.q.data(), s.v.data(), work);
+    EXPECT_NEAR(power, -s.v.dot(moving - still), rounding * (std::abs(power) + s.v.norm() * still.norm())) << c.name;
+    EXPECT_GE(power, 0) << c.name;
+    if (!c.device.gas && c.device.structure.damping_ratio == 0) {
+      EXPECT_EQ(power, 0) << c.name;
+    } else {
+      EXPECT_GT(power, 0) << c.name;
+    }
+  }
+}
+
+TEST(Switch, EnergiesAreThoseOfMassNormalisedModes) {
+  const Switch device(test::gold_cantilever());
+  std::mt19937_64 random(4);
+  const State s = random_state(device, false, random);
+  double kinetic = 0, elastic = 0;
+  for (Eigen::Index i = 0; i < device.modes(); ++i) {
+    kinetic += s.v[i] * s.v[i] / 2;
+    elastic += std::pow(device.angular_frequencies()[i] * s.q[i], 2) / 2;
+  }
+  EXPECT_NEAR(device.kinetic_energy(s.v.data()), kinetic, 1e-14 * kinetic);
+  EXPECT_NEAR(device.elastic_energy(s.q.data()), elastic, 1e-14 * elastic);
+}
+
+TEST(Switch, CapacitanceAtRestIsThatOfTheStraightBeam) {
+  Device d = test::gold_cantilever();
+  d.electrodes[0].fringing = Fringing::none;
+  const Switch device(d);
+  Switch::Workspace work = device.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  const double expected = vacuum_permittivity * 20_um * 180_um / 3.5_um;
+  EXPECT_NEAR(device.capacitance(0, rest.data(), work), expected, 1e-12 * expected);
+  EXPECT_EQ(Switch(test::gold_pzt_cantilever()).capacitance(1, rest.data(), work), 0) << "the layer's own is not described";
+}
+
+TEST(Switch, QuadratureKnowsEveryCorner) {
+  const Switch device(test::gold_pzt_cantilever());
+  // Weights over any stretch between corners add up to its length: seen through the capacitance of a straight beam.
+  Device d = test::gold_pzt_cantilever();
+  for (const auto& [begin, end] : {std::pair{0_um, 5_um}, {5_um, 60_um}, {60_um, 245_um}, {13_um, 14_um}, {245_um, 250_um}}) {
+    d.electrodes[0] = {.name = "part", .begin = begin, .end = end, .fringing = Fringing::none};
+    const Switch part(d);
+    Switch::Workspace work = part.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(part.modes());
+    const double expected = vacuum_permittivity * 20_um * (end - begin) / 3.5_um;
+    EXPECT_NEAR(part.capacitance(0, rest.data(), work), expected, 1e-12 * expected) << begin << " " << end;
+  }
+  EXPECT_TRUE((device.point_positions() > 0).all());
+  EXPECT_TRUE((device.point_positions() < 250_um).all());
+}
+
+TEST(Switch, ElectrodeUpToTheFreeEndCountsEveryPoint) {
+  Device d = test::gold_cantilever();
+  d.contact.reset();
+  d.electrodes[0] = {.name = "all", .begin = 0, .end = d.structure.length, .fringing = Fringing::none};
+  const Switch device(d);
+  Switch::Workspace work = device.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  const double expected = vacuum_permittivity * 20_um * 250_um / 3.5_um;
+  EXPECT_NEAR(device.capacitance(0, rest.data(), work), expected, 1e-12 * expected);
+
+  EXPECT_DOUBLE_EQ(d.contact_position(), d.structure.length);
+}
+
+TEST(Switch, UniformPressureOnAStiffBeamGivesTheTextbookDeflection) {
+  // A small voltage: force per length f = eps0 a V^2 / (2 d0^2) on the whole beam, tip f L^4 / (8 EI).
+  Device d = test::gold_cantilever();
+  d.contact.reset();
+  d.structure.modes = 20;
+  d.electrodes[0] = {.name = "all", .begin = 0, .end = d.structure.length, .fringing = Fringing::none};
+  const Switch device(d);
+  Switch::Workspace work = device.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  Eigen::VectorXd force(device.modes());
+  const std::vector<double> volts{0.1};
+  device.accelerations(rest.data(), rest.data(), volts, false, work, force.data());
+  const Eigen::VectorXd q = force.cwiseQuotient(device.angular_frequencies().cwiseAbs2());
+  const double load = vacuum_permittivity * 20_um * 0.01 / (2 * std::pow(3.5_um, 2));
+  const double rigidity = 78e9 * 20_um * std::pow(2_um, 3) / 12;
+  const double expected = load * std::pow(250_um, 4) / (8 * rigidity);
+  EXPECT_NEAR(device.contact_deflection(q.data()), expected, 1e-6 * expected);
+}
+
+TEST(Switch, PiezoForceBelongsToItsCharge) {
+  const Switch device(test::gold_pzt_cantilever());
+  EXPECT_EQ(device.drives(), 2u);
+  EXPECT_TRUE(device.has_piezo());
+  std::mt19937_64 random(5);
+  const State s = random_state(device, false, random);
+  EXPECT_DOUBLE_EQ(device.piezo_charge(s.q.data()), device.piezo_shape().dot(s.q));
+  EXPECT_LT(device.piezo_shape()[0], 0) << "a positive voltage lifts the tip";
+  EXPECT_TRUE(Switch(test::gold_cantilever()).piezo_shape().isZero());
+  EXPECT_EQ(Switch(test::gold_cantilever()).drives(), 1u);
+}
+
+TEST(Switch, PenetrationScaleCarriesTheForceThatBendsTheBeamByTheGap) {
+  Device d = test::gold_cantilever();
+  d.contact->model = ContactModel::linear;
+  d.contact->stiffness = 1e4;
+  d.structure.modes = 1;
+  const Switch device(d);
+  const double stiffness = std::pow(device.angular_frequencies()[0] / device.contact_shape()[0], 2);
+  EXPECT_NEAR(device.penetration_scale(), stiffness * 2_um / 1e4, 1e-9 * device.penetration_scale());
+}
+
+TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
+  // With a contact of growing stiffness and many modes the first frequency about contact tends to that of the pinned beam.
+  Device d = test::gold_cantilever();
+  d.electrodes.clear();
+  d.structure.modes = 20;
+  d.contact->model = ContactModel::linear;
+  d.contact->stiffness = 1e9;
+  const Switch device(d);
+  Switch::Workspace work = device.workspace();
+  const Eigen::Index n = device.modes();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd by_q(n, n), by_v(n, n);
+  device.jacobian(rest.data(), rest.data(), {}, true, work, by_q, by_v);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(-by_q);
+  const double period = 2 * pi / std::sqrt(solver.eigenvalues()[0]);
+  EXPECT_NEAR(device.in_contact_period(), period, 1e-3 * period);
+}
+
+TEST(Switch, GapFloorIsAHundredthOfTheElectrodeGap) {
+  const Switch device(test::gold_cantilever());
+  EXPECT_DOUBLE_EQ(device.gap_floor(), 35_nm);
+  Switch::Workspace work = device.workspace();
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(4), a(4);
+  device.accelerations(q.data(), q.data(), std::vector<double>{1.0}, false, work, a.data());
+  EXPECT_DOUBLE_EQ(Switch::smallest_gap(work), 3.5_um);
+}
+
+}  // namespace
+}  // namespace softland
