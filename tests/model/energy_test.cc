@@ -1,0 +1,201 @@
+// Energy: what the sources put in is stored or dissipated, for any combination of effects and waveforms.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/literals.h"
+#include "model/closing.h"
+#include "model/pull_in.h"
+#include "tests/support/devices.h"
+#include "waveforms/harmonic.h"
+#include "waveforms/pulse.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+constexpr double step_level = 17.771;  // [V], about 1.25 Vdp
+
+struct Loss {
+  std::string name;
+  bool gas;
+  double damping_ratio;
+};
+
+std::vector<Signal> waveforms(int kind, double volts, bool layer) {
+  std::vector<Signal> drives;
+  if (kind == 0) {
+    drives = {Signal::constant(volts)};
+  } else if (kind == 1) {
+    drives = {signal(Pulse{.levels = {volts, 0.8 * volts, volts}, .times = {20_us, 40_us}, .edge = 2_us})};
+  } else {
+    drives = {
+        signal(Harmonic{.base = volts, .amplitude = 0.1 * volts, .angular_frequency = 4e5_rad_s, .end = 80_us, .fade = 10_us})};
+  }
+  if (layer) {
+    drives.push_back(kind == 0 ? Signal::constant(-0.05)
+                               : signal(Pulse{.levels = {0.1_V, -0.1_V, 0_V}, .times = {15_us, 40_us}, .edge = 5_us}));
+  }
+  return drives;
+}
+
+TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryCombination) {
+  constexpr double tolerance = 1e-9;
+  constexpr double balance = 1e-6;   // of the sources' work: what users may rely on
+  constexpr double measured = 1e-7;  // five times the worst seen
+  for (const bool layer : {false, true}) {
+    for (const Loss& loss :
+         {Loss{"none", false, 0}, Loss{"gas", true, 0}, Loss{"modal", false, 0.02}, Loss{"both", true, 0.02}}) {
+      for (const ContactModel contact : {ContactModel::linear, ContactModel::asperity_uniform}) {
+        for (const int kind : {0, 1, 2}) {
+          Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
+          if (!loss.gas) d.gas.reset();
+          d.structure.damping_ratio = loss.damping_ratio;
+          d.contact->model = contact;
+          d.contact->stiffness = 1e4_N_m;
+          const Switch device(d);
+          const Trajectory t = simulate_closing(device, waveforms(kind, layer ? 28_V : step_level, layer),
+                                                {.duration = 150_us, .tolerance = tolerance, .audit = true});
+          const std::string name =
+              fmt::format("piezo {}, loss {}, contact {}, waveform {}", layer, loss.name, static_cast<int>(contact), kind);
+          ASSERT_EQ(t.status, Status::done) << name;
+          EXPECT_GE(t.touches.size(), 5u) << name;
+          EXPECT_GT(t.energy.source_work, 0) << name;
+          EXPECT_LT(std::abs(t.energy.residual()), balance * t.energy.source_work) << name;
+          EXPECT_LT(std::abs(t.energy.residual()), measured * t.energy.source_work) << name;
+          if (loss.gas || loss.damping_ratio > 0) {
+            EXPECT_GT(t.energy.dissipated, 0.01 * t.energy.source_work) << name;
+          } else {
+            EXPECT_EQ(t.energy.dissipated, 0) << name;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(EnergyBalance, ClosesForEveryFringingFactor) {
+  for (const Fringing fringing : {Fringing::none, Fringing::linear, Fringing::meijs_fokkema, Fringing::bao_2001}) {
+    Device d = test::gold_cantilever();
+    d.electrodes[0].fringing = fringing;
+    const std::vector<Signal> drives = waveforms(1, step_level, false);
+    const Trajectory t = simulate_closing(Switch(d), drives, {.duration = 100_us, .tolerance = 1e-9, .audit = true});
+    ASSERT_EQ(t.status, Status::done);
+    EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << static_cast<int>(fringing);
+  }
+}
+
+TEST(EnergyBalance, ResidualFallsWithTheTolerance) {
+  const Switch device(test::gold_cantilever());
+  const std::vector<Signal> drives{Signal::constant(step_level)};
+  const auto residual = [&](double tolerance) {
+    const Trajectory t = simulate_closing(device, drives, {.duration = 60_us, .tolerance = tolerance, .audit = true});
+    return std::abs(t.energy.residual() / t.energy.source_work);
+  };
+  const double slope = std::log10(residual(1e-6) / residual(1e-9)) / 3;
+  EXPECT_GT(slope, 0.7);
+  EXPECT_LT(slope, 1.3);
+}
+
+TEST(DriveEnergy, OfAStepIsChargingAtRestPlusVoltageTimesTheMovedCharge) {
+  const Switch device(test::gold_cantilever());
+  Switch::Workspace work = device.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  const std::vector<Signal> drives{Signal::constant(step_level)};
+  Eigen::VectorXd last = rest;
+  const Trajectory t =
+      simulate_closing(device, drives, {.duration = 60_us, .observer = [&](double, const double* q, const double*) {
+                                          last = Eigen::Map<const Eigen::VectorXd>(q, device.modes());
+                                          return false;
+                                        }});
+  const double at_rest = device.capacitance(0, rest.data(), work), at_end = device.capacitance(0, last.data(), work);
+  const double expected = step_level * step_level * (at_rest / 2 + (at_end - at_rest));
+  EXPECT_NEAR(t.drive_energy, expected, 1e-12 * expected);
+}
+
+TEST(DriveEnergy, OfAJumpIsTheLimitOfSteepEdges) {
+  const Switch device(test::gold_pzt_cantilever());
+  const auto run = [&](double edge) {
+    const std::vector<Signal> drives{signal(Pulse{.levels = {28_V, 20_V, 28_V}, .times = {10_us, 16_us}, .edge = edge}),
+                                     signal(Pulse{.levels = {0.1_V, -0.1_V, 0_V}, .times = {9_us, 17_us}, .edge = edge})};
+    return simulate_closing(device, drives, {.duration = 60_us, .tolerance = 1e-9, .audit = true});
+  };
+  constexpr double same = 1e-6;  // relative: a picosecond is 1e-8 of the closing time
+  const Trajectory jump = run(0), steep = run(1e-12);
+  ASSERT_FALSE(jump.touches.empty());
+  ASSERT_FALSE(steep.touches.empty());
+  EXPECT_NEAR(steep.touches[0].begin, jump.touches[0].begin, same * jump.touches[0].begin);
+  EXPECT_NEAR(steep.touches[0].impact_velocity, jump.touches[0].impact_velocity, same * jump.touches[0].impact_velocity);
+  EXPECT_NEAR(steep.drive_energy, jump.drive_energy, 10 * same * jump.drive_energy);
+  EXPECT_LT(std::abs(jump.energy.residual()), 1e-7 * jump.energy.source_work);
+  EXPECT_LT(std::abs(steep.energy.residual()), 1e-7 * steep.energy.source_work);
+}
+
+TEST(LandingExcess, WithoutLossesIsTheEnergyAtRestAboveTheClosedEquilibrium) {
+  Device d = test::gold_cantilever();
+  d.gas.reset();
+  const Switch device(d);
+  const std::vector<double> volts{step_level};
+  const auto closed = closed_equilibrium(device, volts);
+  ASSERT_TRUE(closed.has_value());
+  const std::vector<Signal> drives{Signal::constant(step_level)};
+  const Trajectory t = simulate_closing(
+      device, drives, {.duration = 60_us, .tolerance = 1e-9, .after_contact = 1_us, .closed_potential = closed->potential});
+  Switch::Workspace work = device.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  const double expected = device.potential(rest.data(), volts, false, work) - closed->potential;
+  EXPECT_GT(expected, 0);
+  EXPECT_NEAR(t.landing_excess, expected, 1e-6 * expected);
+}
+
+TEST(LandingExcess, WaitsForTheHoldLevels) {
+  const Switch device(test::gold_cantilever());
+  const auto closed = closed_equilibrium(device, std::vector<double>{step_level});
+  ASSERT_TRUE(closed.has_value());
+  // A last edge that ends after the window: the drives never stand at their hold levels.
+  const std::vector<Signal> drives{signal(Pulse{.levels = {step_level, 0.9 * step_level}, .times = {90_us}, .edge = 1_us})};
+  const ClosingOptions options{.duration = 80_us, .closed_potential = closed->potential};
+  EXPECT_FALSE(simulate_closing(device, drives, options).touches.empty());
+  EXPECT_TRUE(std::isnan(simulate_closing(device, drives, options).landing_excess));
+}
+
+TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
+  // Without losses the contact's energy is at most the field's work so far, (C - C0) V^2 / 2: a tip that fell through a stiff
+  // contact would store orders of magnitude more.
+  for (const double stiffness : {1e5, 1e7, 1e9}) {
+    Device d = test::gold_cantilever();
+    d.gas.reset();
+    d.contact->model = ContactModel::linear;
+    d.contact->stiffness = stiffness;
+    const Switch device(d);
+    Switch::Workspace work = device.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+    const double at_rest = device.capacitance(0, rest.data(), work);
+    const std::vector<Signal> drives{Signal::constant(step_level)};
+    for (const Integrator integrator : {Integrator::dormand_prince, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
+      for (const double tolerance : {1e-4, 1e-6}) {
+        double given = 0;
+        const Trajectory t =
+            simulate_closing(device, drives,
+                             {.duration = 60_us,
+                              .tolerance = tolerance,
+                              .integrator = integrator,
+                              .observer = [&](double, const double* q, const double*) {
+                                given = std::max(given, (device.capacitance(0, q, work) - at_rest) * step_level * step_level / 2);
+                                return false;
+                              }});
+        ASSERT_FALSE(t.touches.empty());
+        for (const Touch& touch : t.touches) EXPECT_LT(touch.peak_energy, 0.5 * given) << stiffness << " N/m";
+        EXPECT_LT(t.deepest_penetration, std::sqrt(given / stiffness)) << stiffness << " N/m";
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softland

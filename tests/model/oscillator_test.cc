@@ -1,0 +1,164 @@
+// The linear limit: without electrodes and contact every mode is an oscillator driven by the piezo, known in closed form.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/literals.h"
+#include "model/closing.h"
+#include "model/constants.h"
+#include "tests/support/devices.h"
+#include "waveforms/harmonic.h"
+#include "waveforms/pulse.h"
+#include "waveforms/step.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+constexpr double tight = 1e-10;        // integrator tolerance
+constexpr double shape_digits = 1e-7;  // of the largest deflection: what `tight` leaves after twenty periods
+constexpr double window = 200_us;
+
+Device oscillator(double damping_ratio) {
+  Device device = test::gold_pzt_cantilever();
+  device.electrodes.clear();
+  device.gas.reset();
+  device.contact.reset();
+  device.structure.damping_ratio = damping_ratio;
+  return device;
+}
+
+/// Response of q'' + 2 zeta w q' + w^2 q = 1 from rest.
+double step_response(double w, double zeta, double t) {
+  const double root = std::sqrt(1 - zeta * zeta);
+  return (1 - std::exp(-zeta * w * t) * (std::cos(w * root * t) + zeta / root * std::sin(w * root * t))) / (w * w);
+}
+
+/// Response of q'' + 2 zeta w q' + w^2 q = t from rest.
+double ramp_response(double w, double zeta, double t) {
+  const double wd = w * std::sqrt(1 - zeta * zeta), decay = std::exp(-zeta * w * t);
+  const double a = 2 * zeta / w;  // particular solution (t - a) / w^2
+  return (t - a + decay * (a * std::cos(wd * t) + (zeta * w * a - 1) / wd * std::sin(wd * t))) / (w * w);
+}
+
+/// Response of q'' + w^2 q = sin(f t + phase) from rest.
+double sine_response(double w, double f, double phase, double t) {
+  const double gain = 1 / (w * w - f * f);
+  return gain * (std::sin(f * t + phase) - std::sin(phase) * std::cos(w * t) - f / w * std::cos(phase) * std::sin(w * t));
+}
+
+/// Compares every knot of a run under `drive` with the sum over the modes of `response(w, t)` [s^2 per volt].
+template <class Response>
+void expect_response(double damping_ratio, const Signal& drive, double volts, Response&& response) {
+  const Switch device(oscillator(damping_ratio));
+  const std::vector<Signal> drives{drive};
+  const Trajectory trajectory = simulate_closing(device, drives, {.duration = window, .tolerance = tight});
+  ASSERT_EQ(trajectory.status, Status::done);
+  ASSERT_TRUE(trajectory.touches.empty());
+  EXPECT_DOUBLE_EQ(trajectory.points.back().time, window);
+  const Eigen::VectorXd gain = device.piezo_shape().cwiseProduct(device.contact_shape());
+  double largest = 0, worst = 0;
+  for (const TrajectoryPoint& p : trajectory.points) {
+    double exact = 0;
+    for (Eigen::Index i = 0; i < device.modes(); ++i)
+      exact += volts * gain[i] * response(device.angular_frequencies()[i], p.time);
+    largest = std::max(largest, std::abs(exact));
+    worst = std::max(worst, std::abs(p.position - exact));
+  }
+  EXPECT_GT(largest, 10_nm);
+  EXPECT_LT(worst, shape_digits * largest);
+}
+
+TEST(LinearLimit, StepOnThePiezoRingsEveryModeAboutItsStaticDeflection) {
+  for (const double zeta : {0.0, 0.05}) {
+    expect_response(zeta, Signal::constant(-0.2), -0.2, [&](double w, double t) { return step_response(w, zeta, t); });
+  }
+}
+
+TEST(LinearLimit, RampIsTheIntegralOfTheStep) {
+  constexpr double rise = 17_us;
+  for (const double zeta : {0.0, 0.05}) {
+    expect_response(zeta, signal(Step{.level = -0.2, .rise_time = rise}), -0.2 / rise, [&](double w, double t) {
+      return ramp_response(w, zeta, t) - (t > rise ? ramp_response(w, zeta, t - rise) : 0);
+    });
+  }
+}
+
+TEST(LinearLimit, PulseIsASumOfSteps) {
+  constexpr double first = 20_us, second = 55_us;
+  expect_response(0, signal(Pulse{.levels = {0.2_V, -0.3_V, 0.1_V}, .times = {first, second}, .edge = 0}), 1,
+                  [&](double w, double t) {
+                    return 0.2 * step_response(w, 0, t) - (t > first ? 0.5 * step_response(w, 0, t - first) : 0) +
+                           (t > second ? 0.4 * step_response(w, 0, t - second) : 0);
+                  });
+}
+
+TEST(LinearLimit, SineDrivesEveryModeBelowAndAboveItsResonance) {
+  for (const double frequency : {5e4, 3e5, 2.2e6}) {  // between the modes, rad/s
+    constexpr double phase = 0.7;
+    expect_response(0, signal(Harmonic{.amplitude = 0.3_V, .angular_frequency = frequency, .phase = phase}), 0.3,
+                    [&](double w, double t) { return sine_response(w, frequency, phase, t); });
+  }
+}
+
+TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm) {
+  const Switch device(oscillator(0));
+  const Eigen::VectorXd gain = device.piezo_shape().cwiseProduct(device.contact_shape());
+  const std::vector<Signal> drives{Signal::constant(-0.2)};
+  for (const Integrator integrator : {Integrator::dormand_prince, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
+    const Trajectory trajectory =
+        simulate_closing(device, drives, {.duration = 100_us, .tolerance = 1e-9, .integrator = integrator});
+    double exact = 0;
+    for (Eigen::Index i = 0; i < device.modes(); ++i) {
+      exact += -0.2 * gain[i] * step_response(device.angular_frequencies()[i], 0, 100_us);
+    }
+    constexpr double multistep_digits = 2e-5;  // multistep methods let many thousand small errors add up
+    EXPECT_NEAR(trajectory.points.back().position, exact, multistep_digits * 1_um) << static_cast<int>(integrator);
+  }
+}
+
+TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive) {
+  const Switch device(oscillator(0));
+  const std::vector<Signal> drives{Signal::constant(-0.2)};
+  const Trajectory trajectory = simulate_closing(device, drives, {.duration = 130_us, .tolerance = tight, .audit = true});
+  EXPECT_GT(trajectory.energy.source_work, 0);
+  EXPECT_NEAR(trajectory.energy.residual(), 0, 1e-7 * trajectory.energy.source_work);
+  // Work of a constant voltage: V times the charge the deflection moved, theta q.
+  double work = 0;
+  for (Eigen::Index i = 0; i < device.modes(); ++i) {
+    work += 0.2 * 0.2 * std::pow(device.piezo_shape()[i], 2) * step_response(device.angular_frequencies()[i], 0, 130_us);
+  }
+  EXPECT_NEAR(trajectory.energy.source_work, work, 1e-6 * work);
+}
+
+TEST(Touch, ThatGrazesThePlaneIsFoundAndItsNearMissIsNot) {
+  // One undamped mode swings to twice its static deflection: the plane stands a ten-millionth of that short of or beyond it.
+  constexpr double margin = 1e-7, volts = -0.2;
+  Device d = oscillator(0);
+  d.structure.modes = 1;
+  d.contact = test::gold_cantilever().contact;
+  const Switch probe(d);
+  const double w = probe.angular_frequencies()[0];
+  const double peak = 2 * volts * probe.piezo_shape()[0] * probe.contact_shape()[0] / (w * w);
+  for (const bool touches : {true, false}) {
+    d.gap.contact = peak * (touches ? 1 - margin : 1 + margin);
+    const Switch device(d);
+    const std::vector<Signal> drives{Signal::constant(volts)};
+    const Trajectory trajectory = simulate_closing(device, drives, {.duration = 2 * pi / w, .tolerance = 1e-11});
+    ASSERT_EQ(trajectory.touches.size(), touches ? 1u : 0u);
+    if (touches) {
+      const double early = std::acos(1 - 2 * margin) / w;  // half the time above the plane
+      const Touch& touch = trajectory.touches[0];
+      constexpr double event_digits = 0.01;  // of that short time
+      EXPECT_NEAR(touch.begin, pi / w - early, event_digits * early);
+      EXPECT_NEAR(touch.end, pi / w + early, event_digits * early);
+      EXPECT_NEAR(trajectory.deepest_penetration, margin * peak, event_digits * margin * peak);
+      EXPECT_NEAR(touch.impact_velocity, peak / 2 * w * std::sin(early * w), event_digits * touch.impact_velocity);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,213 @@
+#include "model/pull_in.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/literals.h"
+#include "model/closing.h"
+#include "model/constants.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+const Switch& gold() {
+  static const Switch device(test::gold_cantilever());
+  return device;
+}
+
+/// An electrode near the root: the contact point reaches the contact plane before the fold.
+Switch contact_first() {
+  Device d = test::gold_cantilever();
+  d.electrodes[0].begin = 0;
+  d.electrodes[0].end = d.structure.length / 2;
+  return Switch(d);
+}
+
+/// Whether the contact point reaches the plane within a hundred periods of a step: the definition of dynamic pull-in, with none
+/// of its shortcuts.
+bool reaches(const Switch& device, double volts) {
+  const std::vector<Signal> drives{Signal::constant(volts)};
+  const double window = 100 * 2 * pi / device.angular_frequencies()[0];
+  return !simulate_closing(device, drives, {.duration = window, .tolerance = 1e-9, .after_contact = 0}).touches.empty();
+}
+
+TEST(StaticPullIn, AtTheFoldLeavesNoEquilibriumForASlowerRamp) {
+  // An independent path: a step damped to rest settles below the fold and closes above it.
+  Device d = test::gold_cantilever();
+  d.structure.damping_ratio = 0.7;
+  const Switch device(d);
+  const StaticPullIn found = static_pull_in(device, 0);
+  EXPECT_EQ(found.kind, StaticKind::fold);
+  EXPECT_LT(found.deflection, d.gap.contact);
+  EXPECT_FALSE(reaches(device, 0.999 * found.voltage));
+  EXPECT_TRUE(reaches(device, 1.001 * found.voltage));
+}
+
+TEST(StaticPullIn, SettledBeamStandsOnTheBranch) {
+  // Damped to rest at the voltage of an equilibrium beyond no fold: the fold's deflection is the limit of such rests.
+  Device d = test::gold_cantilever();
+  d.structure.damping_ratio = 0.7;
+  const Switch device(d);
+  const StaticPullIn found = static_pull_in(device, 0);
+  const std::vector<Signal> drives{Signal::constant(0.9999 * found.voltage)};
+  const double rest = simulate_closing(device, drives, {.duration = 20'000_us, .tolerance = 1e-8}).points.back().position;
+  EXPECT_LT(rest, found.deflection);
+  EXPECT_GT(rest, 0.97 * found.deflection);  // the branch is a parabola there: one per cent of deflection per 1e-4 of voltage
+}
+
+TEST(StaticPullIn, IsTheContactWhereThatComesFirst) {
+  const Switch device = contact_first();
+  const StaticPullIn found = static_pull_in(device, 0);
+  ASSERT_EQ(found.status, Status::done);
+  EXPECT_EQ(found.kind, StaticKind::contact);
+  EXPECT_EQ(to_string(found.kind), "contact");
+  EXPECT_EQ(to_string(StaticKind::fold), "fold");
+  EXPECT_DOUBLE_EQ(found.deflection, device.device().gap.contact);
+  // Nothing snaps: it closes where it opens.
+  EXPECT_NEAR(release_voltage(device, 0), found.voltage, 1e-9 * found.voltage);
+}
+
+TEST(StaticPullIn, DoesNotDependOnGasDampingOrDensity) {
+  Device d = test::gold_cantilever();
+  d.gas.reset();
+  d.structure.damping_ratio = 0.3;
+  d.structure.density *= 2;
+  const double reference = static_pull_in(gold(), 0).voltage;
+  EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, reference, 1e-9 * reference);
+}
+
+TEST(StaticPullIn, ScalesWithTheRootOfTheModulus) {
+  Device d = test::gold_cantilever();
+  d.structure.youngs_modulus *= 4;
+  const double reference = static_pull_in(gold(), 0).voltage;
+  EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, 2 * reference, 1e-9 * reference);
+}
+
+TEST(StaticPullIn, OfEachElectrodeKeepsTheOthersAtZero) {
+  Device d = test::gold_cantilever();
+  d.electrodes = {{.name = "root", .begin = 20_um, .end = 100_um}, {.name = "tip", .begin = 150_um, .end = 240_um}};
+  const Switch both(d);
+  for (const std::size_t k : {0u, 1u}) {
+    Device one = d;
+    one.electrodes = {d.electrodes[k]};
+    const double alone = static_pull_in(Switch(one), 0).voltage;
+    EXPECT_NEAR(static_pull_in(both, k).voltage, alone, 1e-7 * alone) << k;
+  }
+}
+
+TEST(DynamicPullIn, SeparatesTheStepsThatTouchFromThoseThatDoNot) {
+  constexpr double margin = 1e-6;  // relative; the search stops at 1e-7
+  Device undamped = test::gold_cantilever();
+  undamped.gas.reset();
+  undamped.structure.modes = 2;
+  for (const Switch& device : {gold(), contact_first(), Switch(undamped)}) {
+    const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+    ASSERT_EQ(found.status, Status::done);
+    EXPECT_FALSE(reaches(device, (1 - margin) * found.voltage));
+    EXPECT_TRUE(reaches(device, (1 + margin) * found.voltage));
+  }
+}
+
+TEST(DynamicPullIn, LiesBetweenTheUndampedOneAndTheStaticOne) {
+  Device d = test::gold_cantilever();
+  d.gas.reset();
+  const Switch undamped(d);
+  const double statically = static_pull_in(gold(), 0).voltage;
+  const double with_gas = dynamic_pull_in(gold(), 0, static_pull_in(gold(), 0)).voltage;
+  const double without = dynamic_pull_in(undamped, 0, static_pull_in(undamped, 0)).voltage;
+  EXPECT_LT(without, with_gas);
+  EXPECT_LT(with_gas, statically);
+  EXPECT_GT(without, 0.85 * statically);
+}
+
+TEST(DynamicPullIn, PassesOnWhatStaticPullInSaid) {
+  const DynamicPullIn found = dynamic_pull_in(gold(), 0, {.status = Status::numerical_failure});
+  EXPECT_EQ(found.status, Status::numerical_failure);
+  EXPECT_TRUE(std::isnan(found.voltage));
+}
+
+TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishes) {
+  constexpr double margin = 1e-5;
+  Device spring = test::gold_cantilever();
+  spring.contact->model = ContactModel::linear;
+  spring.contact->stiffness = 1e3_N_m;
+  for (const Switch& device : {gold(), Switch(spring), contact_first()}) {
+    const double release = release_voltage(device, 0);
+    EXPECT_FALSE(closed_equilibrium(device, std::vector<double>{(1 - margin) * release}));
+    EXPECT_TRUE(closed_equilibrium(device, std::vector<double>{(1 + margin) * release}));
+    EXPECT_LE(release, static_pull_in(device, 0).voltage * (1 + margin));
+  }
+}
+
+TEST(ReleaseVoltage, IsWhereAClosedSwitchOpens) {
+  // An independent path: close with a step, then lower the voltage slowly with strong damping and see where contact ends.
+  Device d = test::gold_cantilever();
+  d.structure.damping_ratio = 0.5;
+  const Switch device(d);
+  const double release = release_voltage(device, 0), high = 1.2 * static_pull_in(device, 0).voltage;
+  const auto opens = [&](double low) {
+    const std::vector<Signal> drives{Signal::piecewise_linear({{0, high}, {500_us, high}, {1500_us, low}})};
+    const Trajectory t = simulate_closing(device, drives, {.duration = 10'000_us});
+    return std::isfinite(t.touches.back().end);
+  };
+  EXPECT_TRUE(opens(0.998 * release));
+  EXPECT_FALSE(opens(1.002 * release));
+}
+
+TEST(ReleaseVoltage, NeedsAContact) {
+  Device d = test::gold_cantilever();
+  d.contact.reset();
+  EXPECT_TRUE(std::isnan(release_voltage(Switch(d), 0)));
+  EXPECT_FALSE(closed_equilibrium(Switch(d), std::vector<double>{20}));
+}
+
+TEST(ClosedEquilibrium, IsAnEquilibrium) {
+  const Switch pzt(test::gold_pzt_cantilever());
+  struct Case {
+    const Switch& device;
+    std::vector<double> volts;
+  };
+  for (const auto& [device, volts] :
+       {Case{gold(), {15.5}}, Case{gold(), {17.771}}, Case{pzt, {28, 0}}, Case{pzt, {28, -0.3}}, Case{pzt, {28, 0.1}}}) {
+    const auto closed = closed_equilibrium(device, volts);
+    ASSERT_TRUE(closed.has_value());
+    Switch::Workspace work = device.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+    Eigen::VectorXd a(device.modes());
+    device.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
+    const double contact = closed->contact_force * device.contact_shape().maxCoeff();
+    EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * contact);
+    EXPECT_GT(closed->contact_force, 0);
+    const double d = device.contact_deflection(closed->q.data()) - device.device().gap.contact;
+    EXPECT_NEAR(contact_force(device.contact(), d), closed->contact_force, 1e-6 * closed->contact_force);
+    EXPECT_DOUBLE_EQ(closed->potential, device.potential(closed->q.data(), volts, true, work));
+  }
+}
+
+TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
+  Device d = test::gold_cantilever();
+  d.structure.damping_ratio = 0.3;
+  const Switch device(d);
+  const auto closed = closed_equilibrium(device, std::vector<double>{17.771});
+  ASSERT_TRUE(closed.has_value());
+  const std::vector<Signal> drives{Signal::constant(17.771)};
+  const Trajectory t = simulate_closing(device, drives, {.duration = 1000_us, .tolerance = 1e-8});
+  EXPECT_NEAR(t.points.back().contact_force, closed->contact_force, 1e-3 * closed->contact_force);
+}
+
+TEST(ClosedEquilibrium, IsPressedHarderByAPiezoThatPullsDown) {
+  const Switch device(test::gold_pzt_cantilever());
+  const auto force = [&](double piezo_volts) {
+    return closed_equilibrium(device, std::vector<double>{28, piezo_volts})->contact_force;
+  };
+  EXPECT_GT(force(-0.1), force(0));
+  EXPECT_LT(force(0.1), force(0));
+}
+
+}  // namespace
+}  // namespace softland
