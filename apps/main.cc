@@ -1,5 +1,6 @@
 // The command line: what is asked, and nothing else.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <filesystem>
@@ -149,6 +150,12 @@ int run(int argc, char** argv) {
   report->add_option("--out", report_out, "folder to write to (default: beside the result)");
   report->footer("Example:\n  softland report softland-out");
 
+  if (!words.empty() && !words.front().starts_with("-")) {
+    const auto verbs = app.get_subcommands([](const CLI::App*) { return true; });
+    const auto asked = [&](const CLI::App* verb) { return verb->get_name() == words.front(); };
+    if (std::none_of(verbs.begin(), verbs.end(), asked))
+      throw InvalidInput("there is no verb '" + words.front() + "' (see softland --help)");
+  }
   try {
     std::reverse(words.begin(), words.end());  // CLI11 takes the words from the back
     app.parse(words);
