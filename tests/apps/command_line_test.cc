@@ -1,0 +1,175 @@
+// What the verbs answer when all is well.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "program.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+std::set<std::string> keys(const json& object) {
+  std::set<std::string> all;
+  for (const auto& [key, value] : object.items()) all.insert(key);
+  return all;
+}
+
+TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
+  const Workplace here;
+  for (const char* verb : {"", "simulate", "pull-in", "modes", "check", "optimize", "new", "export", "report"}) {
+    std::vector<std::string> words;
+    if (*verb != '\0') words.emplace_back(verb);
+    words.emplace_back("--help");
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.status, 0) << verb;
+    EXPECT_EQ(o.err, "") << verb;
+    EXPECT_THAT(o.out, HasSubstr("Example")) << verb;
+    EXPECT_THAT(o.out, HasSubstr(std::string("\n  softland ") + verb)) << verb;
+    for (const char* coming :
+         {"effects", "explore", "robustness", "accuracy", "--certify", "--robust", "--samples", "--resume", "--shard", "--vary"})
+      EXPECT_THAT(o.out, Not(HasSubstr(coming))) << verb;
+  }
+}
+
+TEST(Help, OfTheProgramNamesEveryExitStatus) {
+  const Workplace here;
+  EXPECT_THAT(here.run({"--help"}).out, HasSubstr("Exit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without "
+                                                  "success, 130 interrupted (best so far is written)."));
+}
+
+TEST(Program, TellsItsVersion) {
+  const Workplace here;
+  const Outcome o = here.run({"--version"});
+  EXPECT_EQ(o.status, 0);
+  EXPECT_THAT(o.out, testing::MatchesRegex("softland [0-9]+\\.[0-9]+\\.[0-9]+[^\n]*\n"));
+}
+
+TEST(Program, CalledOptimizeIsThatVerb) {
+  const Workplace here;
+  const std::string link = (fs::path(SOFTLAND_PROGRAM).parent_path() / "optimize").string();
+  const Outcome called = here.run({"--help"}, link);
+  EXPECT_EQ(called.status, 0);
+  EXPECT_EQ(called.out, here.run({"optimize", "--help"}).out);
+  EXPECT_EQ(here.run({"gold.toml", "--target", "softness"}, link).err,
+            "softland: --target softness: must be bounce, settling, rebound, count, impact or energy\n");
+}
+
+TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
+  const Workplace here;
+  const Outcome o = here.run({"simulate", "gold.toml", "--json", "-"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(o.err, "");
+  const json j = json::parse(o.out);
+  for (const char* key :
+       {"status", "metrics", "errors", "natural_frequencies_rad_s", "pull_in", "work", "warnings", "scene", "version"})
+    EXPECT_TRUE(j.contains(key)) << key;
+  const std::set<std::string> figures{"initial_contact_time_s", "permanent_contact_time_s", "bounce_time_s",
+                                      "bounce_count",           "major_bounce_height_m",    "impact_velocity_m_s",
+                                      "peak_contact_force_N",   "impact_energy_J",          "hold_force_N",
+                                      "drive_energy_J",         "peak_voltage_V",           "peak_slew_V_s"};
+  std::set<std::string> with_settled = figures;
+  with_settled.insert("settled");
+  EXPECT_EQ(keys(j["metrics"]), with_settled);
+  EXPECT_EQ(keys(j["errors"]), figures);
+  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "dynamic_V"}));
+  EXPECT_EQ(keys(j["work"]), (std::set<std::string>{"steps", "rhs_evaluations", "wall_s"}));
+  EXPECT_EQ(j["natural_frequencies_rad_s"].size(), 4U);
+  EXPECT_TRUE(j["metrics"]["peak_slew_V_s"].is_null()) << "a jump has no finite slew";
+  EXPECT_EQ(j["scene"]["gap"]["contact"], "2 um");
+}
+
+TEST(Simulate, NeedsNoPullInForADriveInVolts) {
+  const Workplace here;
+  const Outcome o = here.run({"simulate", "gold.toml", "--set", "waveform.main.level=20 V", "--set",
+                              "driver.main.max_voltage=90 V", "--set", "simulate.duration=60 us", "--json", "-"});
+  EXPECT_TRUE(json::parse(o.out)["pull_in"].is_null());
+}
+
+TEST(Simulate, RunsItsOwnResolvedSceneToTheSameDigits) {
+  const Workplace here;
+  const json first = json::parse(here.run({"simulate", "gold.toml", "--json", "-"}).out);
+  write(here.path() / "resolved.toml", first["scene_toml"]);
+  const json second = json::parse(here.run({"simulate", "resolved.toml", "--json", "-"}).out);
+  EXPECT_EQ(first["metrics"], second["metrics"]);
+  EXPECT_EQ(first["errors"], second["errors"]);
+}
+
+TEST(Simulate, LeavesResultReportAndTrajectory) {
+  const Workplace here;
+  const Outcome o = here.run({"simulate", "gold.toml", "--out", "a/b", "--json", "copy.json", "--quiet"});
+  EXPECT_EQ(o.status, 0);
+  EXPECT_EQ(o.err, "");
+  EXPECT_EQ(read(here.path() / "copy.json"), read(here.path() / "a/b/result.json"));
+  EXPECT_THAT(read(here.path() / "a/b/report.html"), HasSubstr("<html"));
+  EXPECT_FALSE(read(here.path() / "a/b/trajectory.csv").empty());
+  fs::remove(here.path() / "a/b/report.html");
+  EXPECT_EQ(here.run({"report", "a/b"}).status, 0);
+  EXPECT_THAT(read(here.path() / "a/b/report.html"), HasSubstr("<html"));
+}
+
+TEST(Simulate, EndsWithFourWhenTheSwitchDoesNotClose) {
+  const Workplace here;
+  const Outcome o = here.run({"simulate", "gold.toml", "--set", "waveform.main.level=0.5 Vdp", "--json", "-"});
+  EXPECT_EQ(o.status, 4);
+  const json j = json::parse(o.out);
+  EXPECT_EQ(j["status"], "no_contact");
+  EXPECT_TRUE(j["metrics"]["initial_contact_time_s"].is_null());
+  EXPECT_TRUE(j["metrics"]["bounce_count"].is_null());
+}
+
+TEST(PullIn, PrintsTheAgreedJson) {
+  const Workplace here;
+  const Outcome o = here.run({"pull-in", "gold.toml", "--quiet", "--json", "-"});
+  ASSERT_EQ(o.status, 0);
+  EXPECT_EQ(o.err, "");
+  const json j = json::parse(o.out);
+  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in"}));
+  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "static_kind", "dynamic_V", "release_V"}));
+  EXPECT_EQ(j["status"], "done");
+  EXPECT_LT(j["pull_in"]["dynamic_V"], j["pull_in"]["static_V"]);
+  EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
+}
+
+TEST(Modes, PrintsTheAgreedJson) {
+  const Workplace here;
+  const Outcome o = here.run({"modes", "gold.toml", "--quiet", "--set", "structure.modes=6", "--json", "-"});
+  ASSERT_EQ(o.status, 0);
+  EXPECT_EQ(o.err, "");
+  const json j = json::parse(o.out);
+  EXPECT_EQ(keys(j), (std::set<std::string>{"natural_frequencies_rad_s"}));
+  const std::vector<double> omega = j["natural_frequencies_rad_s"];
+  EXPECT_EQ(omega.size(), 6U);
+  EXPECT_TRUE(std::is_sorted(omega.begin(), omega.end()));
+}
+
+TEST(New, WritesScenesThatCheckAccepts) {
+  const Workplace here;
+  for (const char* kind : {"cantilever", "cantilever-pzt"}) {
+    const Outcome fresh = here.run({"new", kind});
+    EXPECT_EQ(fresh.status, 0);
+    EXPECT_EQ(fresh.err, "");
+    write(here.path() / "new.toml", fresh.out);
+    const Outcome checked = here.run({"check", "new.toml"});
+    EXPECT_EQ(checked.status, 0) << checked.err;
+    EXPECT_THAT(checked.out, HasSubstr("new.toml: valid"));
+    EXPECT_THAT(checked.out, HasSubstr("Vdp"));
+  }
+}
+
+TEST(Export, PrintsTheWaveformsOfAScene) {
+  const Workplace here;
+  const Outcome csv = here.run({"export", "gold.toml"}), pwl = here.run({"export", "gold.toml", "--format", "spice-pwl"});
+  EXPECT_EQ(csv.status, 0);
+  EXPECT_THAT(csv.out, HasSubstr("main"));
+  EXPECT_EQ(pwl.status, 0);
+  EXPECT_THAT(pwl.out, HasSubstr("PWL"));
+}
+
+}  // namespace
+}  // namespace softland

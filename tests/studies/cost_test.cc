@@ -1,0 +1,136 @@
+// What a search minimises, on trajectories made by hand. No weight is repeated here: only what must hold whatever they are.
+#include "objectives/cost.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace softland {
+namespace {
+
+constexpr Target every_target[] = {Target::bounce, Target::settling, Target::rebound,
+                                   Target::count,  Target::impact,   Target::energy};
+constexpr double gap = 2e-6, score_window = 100e-6;
+const MetricsOptions options;
+
+// Approaches at `speed`, touches at `at`, rebounds `height` high for `flight`, and stays.
+Trajectory landing(double at, double speed, double height, double flight, double excess) {
+  Trajectory t;
+  t.status = Status::done;
+  t.contact_gap = gap;
+  t.landing_excess = excess;
+  const double dip = 1e-9, dwell = 2e-6, end = at + score_window;
+  const auto add = [&](double time, double position, double velocity, double acceleration = 0) {
+    t.points.push_back({time, position, velocity, acceleration, 0});
+  };
+  add(0, 0, 0);
+  add(at, gap, speed);
+  add(at + dwell / 2, gap + dip, 0);
+  const Touch first{.begin = at, .end = at + dwell, .impact_velocity = speed, .peak_force = 1e-5, .peak_energy = 1e-12 * speed};
+  if (height > 0) {
+    const double g = 8 * height / (flight * flight), leave = at + dwell;
+    add(leave, gap, -g * flight / 2, g);
+    add(leave + flight / 2, gap - height, 0, g);
+    add(leave + flight, gap, g * flight / 2, g);
+    t.touches = {first,
+                 {.begin = leave + flight,
+                  .end = std::numeric_limits<double>::quiet_NaN(),
+                  .impact_velocity = speed / 10,
+                  .peak_force = 1e-6,
+                  .peak_energy = 1e-13 * speed}};
+  } else {
+    t.touches = {first};
+    t.touches[0].end = std::numeric_limits<double>::quiet_NaN();
+  }
+  add(end, gap + dip, 0);
+  return t;
+}
+
+Trajectory plain_step() { return landing(20e-6, 0.3, 100e-9, 8e-6, 1e-12); }
+
+CostScale scale() { return {.step = cost_figures(plain_step(), options), .score_window = score_window, .contact_gap = gap}; }
+
+TEST(CostFigures, OfALandingMadeByHandAreWhatItWasMadeFrom) {
+  const CostFigures f = scale().step;
+  EXPECT_TRUE(f.touched);
+  EXPECT_DOUBLE_EQ(f.first_touch, 20e-6);
+  EXPECT_DOUBLE_EQ(f.touch_speed, 0.3);
+  EXPECT_NEAR(f.rebound_height, 100e-9, 1e-13);
+  EXPECT_NEAR(f.separated, 8e-6, 1e-11);
+  EXPECT_NEAR(f.last_rebound_end, 30e-6, 1e-11);
+  EXPECT_NEAR(f.soft_count, 100.0 / 101, 1e-6);
+  EXPECT_NEAR(f.impact_energy, 0.33e-12, 1e-20);
+  EXPECT_DOUBLE_EQ(f.landing_excess, 1e-12);
+}
+
+TEST(Cost, OfTheStepItselfIsAboutOneForEveryTarget) {
+  for (const Target target : every_target) EXPECT_NEAR(cost(target, plain_step(), scale(), options), 1, 0.3) << to_string(target);
+}
+
+TEST(Cost, OfWhatNeverTouchesIsTenAndThePartOfTheGapItLeft) {
+  Trajectory open;
+  open.status = Status::done;
+  open.contact_gap = gap;
+  open.points = {{0, 0, 0, 0, 0}, {20e-6, 0.75 * gap, 0, 0, 0}, {40e-6, 0.5 * gap, 0, 0, 0}};
+  for (const Target target : every_target) EXPECT_NEAR(cost(target, open, scale(), options), 10.25, 1e-12) << to_string(target);
+}
+
+TEST(Cost, OfARunThatFailedIsInfinite) {
+  for (const Status status : {Status::numerical_failure, Status::interrupted, Status::collapsed_at_rest, Status::not_run}) {
+    Trajectory failed = plain_step();
+    failed.status = status;
+    for (const Target target : every_target)
+      EXPECT_EQ(cost(target, failed, scale(), options), std::numeric_limits<double>::infinity()) << to_string(target);
+  }
+}
+
+TEST(Cost, OfALowerSofterReboundIsLower) {
+  double previous = std::numeric_limits<double>::infinity();
+  for (const double part : {2.0, 1.0, 0.5, 0.2, 0.05}) {
+    const Trajectory t = landing(20e-6, 0.3 * part, 100e-9 * part * part, 8e-6 * part, 1e-12 * part * part);
+    for (const Target target : every_target)
+      EXPECT_LT(cost(target, t, scale(), options), cost(target, plain_step(), scale(), options) + (part < 1 ? 0 : 10))
+          << to_string(target) << " at " << part;
+    const double bounce = cost(Target::bounce, t, scale(), options);
+    EXPECT_LT(bounce, previous) << part;
+    previous = bounce;
+  }
+}
+
+TEST(Cost, OfALandingWithoutReboundIsLowerThanOfTheSameWithOne) {
+  const Trajectory soft = landing(20e-6, 0.3, 0, 0, 1e-12), bouncing = landing(20e-6, 0.3, 30e-9, 8e-6, 1e-12);
+  for (const Target target : every_target)
+    EXPECT_LT(cost(target, soft, scale(), options), cost(target, bouncing, scale(), options)) << to_string(target);
+}
+
+TEST(Cost, OfTheSameLandingLaterIsNotLower) {
+  const Trajectory early = plain_step(), late = landing(35e-6, 0.3, 100e-9, 8e-6, 1e-12);
+  for (const Target target : every_target)
+    EXPECT_GT(cost(target, late, scale(), options), cost(target, early, scale(), options)) << to_string(target);
+}
+
+TEST(Cost, IsFiniteWhereTheEnergyWasNotMeasured) {
+  Trajectory t = plain_step();
+  t.landing_excess = std::numeric_limits<double>::quiet_NaN();
+  for (const Target target : every_target) EXPECT_TRUE(std::isfinite(cost(target, t, scale(), options))) << to_string(target);
+}
+
+TEST(Cost, IsFiniteWhereTheStepItselfLandsSoftly) {
+  CostScale soft = scale();
+  soft.step = cost_figures(landing(20e-6, 0.01, 0, 0, 0), options);
+  for (const Target target : every_target) {
+    EXPECT_TRUE(std::isfinite(cost(target, plain_step(), soft, options))) << to_string(target);
+    EXPECT_LT(cost(target, landing(20e-6, 0.01, 0, 0, 0), soft, options), cost(target, plain_step(), soft, options))
+        << to_string(target);
+  }
+}
+
+TEST(Target, NamesReadBack) {
+  for (const Target target : every_target) EXPECT_EQ(target_from(to_string(target)), target);
+  EXPECT_EQ(target_from("Bounce"), std::nullopt);
+  EXPECT_EQ(target_from(""), std::nullopt);
+}
+
+}  // namespace
+}  // namespace softland

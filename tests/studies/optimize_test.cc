@@ -1,0 +1,134 @@
+// The search as a whole, on small budgets: what it promises whoever wins.
+#include "studies/optimize.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes.h"
+
+namespace softland {
+namespace {
+
+struct Log {
+  std::map<long, Evaluation> evaluations;
+  OptimizeResult result;
+};
+
+Log search(const SceneFile& file, OptimizeOptions options, long budget = 60) {
+  std::map<long, Evaluation> seen;
+  options.max_evaluations = budget;
+  options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { seen[e.index] = e; };
+  OptimizeResult result = optimize(file, options);
+  return {std::move(seen), std::move(result)};
+}
+
+const Log& reference() {
+  static const Log log = search(gold(), {});
+  return log;
+}
+
+TEST(Optimize, GivesTheSameBitsWhateverTheNumberOfJobs) {
+  const Log two = search(gold(), {.jobs = 2});
+  ASSERT_EQ(two.evaluations.size(), reference().evaluations.size());
+  for (const auto& [index, e] : reference().evaluations) {
+    EXPECT_EQ(two.evaluations.at(index).x, e.x) << index;
+    EXPECT_EQ(two.evaluations.at(index).value, e.value) << index;
+  }
+  EXPECT_EQ(two.result.parameters, reference().result.parameters);
+  ASSERT_TRUE(two.result.best && reference().result.best);
+  EXPECT_EQ(two.result.best->metrics.permanent_contact_time, reference().result.best->metrics.permanent_contact_time);
+  EXPECT_EQ(two.result.best_scene->scene.file.text(), reference().result.best_scene->scene.file.text());
+}
+
+TEST(Optimize, TriesOtherPointsWithAnotherSeed) {
+  const Log other = search(gold(), {.seed = 2});
+  bool differs = false;
+  for (const auto& [index, e] : reference().evaluations) {
+    const auto found = other.evaluations.find(index);
+    differs = differs || found == other.evaluations.end() || found->second.x != e.x;
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(Optimize, StaysInsideItsBoundsAndItsBudget) {
+  const OptimizeResult& r = reference().result;
+  const SearchSpace space(r.scene, Actuator::electrostatic, "pulse", r.baseline.metrics.initial_contact_time);
+  const auto variables = space.variables();
+  EXPECT_LE(reference().evaluations.size(), 60U);
+  for (const auto& [index, e] : reference().evaluations) {
+    ASSERT_EQ(e.x.size(), variables.size());
+    for (std::size_t k = 0; k < e.x.size(); ++k) {
+      // The first touch is known to the search's own tolerance only.
+      const double slack = 1e-4 * (variables[k].upper - variables[k].lower);
+      EXPECT_GE(e.x[k], variables[k].lower - slack) << variables[k].name;
+      EXPECT_LE(e.x[k], variables[k].upper + slack) << variables[k].name;
+    }
+  }
+  ASSERT_EQ(r.parameters.size(), variables.size());
+  for (const Variable& v : variables) EXPECT_EQ(r.parameters.count(v.name), 1U) << v.name;
+}
+
+TEST(Optimize, ComparesWithAPlainStepToTheSameHoldLevel) {
+  const Log log = search(gold_pzt({"waveform.piezo.family=step", "waveform.piezo.level=0.4 V", "waveform.main.rise_time=30 us"}),
+                         {.actuator = Actuator::electrostatic}, 12);
+  const Prepared& baseline = log.result.baseline_scene;
+  const auto& main = std::get<Step>(baseline.drives.waveforms.at("main"));
+  EXPECT_EQ(main.rise_time, 0);
+  EXPECT_DOUBLE_EQ(main.level, signal(log.result.scene.drives.waveforms.at("main")).hold_level());
+  EXPECT_TRUE(baseline.signals().back().is_zero());
+  EXPECT_EQ(baseline.duration, log.result.scene.duration);
+}
+
+TEST(Optimize, PricesTheBaselineAtAboutOne) {
+  for (const Target target : {Target::bounce, Target::settling, Target::rebound, Target::count, Target::impact, Target::energy}) {
+    const double cost = search(gold(), {.target = target}, 3).result.baseline_cost;
+    EXPECT_GT(cost, 0.5) << to_string(target);
+    EXPECT_LT(cost, 4) << to_string(target);
+  }
+}
+
+TEST(Optimize, NeverChoosesALandingLaterThanItsBound) {
+  for (const char* family : {"step", "pulse"}) {
+    for (const Target target : {Target::impact, Target::bounce}) {
+      const Log log = search(gold(), {.target = target, .family = family}, 40);
+      const OptimizeResult& r = log.result;
+      ASSERT_TRUE(r.best) << family;
+      EXPECT_LE(r.best->metrics.initial_contact_time, 2.5 * r.baseline.metrics.initial_contact_time * (1 + 1e-4)) << family;
+      EXPECT_LT(r.best->metrics.initial_contact_time, r.scene.duration) << family;
+    }
+  }
+}
+
+TEST(Optimize, VerifiesItsWinnerAsSimulateWill) {
+  const OptimizeResult& r = reference().result;
+  ASSERT_TRUE(r.best);
+  const Closing again = simulate(prepare(SceneFile::parse(r.best_scene->scene.file.text(), "best.toml")), true);
+  EXPECT_EQ(again.metrics.initial_contact_time, r.best->metrics.initial_contact_time);
+  EXPECT_EQ(again.metrics.impact_velocity, r.best->metrics.impact_velocity);
+  EXPECT_EQ(again.metrics.major_bounce_height, r.best->metrics.major_bounce_height);
+  EXPECT_EQ(again.metrics.bounce_count, r.best->metrics.bounce_count);
+  EXPECT_EQ(r.goal_met, goal_met(Target::bounce, r.best->metrics, r.baseline.metrics));
+  EXPECT_EQ(r.checks.size(), 2U);
+}
+
+TEST(Optimize, RefusesAWindowTooShortToJudgeALanding) {
+  const std::string said = refusal([] { (void)search(gold({"simulate.duration=2 us"}), {}); });
+  EXPECT_EQ(said.rfind("simulate.duration = 2e-06 s is too short to judge a landing: it needs more than ", 0), 0U) << said;
+}
+
+TEST(Optimize, RefusesASceneWithoutContact) {
+  const SceneFile file = without(gold(), "contact");
+  EXPECT_EQ(refusal([&] { (void)search(file, {}); }),
+            "optimize needs a [contact] section: without contact there is nothing to land on");
+}
+
+TEST(Optimize, EndsAtOnceWhenToldToStop) {
+  const std::atomic<bool> stop{true};
+  const Log log = search(gold(), {.stop = &stop}, 100000);
+  EXPECT_EQ(log.result.search.termination, Termination::interrupted);
+  EXPECT_LE(log.evaluations.size(), 1U);
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,76 @@
+// A scene made ready to run.
+#include "studies/prepared.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenes.h"
+
+namespace softland {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(ToleranceFor, IsAHundredthOfTheAccuracyWithinWhatIntegratorsCanDo) {
+  EXPECT_DOUBLE_EQ(tolerance_for(1e-6), 1e-8);
+  EXPECT_DOUBLE_EQ(tolerance_for(1e-3), 1e-5);
+  EXPECT_DOUBLE_EQ(tolerance_for(0.5), 1e-4);
+  EXPECT_DOUBLE_EQ(tolerance_for(1e-15), 1e-12);
+}
+
+TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
+  EXPECT_THAT(prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"})).pull_in, IsEmpty());
+  const Prepared needed = prepare(gold());
+  ASSERT_EQ(needed.pull_in.count("main"), 1U);
+  const ElectrodePullIn& p = needed.pull_in.at("main");
+  EXPECT_GT(p.dynamically.voltage, 0);
+  EXPECT_LT(p.dynamically.voltage, p.statically.voltage);
+  EXPECT_DOUBLE_EQ(signal(needed.drives.waveforms.at("main")).hold_level(), 1.25 * p.dynamically.voltage);
+  EXPECT_DOUBLE_EQ(needed.drives.limits.at("main").max_voltage, 1.5 * p.dynamically.voltage);
+  EXPECT_DOUBLE_EQ(needed.voltage_units().at("main").dynamic_pull_in, p.dynamically.voltage);
+}
+
+TEST(Prepare, ComputesPullInForDefaultLimitsWhenAsked) {
+  const SceneFile file = without(gold({"waveform.main.level=15 V"}), "driver.main");
+  EXPECT_THAT(prepare(file).drives.limits, IsEmpty());
+  const Prepared limited = prepare(file, true);
+  EXPECT_DOUBLE_EQ(limited.drives.limits.at("main").min_voltage, 0);
+  EXPECT_DOUBLE_EQ(limited.drives.limits.at("main").max_voltage, 1.5 * limited.pull_in.at("main").dynamically.voltage);
+}
+
+TEST(Prepare, OrdersSignalsAsTheSwitchDoesAndLeavesUndrivenDrivesAtZero) {
+  const Prepared p = prepare(gold_pzt({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"}));
+  EXPECT_THAT(p.drive_names(), ElementsAre("main", "piezo"));
+  const std::vector<Signal> signals = p.signals();
+  ASSERT_EQ(signals.size(), p.device.drives());
+  EXPECT_DOUBLE_EQ(signals[0].hold_level(), 30);
+  EXPECT_TRUE(signals[1].is_zero());
+}
+
+TEST(Prepare, GivesEveryElectrodeItsOwnSignal) {
+  const Prepared p = prepare(gold_pzt({R"(electrode.main.span=["60 um", "150 um"])", R"(electrode.tip.span=["160 um", "240 um"])",
+                                       "waveform.main.level=30 V", "driver.main.max_voltage=90 V", "waveform.piezo.family=step",
+                                       "waveform.piezo.level=0.5 V"}));
+  EXPECT_THAT(p.drive_names(), ElementsAre("main", "tip", "piezo"));
+  const std::vector<Signal> signals = p.signals();
+  ASSERT_EQ(signals.size(), 3U);
+  EXPECT_DOUBLE_EQ(signals[0].hold_level(), 30);
+  EXPECT_TRUE(signals[1].is_zero());
+  EXPECT_DOUBLE_EQ(signals[2].hold_level(), 0.5);
+}
+
+TEST(Prepare, TakesWindowAndToleranceFromTheScene) {
+  const Prepared p = prepare(gold({"simulate.accuracy=1e-4", "simulate.duration=123 us"}));
+  EXPECT_DOUBLE_EQ(p.tolerance, 1e-6);
+  EXPECT_DOUBLE_EQ(p.duration, 123e-6);
+  EXPECT_DOUBLE_EQ(prepare(gold({"simulate.tolerance=3e-7"})).tolerance, 3e-7);
+}
+
+TEST(Prepare, ChoosesAWindowOfSixPeriodsWhereTheSceneHasNone) {
+  const Prepared p = prepare(without(gold(), "simulate"));
+  EXPECT_NEAR(p.duration * p.device.angular_frequencies()[0], 6 * 2 * 3.14159265358979, 1e-9);
+}
+
+}  // namespace
+}  // namespace softland

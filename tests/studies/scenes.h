@@ -1,0 +1,43 @@
+// The shipped scenes, with changes.
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "base/require.h"
+#include "config/scene.h"
+
+namespace softland {
+
+inline SceneFile scene(const char* name, std::initializer_list<std::string_view> changes = {}) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + name);
+  for (const std::string_view change : changes) file.set(change);
+  return file;
+}
+
+inline SceneFile gold(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold.toml", changes); }
+inline SceneFile gold_pzt(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold-pzt.toml", changes); }
+
+/// The scene without one of its sections.
+inline SceneFile without(const SceneFile& file, std::string_view section) {
+  std::string text = file.text();
+  const std::size_t begin = text.find("[" + std::string(section) + "]");
+  if (begin == std::string::npos) throw InvalidInput("no such section in the test's scene");
+  const std::size_t end = text.find("\n[", begin);
+  text.erase(begin, end == std::string::npos ? end : end + 1 - begin);
+  return SceneFile::parse(text, "changed.toml");
+}
+
+/// What `action` says when it refuses its input; empty when it does not.
+template <class Action>
+std::string refusal(Action&& action) {
+  try {
+    action();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace softland
