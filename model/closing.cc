@@ -62,6 +62,7 @@ class Run {
       enter_stretch(i == 0);
       stop_ = stops[i + 1];
       while (!ended_ && here_.time < stop_) advance();
+      settle_charges(+1);
     }
     if (!ended_) out_.status = Status::done;
     finish();
@@ -142,6 +143,7 @@ class Run {
         out_.drive_energy += device_.capacitance(k, here_.state.data(), work_) * (after * after - before * before) / 2;
       }
     }
+    settle_charges(-1);
     restart();
     record(here_);
   }
@@ -313,14 +315,10 @@ class Run {
       out_.deepest_penetration = std::max(out_.deepest_penetration, d);
     }
 
-    // Work of the sources: integral of V dQ = [V Q] - integral of Q dV.
+    // The part of the sources' work that a changing voltage adds: see settle_charges().
     for (std::size_t k = 0; k < drives_.size(); ++k) {
       const SignalPiece& piece = drives_[k].pieces()[pieces_[k]];
-      const double v0 = piece.voltage(t0), v1 = piece.voltage(t1);
-      const bool changing = piece.slope != 0 || piece.amplitude != 0 || piece.amplitude_slope != 0;
-      if (v0 == 0 && v1 == 0 && !changing) continue;
-      out_.drive_energy += v1 * charge(k, v1, next_.state.data()) - v0 * charge(k, v0, here_.state.data());
-      if (!changing) continue;
+      if (piece.slope == 0 && piece.amplitude == 0 && piece.amplitude_slope == 0) continue;
       for (const auto& [s, weight] : gauss3) {
         const double t = t0 + s * (t1 - t0);
         between(t);
@@ -332,6 +330,14 @@ class Run {
         between(t0 + s * (t1 - t0));
         out_.energy.dissipated += weight * (t1 - t0) * device_.dissipated_power(middle_.data(), middle_.data() + n_, work_);
       }
+    }
+  }
+
+  // Work of the sources over a stretch: integral of V dQ = [V Q] - integral of Q dV, of which this adds the bracket.
+  void settle_charges(double sign) {
+    for (std::size_t k = 0; k < drives_.size(); ++k) {
+      const double v = volts_at(k, here_.time);
+      if (v != 0) out_.drive_energy += sign * v * charge(k, v, here_.state.data());
     }
   }
 

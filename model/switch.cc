@@ -103,10 +103,15 @@ Switch::Workspace Switch::workspace() const {
   return {.field = {.gap = zero, .velocity = zero, .smallest_gap = 0}, .load = zero, .by_deflection = zero, .by_velocity = zero};
 }
 
+void Switch::set_gap(const double* q, Workspace& work) const {
+  // noalias: no temporary, so no allocation in the hot path.
+  work.field.gap.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(q, modes());
+  work.field.gap = device_.gap.electrode - work.field.gap;
+}
+
 void Switch::set_field(const double* q, const double* v, Workspace& work) const {
-  const Eigen::Map<const Eigen::VectorXd> qs(q, modes()), vs(v, modes());
-  work.field.gap = device_.gap.electrode - (shapes_ * qs).array();
-  work.field.velocity.matrix().noalias() = shapes_ * vs;
+  set_gap(q, work);
+  work.field.velocity.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(v, modes());
   work.field.smallest_gap = work.field.gap.minCoeff();
 }
 
@@ -155,8 +160,7 @@ double Switch::contact_deflection(const double* q) const {
 
 double Switch::capacitance(std::size_t drive, const double* q, Workspace& work) const {
   if (drive >= electrode_laws_.size()) return 0;
-  const Eigen::Map<const Eigen::VectorXd> qs(q, modes());
-  work.field.gap = device_.gap.electrode - (shapes_ * qs).array();
+  set_gap(q, work);
   return electrode_laws_[drive]->capacitance(work.field, weights_);
 }
 

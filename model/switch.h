@@ -85,6 +85,7 @@ class Switch {
   [[nodiscard]] double potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const;
 
  private:
+  void set_gap(const double* q, Workspace& work) const;
   void set_field(const double* q, const double* v, Workspace& work) const;
 
   Device device_;
