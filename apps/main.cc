@@ -125,7 +125,9 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   optimize->add_option("--waveform", request.waveform, "family to search: pulse | harmonic | step")->capture_default_str();
   optimize->add_option("--optimizer", request.optimizer, "auto, or one of the names below")->capture_default_str();
-  optimize->add_option("--budget", request.budget, "number of evaluations (2500) or time (\"90 s\")");
+  optimize->add_option(
+      "--budget", request.budget,
+      "number of evaluations, or time (\"90 s\"); 2500 | 5000 | 10000 for electrostatic | pzt | both if not given");
   optimize->add_option("--seed", request.seed, "same seed, same result, whatever --jobs is")->capture_default_str();
   optimize->add_option("--jobs", request.jobs, "threads; one per core if not given");
   optimize->add_option("--out", common.out,

@@ -108,7 +108,10 @@ int status_code(Status s) {
 
 // "2500" evaluations or "90 s".
 void read_budget(const std::string& text, OptimizeOptions& options) {
-  if (text.empty()) return;
+  if (text.empty()) {
+    options.max_evaluations = default_budget(options.actuator);
+    return;
+  }
   const auto rule = [&](bool ok) {
     require(ok, fmt::format("--budget {}: must be a whole number of evaluations such as 2500, or a time such as \"90 s\"", text));
   };

@@ -66,22 +66,25 @@ double cost(Target target, const Trajectory& trajectory, const CostScale& scale,
   const CostFigures f = cost_figures(trajectory, options);
   if (!f.touched) return 10 + f.closest / scale.contact_gap;
   const double h = ratio(f.rebound_height, scale.step.rebound_height);
-  const double v = ratio(f.touch_speed, scale.step.touch_speed);
-  const double k = std::sqrt(ratio(f.landing_excess, scale.step.landing_excess));
+  const double p = f.rebound_height / (f.rebound_height + 10 * options.significant_rebound);
+  const double v = ratio(f.touch_speed, scale.step.touch_speed), v2 = v * v;
+  const double k = ratio(f.landing_excess, scale.step.landing_excess);
+  const double s = f.separated / scale.score_window;
   const double t = ratio(f.first_touch, scale.step.first_touch);
+  const double late = t + 10 * std::max(0.0, t - scale.free_touch);
   switch (target) {
     case Target::bounce:
-      return 0.2 * h + 0.15 * v + 0.45 * k + 0.1 * f.separated / scale.score_window + 0.1 * t;
+      return 0.2 * h + 0.15 * v2 + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
     case Target::settling:
-      return 0.4 * ratio(f.last_rebound_end, scale.step.first_touch) + 0.2 * h + 0.1 * v + 0.3 * k;
+      return 0.4 * ratio(f.last_rebound_end, scale.step.first_touch) + 0.2 * h + 0.1 * v2 + 0.25 * k + 0.05 * p;
     case Target::rebound:
-      return 0.5 * h + 0.1 * v + 0.35 * k + 0.05 * t;
+      return 0.5 * h + 0.1 * v2 + 0.33 * k + 0.05 * p + 0.02 * late;
     case Target::count:
-      return 0.3 * ratio(f.soft_count, scale.step.soft_count) + 0.2 * h + 0.1 * v + 0.35 * k + 0.05 * t;
+      return 0.3 * ratio(f.soft_count, scale.step.soft_count) + 0.2 * h + 0.1 * v2 + 0.33 * k + 0.05 * p + 0.02 * late;
     case Target::impact:
-      return 0.6 * v + 0.1 * h + 0.2 * k + 0.1 * t;
+      return 0.6 * v + 0.1 * h + 0.2 * k + 0.05 * p + 0.05 * late;
     case Target::energy:
-      return 0.5 * ratio(f.impact_energy, scale.step.impact_energy) + 0.1 * h + 0.1 * v + 0.2 * k + 0.1 * t;
+      return 0.5 * ratio(f.impact_energy, scale.step.impact_energy) + 0.1 * h + 0.1 * v2 + 0.2 * k + 0.05 * p + 0.05 * late;
   }
   return std::numeric_limits<double>::infinity();
 }

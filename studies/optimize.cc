@@ -11,7 +11,9 @@
 namespace softland {
 namespace {
 
-constexpr double latest_touch = 2.5;        // times the baseline's first touch
+constexpr double latest_touch = 2.5;  // times the baseline's first touch
+// Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
+constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;   // of the integrator: costs good to about 1e-4
 constexpr double tight_tolerance = 1e-9;    // of the confirming run
 constexpr int more_modes = 2;               // of the confirming run
@@ -50,6 +52,18 @@ double figure(Target target, const Metrics& m) {
 
 }  // namespace
 
+long default_budget(Actuator actuator) {
+  switch (actuator) {
+    case Actuator::electrostatic:
+      return 2500;
+    case Actuator::pzt:
+      return 5000;
+    case Actuator::both:
+      break;
+  }
+  return 10000;
+}
+
 bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
   if (!best.settled) return false;
   if (target == Target::bounce || target == Target::rebound || target == Target::count) return best.bounce_count == 0;
@@ -81,7 +95,8 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   const MetricsOptions& metrics_options = given.scene.metrics;
   CostScale scale{.step = {},
                   .score_window = std::max(period, 3 * given.device.in_contact_period()),
-                  .contact_gap = given.scene.device.gap.contact};
+                  .contact_gap = given.scene.device.gap.contact,
+                  .free_touch = options.actuator == Actuator::pzt ? braked_touch : driven_touch};
   ClosingOptions run{
       .duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window, .stop = options.stop};
   std::vector<double> rest;
@@ -102,8 +117,9 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   result.baseline_cost = cost(options.target, step, scale, metrics_options);
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
   run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.device.in_contact_period());
-  require(run.no_contact_before > 0, fmt::format("simulate.duration = {:.3g} s is too short to judge a landing: it needs more than {:.3g} s", given.duration,
-                                                 2 * given.device.in_contact_period()));
+  require(run.no_contact_before > 0,
+          fmt::format("simulate.duration = {:.3g} s is too short to judge a landing: it needs more than {:.3g} s", given.duration,
+                      2 * given.device.in_contact_period()));
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
 
   const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);

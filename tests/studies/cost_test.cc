@@ -49,7 +49,9 @@ Trajectory landing(double at, double speed, double height, double flight, double
 
 Trajectory plain_step() { return landing(20e-6, 0.3, 100e-9, 8e-6, 1e-12); }
 
-CostScale scale() { return {.step = cost_figures(plain_step(), options), .score_window = score_window, .contact_gap = gap}; }
+CostScale scale() {
+  return {.step = cost_figures(plain_step(), options), .score_window = score_window, .contact_gap = gap, .free_touch = 1.5};
+}
 
 TEST(CostFigures, OfALandingMadeByHandAreWhatItWasMadeFrom) {
   const CostFigures f = scale().step;
