@@ -12,11 +12,11 @@ namespace {
 
 // Shares of the budget of an epoch.
 constexpr double kSampling = 0.15;
-constexpr double kFirstHeat = 0.3;
+constexpr double kFirstHeat = 0.4;
 constexpr double kLaterHeat = 0.2;
 
 constexpr long kLongestEpoch = 5000;  // evaluations: beyond that, other starts promise more than longer searches
-constexpr std::size_t kSearches = 6;
+constexpr std::size_t kSearches = 4;
 constexpr long kShortestHeat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
 
 // Fractions of the box.
@@ -89,7 +89,8 @@ long share_of(long budget, double share, std::size_t searches) {
 
 void search_auto(Ledger& ledger) {
   const Method& polisher = find_method("bobyqa");
-  const std::array methods = {&find_method("nelder-mead"), &polisher};
+  const Method& searcher = find_method("cma-es");
+  const std::array<const Method*, kSearches> methods = {&searcher, &polisher, &searcher, &searcher};
   std::uint64_t points_sampled = 0;
   std::uint64_t searches_begun = 0;
   const auto begin_search = [&](const Method& method, const Point& start, double step) {
@@ -107,7 +108,7 @@ void search_auto(Ledger& ledger) {
 
     std::vector<Search> running;
     for (const Point& start : promising_points(ledger.known(), explored)) {
-      running.push_back(begin_search(*methods[running.size() % methods.size()], start, kFirstStep));
+      running.push_back(begin_search(*methods[running.size()], start, kFirstStep));
     }
     double share = kFirstHeat;
     while (!running.empty() && !ledger.over()) {

@@ -4,7 +4,8 @@
 // and a budget of 500 to 2500 evaluations. In each epoch
 // 1. points spread over the box are evaluated,
 // 2. local searches start from the best of all known points that lie apart from each other and from where earlier searches
-//    went; the methods alternate, since the simplex gets over kinks and bends and the quadratic model is fast where it is smooth,
+//    went: by cma-es, which follows bent valleys and gets over kinks and small jumps; the second best by bobyqa, whose quadratic
+//    model is the fastest where the objective is smooth,
 // 3. the better half of the searches goes on, until one is left,
 // 4. the best point is polished; if that converges, the next epoch begins with what is left of the budget.
 // The constants were chosen by success rates over the landscapes of tests/optimizers (bench/optimizers prints them).
