@@ -147,6 +147,51 @@ class Branch {
 
 constexpr int branch_steps = 64;
 
+// Three depths beyond the contact plane, one step apart [m]; at the beginning of a walk `before` and `last` are the same.
+struct Steps {
+  double before, last, next;
+};
+
+// Walks from `depth` deeper in growing steps until stop(f there, f one step on). Where f ends (NaN: the beam would reach the
+// electrode) the steps are halved; nothing when the walk gets there.
+template <class F, class Stop>
+std::optional<Steps> walk(F&& f, double depth, double step, Stop&& stop) {
+  constexpr double growth = 1.2;
+  constexpr int most_halvings = 20;
+  double before = depth, value = f(depth);
+  for (int halvings = 0; std::isfinite(value) && halvings < most_halvings;) {
+    const double here = f(depth + step);
+    if (!std::isfinite(here)) {
+      step /= 2;
+      ++halvings;
+    } else if (stop(value, here)) {
+      return Steps{.before = before, .last = depth, .next = depth + step};
+    } else {
+      before = depth;
+      depth += step;
+      value = here;
+      step *= growth;
+    }
+  }
+  return std::nullopt;
+}
+
+struct Minimum {
+  double depth, value;
+};
+
+// The first local minimum of f over the depth beyond the contact plane, at the plane if f rises from there.
+template <class F>
+std::optional<Minimum> first_minimum(F&& f, double step) {
+  const auto around = walk(f, 0, step, [](double value, double here) { return here > value; });
+  if (!around) return std::nullopt;
+  // In units of the step: Brent's tolerance is partly absolute.
+  const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return f(x * step); }, around->before / step,
+                                                                 around->next / step, 30);
+  const double known = f(around->last);
+  return value < known ? Minimum{at * step, value} : Minimum{around->last, known};
+}
+
 }  // namespace
 
 std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? "fold" : "contact"; }
@@ -175,42 +220,31 @@ double release_voltage(const Switch& device, std::size_t drive) {
   Branch branch(device, drive);
   const double plane = device.device().gap.contact;
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
-  // The contact is soft at first touch, so the branch may fall a little further before contact turns it up.
-  double lowest = branch(plane), at = plane;
-  const double step = device.penetration_scale() / 16;
-  for (int k = 1; k <= 64; ++k) {
-    const double square = branch(plane + k * step);
-    if (!std::isfinite(square) || square > lowest) break;
-    lowest = square;
-    at = plane + k * step;
-  }
-  if (at > plane) {
-    const double k = (at - plane) / step;
-    const auto minimum =
-        boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, k - 1, k + 1, 30);
-    lowest = std::min(lowest, minimum.second);
-  }
-  return lowest > 0 ? std::sqrt(lowest) : nan;
+  // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
+  const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, device.penetration_scale() / 16);
+  return lowest && lowest->value > 0 ? std::sqrt(lowest->value) : nan;
 }
 
 std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts) {
   if (!device.has_contact()) return std::nullopt;
   Statics statics(device);
-  const double plane = device.device().gap.contact;
-  const auto surplus = [&](double s) {
-    const auto held = statics.pinned(volts, s);
-    return held ? held->unknown - contact_force(device.contact(), s - plane) : nan;
+  const double plane = device.device().gap.contact, step = device.penetration_scale() / 16;
+  // What the contact carries at a depth, less the force with which the beam presses there.
+  const auto excess = [&](double depth) {
+    const auto held = statics.pinned(volts, plane + depth);
+    return held ? contact_force(device.contact(), depth) - held->unknown : nan;
   };
-  if (!(surplus(plane) > 0)) return std::nullopt;
-  double deep = plane + device.penetration_scale();
-  for (int i = 0; i < 40 && surplus(deep) > 0; ++i) deep = plane + 2 * (deep - plane);
-  if (!(surplus(deep) < 0)) return std::nullopt;
-  const double s = bracketed_zero(surplus, plane, deep);
-  const auto held = statics.pinned(volts, s);
+  // Where the beam presses hardest it must overcome the contact; the equilibrium is where, deeper, the contact takes over.
+  const auto hardest = first_minimum(excess, step);
+  if (!hardest || !(hardest->value < 0)) return std::nullopt;
+  const auto over = walk(excess, hardest->depth, step, [](double, double here) { return here >= 0; });
+  if (!over) return std::nullopt;
+  const double depth = bracketed_zero(excess, over->last, over->next);
+  const auto held = statics.pinned(volts, plane + depth);
   if (!held) return std::nullopt;
   Switch::Workspace work = device.workspace();
   return ClosedEquilibrium{.q = held->q,
-                           .contact_force = contact_force(device.contact(), s - plane),
+                           .contact_force = contact_force(device.contact(), depth),
                            .potential = device.potential(held->q.data(), volts, true, work)};
 }
 

@@ -28,8 +28,8 @@ struct StaticPullIn {
 /// comes first.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& device, std::size_t drive);
 
-/// Release voltage [V]: the smallest voltage with a closed equilibrium. NaN where there is no contact law or the branch could not
-/// be followed.
+/// Release voltage [V]: the smallest voltage with a closed equilibrium. NaN where there is no contact law, where the contact is
+/// too soft to keep the beam off the electrode at any voltage, or where the branch could not be followed.
 [[nodiscard]] double release_voltage(const Switch& device, std::size_t drive);
 
 /// Where the beam comes to rest on the contact.
@@ -38,7 +38,9 @@ struct ClosedEquilibrium {
   double contact_force = 0;  ///< [N]
   double potential = 0;      ///< Switch::potential there [J]
 };
-/// The closed equilibrium under constant voltages, if there is one with a contact force above zero.
+/// The closed equilibrium under constant voltages nearest to the contact plane, if there is one with a contact force above zero.
+/// With one electrode at V and all other drives at 0 V there is one above the release voltage, up to where the beam is pulled
+/// onto the electrode.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts);
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest whose contact point reaches the contact plane, whether

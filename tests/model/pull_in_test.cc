@@ -1,8 +1,11 @@
 #include "model/pull_in.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <string>
 #include <vector>
 
 #include "base/literals.h"
@@ -164,6 +167,58 @@ TEST(ReleaseVoltage, IsWhereAClosedSwitchOpens) {
   }
 }
 
+/// Contacts from far softer than the beam (0.2 N/m) to far stiffer, of both laws.
+std::vector<Device> contacts_of_every_stiffness() {
+  std::vector<Device> all;
+  std::mt19937_64 random(7);
+  const auto log_uniform = [&](double low, double high) {
+    return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
+  };
+  for (int k = 0; k < 30; ++k) {
+    Device d = k % 3 == 0 ? contact_first().device() : test::gold_cantilever();
+    d.contact->model = ContactModel::linear;
+    d.contact->stiffness = log_uniform(0.01_N_m, 1e8_N_m);
+    all.push_back(d);
+    d.contact->model = ContactModel::asperity_uniform;
+    d.contact->asperity_density = log_uniform(1e4, 1e14);
+    d.contact->asperity_height = log_uniform(3_nm, 1_um);
+    all.push_back(d);
+  }
+  return all;
+}
+
+TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact) {
+  constexpr double margin = 1e-5;
+  int holding = 0, never = 0;
+  for (const Device& d : contacts_of_every_stiffness()) {
+    const Switch device(d);
+    const double release = release_voltage(device, 0);
+    const auto closed = [&](double volts) { return closed_equilibrium(device, std::vector<double>{volts}); };
+    const std::string name =
+        d.contact->model == ContactModel::linear
+            ? fmt::format("linear, {} N/m", d.contact->stiffness)
+            : fmt::format("asperities, {} 1/m^2, {} m", d.contact->asperity_density, d.contact->asperity_height);
+    if (std::isnan(release)) {  // too soft to keep the beam off the electrode at any voltage
+      ++never;
+      for (double volts = 1; volts < 40; volts *= 1.05) EXPECT_FALSE(closed(volts)) << name << ", " << volts << " V";
+      continue;
+    }
+    ++holding;
+    for (const double share : {0.1, 0.5, 0.9, 0.99, 1 - margin}) EXPECT_FALSE(closed(share * release)) << name << ", " << share;
+    ASSERT_TRUE(closed((1 + margin) * release)) << name << ", release at " << release << " V";
+    double force = closed((1 + margin) * release)->contact_force;
+    EXPECT_GT(force, 0);
+    for (const double share : {1.001, 1.01, 1.1, 1.5}) {
+      const auto harder = closed(share * release);
+      if (!harder) break;  // the electrode has won
+      EXPECT_GT(harder->contact_force, force) << name << ", " << share;
+      force = harder->contact_force;
+    }
+  }
+  EXPECT_GT(holding, 20);
+  EXPECT_GT(never, 2);
+}
+
 TEST(ReleaseVoltage, NeedsAContact) {
   Device d = test::gold_cantilever();
   d.contact.reset();
@@ -192,6 +247,24 @@ TEST(ClosedEquilibrium, IsAnEquilibrium) {
     EXPECT_NEAR(contact_force(device.contact(), d), closed->contact_force, 1e-6 * closed->contact_force);
     EXPECT_DOUBLE_EQ(closed->potential, device.potential(closed->q.data(), volts, true, work));
   }
+}
+
+TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
+  // A spring softer than the beam gives way by much of what is left between contact plane and electrode.
+  Device d = test::gold_cantilever();
+  d.contact->model = ContactModel::linear;
+  d.contact->stiffness = 0.15_N_m;
+  d.electrodes[0].begin = 0;
+  d.electrodes[0].end = d.structure.length / 2;
+  const Switch device(d);
+  const std::vector<double> volts{1.05 * release_voltage(device, 0)};
+  const auto closed = closed_equilibrium(device, volts);
+  ASSERT_TRUE(closed.has_value());
+  Switch::Workspace work = device.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  Eigen::VectorXd a(device.modes());
+  device.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
+  EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * closed->contact_force * device.contact_shape().maxCoeff());
 }
 
 TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
