@@ -46,6 +46,7 @@ struct Named {
   std::string_view name;
 };
 constexpr Named integrators[] = {{Integrator::dormand_prince, "dormand-prince"},
+                                 {Integrator::arkode_erk, "arkode-erk"},
                                  {Integrator::esdirk, "esdirk"},
                                  {Integrator::bdf, "bdf"},
                                  {Integrator::adams, "adams"}};
@@ -159,10 +160,11 @@ Options parse(int argc, char** argv) {
     } else if (key == "--runs") {
       options.runs = std::max(1, std::stoi(value()));
     } else {
-      throw std::invalid_argument(fmt::format(
-          "unknown option {}: bench_closing [--scene FILE] [--integrator dormand-prince|esdirk|bdf|adams] [--tolerance X] "
-          "[--runs N] [--json]",
-          key));
+      throw std::invalid_argument(
+          fmt::format("unknown option {}: bench_closing [--scene FILE] [--integrator dormand-prince|arkode-erk|esdirk|bdf|adams] "
+                      "[--tolerance X] "
+                      "[--runs N] [--json]",
+                      key));
     }
   }
   return options;

@@ -19,7 +19,8 @@
 namespace softland {
 
 enum class Integrator {
-  dormand_prince,  ///< explicit Runge-Kutta 5(4), ARKODE
+  dormand_prince,  ///< explicit Runge-Kutta 5(4) for short vectors, ours
+  arkode_erk,      ///< the same pair, ARKODE
   esdirk,          ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
   bdf,             ///< CVODE, exact Jacobian
   adams,           ///< CVODE, functional iteration

@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/dormand_prince.h"
+
 namespace softland::internal {
 namespace {
 
@@ -94,7 +96,7 @@ constexpr long unbounded_steps = -1;  // the closing keeps its own work bound
 
 class ErkStepper final : public SundialsStepper {
  public:
-  ErkStepper(const OdeSystem& system, ARKODE_ERKTableID table) : SundialsStepper(system), table_(table) {}
+  explicit ErkStepper(const OdeSystem& system) : SundialsStepper(system) {}
   ~ErkStepper() override {
     if (memory_ != nullptr) ERKStepFree(&memory_);
   }
@@ -105,7 +107,7 @@ class ErkStepper final : public SundialsStepper {
       memory_ = ERKStepCreate(&SundialsStepper::rhs, t, y_, context_);
       ERKStepSetErrHandlerFn(memory_, &SundialsStepper::silent, nullptr);
       ERKStepSetUserData(memory_, static_cast<SundialsStepper*>(this));
-      ERKStepSetTableNum(memory_, table_);
+      ERKStepSetTableNum(memory_, ARKODE_DORMAND_PRINCE_7_4_5);
       ERKStepWFtolerances(memory_, &SundialsStepper::error_weights);
       ERKStepSetMaxNumSteps(memory_, unbounded_steps);
       ERKStepSetInterpolantType(memory_, ARK_INTERP_LAGRANGE);  // never asked for: the closing interpolates on its own
@@ -123,7 +125,6 @@ class ErkStepper final : public SundialsStepper {
   }
 
  private:
-  ARKODE_ERKTableID table_;
   void* memory_ = nullptr;
 };
 
@@ -213,10 +214,12 @@ std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& sy
       return std::make_unique<CvodeStepper>(system, CV_BDF);
     case Integrator::adams:
       return std::make_unique<CvodeStepper>(system, CV_ADAMS);
+    case Integrator::arkode_erk:
+      return std::make_unique<ErkStepper>(system);
     case Integrator::dormand_prince:
       break;
   }
-  return std::make_unique<ErkStepper>(system, ARKODE_DORMAND_PRINCE_7_4_5);
+  return std::make_unique<DormandPrince>(system);
 }
 
 }  // namespace softland::internal

@@ -73,9 +73,12 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   const auto n = static_cast<Eigen::Index>(positions.size());
   positions_ = Eigen::Map<Eigen::ArrayXd>(positions.data(), n);
   weights_ = Eigen::Map<Eigen::ArrayXd>(weights.data(), n);
-  shapes_.resize(n, modes());
-  for (Eigen::Index p = 0; p < n; ++p) shapes_.row(p) = beam.value(positions_[p]).transpose();
-  weighted_shapes_ = weights_.matrix().asDiagonal() * shapes_;
+  // Idle points, where no mode moves, fill the last block.
+  shapes_ = weighted_shapes_ = Eigen::MatrixXd::Zero((n + block - 1) / block * block, modes());
+  for (Eigen::Index p = 0; p < n; ++p) {
+    shapes_.row(p) = beam.value(positions_[p]).transpose();
+    weighted_shapes_.row(p) = weights_[p] * shapes_.row(p);
+  }
 
   for (const Electrode& e : device_.electrodes) {
     electrode_laws_.push_back(electrostatic(e.fringing, s, points_in(positions_, e.begin, e.end), gap_floor()));
@@ -99,7 +102,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
 }
 
 Switch::Workspace Switch::workspace() const {
-  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(points());
+  const Eigen::ArrayXd zero = Eigen::ArrayXd::Zero(shapes_.rows());
   return {.field = {.gap = zero, .velocity = zero, .smallest_gap = 0}, .load = zero, .by_deflection = zero, .by_velocity = zero};
 }
 
@@ -109,10 +112,35 @@ void Switch::set_gap(const double* q, Workspace& work) const {
   work.field.gap = device_.gap.electrode - work.field.gap;
 }
 
+// The matrices are small: a block of points at a time, its sums in registers, beats a general product.
 void Switch::set_field(const double* q, const double* v, Workspace& work) const {
-  set_gap(q, work);
-  work.field.velocity.matrix().noalias() = shapes_ * Eigen::Map<const Eigen::VectorXd>(v, modes());
-  work.field.smallest_gap = work.field.gap.minCoeff();
+  const Eigen::Index n = modes(), points = shapes_.rows();
+  const double* shapes = shapes_.data();
+  Block smallest = Block::Constant(device_.gap.electrode);
+  for (Eigen::Index p = 0; p < points; p += block) {
+    Block gap = Block::Constant(device_.gap.electrode), velocity = Block::Zero();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::Map<const Block> shape(shapes + i * points + p);
+      gap -= shape * q[i];
+      velocity += shape * v[i];
+    }
+    Eigen::Map<Block>(work.field.gap.data() + p) = gap;
+    Eigen::Map<Block>(work.field.velocity.data() + p) = velocity;
+    smallest = smallest.min(gap);
+  }
+  work.field.smallest_gap = smallest.minCoeff();
+}
+
+void Switch::project(const Workspace& work, double* result) const {
+  const Eigen::Index points = weighted_shapes_.rows();
+  const double* shapes = weighted_shapes_.data();
+  for (Eigen::Index i = 0; i < modes(); ++i, shapes += points) {
+    Block sum = Block::Zero();
+    for (Eigen::Index p = 0; p < points; p += block) {
+      sum += Eigen::Map<const Block>(shapes + p) * Eigen::Map<const Block>(work.load.data() + p);
+    }
+    result[i] = sum.sum();
+  }
 }
 
 void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
@@ -124,8 +152,8 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
     if (volts[e] != 0) electrode_laws_[e]->add_load(work.field, volts[e] * volts[e], work.load.data());
   }
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
+  project(work, result);
   Eigen::Map<Eigen::VectorXd> a(result, n);
-  a.noalias() = weighted_shapes_.transpose() * work.load.matrix();
   const double damping = 2 * device_.structure.damping_ratio;
   for (int i = 0; i < n; ++i) a[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
   if (device_.piezo) a += volts.back() * piezo_shape_;
@@ -178,7 +206,7 @@ double Switch::dissipated_power(const double* q, const double* v, Workspace& wor
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
   const double modal =
       2 * device_.structure.damping_ratio * Eigen::Map<const Eigen::VectorXd>(v, modes()).cwiseAbs2().dot(frequencies_);
-  return modal - (weights_ * work.load * work.field.velocity).sum();
+  return modal - (weights_ * work.load.head(points()) * work.field.velocity.head(points())).sum();
 }
 
 double Switch::potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const {

@@ -85,13 +85,18 @@ class Switch {
   [[nodiscard]] double potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const;
 
  private:
+  static constexpr Eigen::Index block = 8;  // points a pass over the modes handles at once
+  using Block = Eigen::Array<double, block, 1>;
+
   void set_gap(const double* q, Workspace& work) const;
   void set_field(const double* q, const double* v, Workspace& work) const;
+  /// Modal forces of the load in `work`: the sum over points of w_p phi_i(x_p) f(x_p).
+  void project(const Workspace& work, double* result) const;
 
   Device device_;
   Eigen::VectorXd frequencies_, squares_, contact_shape_, piezo_shape_;
   Eigen::ArrayXd positions_, weights_;
-  Eigen::MatrixXd shapes_;                                             // phi_i(x_p), points x modes
+  Eigen::MatrixXd shapes_;                                             // phi_i(x_p), points and idle points x modes
   Eigen::MatrixXd weighted_shapes_;                                    // w_p phi_i(x_p)
   std::vector<std::shared_ptr<const DistributedLaw>> electrode_laws_;  // one per electrode
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;    // not driven by a voltage

@@ -177,7 +177,8 @@ TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
     const double at_rest = device.capacitance(0, rest.data(), work);
     const std::vector<Signal> drives{Signal::constant(step_level)};
-    for (const Integrator integrator : {Integrator::dormand_prince, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
+    for (const Integrator integrator :
+         {Integrator::dormand_prince, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
       for (const double tolerance : {1e-4, 1e-6}) {
         double given = 0;
         const Trajectory t =

@@ -107,7 +107,8 @@ TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm) {
   const Switch device(oscillator(0));
   const Eigen::VectorXd gain = device.piezo_shape().cwiseProduct(device.contact_shape());
   const std::vector<Signal> drives{Signal::constant(-0.2)};
-  for (const Integrator integrator : {Integrator::dormand_prince, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
+  for (const Integrator integrator :
+       {Integrator::dormand_prince, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
     const Trajectory trajectory =
         simulate_closing(device, drives, {.duration = 100_us, .tolerance = 1e-9, .integrator = integrator});
     double exact = 0;

@@ -119,21 +119,24 @@ TEST(GoldCantilever, OneModeKnowsNoMicroBounces) {
 }
 
 TEST(GoldCantilever, SettlingIsAPropertyOfACloudOfRuns) {
-  // Past the first macro-bounce the closing is chaotic. The reference finds t_p between 300 and 339 us and 44 to 60 rebounds over
-  // seven tolerances, without a trend; the bounds leave room for other members of the same cloud.
+  // Past the first macro-bounce the closing is chaotic. Over 60 tolerances each of three integrators t_p lies between 266 and
+  // 346 us, half of it below 315 to 320 us, with 37 to 69 rebounds, without a trend: the bounds leave room for other members of
+  // the same cloud, not for another median.
   const Switch device(test::gold_cantilever());
-  double earliest = 1, latest = 0;
+  std::vector<double> ends;
   for (const double tolerance : {1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9}) {
     const Metrics m = metrics(step_closing(device, 600_us, tolerance));
     EXPECT_TRUE(m.settled) << tolerance;
-    EXPECT_GT(m.permanent_contact_time, 270_us) << tolerance;
-    EXPECT_LT(m.permanent_contact_time, 370_us) << tolerance;
-    EXPECT_GE(m.bounce_count, 36) << tolerance;
-    EXPECT_LE(m.bounce_count, 68) << tolerance;
-    earliest = std::min(earliest, m.permanent_contact_time);
-    latest = std::max(latest, m.permanent_contact_time);
+    EXPECT_GT(m.permanent_contact_time, 255_us) << tolerance;
+    EXPECT_LT(m.permanent_contact_time, 360_us) << tolerance;
+    EXPECT_GE(m.bounce_count, 33) << tolerance;
+    EXPECT_LE(m.bounce_count, 75) << tolerance;
+    ends.push_back(m.permanent_contact_time);
   }
-  EXPECT_GT(latest - earliest, 1_us);
+  std::sort(ends.begin(), ends.end());
+  EXPECT_GT(ends[ends.size() / 2], 295_us);
+  EXPECT_LT(ends[ends.size() / 2], 335_us);
+  EXPECT_GT(ends.back() - ends.front(), 1_us);
 }
 
 TEST(GoldCantilever, AGasDampedSwitchMayTouchAndReopenBetweenDynamicAndStaticPullIn) {
