@@ -90,6 +90,7 @@ Waveform read_waveform(const SceneFile::Impl& file, const SectionReader& in, std
   if (name == "harmonic") {
     const double base = volts(in.quantities("base").front(), pull_in);
     return Harmonic{.base = base,
+                    .rise_time = in.number("rise_time"),
                     .amplitude = amplitude(in, drive, pull_in, base, main_hold),
                     .angular_frequency =
                         in.is_given("frequency") ? 2 * std::numbers::pi * in.number("frequency") : in.number("angular_frequency"),

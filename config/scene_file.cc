@@ -460,6 +460,7 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& waveform)
     table.insert("rise_time", text(step->rise_time, dimension::time));
   } else if (const auto* harmonic = std::get_if<Harmonic>(&waveform)) {
     table.insert("base", text(harmonic->base, dimension::voltage));
+    table.insert("rise_time", text(harmonic->rise_time, dimension::time));
     table.insert("amplitude", text(harmonic->amplitude, dimension::voltage));
     table.insert("angular_frequency", text(harmonic->angular_frequency, dimension::angular_frequency));
     table.insert("phase", text(harmonic->phase, dimension::angle));

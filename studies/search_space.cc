@@ -71,18 +71,22 @@ std::string searched_electrode(const Device& device) {
 }
 
 Waveform DriveSearch::waveform(std::span<const double> x) const {
-  const double slew = limits.max_slew;
+  const double slew = limits.max_slew;  // infinite where there is no limit
   if (family == "step") return Step{.level = hold, .rise_time = std::max(x[0], std::abs(hold) / slew)};
   if (family == "harmonic") {
-    const double omega = x[1], duration = x[4], fade = x[5] * duration;
-    // The envelope's slope adds to the sine's.
+    // Under a slew limit the sine waits for the base, and fades for as long as its amplitude needs: the slope of the envelope
+    // adds to that of the sine. Half the duration is the longest fade; what is too steep even then is made smaller.
+    const double omega = x[1], duration = x[4], rise = std::abs(hold) / slew, start = std::max(x[3], rise);
+    const double needed = x[0] * omega < slew ? x[0] / (slew - x[0] * omega) : std::numeric_limits<double>::infinity();
+    const double fade = std::min(std::max(x[5] * duration, needed), duration / 2);
     const double steepest = omega + (fade > 0 ? 1 / fade : 0);
     return Harmonic{.base = hold,
+                    .rise_time = rise,
                     .amplitude = std::min(x[0], slew / steepest),
                     .angular_frequency = omega,
                     .phase = x[2],
-                    .start = x[3],
-                    .end = x[3] + duration,
+                    .start = start,
+                    .end = start + duration,
                     .fade = fade};
   }
   const double steps = std::max({std::abs(x[0]), std::abs(x[1] - x[0]), std::abs(hold - x[1])});

@@ -4,11 +4,12 @@
 // Times below are in units of T0, the first touch of the plain step, and T1, the period of the first mode.
 //   step      rise_time in [0, 2.5 T0]
 //   pulse     level_1, level_2 within the driver's limits, time_1 and duration_2 (= time_2 - time_1) in [0.05, 1.6] T0, edge in
-//   [0.005, 0.1] T1 harmonic  amplitude within the limits about the hold level, angular_frequency in [0.2 omega_1, upper], phase
-//   in [0, 2 pi], start in [0, T0],
-//             duration in [0.1, 2.5] T0, fade in [0, 0.5] of the duration. upper: the second natural frequency for an electrode,
-//             the third for the piezo (dither above them shakes without steering: Bognash 2019)
-// The hold level is the scene's own and never varied. A slew limit lengthens edges, fades nothing and caps amplitudes.
+//             [0.005, 0.1] T1
+//   harmonic  amplitude within the limits about the hold level, angular_frequency in [0.2 omega_1, upper], phase in [0, 2 pi],
+//             start in [0, T0], duration in [0.1, 2.5] T0, fade in [0, 0.5] of the duration. upper: the second natural frequency
+//             for an electrode, the third for the piezo (dither above them shakes without steering: Bognash 2019)
+// The hold level is the scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when
+// its base has risen, and caps its amplitude.
 #pragma once
 
 #include <map>

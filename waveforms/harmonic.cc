@@ -2,14 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/require.h"
 #include "waveforms/coincide.h"
 
 namespace softland {
+namespace {
+
+/// One stretch of a broken line: it holds until the next one begins.
+struct Stretch {
+  double begin = 0;  ///< [s]
+  double value = 0;  ///< at begin
+  double slope = 0;  ///< [1/s]
+
+  [[nodiscard]] double at(double time) const { return value + slope * (time - begin); }
+};
+
+const Stretch& stretch_at(const std::vector<Stretch>& line, double time) {
+  const auto after = std::upper_bound(line.begin() + 1, line.end(), time, [](double t, const Stretch& s) { return t < s.begin; });
+  return *(after - 1);
+}
+
+}  // namespace
 
 Signal signal(const Harmonic& harmonic) {
-  const auto [base, amplitude, angular_frequency, phase, start, end, fade] = harmonic;
+  const auto [base, rise_time, amplitude, angular_frequency, phase, start, end, fade] = harmonic;
   require(std::isfinite(base), fmt::format("base of a harmonic is {} V; it must be finite", base));
+  require(rise_time >= 0 && std::isfinite(rise_time),
+          fmt::format("rise_time of a harmonic is {} s; it must be finite and >= 0", rise_time));
   require(std::isfinite(amplitude), fmt::format("amplitude of a harmonic is {} V; it must be finite", amplitude));
   require(angular_frequency > 0 && std::isfinite(angular_frequency),
           fmt::format("angular_frequency of a harmonic is {} rad/s; it must be finite and > 0", angular_frequency));
@@ -25,23 +46,35 @@ Signal signal(const Harmonic& harmonic) {
   require(meets || faded_in < fading_out,
           fmt::format("fade of a harmonic is {} s; it must be at most half of end - start, {} s", fade, end - start));
   if (meets && fade > 0) faded_in = fading_out;
-  if (amplitude == 0) return Signal::constant(base);
+  if (amplitude == 0) return Signal::piecewise_linear({{0, 0}, {rise_time, base}});
+
+  std::vector<Stretch> envelope;
+  if (start > 0) envelope.push_back({.begin = 0});
+  if (faded_in > start) envelope.push_back({.begin = start, .value = 0, .slope = 1 / (faded_in - start)});
+  if (faded_in < fading_out) envelope.push_back({.begin = faded_in, .value = 1});
+  if (ends && fading_out < end) envelope.push_back({.begin = fading_out, .value = 1, .slope = -1 / (end - fading_out)});
+  if (ends) envelope.push_back({.begin = end});
+
+  std::vector<double> begins;
+  for (const Stretch& stretch : envelope) begins.push_back(stretch.begin);
+  std::vector<Stretch> share{{.begin = 0, .value = 1}};  // of the base
+  if (base != 0 && rise_time > 0) {
+    const auto same = std::find_if(begins.begin(), begins.end(), [&](double t) { return internal::coincide(t, rise_time); });
+    const double risen = same == begins.end() ? rise_time : *same;
+    share = {{.begin = 0, .value = 0, .slope = 1 / risen}, {.begin = risen, .value = 1}};
+    if (same == begins.end()) begins.insert(std::upper_bound(begins.begin(), begins.end(), risen), risen);
+  }
 
   std::vector<SignalPiece> pieces;
-  if (start > 0) pieces.push_back({.begin = 0, .value = base});
-  const auto add = [&](double begin, double envelope, double envelope_slope) {
-    pieces.push_back({.begin = begin,
-                      .value = base,
-                      .amplitude = amplitude * envelope,
-                      .amplitude_slope = amplitude * envelope_slope,
-                      .angular_frequency = angular_frequency,
-                      .phase = phase});
-  };
-  if (faded_in > start) add(start, 0, 1 / (faded_in - start));
-  if (faded_in < fading_out) add(faded_in, 1, 0);
-  if (ends) {
-    if (fading_out < end) add(fading_out, 1, -1 / (end - fading_out));
-    pieces.push_back({.begin = end, .value = base});
+  for (const double begin : begins) {
+    const Stretch& straight = stretch_at(share, begin);
+    const Stretch& swing = stretch_at(envelope, begin);
+    pieces.push_back({.begin = begin, .value = base * straight.at(begin), .slope = base * straight.slope});
+    if (swing.value == 0 && swing.slope == 0) continue;
+    pieces.back().amplitude = amplitude * swing.at(begin);
+    pieces.back().amplitude_slope = amplitude * swing.slope;
+    pieces.back().angular_frequency = angular_frequency;
+    pieces.back().phase = phase;
   }
   return Signal(std::move(pieces));
 }

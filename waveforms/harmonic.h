@@ -1,6 +1,6 @@
-// Harmonic dither on a step:  V(t) = base + amplitude e(t) sin(angular_frequency t + phase)  for t in [start, end], base
-// elsewhere (t >= 0). The envelope e rises linearly from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade,
-// end]; fade = 0 is a hard switch.
+// Harmonic dither on a step:  V(t) = b(t) + amplitude e(t) sin(angular_frequency t + phase)  for t in [start, end], b(t)
+// elsewhere (t >= 0). b rises linearly from 0 to base on [0, rise_time]. The envelope e rises linearly from 0 to 1 on
+// [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard switch.
 #pragma once
 
 #include <limits>
@@ -11,6 +11,7 @@ namespace softland {
 
 struct Harmonic {
   double base = 0;                                       ///< [V]
+  double rise_time = 0;                                  ///< of the base [s], >= 0
   double amplitude = 0;                                  ///< [V]
   double angular_frequency = 0;                          ///< [rad/s], > 0
   double phase = 0;                                      ///< [rad]

@@ -128,6 +128,7 @@ TEST(SceneFile, WaveformsReadBackDigitForDigit) {
     RC_ASSERT(step_again.level == step.level && step_again.rise_time == step.rise_time);
 
     const Harmonic harmonic{.base = number(60),
+                            .rise_time = number(1e-5),
                             .amplitude = -number(5),
                             .angular_frequency = number(1e6) + 1,
                             .phase = number(7),

@@ -114,9 +114,8 @@ TEST(SearchSpace, PulsesStayInsideTheLimits) { expect_within_limits(plain(), Act
 TEST(SearchSpace, DithersStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "harmonic"); }
 TEST(SearchSpace, StepsObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "step"); }
 TEST(SearchSpace, PulsesObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "pulse"); }
-// Not so yet: without a fade a dither begins with a jump, and under an electrode's dither the hold level is jumped to.
-TEST(SearchSpace, DISABLED_DithersOfThePiezoObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::pzt, "harmonic"); }
-TEST(SearchSpace, DISABLED_DithersOfTheElectrodeObeyASlewLimit) {
+TEST(SearchSpace, DithersOfThePiezoObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::pzt, "harmonic"); }
+TEST(SearchSpace, DithersOfTheElectrodeObeyASlewLimit) {
   expect_within_limits(slow_drivers(), Actuator::electrostatic, "harmonic");
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/literals.h"
 #include "tests/waveforms/expect_invalid.h"
+#include "waveforms/step.h"
 
 namespace softland {
 namespace {
@@ -30,7 +31,8 @@ void expect_formula(const Harmonic& h, double span) {
   constexpr int samples = 997;
   for (int i = 0; i <= samples; ++i) {
     const double t = span * i / samples;
-    const double expected = h.base + h.amplitude * envelope(h, t) * std::sin(h.angular_frequency * t + h.phase);
+    const double base = t < h.rise_time ? h.base * t / h.rise_time : h.base;
+    const double expected = base + h.amplitude * envelope(h, t) * std::sin(h.angular_frequency * t + h.phase);
     EXPECT_NEAR(compiled.voltage(t), expected, kRounding * (std::abs(h.base) + std::abs(h.amplitude))) << "t = " << t;
   }
 }
@@ -50,6 +52,29 @@ TEST(Harmonic, FollowsItsFormula) {
   faded.end = std::numeric_limits<double>::infinity();
   faded.fade = 25_us;
   expect_formula(faded, 100_us);
+}
+
+TEST(Harmonic, RisesToItsBaseWhereverTheSineBegins) {
+  const Harmonic faded{
+      .base = 40_V, .amplitude = 6_V, .angular_frequency = 1e6_rad_s, .phase = 0.4, .start = 11_us, .end = 83_us, .fade = 17_us};
+  // Before the sine, up to its start, inside each of its parts, up to its end, after it.
+  for (const double rise : {5_us, 11_us, 19_us, 40_us, 70_us, 83_us, 95_us}) {
+    Harmonic risen = faded;
+    risen.rise_time = rise;
+    expect_formula(risen, 100_us);
+    const Signal compiled = signal(risen);
+    EXPECT_TRUE(std::isfinite(compiled.peak_slew())) << rise;
+    EXPECT_EQ(compiled.hold_level(), 40_V) << rise;
+  }
+}
+
+TEST(Harmonic, RisesAsAStepDoes) {
+  const Harmonic calm{.base = 40_V, .rise_time = 7_us, .angular_frequency = 1e6_rad_s};
+  EXPECT_EQ(signal(calm).pieces(), signal(Step{.level = 40_V, .rise_time = 7_us}).pieces());
+  const Harmonic late{.base = 40_V, .rise_time = 8_us, .amplitude = 1_V, .angular_frequency = 1e6_rad_s, .start = 9_us};
+  EXPECT_EQ(signal(late).peak_slew(8.5_us), signal(Step{.level = 40_V, .rise_time = 8_us}).peak_slew());
+  // Nothing to rise to: no breakpoint.
+  EXPECT_EQ(signal(Harmonic{.rise_time = 7_us, .amplitude = 1_V, .angular_frequency = 1e6_rad_s}).pieces().size(), 1U);
 }
 
 TEST(Harmonic, FromZeroForEverIsOnePiece) {
@@ -99,6 +124,8 @@ TEST(Harmonic, NamesParameterValueAndRule) {
     expect_invalid([&] { (void)signal(bad); }, parts);
   };
   refused([](Harmonic& h) { h.base = kNaN; }, {"base", "nan V", "finite"});
+  refused([](Harmonic& h) { h.rise_time = -1; }, {"rise_time", "-1 s", ">= 0"});
+  refused([](Harmonic& h) { h.rise_time = std::numeric_limits<double>::infinity(); }, {"rise_time", "inf s", "finite"});
   refused([](Harmonic& h) { h.amplitude = kNaN; }, {"amplitude", "nan V", "finite"});
   refused([](Harmonic& h) { h.angular_frequency = 0; }, {"angular_frequency", "0 rad/s", "> 0"});
   refused([](Harmonic& h) { h.angular_frequency = kNaN; }, {"angular_frequency", "nan"});
