@@ -26,8 +26,13 @@ SceneFile with_waveforms(const Prepared& p, const std::map<std::string, Waveform
   return file;
 }
 
-// Text of the scene, read back: what a user's `simulate best.toml` will run.
-Prepared read_back(const SceneFile& file, const std::string& name) { return prepare(SceneFile::parse(file.text(), name)); }
+// Text of the scene, read back: what a user's `simulate best.toml` will run. Warnings stay those about the file that the user
+// wrote.
+Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
+  Prepared p = prepare(SceneFile::parse(file.text(), name));
+  p.scene.warnings = given.scene.warnings;
+  return p;
+}
 
 // Better or worse as a user would rank two closings: the target's own figure, unsettled last.
 double figure(Target target, const Metrics& m) {
@@ -74,7 +79,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   Prepared given = prepare(file, true);
   require(given.device.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
 
-  // The baseline: plain steps to the hold levels the scene describes.
+  // The baseline: plain steps to the hold levels the scene describes, as steep as the driver permits.
   std::map<std::string, Waveform> plain;
   const auto hold = [&](const std::string& drive) {
     const auto found = given.drives.waveforms.find(drive);
@@ -82,12 +87,13 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   };
   if (options.actuator != Actuator::pzt) {
     const std::string electrode = searched_electrode(given.scene.device);
-    plain[electrode] = Step{.level = hold(electrode)};
+    const auto limits = given.drives.limits.find(electrode);
+    const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
+    plain[electrode] = Step{.level = hold(electrode), .rise_time = std::abs(hold(electrode)) / slew};
   }
   if (given.device.has_piezo()) plain[std::string(piezo_drive)] = Step{.level = 0};
-  Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml");
-  OptimizeResult result{
-      .scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true, options.stop)};
+  Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml", given);
+  OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true)};
   if (options.on_baseline) options.on_baseline(result.baseline);
 
   // How candidates are scored.
@@ -97,8 +103,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
                   .score_window = std::max(period, 3 * given.device.in_contact_period()),
                   .contact_gap = given.scene.device.gap.contact,
                   .free_touch = options.actuator == Actuator::pzt ? braked_touch : driven_touch};
-  ClosingOptions run{
-      .duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window, .stop = options.stop};
+  ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
   std::vector<double> rest;
   for (const Signal& s : baseline_scene.signals()) rest.push_back(s.hold_level());
   if (const auto closed = closed_equilibrium(given.device, rest)) run.closed_potential = closed->potential;
@@ -163,8 +168,8 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   for (std::size_t i = 0; i < std::min(most_candidates, found.size()); ++i) {
     const Evaluation& candidate = found[found.size() - 1 - i];
     if (!(candidate.value < 10)) break;  // never touched
-    Prepared scene = read_back(with_waveforms(baseline_scene, space.waveforms(candidate.x)), "best.toml");
-    Closing closing = simulate(scene, true, options.stop);
+    Prepared scene = read_back(with_waveforms(baseline_scene, space.waveforms(candidate.x)), "best.toml", given);
+    Closing closing = simulate(scene, true);
     const bool met = goal_met(options.target, closing.metrics, result.baseline.metrics);
     if (result.best && !met) continue;
     result.best_scene = std::move(scene);
@@ -180,7 +185,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
 
   const Prepared& winner = *result.best_scene;
   const std::vector<Signal> signals = winner.signals();
-  ClosingOptions tight{.duration = winner.duration, .tolerance = tight_tolerance, .stop = options.stop};
+  ClosingOptions tight{.duration = winner.duration, .tolerance = tight_tolerance};
   result.checks.push_back({fmt::format("tolerance {:g}", tight_tolerance),
                            metrics(simulate_closing(winner.device, signals, tight), metrics_options)});
   Device richer = winner.scene.device;

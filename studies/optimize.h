@@ -1,6 +1,7 @@
 // The search for a drive waveform: scene -> baseline -> search -> verified winner.
 //
-// Baseline: a rise-free step of the searched electrode to the scene's hold level, piezo 0 V. Every candidate is scored over a
+// Baseline: a step of the searched electrode to the scene's hold level, without rise time unless the driver's slew limit asks for
+// one, piezo 0 V. Every candidate is scored over a
 // fixed time after its own first contact, must touch within 2.5 times the baseline's first-touch time, stays inside the driver's
 // limits, and is infeasible if the beam comes near the electrode. The winner is believed only after a run over the whole window
 // at the scene's accuracy, read back from the very text of best.toml; runs with a tighter integrator and with two more modes
@@ -42,6 +43,7 @@ struct OptimizeOptions {
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
   int jobs = 1;
+  /// Set from outside (Ctrl-C): ends the search. Baseline, verification and confirming runs are short and always run to the end.
   const std::atomic<bool>* stop = nullptr;
   /// Called once, when the baseline is known.
   std::function<void(const Closing&)> on_baseline = {};

@@ -1,8 +1,10 @@
 // The search as a whole, on small budgets: what it promises whoever wins.
 #include "studies/optimize.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenes.h"
@@ -123,11 +125,53 @@ TEST(Optimize, RefusesASceneWithoutContact) {
             "optimize needs a [contact] section: without contact there is nothing to land on");
 }
 
-TEST(Optimize, EndsAtOnceWhenToldToStop) {
+TEST(Optimize, EndsAtOnceWhenToldToStopButKnowsItsBaseline) {
   const std::atomic<bool> stop{true};
   const Log log = search(gold(), {.stop = &stop}, 100000);
   EXPECT_EQ(log.result.search.termination, Termination::interrupted);
   EXPECT_LE(log.evaluations.size(), 1U);
+  EXPECT_EQ(log.result.baseline.metrics.status, Status::done);
+  EXPECT_GT(log.result.baseline.metrics.impact_velocity, 0);
+  EXPECT_TRUE(std::isfinite(log.result.baseline_cost));
+}
+
+TEST(Optimize, RunsTheBestSoFarToItsEndWhenToldToStop) {
+  std::atomic<bool> stop{false};
+  OptimizeOptions options{.max_evaluations = 100000, .stop = &stop};
+  options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { stop = stop || e.index >= 30; };
+  const OptimizeResult r = optimize(gold(), options);
+  EXPECT_EQ(r.search.termination, Termination::interrupted);
+  ASSERT_TRUE(r.best);
+  EXPECT_EQ(r.best->metrics.status, Status::done);
+  EXPECT_GT(r.best->metrics.impact_velocity, 0);
+  ASSERT_EQ(r.checks.size(), 2U);
+  for (const ConfirmingRun& check : r.checks) EXPECT_EQ(check.metrics.status, Status::done) << check.name;
+}
+
+TEST(Optimize, WarnsOfTheSceneInTheUsersFileAndOnce) {
+  const OptimizeResult& r = reference().result;
+  ASSERT_TRUE(r.best);
+  for (const std::vector<std::string>* warnings : {&r.best->warnings, &r.baseline.warnings}) {
+    ASSERT_FALSE(warnings->empty());
+    EXPECT_THAT(warnings->front(), testing::HasSubstr("/scenes/mem-gold.toml:13: structure.width"));
+    for (const std::string& warning : *warnings) {
+      EXPECT_THAT(warning, testing::Not(testing::HasSubstr("best.toml")));
+      EXPECT_EQ(std::count(warnings->begin(), warnings->end(), warning), 1) << warning;
+    }
+  }
+}
+
+TEST(Optimize, UnderASlewLimitComparesWithTheFastestPermittedStep) {
+  const SceneFile slow = gold({"waveform.main.rise_time=50 us", "driver.main.max_slew=2 V/us"});
+  for (const char* family : {"pulse", "harmonic"}) {
+    const Log log = search(slow, {.family = family}, 30);
+    const auto& main = std::get<Step>(log.result.baseline_scene.drives.waveforms.at("main"));
+    EXPECT_DOUBLE_EQ(main.rise_time, main.level / 2e6);
+    bool feasible = false;
+    for (const auto& [index, e] : log.evaluations) feasible = feasible || std::isfinite(e.value);
+    EXPECT_TRUE(feasible) << family;
+    EXPECT_TRUE(log.result.best) << family;
+  }
 }
 
 }  // namespace
