@@ -99,7 +99,7 @@ int run(int argc, char** argv) {
   CLI::App* simulate = app.add_subcommand("simulate", "simulate the closing that a scene describes");
   with_scene(simulate, true);
   with_json(simulate);
-  simulate->add_option("--out", common.out, "folder for result.json, trajectory.csv and report.html");
+  simulate->add_option("--out", common.out, "folder for report.html, gap.svg, result.json and trajectory.csv");
   simulate->footer("Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -");
 
   CLI::App* pull_in = app.add_subcommand("pull-in", "static and dynamic pull-in voltage and release voltage of every electrode");
@@ -131,7 +131,8 @@ int run(int argc, char** argv) {
   optimize->add_option("--seed", request.seed, "same seed, same result, whatever --jobs is")->capture_default_str();
   optimize->add_option("--jobs", request.jobs, "threads; one per core if not given");
   optimize->add_option("--out", common.out,
-                       "folder for best.toml, best.csv, report.html, result.json, evaluations.csv (default: softland-out)");
+                       "folder for report.html, gap.svg, best.toml, best.csv, result.json, trajectory.csv, evaluations.csv "
+                       "(default: softland-out)");
   optimize->footer(
       "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n" +
       optimizer_help() +
@@ -147,7 +148,7 @@ int run(int argc, char** argv) {
   exporting->add_option("--format", format, "csv | spice-pwl")->capture_default_str();
   exporting->footer("Example:\n  softland export softland-out --format spice-pwl > drive.cir");
 
-  CLI::App* report = app.add_subcommand("report", "make report.html of a result.json again");
+  CLI::App* report = app.add_subcommand("report", "make report.html and gap.svg of a result.json again");
   report->add_option("result", result, "folder, or result.json")->required();
   report->add_option("--out", report_out, "folder to write to (default: beside the result)");
   report->footer("Example:\n  softland report softland-out");

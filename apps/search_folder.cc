@@ -14,7 +14,7 @@ SearchFolder::SearchFolder(std::filesystem::path folder) : folder_(std::move(fol
   std::filesystem::create_directories(folder_, error);
   require(!error, fmt::format("--out {}: the folder cannot be created: {}", folder_.string(), error.message()));
   // What an earlier search left must not pass for this one's.
-  for (const char* name : {"best.toml", "best.csv", "result.json", "report.html", "evaluations.csv"})
+  for (const char* name : {"best.toml", "best.csv", "result.json", "report.html", "gap.svg", "trajectory.csv", "evaluations.csv"})
     std::filesystem::remove(folder_ / name, error);
   flush();
 }

@@ -18,6 +18,7 @@
 #include "reports/files.h"
 #include "reports/html.h"
 #include "reports/result_json.h"
+#include "reports/svg.h"
 #include "reports/text.h"
 #include "studies/optimize.h"
 #include "waveforms/export.h"
@@ -55,12 +56,17 @@ std::map<std::string, Signal> named_signals(const Prepared& p) {
   return all;
 }
 
+void write_report(const fs::path& folder, const json& result) {
+  write_whole(folder / "report.html", html_report(result));
+  write_whole(folder / "gap.svg", svg_gap_chart(result));
+}
+
 // Everything a result leaves behind, in one place.
 void write_outputs(const Common& c, const json& result, const std::string& text) {
   if (!c.out.empty()) {
     const fs::path folder = c.out;
     write_whole(folder / "result.json", result.dump(2) + "\n");
-    write_whole(folder / "report.html", html_report(result));
+    write_report(folder, result);
     const auto curves = result.at("curves").find("best");
     if (curves != result.at("curves").end()) write_whole(folder / "trajectory.csv", trajectory_csv(*curves));
   }
@@ -317,7 +323,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   write_outputs(c, j, text_report(j));
   if (c.json != "-") {
     std::cout << fmt::format(
-        "\nIn {}: report.html, best.toml (run it with `softland simulate`), best.csv, trajectory.csv, result.json, "
+        "\nIn {}: report.html, gap.svg, best.toml (run it with `softland simulate`), best.csv, trajectory.csv, result.json, "
         "evaluations.csv\n",
         c.out);
   }
@@ -346,8 +352,8 @@ int report_verb(const std::string& result, const std::string& out) {
   require(j.is_object() && j.contains("kind"), fmt::format("{}: is not a result.json of softland", path.string()));
   const fs::path folder = out.empty() ? path.parent_path() : fs::path(out);
   if (!out.empty()) make_folder(out);
-  write_whole(folder / "report.html", html_report(j));
-  std::cout << text_report(j) << fmt::format("\nWritten: {}\n", (folder / "report.html").string());
+  write_report(folder, j);
+  std::cout << text_report(j) << fmt::format("\nIn {}: report.html, gap.svg\n", folder.empty() ? "." : folder.string());
   return exit_done;
 }
 
