@@ -33,18 +33,6 @@ const char* role_name(Role role) {
   return "evaluations";
 }
 
-const char* scale_name(Scale scale) {
-  switch (scale) {
-    case Scale::linear:
-      return "linear";
-    case Scale::logarithmic:
-      return "log";
-    case Scale::symlog:
-      break;
-  }
-  return "symlog";
-}
-
 /// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
 /// out.
 Table curve_table(const json& curve) {
@@ -130,9 +118,7 @@ double landing_end(const json& result, const Tables& tables, double window) {
   const auto cover = [&](double time) {
     if (time < window) end = std::fmax(end, time);
   };
-  const json& own = best_metrics(result);
-  cover(number(own, {"initial_contact_time_s"}));
-  cover(number(own, {"permanent_contact_time_s"}));
+  cover(number(best_metrics(result), {"initial_contact_time_s"}));
   for (const auto& [name, table] : tables) {
     if (!name.starts_with("best/")) continue;
     Points points;
@@ -156,30 +142,36 @@ double landing_end(const json& result, const Tables& tables, double window) {
   return end > 0 ? std::min(window, margin * end) : window;
 }
 
-/// Whether any gap gets below this [m]: without that there is no landing to enlarge.
-bool comes_near(const Tables& tables, double distance) {
-  return std::any_of(runs.begin(), runs.end(), [&](const auto& run) {
-    const auto table = tables.find(run.first);
-    if (table == tables.end() || !table->second.contains("tip_gap_m")) return false;
-    const std::vector<double>& gaps = table->second.at("tip_gap_m");
-    return std::any_of(gaps.begin(), gaps.end(), [&](double gap) { return gap < distance; });
-  });
+/// A column of a run; empty when there is none.
+const std::vector<double>& column_of(const Tables& tables, const char* run, const char* name) {
+  static const std::vector<double> none;
+  const auto table = tables.find(run);
+  if (table == tables.end()) return none;
+  const auto column = table->second.find(name);
+  return column == table->second.end() ? none : column->second;
 }
 
-std::array<double, 2> symlog_range(const Tables& tables, double threshold) {
-  double lowest = 0;
-  double highest = threshold;
+/// The largest value of a column in any run, at least 0.
+double largest(const Tables& tables, const char* name) {
+  double value = 0;
   for (const auto& [run, role] : runs) {
-    const auto table = tables.find(run);
-    if (table == tables.end() || !table->second.contains("tip_gap_m")) continue;
-    for (const double gap : table->second.at("tip_gap_m")) {
-      if (!std::isfinite(gap)) continue;
-      lowest = std::min(lowest, gap);
-      highest = std::max(highest, gap);
-    }
+    for (const double one : column_of(tables, run, name)) value = std::fmax(value, one);
   }
-  constexpr double margin = 1.6;
-  return {margin * std::min(lowest, -threshold), margin * highest};
+  return value;
+}
+
+/// Gaps around the contact plane worth enlarging [m]: as deep as any contact is pressed before `end`, and above the plane the
+/// winner's rebounds or twice that depth. Not set when nothing touches.
+std::optional<std::array<double, 2>> plane_band(const json& result, const Tables& tables, double end) {
+  double lowest = 0;
+  for (const auto& [run, role] : runs) {
+    const std::vector<double>& gaps = column_of(tables, run, "tip_gap_m");
+    for (std::size_t row = 0; row < gaps.size() && tables.at(run).at("time_s")[row] <= end; ++row)
+      lowest = std::fmin(lowest, gaps[row]);
+  }
+  if (lowest == 0) return std::nullopt;
+  constexpr double margin = 1.15;
+  return std::array{margin * lowest, margin * std::fmax(-2 * lowest, number(best_metrics(result), {"major_bounce_height_m"}))};
 }
 
 void add_time_charts(const json& result, Picture& out) {
@@ -233,17 +225,19 @@ void add_time_charts(const json& result, Picture& out) {
   gap.height = 320;
   add_series(gap, "", "tip_gap_m");
   Chart near = gap;
+  constexpr double readable = 0.05;  // of the gap: lower ones have no room for words
+  for (Mark& mark : gap.marks) {
+    if (mark.y < readable * largest(out.tables, "tip_gap_m")) mark.text.clear();
+  }
   keep(std::move(gap));
 
   near.id = "landing";
-  near.zero_label.clear();  // the curves lie on it
-  near.title = "Gap: the landing, enlarged";
+  near.zero_label_left = true;
+  near.title = "Gap: the landing, close to the contact plane";
   near.caption = landing_caption(result);
   near.x_home = {0, landing};
-  near.scale = Scale::symlog;
-  near.threshold = significant_rebound(result);
-  near.y_home = symlog_range(out.tables, near.threshold);
-  if (comes_near(out.tables, near.threshold)) keep(std::move(near));
+  near.y_home = plane_band(result, out.tables, landing);
+  if (near.y_home) keep(std::move(near));
 
   int index = 0;
   for (const std::string& drive : drives) {
@@ -268,7 +262,7 @@ void add_time_charts(const json& result, Picture& out) {
   force.y_unit = "N";
   force.height = 230;
   add_series(force, "", "contact_force_N");
-  keep(std::move(force));
+  if (largest(out.tables, "contact_force_N") > 0) keep(std::move(force));
 }
 
 void add_search_chart(const json& result, Picture& out) {
@@ -283,13 +277,14 @@ void add_search_chart(const json& result, Picture& out) {
   }
   Chart chart;
   chart.id = "search";
-  chart.title = "Search";
+  chart.title = "Convergence";
   chart.caption = search_caption(result);
   chart.x_column = "evaluation";
   chart.x_label = "Evaluation";
   chart.x_home = chart.x_whole = {0, std::max(1.0, last)};
   chart.y_label = text(result, {"search", "value_name"});
   if (chart.y_label.empty()) chart.y_label = "cost";
+  chart.y_label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(chart.y_label[0])));
   chart.scale = positive ? Scale::logarithmic : Scale::linear;
   chart.height = 260;
   if (!tried.empty()) {
@@ -374,10 +369,10 @@ json chart_json(const Picture& picture, std::size_t rows) {
            {"unit", chart.x_unit},
            {"home", chart.x_home},
            {"whole", chart.x_whole}}},
-         {"y",
-          {{"label", chart.y_label}, {"unit", chart.y_unit}, {"scale", scale_name(chart.scale)}, {"threshold", chart.threshold}}},
+         {"y", {{"label", chart.y_label}, {"unit", chart.y_unit}, {"scale", chart.scale == Scale::linear ? "linear" : "log"}}},
          {"zero", chart.zero_line},
          {"zeroLabel", chart.zero_label},
+         {"zeroLabelLeft", chart.zero_label_left},
          {"series", series},
          {"marks", marks}});
     if (chart.y_home) charts.back()["y"]["home"] = *chart.y_home;

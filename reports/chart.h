@@ -15,7 +15,7 @@ using Table = std::map<std::string, std::vector<double>>;
 using Tables = std::map<std::string, Table>;
 
 enum class Role { best, baseline, evaluations };
-enum class Scale { linear, logarithmic, symlog };
+enum class Scale { linear, logarithmic };
 
 struct Series {
   std::string table;
@@ -42,14 +42,14 @@ struct Chart {
   std::string y_label;
   std::string y_unit;
   Scale scale = Scale::linear;
-  double threshold = 1;                         ///< symlog: linear below this
   std::array<double, 2> x_home{0, 1};           ///< what is shown before any zoom
   std::array<double, 2> x_whole{0, 1};          ///< all there is
   std::optional<std::array<double, 2>> y_home;  ///< not set: from the data in view
   bool zero_line = false;
   std::string zero_label;
-  std::string group;  ///< charts of one group share cursor and zoom; empty: alone
-  int height = 300;   ///< [px]
+  bool zero_label_left = false;  ///< where the curves leave room
+  std::string group;             ///< charts of one group share cursor and zoom; empty: alone
+  int height = 300;              ///< [px]
   std::vector<Series> series;
   std::vector<Mark> marks;
 };

@@ -43,21 +43,10 @@ Stroke stroke(Role role) {
 /// Data to pixels along one axis.
 struct Axis {
   Scale scale = Scale::linear;
-  double threshold = 1;
   double low = 0, high = 1;  // data
   double pixel_low = 0, pixel_high = 1;
 
-  [[nodiscard]] double transformed(double value) const {
-    switch (scale) {
-      case Scale::linear:
-        return value;
-      case Scale::logarithmic:
-        return std::log10(value);
-      case Scale::symlog:
-        break;
-    }
-    return std::asinh(value / threshold);
-  }
+  [[nodiscard]] double transformed(double value) const { return scale == Scale::linear ? value : std::log10(value); }
   [[nodiscard]] double pixel(double value) const {
     const double from = transformed(low);
     return pixel_low + (transformed(value) - from) / (transformed(high) - from) * (pixel_high - pixel_low);
@@ -79,18 +68,10 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
     for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; ++k) out.push_back(k * step);
     return out;
   }
-  const bool both_signs = axis.scale == Scale::symlog;
-  const double smallest = both_signs ? axis.threshold : axis.low;
-  const double largest = std::max(std::abs(axis.low), std::abs(axis.high));
-  if (both_signs) out.push_back(0);
-  const int first = static_cast<int>(std::ceil(std::log10(smallest) - 1e-9));
-  const int last = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
+  const int first = static_cast<int>(std::ceil(std::log10(axis.low) - 1e-9));
+  const int last = static_cast<int>(std::floor(std::log10(axis.high) + 1e-9));
   const int every = std::max(1, (last - first + 7) / 8);
-  for (int exponent = first; exponent <= last; exponent += every) {
-    const double value = std::pow(10, exponent);
-    if (value <= axis.high) out.push_back(value);
-    if (both_signs && -value >= axis.low) out.push_back(-value);
-  }
+  for (int exponent = first; exponent <= last; exponent += every) out.push_back(std::pow(10, exponent));
   return out;
 }
 
@@ -180,7 +161,6 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
   x.pixel_high = width - right;
   Axis y;
   y.scale = chart.scale;
-  y.threshold = chart.threshold;
   const std::array<double, 2> range = chart.y_home.value_or(range_in_view(tables, chart));
   y.low = range[0];
   y.high = range[1];
@@ -207,9 +187,7 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
     out += line(at_pixel, y.pixel_low, at_pixel, y.pixel_high, grid);
     out += label(at_pixel, y.pixel_low + 17, "middle", muted, 12, tick_text(tick / x_prefix.factor));
   }
-  const Prefix y_prefix = chart.y_unit.empty()           ? Prefix{}
-                          : chart.scale == Scale::symlog ? prefix_for(chart.threshold)
-                                                         : prefix_for(std::max(std::abs(y.low), std::abs(y.high)) / 1.1);
+  const Prefix y_prefix = chart.y_unit.empty() ? Prefix{} : prefix_for(std::max(std::abs(y.low), std::abs(y.high)) / 1.1);
   for (const double tick : ticks(y, std::max(3, chart.height / 45))) {
     const double at_pixel = y.pixel(tick);
     out += line(left, at_pixel, width - right, at_pixel, grid);
@@ -223,7 +201,10 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
 
   if (chart.zero_line && y.low <= 0 && y.high >= 0) {
     out += line(left, y.pixel(0), width - right, y.pixel(0), ink, " stroke-width=\"1\"");
-    if (!chart.zero_label.empty()) out += label(width - right - 4, y.pixel(0) - 5, "end", muted, 11.5, chart.zero_label);
+    const bool at_left = chart.zero_label_left;
+    if (!chart.zero_label.empty())
+      out +=
+          label(at_left ? left + 4 : width - right - 4, y.pixel(0) - 5, at_left ? "start" : "end", muted, 11.5, chart.zero_label);
   }
   out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n",
                      chart.id, left, y.pixel_high, x.pixel_high - x.pixel_low, chart.height);
@@ -253,7 +234,7 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
     out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x.pixel(mark.x), y.pixel(mark.y),
                        pen.colour);
     if (mark.text.empty()) continue;
-    out += label(x.pixel(mark.x), y.pixel(mark.y) - 7, "middle", pen.colour, 12.5, mark.text, " font-weight=\"600\"");
+    out += label(x.pixel(mark.x) + 6, y.pixel(mark.y) - 4, "start", pen.colour, 12.5, mark.text, " font-weight=\"600\"");
   }
   return out + "</g>\n";
 }

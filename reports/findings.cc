@@ -40,6 +40,19 @@ std::string closes(const Actor& actor, const std::string& when) {
                               : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
 }
 
+/// "bounces about 79 times"; `errors` may be null.
+std::string bounces(const json& metrics, const json& errors) {
+  const bool doubtful = number(errors, {"bounce_count"}) > doubtful_count;
+  return fmt::format("bounces {}{}", doubtful ? "about " : "", times_word(number(metrics, {"bounce_count"})));
+}
+
+/// The settling time, with "about" where it is doubtful.
+std::string settling(const json& metrics, const json& errors) {
+  const double settled = number(metrics, {"permanent_contact_time_s"});
+  const bool doubtful = number(errors, {"permanent_contact_time_s"}) > doubtful_time * settled;
+  return (doubtful ? "about " : "") + quantity(settled, "s");
+}
+
 /// What one closing does, as a clause without full stop.
 std::string clause(const Actor& actor, const json& metrics, const json& errors, const std::string& status, double window) {
   if (status == "collapsed_at_rest") return actor.subject + " has no stable rest position: it collapses before it is driven";
@@ -58,17 +71,12 @@ std::string clause(const Actor& actor, const json& metrics, const json& errors, 
   }
   std::string words = fmt::format("{} first touches at {}", actor.subject, quantity(first, "s"));
   if (count > 0) {
-    const bool doubtful = number(errors, {"bounce_count"}) > doubtful_count;
-    words += fmt::format(", then bounces {}{}", doubtful ? "about " : "", times_word(count));
+    words += ", then " + bounces(metrics, errors);
     if (height > 0) words += " up to " + quantity(height, "m");
   } else if (height > 0) {
     words += ", then rebounds up to " + quantity(height, "m");
   }
-  if (settles(metrics)) {
-    const double settled = number(metrics, {"permanent_contact_time_s"});
-    const bool doubtful = number(errors, {"permanent_contact_time_s"}) > doubtful_time * settled;
-    return words + fmt::format(" and settles after {}{}", doubtful ? "about " : "", quantity(settled, "s"));
-  }
+  if (settles(metrics)) return words + " and settles after " + settling(metrics, errors);
   return words + " and has not settled when the window ends" + (std::isfinite(window) ? " at " + quantity(window, "s") : "");
 }
 
@@ -83,15 +91,31 @@ std::string run_status(const json& result) {
   return own.empty() ? text(result, {"status"}) : own;
 }
 
-/// What happens after first touch, as a clause.
-std::string aftermath(const std::string& subject, const json& metrics) {
+/// The smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
+double closest(const json& result, const char* run) {
+  double least = std::numeric_limits<double>::quiet_NaN();
+  for (const double gap : numbers(at(result, {"curves", run, "tip_gap_m"}))) least = std::fmin(least, gap);
+  return least;
+}
+
+/// How a run lands and what follows, as a clause; `run` names its curve.
+std::string course(const std::string& subject, const json& result, const char* run, const json& metrics, const json& errors) {
   if (!metrics.is_object()) return {};
-  if (!touches(metrics)) return subject + " never touches";
-  if (!settles(metrics)) return subject + " is still bouncing when the window ends";
-  if (number(metrics, {"bounce_count"}) == 0) return subject + " stays closed from its first touch on";
-  const double bounce_time = number(metrics, {"bounce_time_s"});
-  if (!std::isfinite(bounce_time)) return {};
-  return fmt::format("{} bounces for {} after its first touch", subject, quantity(bounce_time, "s"));
+  if (!touches(metrics)) {
+    const double least = closest(result, run);
+    return subject + " never touches" + (std::isfinite(least) ? " (no nearer than " + quantity(least, "m") + ")" : "");
+  }
+  const double height = number(metrics, {"major_bounce_height_m"});
+  if (clean(metrics)) {
+    const std::string above = height > 0 ? fmt::format(" but for rebounds of {} at most", quantity(height, "m")) : "";
+    return fmt::format("{} lands at {} with {} and stays closed{}", subject,
+                       quantity(number(metrics, {"initial_contact_time_s"}), "s"),
+                       quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"), above);
+  }
+  std::string words = subject + " ";
+  words += number(metrics, {"bounce_count"}) > 0 ? bounces(metrics, errors) : "rebounds";
+  if (height > 0) words += fmt::format(", up to {}", quantity(height, "m"));
+  return words + (settles(metrics) ? ", until " + settling(metrics, errors) : ", and is still open when the window ends");
 }
 
 /// "a; b." with what is empty left out; empty when both are.
@@ -191,23 +215,47 @@ Change figure_change(const json& before, const json& after, const Figure& figure
   return change(number(before, {figure.key}), number(after, {figure.key}), figure.lower_is_better, figure.kind());
 }
 
+std::string goal_text(const json& result, std::string_view key) {
+  const std::string target = text(result, {"target"});
+  if (target.empty()) return {};
+  if (key == "settled") return "yes";
+  if (key == "bounce_count") return target == "bounce" || target == "rebound" || target == "count" ? "0" : "";
+  const auto below = [&](std::string_view of, std::string_view figure, std::string_view unit) -> std::string {
+    const double step = number(baseline_metrics(result), {figure});
+    return target == of && key == figure && std::isfinite(step) ? "below " + quantity(step, unit, 4) : "";
+  };
+  return below("settling", "permanent_contact_time_s", "s") + below("impact", "impact_velocity_m_s", "m/s") +
+         below("energy", "impact_energy_J", "J");
+}
+
 std::string gap_caption(const json& result) {
   std::string what = "Distance of the contact point to the contact plane (positive: open)";
   if (number(best_metrics(result), {"bounce_count"}) > 0 || number(baseline_metrics(result), {"bounce_count"}) > 0) {
     what += fmt::format("; dots mark rebounds above {}", quantity(significant_rebound(result), "m", 1));
   }
   what += ".";
-  const std::string found = is_optimize(result) ? joined(aftermath(step_subject, baseline_metrics(result)),
-                                                         aftermath(own_subject, best_metrics(result)))
-                                                : joined(aftermath("the switch", best_metrics(result)), "");
+  const std::string own =
+      course(is_optimize(result) ? own_subject : "the switch", result, "best", best_metrics(result), at(result, {"errors"}));
+  const std::string found =
+      is_optimize(result)
+          ? joined(course(step_subject, result, "baseline", baseline_metrics(result), at(result, {"baseline", "errors"})), own)
+          : joined(own, "");
   return found.empty() ? what : what + " " + found;
 }
 
 std::string landing_caption(const json& result) {
-  return fmt::format(
-      "The same gap, enlarged: the scale is logarithmic above {} and linear below, so that rebounds of a few nanometres show "
-      "beside the whole travel.",
-      quantity(significant_rebound(result), "m", 1));
+  const auto reach = [&](const char* subject, const json& metrics) -> std::string {
+    if (!touches(metrics)) return {};
+    const double height = number(metrics, {"major_bounce_height_m"});
+    const std::string after = height > 0 ? "rises " + quantity(height, "m") + " above it again" : "does not rise above it again";
+    return fmt::format("{} reaches the plane with {} and {}", subject, quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"),
+                       after);
+  };
+  const std::string found = is_optimize(result)
+                                ? joined(reach(step_subject, baseline_metrics(result)), reach(own_subject, best_metrics(result)))
+                                : joined(reach("the switch", best_metrics(result)), "");
+  return "The same gap in a narrow band around the contact plane; below it the contact is pressed." +
+         (found.empty() ? "" : " " + found);
 }
 
 std::string velocity_caption(const json& result) {
@@ -266,6 +314,7 @@ std::string search_caption(const json& result) {
   const json& best = at(result, {"search", "best_so_far"});
   std::string name = text(result, {"search", "value_name"});
   if (name.empty()) name = "cost";
+  const double own = number(result, {"best", "cost"});
   double first = std::numeric_limits<double>::quiet_NaN();
   double last = first;
   double found_at = first;
@@ -273,20 +322,22 @@ std::string search_caption(const json& result) {
     for (const json& point : best) {
       if (!point.is_array() || point.size() != 2 || !std::isfinite(number(point[1]))) continue;
       if (!std::isfinite(first)) first = number(point[1]);
-      if (!(number(point[1]) >= last)) {
-        last = number(point[1]);
-        found_at = number(point[0]);
-      }
+      if (number(point[1]) >= last) continue;
+      last = number(point[1]);
+      // The winner is not always the lowest: the next best that meets the goal is preferred.
+      if (!(last < own)) found_at = number(point[0]);
     }
   }
-  std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line).";
+  std::string words = capitalised(name) + " of every waveform tried (dots) and of the best so far (line)";
+  const double step = number(result, {"baseline", "cost"});
+  words += std::isfinite(step) ? fmt::format("; the plain step's is {}.", plain_number(step)) : ".";
   if (!std::isfinite(first)) return words;
   const double evaluations = number(result, {"evaluations"});
-  const Change lowered = change(first, last, true);
-  words += std::isfinite(evaluations) ? fmt::format(" In {:.0f} evaluations the {} fell", evaluations, name)
-                                      : fmt::format(" The {} fell", name);
-  return words + fmt::format(" from {} to {}{}; the winner is evaluation {:.0f}.", plain_number(first), plain_number(last),
-                             in_brackets(lowered), found_at);
+  words += std::isfinite(evaluations) ? fmt::format(" In {:.0f} evaluations the {}", evaluations, name) : " The " + name;
+  words += last < first ? fmt::format(" fell from {} to {}{}", plain_number(first), plain_number(last),
+                                      in_brackets(change(first, last, true)))
+                        : " stayed at " + plain_number(first);
+  return words + fmt::format("; the winner is evaluation {:.0f}.", found_at);
 }
 
 bool checks_agree(const json& result) {

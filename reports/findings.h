@@ -53,6 +53,8 @@ struct Figure {
 [[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& beside, const Figure& figure);
 /// The same in words when a number is not available but the reason is: "no contact", "not settled"; else empty.
 [[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, std::string_view key);
+/// What the search wanted of a figure: "0", "yes", "below 323.1 µs"; empty where it wanted nothing.
+[[nodiscard]] std::string goal_text(const nlohmann::json& result, std::string_view key);
 [[nodiscard]] Change figure_change(const nlohmann::json& before, const nlohmann::json& after, const Figure& figure);
 
 /// "Softland's waveform" and "plain step", or "closing" for a single run.

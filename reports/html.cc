@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -83,6 +84,7 @@ std::string key_number(const json& result, std::string_view key, std::string_vie
 }
 
 std::string key_numbers(const json& result) {
+  if (!baseline_metrics(result).is_object() && !missing_reason(best_metrics(result), "initial_contact_time_s").empty()) return {};
   return key_number(result, "permanent_contact_time_s", "Settling time") + key_number(result, "bounce_count", "Rebounds") +
          key_number(result, "major_bounce_height_m", "Highest rebound") +
          key_number(result, "impact_velocity_m_s", "Impact speed");
@@ -96,20 +98,21 @@ std::string figures_table(const json& result) {
   const bool pair = is_optimize(result) && step.is_object();
   const bool estimated =
       errors.is_object() && std::any_of(errors.begin(), errors.end(), [](const json& error) { return error.is_number(); });
-  std::string out =
-      "<section id=\"figures\"><h2>Figures</h2>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
-  if (pair) out += "<th scope=\"col\">Plain step</th>";
+  std::string out = "<section id=\"figures\"><h2>Figures</h2>\n";
+  if (const auto met = truth(result, {"goal_met"})) out += fmt::format("<p>The goal is {}.</p>\n", *met ? "met" : "not met");
+  out += "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
+  if (pair) out += "<th scope=\"col\">Plain step</th><th scope=\"col\">Goal</th>";
   out += pair ? "<th scope=\"col\">Softland</th><th scope=\"col\">Change</th>" : "<th scope=\"col\">Value</th>";
   if (estimated) out += "<th scope=\"col\">Estimated error</th>";
   out += "</tr></thead><tbody>\n";
   for (const Figure& one : figures()) {
     if (at(own, {one.key}).is_null() && at(step, {one.key}).is_null()) continue;
     out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label);
-    if (pair) out += fmt::format("<td>{}</td>", figure_text(step, own, one));
+    if (pair) out += fmt::format("<td>{}</td><td>{}</td>", figure_text(step, own, one), goal_text(result, one.key));
     out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, step, one));
     if (pair) {
       const Change changed = figure_change(step, own, one);
-      out += fmt::format("<td class=\"{}\">{}</td>", verdict_class(changed.verdict), changed.words);
+      out += fmt::format("<td class=\"change {}\">{}</td>", verdict_class(changed.verdict), changed.words);
     }
     if (estimated) {
       const double error = number(errors, {one.key});
@@ -140,7 +143,7 @@ std::string charts(const Picture& drawn) {
   if (!time_charts.empty()) {
     out +=
         "<section id=\"charts\"><h2>The closing</h2>\n<div class=\"tools\" hidden><span role=\"group\" aria-label=\"Time shown\">"
-        "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview and landing</button>"
+        "<button type=\"button\" data-view=\"home\" aria-pressed=\"true\">Overview</button>"
         "<button type=\"button\" data-view=\"landing\" aria-pressed=\"false\">Landing</button>"
         "<button type=\"button\" data-view=\"whole\" aria-pressed=\"false\">Whole window</button></span>"
         "<span class=\"hint\">Drag to zoom, double-click to go back. With a chart focused: ← → read, + − zoom, 0 "
@@ -188,6 +191,16 @@ std::string checks_table(const json& result) {
   return out + "</tbody></table></div></section>\n";
 }
 
+/// "piezo.level_1_V" as "piezo.level_1" and "V".
+std::pair<std::string, std::string_view> without_unit(const std::string& name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> units{
+      {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_s", "s"}, {"_V", "V"}}};
+  for (const auto& [suffix, unit] : units) {
+    if (name.ends_with(suffix)) return {name.substr(0, name.size() - suffix.size()), unit};
+  }
+  return {name, ""};
+}
+
 std::string parameters_table(const json& result) {
   const json& parameters = at(result, {"best", "parameters"});
   if (!parameters.is_object() || parameters.empty()) return {};
@@ -197,40 +210,46 @@ std::string parameters_table(const json& result) {
   std::size_t shown = 0;
   for (const auto& [name, value] : parameters.items()) {
     if (shown++ == most_lines) break;
-    const std::string words = value.is_number()   ? plain_number(value.get<double>(), 7)
+    const auto [plain, unit] = without_unit(name);
+    const std::string words = value.is_number()   ? quantity(value.get<double>(), unit, 6)
                               : value.is_string() ? value.get<std::string>()
                                                   : value.dump();
-    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(words));
+    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(plain), escaped(words));
   }
   return out + "</tbody></table></div></section>\n";
 }
 
-/// Seed, version, effort: what one needs to know to believe and repeat it.
+/// A string, or a number in its shortest form; empty for anything else.
+std::string any(const json& result, std::initializer_list<std::string_view> path) {
+  const json& value = at(result, path);
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return value.dump();
+  return value.is_number() ? plain_number(value.get<double>(), 6) : std::string();
+}
+
+/// What was asked for, and what the device is like.
 std::string facts(const json& result) {
   std::string out;
   const auto fact = [&](std::string_view name, const std::string& value) {
     if (!value.empty()) out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", name, escaped(value));
   };
-  const auto any = [&](std::initializer_list<std::string_view> path) -> std::string {
-    const json& value = at(result, path);
-    if (value.is_string()) return value.get<std::string>();
-    if (value.is_number_integer()) return value.dump();
-    if (value.is_number()) return plain_number(value.get<double>(), 6);
-    return {};
+  const auto words = [&](std::string_view key) {
+    std::string value = any(result, {key});
+    std::replace(value.begin(), value.end(), '_', ' ');
+    return value;
   };
   const auto measured = [&](std::initializer_list<std::string_view> path, std::string_view unit, int digits) {
     const double value = number(result, path);
     return std::isfinite(value) ? quantity(value, unit, digits) : std::string();
   };
-  fact("Status", any({"status"}));
-  if (const auto met = truth(result, {"goal_met"})) fact("Goal met", *met ? "yes" : "no");
-  fact("Target", any({"target"}));
-  fact("Actuator", any({"actuator"}));
-  fact("Optimizer", any({"optimizer"}));
-  fact("Evaluations", any({"evaluations"}));
-  fact("Budget", any({"budget"}));
-  fact("Ended by", any({"termination"}));
-  fact("Seed", any({"seed"}));
+  fact("Status", words("status"));
+  fact("Target", words("target"));
+  fact("Actuator", words("actuator"));
+  fact("Waveform", words("waveform"));
+  fact("Optimizer", words("optimizer"));
+  fact("Evaluations", words("evaluations"));
+  fact("Budget", words("budget"));
+  fact("Ended by", words("termination"));
   fact("Static pull-in", measured({"pull_in", "static_V"}, "V", 5));
   fact("Dynamic pull-in", measured({"pull_in", "dynamic_V"}, "V", 5));
   std::string modes;
@@ -242,10 +261,8 @@ std::string facts(const json& result) {
     }
   }
   fact("Natural frequencies", modes);
-  fact("Integration steps", any({"work", "steps"}));
-  fact("Right-hand sides", any({"work", "rhs_evaluations"}));
-  fact("Computing time", measured({"work", "wall_s"}, "s", 3));
-  fact("softland", any({"version"}));
+  fact("Steps of the shown run", any(result, {"work", "steps"}));
+  fact("Its computing time", measured({"work", "wall_s"}, "s", 3));
   return out.empty() ? out
                      : "<section id=\"facts\"><h2>About this result</h2>\n<dl class=\"facts\">\n" + out + "</dl></section>\n";
 }
@@ -259,9 +276,13 @@ std::string reproduce(const json& result) {
     }
   }
   if (commands.empty()) commands = text(result, {"command"});
-  return commands.empty() ? commands
-                          : "<section id=\"reproduce\"><h2>Reproduce it</h2>\n<pre><code>" + escaped(shortened(commands)) +
-                                "</code></pre></section>\n";
+  std::string with;
+  for (const auto& [name, key] : {std::pair{"softland ", "version"}, {"seed ", "seed"}, {"integrator tolerance ", "tolerance"}}) {
+    if (const std::string value = any(result, {key}); !value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
+  }
+  if (commands.empty() && with.empty()) return {};
+  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre></section>\n",
+                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)));
 }
 
 std::string scene(const json& result) {

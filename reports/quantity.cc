@@ -10,8 +10,8 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::array prefixes{Prefix{1e-18, "a"}, Prefix{1e-15, "f"}, Prefix{1e-12, "p"}, Prefix{1e-9, "n"},
-                              Prefix{1e-6, "µ"},  Prefix{1e-3, "m"},  Prefix{1.0, ""},    Prefix{1e3, "k"},
+constexpr std::array prefixes{Prefix{1e-24, "y"}, Prefix{1e-21, "z"}, Prefix{1e-18, "a"}, Prefix{1e-15, "f"}, Prefix{1e-12, "p"},
+                              Prefix{1e-9, "n"},  Prefix{1e-6, "µ"},  Prefix{1e-3, "m"},  Prefix{1.0, ""},    Prefix{1e3, "k"},
                               Prefix{1e6, "M"},   Prefix{1e9, "G"},   Prefix{1e12, "T"}};
 
 /// `value` rounded to `digits` significant digits, still a double.

@@ -69,16 +69,10 @@
   };
   const font = (size) => size + 'px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
-  // Powers of ten on both sides of zero.
-  const symlogSplits = (threshold) => (u, axis, min, max) => {
-    const out = [0];
-    const decades = Math.round(Math.log10(Math.max(Math.abs(min), Math.abs(max)) / threshold));
-    for (let k = 0; k <= decades; ++k) {
-      const value = threshold * 10 ** k;
-      if (value <= max) out.push(value);
-      if (-value >= min) out.unshift(-value);
-    }
-    return out;
+  const decades = (u, axis, min, max) => {
+    const first = Math.ceil(Math.log10(min) - 1e-9);
+    const count = Math.floor(Math.log10(max) + 1e-9) - first + 1;
+    return Array.from({length: Math.max(0, count)}, (none, i) => 10 ** (first + i));
   };
 
   const drawn = new Map();   // chart id -> uPlot
@@ -96,8 +90,8 @@
     for (const chart of timeCharts()) setRange(chart, range(chart));
   };
   const show = (view) => {
-    const landing = (charts.find(({id}) => id === "landing") || {x: {}}).x.home;
-    spread(({x}) => (view === "landing" && landing ? landing : view === "whole" ? x.whole : x.home));
+    const landing = charts.find(({id}) => id === "landing");
+    spread(({x}) => (view === "landing" ? landing.x.home : view === "whole" ? x.whole : x.home));
     press(view);
   };
   const goHome = (chart) => (chart.group === "time" ? show("home") : setRange(chart, chart.x.home));
@@ -140,11 +134,11 @@
       ctx.stroke();
       ctx.fillStyle = colour("muted");
       ctx.font = font(12 * ratio);
-      ctx.textAlign = "right";
+      ctx.textAlign = chart.zeroLabelLeft ? "left" : "right";
       ctx.textBaseline = "bottom";
-      ctx.fillText(chart.zeroLabel, bbox.left + bbox.width - 4 * ratio, y - 3 * ratio);
+      ctx.fillText(chart.zeroLabel, chart.zeroLabelLeft ? bbox.left + 4 * ratio : bbox.left + bbox.width - 4 * ratio, y - 3 * ratio);
     }
-    ctx.textAlign = "center";
+    ctx.textAlign = "left";
     ctx.textBaseline = "bottom";
     ctx.font = "600 " + font(12.5 * ratio);
     for (const mark of chart.marks) {
@@ -156,7 +150,7 @@
       ctx.beginPath();
       ctx.arc(x, y, 2.6 * ratio, 0, 2 * Math.PI);
       ctx.fill();
-      if (mark.text) ctx.fillText(mark.text, x, y - 5 * ratio);
+      if (mark.text) ctx.fillText(mark.text, x + 6 * ratio, y - ratio);
     }
     ctx.restore();
   };
@@ -172,8 +166,8 @@
       ticks: {show: false},
       ...more,
     });
-    const distribution = {linear: {distr: 1}, log: {distr: 3, log: 10}, symlog: {distr: 4, asinh: y.threshold}}[y.scale];
-    const yPrefix = (u) => (!y.unit ? [1, ""] : prefix(y.scale === "symlog" ? y.threshold : largest(u.scales.y) / 1.1));
+    const distribution = {linear: {distr: 1}, log: {distr: 3, log: 10}}[y.scale];
+    const yPrefix = (u) => (!y.unit ? [1, ""] : prefix(largest(u.scales.y) / 1.1));
     const ticks = (factor) => (value) => (value === null ? null : String(+(value / factor).toPrecision(6)).replace("-", "\u2212"));
     const padded = (u, min, max) => {
       if (min === null || max === null) return [0, 1];
@@ -182,7 +176,7 @@
       const margin = high > low ? 0.06 * (high - low) : Math.max(1e-12, Math.abs(high));
       return [low < 0 || chart.zero ? low - margin : low, high + margin];
     };
-    const range = y.home ? y.home : y.scale === "linear" ? padded : undefined;
+    const range = y.home ? y.home : y.scale === "linear" ? padded : (u, min, max) => [min / 1.5, max * 1.5];
     return {
       width,
       height: narrow ? Math.min(chart.height, 240) : chart.height,
@@ -195,7 +189,7 @@
         bind: {dblclick: () => () => goHome(chart)},
       },
       legend: {live: true, markers: {width: 3, dash: (u, index) => (u.series[index].dash ? "dashed" : "solid")}},
-      scales: {x: {time: false, min: start[0], max: start[1], range: (u, min, max) => [min, max]}, y: {...distribution, ...(range ? {range} : {})}},
+      scales: {x: {time: false, min: start[0], max: start[1], range: (u, min, max) => [min, max]}, y: {...distribution, range}},
       axes: [
         axis("x", x.unit, {
           label: (u) => (x.unit ? `${x.label} (${prefix(largest(u.scales.x))[1]}${x.unit})` : x.label),
@@ -210,18 +204,19 @@
           labelSize: 20,
           size: 54,
           space: 36,
-          ...(y.scale === "symlog" ? {splits: symlogSplits(y.threshold), filter: (u, splits) => splits} : {}),
+          ...(y.scale === "log" ? {splits: decades} : {}),
         }),
       ],
       series: [
         {label: x.label, value: (u, value) => quantity(value, x.unit)},
         ...chart.series.map(({label, role}) => ({
           label,
+          class: role,
           stroke: colour(role),
           ...pens[role],
           spanGaps: false,
           pxAlign: 0,
-          points: role === "evaluations" ? {show: true, size: 3, width: 0, fill: colour(role), space: 0} : {show: false},
+          points: role === "evaluations" ? {show: true, size: narrow ? 2.5 : 3.5, width: 0, fill: colour(role), space: 0} : {show: false},
           ...(role === "evaluations" ? {paths: () => null} : {}),
           value: (u, value) => quantity(value, y.unit, 4),
         })),
@@ -275,6 +270,7 @@
   document.body.classList.add("drawn");
   draw();
   for (const tools of document.querySelectorAll(".tools")) tools.hidden = false;
+  if (!drawn.has("landing")) document.querySelector("[data-view=landing]")?.remove();
   for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => show(button.dataset.view));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
   let width = innerWidth;

@@ -53,7 +53,34 @@ TEST(Charts, EnlargeTheLandingAndTheHighestRebound) {
 TEST(Charts, EnlargeNoLandingWhereThereIsNone) {
   json result = softland::testing::sample_simulate_result(600);
   for (json& gap : result["curves"]["best"]["tip_gap_m"]) gap = 1e-6 + std::abs(gap.get<double>());
-  EXPECT_EQ(ids(picture(result)), (std::vector<std::string>{"gap", "drive-0", "drive-1", "velocity", "force"}));
+  for (json& force : result["curves"]["best"]["contact_force_N"]) force = 0;
+  EXPECT_EQ(ids(picture(result)), (std::vector<std::string>{"gap", "drive-0", "drive-1", "velocity"}));
+}
+
+TEST(Charts, ShowNanometresAroundThePlane) {
+  json result = softland::testing::sample_optimize_result(6000);
+  const auto band = [&] { return picture(result).charts.at(1).y_home.value(); };
+  const std::vector<double> gaps = result["curves"]["baseline"]["tip_gap_m"];
+  const double deepest = *std::min_element(gaps.begin(), gaps.end());
+  EXPECT_LT(band()[0], deepest);
+  EXPECT_GT(band()[0], 2 * deepest);
+  EXPECT_GT(band()[1], -band()[0]);
+  EXPECT_LT(band()[1], 200e-9);  // not the plain step's 803 nm
+  result["best"]["metrics"]["major_bounce_height_m"] = 300e-9;
+  EXPECT_GT(band()[1], 300e-9);
+  EXPECT_LT(band()[1], 400e-9);
+}
+
+TEST(Charts, WriteNoWordsOnReboundsTooSmallToSee) {
+  json result = softland::testing::sample_optimize_result(6000);
+  result["curves"]["best"]["rebounds"] = {{50e-6, 52e-6, 20e-9, 51e-6}};
+  const auto words = [&](std::size_t chart) {
+    std::string all;
+    for (const Mark& mark : picture(result).charts.at(chart).marks) all += mark.text;
+    return all;
+  };
+  EXPECT_EQ(words(0), "803\u00a0nm");
+  EXPECT_EQ(words(1), "803\u00a0nm20.0\u00a0nm");
 }
 
 TEST(Charts, DropRowsWithoutATimeAndTimesThatRunBackwards) {

@@ -106,8 +106,11 @@ TEST(Captions, StateWhatTheNumbersSay) {
   const json result = sample_optimize_result(few_rows);
   EXPECT_EQ(plain(gap_caption(result)),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The plain step "
-            "bounces for 351 µs after its "
-            "first touch; softland's waveform stays closed from its first touch on.");
+            "bounces 57 times, up to 803 nm, until 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and stays closed.");
+  EXPECT_EQ(plain(landing_caption(result)),
+            "The same gap in a narrow band around the contact plane; below it the contact is pressed. The plain step reaches the "
+            "plane with 133 mm/s and rises 803 nm above it again; softland's waveform reaches the plane with 900 µm/s and does "
+            "not rise above it again.");
   EXPECT_EQ(plain(velocity_caption(result)),
             "Velocity of the contact point, positive towards the contact. The plain step lands at 133 mm/s, softland's "
             "waveform at 900 µm/s (148 times lower).");
@@ -123,21 +126,52 @@ TEST(Captions, StateWhatTheNumbersSay) {
   EXPECT_FALSE(checks_agree(result));
 }
 
+TEST(Captions, OfALandingNeverCallItCleanerThanItIs) {
+  json result = sample_optimize_result(few_rows);
+  result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
+  EXPECT_TRUE(plain(gap_caption(result)).ends_with("and stays closed but for rebounds of 420 pm at most."));
+  EXPECT_TRUE(plain(landing_caption(result)).ends_with("with 900 µm/s and rises 420 pm above it again."));
+  result["best"]["metrics"]["settled"] = false;
+  EXPECT_TRUE(plain(gap_caption(result)).ends_with("rebounds, up to 420 pm, and is still open when the window ends."));
+  result["best"]["metrics"] = {{"initial_contact_time_s", nullptr}};
+  result["curves"]["best"]["tip_gap_m"] = {2e-6, nullptr, 1.25e-6};
+  EXPECT_TRUE(plain(gap_caption(result)).ends_with("softland's waveform never touches (no nearer than 1.25 µm)."));
+}
+
 TEST(Captions, OfASearchNameTheWinner) {
-  const json result{{"evaluations", 300},
-                    {"search", {{"value_name", "cost"}, {"best_so_far", {{1, 2.0}, {17, nullptr}, {120, 0.5}, {240, 0.5}}}}}};
+  json result{{"evaluations", 300},
+              {"search", {{"value_name", "cost"}, {"best_so_far", {{1, 2.0}, {17, nullptr}, {120, 0.5}, {240, 0.5}}}}}};
   EXPECT_EQ(search_caption(result),
             "Cost of every waveform tried (dots) and of the best so far (line). In 300 evaluations the cost fell from 2 to 0.5 "
             "(4.0 times lower); the winner is "
             "evaluation 120.");
+  result["search"]["best_so_far"] = {{1, 2.0}, {40, 1.0}, {120, 0.5}};
+  result["best"]["cost"] = 1.0;  // the lowest missed the goal
+  result["baseline"]["cost"] = 0.97;
+  EXPECT_EQ(search_caption(result),
+            "Cost of every waveform tried (dots) and of the best so far (line); the plain step's is 0.97. In 300 evaluations "
+            "the cost fell from 2 to 0.5 (4.0 times lower); the winner is evaluation 40.");
+  result["search"]["best_so_far"] = {{0, 2.0}};
+  result["best"]["cost"] = 2.0;
+  EXPECT_TRUE(search_caption(result).ends_with("In 300 evaluations the cost stayed at 2; the winner is evaluation 0."));
+}
+
+TEST(Goal, IsOfTheFiguresThatTheTargetIsAbout) {
+  json result = sample_optimize_result(few_rows);
+  EXPECT_EQ(goal_text(result, "bounce_count"), "0");
+  EXPECT_EQ(goal_text(result, "settled"), "yes");
+  EXPECT_EQ(goal_text(result, "impact_velocity_m_s"), "");
+  result["target"] = "impact";
+  EXPECT_EQ(plain(goal_text(result, "impact_velocity_m_s")), "below 132.8 mm/s");
+  EXPECT_EQ(goal_text(result, "bounce_count"), "");
+  EXPECT_EQ(goal_text(sample_simulate_result(few_rows), "settled"), "");
 }
 
 TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
   const json result = sample_simulate_result(few_rows);
   EXPECT_EQ(plain(gap_caption(result)),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
-            "bounces for 351 µs after its first "
-            "touch.");
+            "bounces about 57 times, up to 803 nm, until about 374 µs.");
   EXPECT_EQ(plain(force_caption(result)),
             "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
 }

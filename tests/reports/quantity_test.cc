@@ -14,6 +14,7 @@ TEST(Quantity, CarriesAPrefixThreeDigitsAndANoBreakSpace) {
   EXPECT_EQ(quantity(28.087, "V", 4), "28.09\u00a0V");
   EXPECT_EQ(quantity(-0.25, "V"), "-250\u00a0mV");
   EXPECT_EQ(quantity(1e-9, "m", 1), "1\u00a0nm");
+  EXPECT_EQ(quantity(3.5e-23, "J", 2), "35\u00a0yJ");
 }
 
 TEST(Quantity, RoundsBeforeItChoosesThePrefix) {
