@@ -31,7 +31,8 @@ class DistributedLaw {
 template <class Law>
 class DistributedLawOf final : public DistributedLaw {
  public:
-  /// Acts at the points [begin, end). Below `floor` [m] the law is continued by its tangent.
+  /// Acts at the points [begin, end). Below `floor` [m] the load is continued by its tangent, the capacitance by the parabola
+  /// that belongs to it.
   DistributedLawOf(Law law, Eigen::Index begin, Eigen::Index end, double floor)
       : law_(law), begin_(begin), end_(end), floor_(floor) {}
 
@@ -46,17 +47,17 @@ class DistributedLawOf final : public DistributedLaw {
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
       const Dual at = law.load(Dual(std::max(gap[p], floor_), 1), Dual(velocity[p]));
-      load[p] += factor * (at.value + at.slope * std::min(gap[p] - floor_, 0.0));
+      load[p] += factor * (at.value + at.slope * below(gap[p]));
     }
   }
 
   void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const override {
+    if (field.smallest_gap < floor_) return add_tangent_derivatives(field, drive, by_deflection, by_velocity);
     const double factor = Law::driven ? drive : 1;
     for (Eigen::Index p = begin_; p < end_; ++p) {
-      const double gap = std::max(field.gap[p], floor_);
-      by_deflection[p] -=
-          factor * law_.load(Dual(gap, 1), Dual(field.velocity[p])).slope;  // the gap shrinks as the beam deflects
-      by_velocity[p] += factor * law_.load(Dual(gap), Dual(field.velocity[p], 1)).slope;
+      const double gap = field.gap[p], velocity = field.velocity[p];
+      by_deflection[p] -= factor * law_.load(Dual(gap, 1), Dual(velocity)).slope;  // the gap shrinks as the beam deflects
+      by_velocity[p] += factor * law_.load(Dual(gap), Dual(velocity, 1)).slope;
     }
   }
 
@@ -64,11 +65,30 @@ class DistributedLawOf final : public DistributedLaw {
     double sum = 0;
     if constexpr (Law::driven) {
       for (Eigen::Index p = begin_; p < end_; ++p) sum += weights[p] * law_.capacitance(std::max(field.gap[p], floor_));
+      if (begin_ == end_ || field.gap.segment(begin_, end_ - begin_).minCoeff() >= floor_) return sum;
+      // The load at 1 V is -c'/2: c goes on as the parabola that belongs to the tangent.
+      const Dual at = law_.load(Dual(floor_, 1), Dual());
+      for (Eigen::Index p = begin_; p < end_; ++p) {
+        const double h = below(field.gap[p]);
+        sum -= weights[p] * (2 * at.value + at.slope * h) * h;
+      }
     }
     return sum;
   }
 
  private:
+  void add_tangent_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const {
+    const double factor = Law::driven ? drive : 1;
+    for (Eigen::Index p = begin_; p < end_; ++p) {
+      // Outer direction the gap, inner the velocity: the slope of the tangent depends on the velocity too.
+      const double gap = std::max(field.gap[p], floor_);
+      const auto at = law_.load(DualOf<Dual>(gap, 1), DualOf<Dual>(Dual(field.velocity[p], 1)));
+      by_deflection[p] -= factor * at.slope.value;
+      by_velocity[p] += factor * (at.value.slope + at.slope.slope * below(field.gap[p]));
+    }
+  }
+  [[nodiscard]] double below(double gap) const { return std::min(gap - floor_, 0.0); }
+
   Law law_;
   Eigen::Index begin_, end_;
   double floor_;

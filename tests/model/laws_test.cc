@@ -5,6 +5,7 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 #include <complex>
+#include <type_traits>
 #include <vector>
 
 #include "base/literals.h"
@@ -340,6 +341,56 @@ TEST(DistributedLaw, GoesOnAlongItsTangentBelowTheFloor) {
   expect_tangent_below(ElectrostaticForce<MeijsFokkemaFringing>{fringing<MeijsFokkemaFringing>(20_um, 2_um)}, floor, 0.1);
   expect_tangent_below(ElectrostaticForce<Bao2001Fringing>{fringing<Bao2001Fringing>(20_um, 2_um)}, floor, 0.1);
   expect_tangent_below(StripSqueezeFilm{.viscosity = 1.86e-5_Pa_s, .width = 20_um}, floor, 0.1);
+}
+
+template <class Law>
+class LawAlongTheBeam : public testing::Test {
+ protected:
+  static Law physics() {
+    if constexpr (std::is_same_v<Law, StripSqueezeFilm>) {
+      return {.viscosity = 1.86e-5_Pa_s, .width = 20_um};
+    } else {
+      return {fringing<decltype(Law::fringing)>(20_um, 2_um)};
+    }
+  }
+};
+using LawsAlongTheBeam =
+    testing::Types<ElectrostaticForce<NoFringing>, ElectrostaticForce<LinearFringing>, ElectrostaticForce<MeijsFokkemaFringing>,
+                   ElectrostaticForce<Bao2001Fringing>, StripSqueezeFilm>;
+TYPED_TEST_SUITE(LawAlongTheBeam, LawsAlongTheBeam);
+
+constexpr double gap_floor = 35_nm;
+// Above, just above, at, just below and far below the floor; deep below no gap is left.
+constexpr std::array around_the_floor{
+    10 * gap_floor, 1.5 * gap_floor, 1.0000001 * gap_floor, gap_floor, 0.9999999 * gap_floor, 0.5 * gap_floor, 0.0,
+    -gap_floor,     -5 * gap_floor};
+
+TYPED_TEST(LawAlongTheBeam, HasTheDerivativesOfItsLoadAboveAndBelowTheFloor) {
+  constexpr double differences = 1e-5;  // relative; at the floor the second derivative jumps
+  const DistributedLawOf law(TestFixture::physics(), 0, 1, gap_floor);
+  for (const double h : around_the_floor) {
+    for (const double v : {-0.4, 0.1}) {
+      double by_deflection = 0, by_velocity = 0;
+      law.add_derivatives(field({h}, v), 1, &by_deflection, &by_velocity);
+      const double by_gap = derivative([&](double x) { return load_at(law, x, v); }, h, 1e-6 * gap_floor);
+      EXPECT_NEAR(by_deflection, -by_gap, differences * std::abs(by_gap)) << "gap " << h << ", velocity " << v;
+      const double expected = derivative([&](double x) { return load_at(law, h, x); }, v, 0.01);
+      EXPECT_NEAR(by_velocity, expected, 1e-11 * std::abs(expected)) << "gap " << h << ", velocity " << v;
+    }
+  }
+}
+
+TYPED_TEST(LawAlongTheBeam, HasTheEnergyOfItsLoadAboveAndBelowTheFloor) {
+  if constexpr (TypeParam::driven) {
+    constexpr double differences = 1e-5;  // relative; at the floor the third derivative jumps
+    const DistributedLawOf law(TestFixture::physics(), 0, 1, gap_floor);
+    const Eigen::ArrayXd weights = Eigen::ArrayXd::Constant(1, 10_um);
+    const auto energy = [&](double h) { return -law.capacitance(field({h}, 0), weights) / 2; };  // at 1 V
+    for (const double h : around_the_floor) {
+      const double slope = derivative(energy, h, 1e-3 * gap_floor);
+      EXPECT_NEAR(slope, 10_um * load_at(law, h, 0), differences * slope) << "gap " << h;
+    }
+  }
 }
 
 TEST(DistributedLaw, ActsAtItsOwnPointsOnly) {
