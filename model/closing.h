@@ -5,6 +5,10 @@
 // not hide between steps). Error weights: a mode's coordinate counts as the deflection it causes at the contact point, its
 // velocity as that times its frequency. In flight the tolerance is relative to the contact gap, in contact to the penetration,
 // which is a thousand times smaller.
+//
+// Every run keeps the books of its energy, dissipation by Simpson's rule over each step: an integrator that loses the contact
+// between two steps, or a tolerance too loose for a stiff one, shows as energy that came from nowhere. A residual above 1 % of
+// the energy that bends the beam by the contact gap is a warning, above 20 % the run is a numerical failure.
 #pragma once
 
 #include <atomic>
@@ -36,7 +40,6 @@ struct ClosingOptions {
   /// Potential of the closed equilibrium under the hold levels [J]: when given, Trajectory::landing_excess is measured against
   /// it.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
-  bool audit = false;                       ///< integrate dissipation for Trajectory::energy
   const std::atomic<bool>* stop = nullptr;  ///< set from outside: ends the run as `interrupted`
   /// Called after every step with time [s], q and v; true ends the run (status done).
   std::function<bool(double, const double*, const double*)> observer = {};

@@ -86,12 +86,13 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   if (device_.gas) {
     passive_laws_.push_back(erased(StripSqueezeFilm{.viscosity = device_.gas->viscosity, .width = s.width}, {0, n}, gap_floor()));
   }
+  // What bends the beam by the contact gap at x_c.
+  const double compliance = contact_shape_.cwiseAbs2().cwiseQuotient(squares_).sum();
+  const double force = device_.gap.contact / compliance;
+  bending_energy_ = force * device_.gap.contact / 2;
   if (device_.contact) {
     contact_ = contact_law(*device_.contact, s.width);
-    // Stiffness of the beam against a force at x_c, then the interference that carries it over the contact gap, by bisection:
-    // laws grow.
-    const double compliance = contact_shape_.cwiseAbs2().cwiseQuotient(squares_).sum();
-    const double force = device_.gap.contact / compliance;
+    // The interference that carries this force, by bisection: laws grow.
     double low = 0, high = device_.gap.contact;
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2;
@@ -202,6 +203,10 @@ double Switch::elastic_energy(const double* q) const {
 
 double Switch::dissipated_power(const double* q, const double* v, Workspace& work) const {
   set_field(q, v, work);
+  return dissipated_power(v, work);
+}
+
+double Switch::dissipated_power(const double* v, Workspace& work) const {
   work.load.setZero();
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
   const double modal =

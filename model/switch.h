@@ -78,8 +78,14 @@ class Switch {
   [[nodiscard]] double piezo_charge(const double* q) const;
   [[nodiscard]] double kinetic_energy(const double* v) const;  ///< [J]
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< bending, without piezo coupling and contact [J]
+  /// Whether anything takes energy out: gas or modal damping.
+  [[nodiscard]] bool damped() const { return !passive_laws_.empty() || device_.structure.damping_ratio > 0; }
   /// Power taken out by gas and modal damping [W].
   [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work) const;
+  /// The same in the field last computed with `work`, whose velocities are `v`.
+  [[nodiscard]] double dissipated_power(const double* v, Workspace& work) const;
+  /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
+  [[nodiscard]] double bending_energy() const { return bending_energy_; }
   /// Energy of the closed system under constant voltages: elastic + contact - 1/2 C V^2 - V theta q [J]. Its gradient is minus
   /// the static force.
   [[nodiscard]] double potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const;
@@ -103,6 +109,7 @@ class Switch {
   std::optional<ContactLaw> contact_;
   double in_contact_period_ = 0;
   double penetration_scale_ = 0;
+  double bending_energy_ = 0;
 };
 
 }  // namespace softland

@@ -35,11 +35,11 @@ struct Work {
   double wall = 0;  ///< [s]
 };
 
-/// Residual of the energy balance of a run: work of the sources = change of stored energy + dissipated energy.
-struct EnergyAudit {
-  double source_work = 0;  ///< [J]
-  double stored = 0;       ///< change of kinetic + elastic + electrostatic + contact energy [J]
-  double dissipated = 0;   ///< gas and modal damping [J]
+/// Energy balance of a run up to some time: work of the sources = change of stored energy + dissipated energy.
+struct EnergyBalance {
+  double source_work = std::numeric_limits<double>::quiet_NaN();  ///< integral of V dQ over all drives [J]
+  double stored = 0;      ///< change of kinetic + elastic + electrostatic + contact energy [J]
+  double dissipated = 0;  ///< gas and modal damping [J]
   [[nodiscard]] double residual() const { return source_work - stored - dissipated; }
 };
 
@@ -51,7 +51,6 @@ struct Trajectory {
   std::vector<Touch> touches;
   double in_contact_period =
       std::numeric_limits<double>::quiet_NaN();  ///< 2 pi over the first frequency of the beam pinned at x_c [s]
-  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< integral of V dQ over all drives [J]
   double hold_force =
       std::numeric_limits<double>::quiet_NaN();  ///< of the closed equilibrium under the hold levels, if computed [N]
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();  ///< beam to electrode, anywhere, ever [m]
@@ -59,7 +58,9 @@ struct Trajectory {
   /// has to be dissipated, by bouncing or otherwise, before the switch rests.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
   double deepest_penetration = 0;  ///< [m]
-  EnergyAudit energy;              ///< filled when asked for
+  EnergyBalance energy;            ///< at the end
+  /// Largest residual of the energy balance at any make or break of contact and at the end [J].
+  double energy_error = 0;
   Work work;
   std::vector<std::string> warnings;
 };

@@ -206,7 +206,7 @@ Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options) {
   }
   if (!ran_to_the_end || !sound) return result;
 
-  result.drive_energy = trajectory.drive_energy;
+  result.drive_energy = trajectory.energy.source_work;
   if (!touched) {
     if (trajectory.status == Status::done) result.status = Status::no_contact;
     return result;

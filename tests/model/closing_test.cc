@@ -154,7 +154,7 @@ TEST(Closing, RepeatsItselfBitForBit) {
     EXPECT_EQ(a.points[i].time, b.points[i].time);
     EXPECT_EQ(a.points[i].position, b.points[i].position);
   }
-  EXPECT_EQ(a.drive_energy, b.drive_energy);
+  EXPECT_EQ(a.energy.source_work, b.energy.source_work);
 }
 
 TEST(Closing, StopsAtEveryBreakpoint) {
@@ -188,7 +188,7 @@ TEST(Closing, WithoutDrivesStaysAtRest) {
   EXPECT_EQ(t.status, Status::done);
   EXPECT_TRUE(t.touches.empty());
   for (const TrajectoryPoint& p : t.points) EXPECT_EQ(p.position, 0);
-  EXPECT_EQ(t.drive_energy, 0);
+  EXPECT_EQ(t.energy.source_work, 0);
 }
 
 TEST(Closing, ThatDoesNotReachTheContactHasNoTouches) {

@@ -123,7 +123,7 @@ TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm) {
 TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive) {
   const Switch device(oscillator(0));
   const std::vector<Signal> drives{Signal::constant(-0.2)};
-  const Trajectory trajectory = simulate_closing(device, drives, {.duration = 130_us, .tolerance = tight, .audit = true});
+  const Trajectory trajectory = simulate_closing(device, drives, {.duration = 130_us, .tolerance = tight});
   EXPECT_GT(trajectory.energy.source_work, 0);
   EXPECT_NEAR(trajectory.energy.residual(), 0, 1e-7 * trajectory.energy.source_work);
   // Work of a constant voltage: V times the charge the deflection moved, theta q.

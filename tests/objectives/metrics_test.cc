@@ -91,7 +91,7 @@ TEST(Metrics, BouncingBallHasTheHeightsOfAGeometricSeries) {
 TEST(Metrics, BouncingBallGivesEveryFigureInClosedForm) {
   const BouncingBall ball;
   Trajectory trajectory = ball.trajectory(6, 1_ms, 2);
-  trajectory.drive_energy = 3e-12;
+  trajectory.energy.source_work = 3e-12;
   trajectory.hold_force = 4e-6;
   const Metrics m = metrics(trajectory);
   EXPECT_EQ(m.status, Status::done);
@@ -347,7 +347,7 @@ TEST(Metrics, TouchesGivePeakForceAndImpactEnergy) {
 TEST(Metrics, NoContactLeavesTheContactFiguresUnset) {
   Trajectory trajectory = BouncingBall{}.trajectory(0, 0, 3);
   trajectory.points.resize(3);
-  trajectory.drive_energy = 1e-12;
+  trajectory.energy.source_work = 1e-12;
   trajectory.hold_force = 1e-6;
   const Metrics m = metrics(trajectory);
   EXPECT_EQ(m.status, Status::no_contact);
