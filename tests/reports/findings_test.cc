@@ -134,7 +134,7 @@ TEST(Captions, OfALandingNeverCallItCleanerThanItIs) {
   result["best"]["metrics"]["settled"] = false;
   EXPECT_TRUE(plain(gap_caption(result)).ends_with("rebounds, up to 420 pm, and is still open when the window ends."));
   result["best"]["metrics"] = {{"initial_contact_time_s", nullptr}};
-  result["curves"]["best"]["tip_gap_m"] = {2e-6, nullptr, 1.25e-6};
+  result["curves"]["best"]["tip_gap_m"] = {2e-6, 1.25e-6, nullptr, 1.5e-6};
   EXPECT_TRUE(plain(gap_caption(result)).ends_with("softland's waveform never touches (no nearer than 1.25 µm)."));
 }
 

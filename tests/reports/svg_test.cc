@@ -21,6 +21,8 @@ TEST(SvgPicture, IsWellFormedAndTellsTheFinding) {
   EXPECT_THAT(svg, HasSubstr("Gap (nm)"));
   EXPECT_THAT(svg, HasSubstr("Voltage (mV)"));
   EXPECT_THAT(svg, HasSubstr("803\u00a0nm"));
+  EXPECT_THAT(svg, HasSubstr(">contact plane<"));
+  EXPECT_LT(svg.size(), 150'000u);
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
 }
