@@ -1,12 +1,73 @@
 // Quintic Hermite interpolation of a motion between two knots with position, velocity and acceleration: error of sixth order in
-// the step.
+// the step. Zeros of functions and of polynomials, to find what happens between the knots.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 
 namespace softland {
+
+/// A zero of f in [low, high] where f(low) and f(high) differ in sign: bisection and regula falsi (ITP-like), to rounding of the
+/// bracket.
+template <class F>
+double bracketed_zero(F&& f, double low, double high) {
+  double f_low = f(low), f_high = f(high);
+  if (f_low == 0) return low;
+  if (f_high == 0) return high;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = low + (high - low) / 2;
+    if (!(middle > low && middle < high)) break;
+    double t = i % 3 == 2 ? middle
+                          : low - f_low * (high - low) / (f_high - f_low);  // every third step halves, so the bracket must shrink
+    if (!(t > low && t < high)) t = middle;
+    const double value = f(t);
+    if (value == 0) return t;
+    if ((value < 0) == (f_low < 0)) {
+      low = t, f_low = value, f_high /= i % 3 == 1 ? 2 : 1;
+    } else {
+      high = t, f_high = value, f_low /= i % 3 == 1 ? 2 : 1;
+    }
+  }
+  return std::abs(f_low) < std::abs(f_high) ? low : high;
+}
+
+/// Places in (0, 1) in order, at most N.
+template <std::size_t N>
+struct Places {
+  std::array<double, N> at{};
+  std::size_t count = 0;
+  [[nodiscard]] const double* begin() const { return at.data(); }
+  [[nodiscard]] const double* end() const { return at.data() + count; }
+};
+
+/// Where the polynomial c[0] + c[1] s + ... + c[N] s^N changes sign in 0 < s < 1: between the zeros of its derivative it is
+/// monotone.
+template <std::size_t M>
+[[nodiscard]] Places<M - 1> sign_changes(const std::array<double, M>& c) {
+  constexpr std::size_t degree = M - 1;
+  Places<degree> places;
+  if constexpr (degree > 0) {
+    const auto value = [&](double s) {
+      return std::accumulate(c.rbegin(), c.rend(), 0.0, [s](double v, double k) { return v * s + k; });
+    };
+    std::array<double, degree> slope;
+    for (std::size_t k = 0; k < degree; ++k) slope[k] = static_cast<double>(k + 1) * c[k + 1];
+    double low = 0;
+    const auto look = [&](double high) {
+      const double at_low = value(low), at_high = value(high);
+      if ((at_low < 0 && at_high > 0) || (at_low > 0 && at_high < 0)) {
+        places.at[places.count++] = bracketed_zero(value, low, high);
+      }
+      low = high;
+    };
+    for (const double turn : sign_changes(slope)) look(turn);
+    look(1);
+  }
+  return places;
+}
 
 class Quintic {
  public:
@@ -34,6 +95,12 @@ class Quintic {
     const double s = (t - begin_) / length_;
     return (2 * c_[2] + s * (6 * c_[3] + s * (12 * c_[4] + s * 20 * c_[5]))) / (length_ * length_);
   }
+  /// Times in (begin, end) at which the velocity changes sign, in order.
+  [[nodiscard]] Places<4> turns() const {
+    Places<4> turns = sign_changes(std::array{c_[1], 2 * c_[2], 3 * c_[3], 4 * c_[4], 5 * c_[5]});
+    for (double& t : turns.at) t = begin_ + t * length_;
+    return turns;
+  }
   [[nodiscard]] double begin() const { return begin_; }
   [[nodiscard]] double end() const { return begin_ + length_; }
 
@@ -41,29 +108,5 @@ class Quintic {
   double begin_, length_;
   std::array<double, 6> c_{};
 };
-
-/// A zero of f in [low, high] where f(low) and f(high) differ in sign: bisection and regula falsi (ITP-like), to rounding of the
-/// bracket.
-template <class F>
-double bracketed_zero(F&& f, double low, double high) {
-  double f_low = f(low), f_high = f(high);
-  if (f_low == 0) return low;
-  if (f_high == 0) return high;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = low + (high - low) / 2;
-    if (!(middle > low && middle < high)) break;
-    double t = i % 3 == 2 ? middle
-                          : low - f_low * (high - low) / (f_high - f_low);  // every third step halves, so the bracket must shrink
-    if (!(t > low && t < high)) t = middle;
-    const double value = f(t);
-    if (value == 0) return t;
-    if ((value < 0) == (f_low < 0)) {
-      low = t, f_low = value, f_high /= i % 3 == 1 ? 2 : 1;
-    } else {
-      high = t, f_high = value, f_low /= i % 3 == 1 ? 2 : 1;
-    }
-  }
-  return std::abs(f_low) < std::abs(f_high) ? low : high;
-}
 
 }  // namespace softland

@@ -5,86 +5,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/quintic.h"
+
 namespace softland {
 namespace {
 
 /// Knots this close to the first-touch plane, relative to the contact gap, are on it: the integrator stops there to rounding.
 constexpr double kPlaneTolerance = 1e-12;
-
-/// c[0] + c[1] s + ... + c[degree] s^degree on 0 <= s <= 1.
-struct Polynomial {
-  std::array<double, 6> c{};
-  int degree = 5;
-
-  [[nodiscard]] double operator()(double s) const {
-    double value = 0;
-    for (int k = degree; k >= 0; --k) value = value * s + c[static_cast<std::size_t>(k)];
-    return value;
-  }
-  [[nodiscard]] Polynomial derivative() const {
-    Polynomial result;
-    result.degree = degree - 1;
-    for (int k = 1; k <= degree; ++k) result.c[static_cast<std::size_t>(k - 1)] = k * c[static_cast<std::size_t>(k)];
-    return result;
-  }
-};
-
-/// The root of a function that is monotone on [low, high] and has opposite signs at the ends: Newton, halving where Newton leaves
-/// the bracket or gains too little.
-double monotone_root(const Polynomial& function, const Polynomial& slope, double low, double high) {
-  const bool rising = function(high) > 0;
-  double s = 0.5 * (low + high);
-  constexpr int most_iterations = 100;
-  for (int i = 0; i < most_iterations; ++i) {
-    const double value = function(s);
-    if (value == 0) return s;
-    ((value > 0) == rising ? high : low) = s;
-    double next = s - value / slope(s);
-    const bool inside = next > low && next < high;
-    // Newton converges within a few steps or not at all; every third step halves so that a flat start cannot creep.
-    constexpr int halving_every = 3;
-    if (!inside || i % halving_every == halving_every - 1) next = 0.5 * (low + high);
-    if (std::abs(next - s) <= std::numeric_limits<double>::epsilon()) return next;
-    s = next;
-  }
-  return s;
-}
-
-struct Roots {
-  std::array<double, 5> at{};
-  int count = 0;
-};
-
-/// All sign changes inside (0, 1), in order: between the roots of its derivative a polynomial is monotone.
-Roots sign_changes(const Polynomial& function) {
-  Roots roots;
-  if (function.degree == 0) return roots;
-  const Polynomial slope = function.derivative();
-  const Roots turns = sign_changes(slope);
-  double low = 0;
-  for (int i = 0; i <= turns.count; ++i) {
-    const double high = i < turns.count ? turns.at[static_cast<std::size_t>(i)] : 1.0;
-    const double at_low = function(low);
-    const double at_high = function(high);
-    if ((at_low < 0 && at_high > 0) || (at_low > 0 && at_high < 0)) {
-      roots.at[static_cast<std::size_t>(roots.count++)] = monotone_root(function, slope, low, high);
-    }
-    low = high;
-  }
-  return roots;
-}
-
-/// The separation contact_gap - position between two knots, as a quintic in s = (time - a.time) / (b.time - a.time).
-Polynomial separation(const TrajectoryPoint& a, const TrajectoryPoint& b, double contact_gap) {
-  const double h = b.time - a.time;
-  const double rise = a.position - b.position;
-  const double v0 = -a.velocity * h;
-  const double v1 = -b.velocity * h;
-  const double a0 = -a.acceleration * h * h;
-  const double a1 = -b.acceleration * h * h;
-  return {.c = {contact_gap - a.position, v0, 0.5 * a0, 10 * rise - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1,
-                -15 * rise + 8 * v0 + 7 * v1 + 1.5 * a0 - a1, 6 * rise - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
-}
 
 /// True when the control points of the quintic's Bernstein form are in order: a cheap proof that nothing turns between the knots.
 bool surely_monotone(const TrajectoryPoint& a, const TrajectoryPoint& b) {
@@ -136,28 +63,24 @@ std::vector<Node> nodes(const Trajectory& trajectory) {
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const TrajectoryPoint& a = trajectory.points[i];
     const TrajectoryPoint& b = trajectory.points[i + 1];
-    const double h = b.time - a.time;
-    const Polynomial curve = separation(a, b, gap);
-    const Polynomial slope = curve.derivative();
-    const auto node_at = [&](double s, double value) { return Node{a.time + s * h, value, h > 0 ? -slope(s) / h : b.velocity}; };
-
-    double low = 0;
-    const auto advance = [&](double high, const Node& node) {
-      const double before = result.back().separation;
-      if ((before < 0 && node.separation > 0) || (before > 0 && node.separation < 0)) {
-        result.push_back(node_at(monotone_root(curve, slope, low, high), 0));
+    if (b.time > a.time) {
+      const Quintic curve(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
+      const auto separation = [&](double t) { return gap - curve.position(t); };
+      const auto advance = [&](const Node& node) {
+        const Node& before = result.back();
+        if ((before.separation < 0 && node.separation > 0) || (before.separation > 0 && node.separation < 0)) {
+          const double crossing = bracketed_zero(separation, before.time, node.time);
+          result.push_back({crossing, 0, curve.velocity(crossing)});
+        }
+        result.push_back(node);
+      };
+      if (!surely_monotone(a, b)) {
+        for (const double t : curve.turns()) advance({t, snapped(separation(t)), curve.velocity(t)});
       }
-      result.push_back(node);
-      low = high;
-    };
-    if (h > 0 && !surely_monotone(a, b)) {
-      const Roots turns = sign_changes(slope);
-      for (int k = 0; k < turns.count; ++k) {
-        const double s = turns.at[static_cast<std::size_t>(k)];
-        advance(s, node_at(s, snapped(curve(s))));
-      }
+      advance(knot(b));
+    } else {
+      result.push_back(knot(b));
     }
-    advance(1, knot(b));
   }
   return result;
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "model/constants.h"
 #include "model/gauss.h"
@@ -55,6 +57,38 @@ TEST(BracketedZero, NeedsFewEvaluations) {
   const double zero = bracketed_zero([&](double x) { return ++evaluations, x * x * x - 2; }, 0, 2);
   EXPECT_NEAR(zero, std::cbrt(2.0), 1e-15);
   EXPECT_LT(evaluations, 64);  // bisection to rounding takes 53
+}
+
+TEST(SignChanges, AreFoundInOrderAndToRounding) {
+  constexpr double rounding = 1e-15;
+  const auto expect = [&](const auto& found, const std::vector<double>& places) {
+    ASSERT_EQ(found.count, places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(found.at[i], places[i], rounding) << i;
+  };
+  expect(sign_changes(std::array{1.0}), {});
+  expect(sign_changes(std::array{-0.25, 1.0}), {0.25});
+  expect(sign_changes(std::array{0.25, 1.0}), {});                      // outside
+  expect(sign_changes(std::array{0.0, 1.0}), {});                       // on the edge
+  expect(sign_changes(std::array{0.25, -1.0, 1.0}), {});                // touches zero at 1/2
+  expect(sign_changes(std::array{0.0625, -0.625, 1.0}), {0.125, 0.5});  // (s - 1/8) (s - 1/2)
+  expect(sign_changes(std::array{-0.125, 0.75, -1.5, 1.0}), {0.5});     // (s - 1/2)^3, the slope does not change sign there
+  expect(sign_changes(std::array{-0.09375, 0.6875, -1.5, 1.0}), {0.25, 0.5, 0.75});
+}
+
+TEST(Quintic, TurnsWhereItsVelocityChangesSign) {
+  // Cosine over more than a period: seen between knots that are far apart, it turns where a quintic through them does.
+  const auto knots = [](double t0, double t1) {
+    return Quintic(t0, std::cos(t0), -std::sin(t0), -std::cos(t0), t1, std::cos(t1), -std::sin(t1), -std::cos(t1));
+  };
+  const Quintic one = knots(3, 3.5), none = knots(3.2, 3.5);
+  ASSERT_EQ(one.turns().count, 1u);
+  EXPECT_NEAR(one.turns().at[0], pi, 1e-5);
+  EXPECT_NEAR(one.velocity(one.turns().at[0]), 0, 1e-15);
+  EXPECT_EQ(none.turns().count, 0u);
+  const Quintic two = knots(0.5, 7);
+  ASSERT_EQ(two.turns().count, 2u);
+  for (const double t : two.turns()) EXPECT_NEAR(two.velocity(t), 0, 1e-14);
+  EXPECT_LT(two.turns().at[0], two.turns().at[1]);
 }
 
 TEST(GaussRule, IsExactUpToItsDegree) {
