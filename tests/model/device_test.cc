@@ -30,38 +30,38 @@ TEST(Device, OfTheReferenceIsValid) {
 }
 
 TEST(Device, NamesWhatIsWrongWithIt) {
-  expect_message([](Device& d) { d.structure.length = 0; }, "structure.length = 0: must be positive");
-  expect_message([](Device& d) { d.structure.width = -1e-6; }, "structure.width = -1e-06: must be positive");
-  expect_message([](Device& d) { d.structure.thickness = std::nan(""); }, "structure.thickness = nan: must be positive");
-  expect_message([](Device& d) { d.structure.youngs_modulus = INFINITY; }, "structure.youngs_modulus = inf: must be positive");
-  expect_message([](Device& d) { d.structure.density = 0; }, "structure.density = 0: must be positive");
+  expect_message([](Device& d) { d.structure.length = 0; }, "structure.length = 0 m: must be positive");
+  expect_message([](Device& d) { d.structure.width = -1e-6; }, "structure.width = -1 um: must be positive");
+  expect_message([](Device& d) { d.structure.thickness = std::nan(""); }, "structure.thickness = nan m: must be positive");
+  expect_message([](Device& d) { d.structure.youngs_modulus = INFINITY; }, "structure.youngs_modulus = inf Pa: must be positive");
+  expect_message([](Device& d) { d.structure.density = 0; }, "structure.density = 0 kg/m^3: must be positive");
   expect_message([](Device& d) { d.structure.modes = 0; }, "structure.modes = 0: must be from 1 to 20");
   expect_message([](Device& d) { d.structure.modes = 21; }, "structure.modes = 21: must be from 1 to 20");
   expect_message([](Device& d) { d.structure.damping_ratio = -0.1; }, "structure.damping_ratio = -0.1: must not be negative");
   expect_message([](Device& d) { d.structure.plate_strain = true; },
                  "structure.poissons_ratio = nan: plate_strain needs one between -1 and 0.5");
-  expect_message([](Device& d) { d.gap.electrode = 0; }, "gap.electrode = 0: must be positive");
+  expect_message([](Device& d) { d.gap.electrode = 0; }, "gap.electrode = 0 m: must be positive");
   expect_message([](Device& d) { d.gap.contact = 4e-6; },
-                 "gap.contact = 4e-06 m: must be positive and below gap.electrode = 3.5e-06 m");
-  expect_message([](Device& d) { d.gap.contact = 0; }, "gap.contact = 0 m: must be positive and below gap.electrode = 3.5e-06 m");
+                 "gap.contact = 4 um: must be positive and below gap.electrode = 3.5 um");
+  expect_message([](Device& d) { d.gap.contact = 0; }, "gap.contact = 0 m: must be positive and below gap.electrode = 3.5 um");
   expect_message([](Device& d) { d.electrodes[0] = {.name = "left", .begin = 0, .end = 0.1}; },
-                 "electrode.left.span = [0, 0.1] m: must increase and lie on the beam [0, 0.00025] m");
-  expect_message([](Device& d) { d.electrodes[0].begin = d.electrodes[0].end = 1e-4; },
-                 "electrode.main.span = [0.0001, 0.0001] m: must increase and lie on the beam [0, 0.00025] m");
-  expect_message([](Device& d) { d.gas->viscosity = 0; }, "gas.viscosity = 0: must be positive");
+                 "electrode.left.span = [0 m, 100 mm]: must increase and lie on the beam, from 0 m to 250 um");
+  expect_message([](Device& d) { d.electrodes[0].begin = d.electrodes[0].end = 60_um; },
+                 "electrode.main.span = [60 um, 60 um]: must increase and lie on the beam, from 0 m to 250 um");
+  expect_message([](Device& d) { d.gas->viscosity = 0; }, "gas.viscosity = 0 Pa s: must be positive");
   expect_message([](Device& d) { d.contact->pad_length = 1; },
-                 "contact.pad_length = 1 m: must be positive and below the length 0.00025 m");
-  expect_message([](Device& d) { d.contact->asperity_radius = 0; }, "contact.asperity_radius = 0: must be positive");
-  expect_message([](Device& d) { d.contact->asperity_density = 0; }, "contact.asperity_density = 0: must be positive");
-  expect_message([](Device& d) { d.contact->asperity_height = 0; }, "contact.asperity_height = 0: must be positive");
-  expect_message([](Device& d) { d.contact->effective_modulus = 0; }, "contact.effective_modulus = 0: must be positive");
-  expect_message([](Device& d) { d.contact->model = ContactModel::linear; }, "contact.stiffness = 0: must be positive");
+                 "contact.pad_length = 1 m: must be positive and below structure.length = 250 um");
+  expect_message([](Device& d) { d.contact->asperity_radius = 0; }, "contact.asperity_radius = 0 m: must be positive");
+  expect_message([](Device& d) { d.contact->asperity_density = 0; }, "contact.asperity_density = 0 1/m^2: must be positive");
+  expect_message([](Device& d) { d.contact->asperity_height = 0; }, "contact.asperity_height = 0 m: must be positive");
+  expect_message([](Device& d) { d.contact->effective_modulus = 0; }, "contact.effective_modulus = 0 Pa: must be positive");
+  expect_message([](Device& d) { d.contact->model = ContactModel::linear; }, "contact.stiffness = 0 N/m: must be positive");
   expect_message([](Device& d) { d.piezo->begin = -1e-6, d.piezo->end = 2e-4; },
-                 "piezo.span = [-1e-06, 0.0002] m: must increase and lie on the beam [0, 0.00025] m");
-  expect_message([](Device& d) { d.piezo->thickness = 0; }, "piezo.thickness = 0: must be positive");
-  expect_message([](Device& d) { d.piezo->youngs_modulus = 0; }, "piezo.youngs_modulus = 0: must be positive");
-  expect_message([](Device& d) { d.piezo->density = 0; }, "piezo.density = 0: must be positive");
-  expect_message([](Device& d) { d.piezo->d31 = std::nan(""); }, "piezo.d31 = nan m/V: must be a finite number below 1 m/V");
+                 "piezo.span = [-1 um, 200 um]: must increase and lie on the beam, from 0 m to 250 um");
+  expect_message([](Device& d) { d.piezo->thickness = 0; }, "piezo.thickness = 0 m: must be positive");
+  expect_message([](Device& d) { d.piezo->youngs_modulus = 0; }, "piezo.youngs_modulus = 0 Pa: must be positive");
+  expect_message([](Device& d) { d.piezo->density = 0; }, "piezo.density = 0 kg/m^3: must be positive");
+  expect_message([](Device& d) { d.piezo->d31 = std::nan(""); }, "piezo.d31 = nan m/V: must be between -1 m/V and 1 m/V");
 }
 
 TEST(Device, TakesItsFiguresAtTheCentreOfThePad) {

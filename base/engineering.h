@@ -1,0 +1,38 @@
+// Numbers in messages as a scene writes them: "60 um", "78 GPa".
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace softland {
+
+/// `value` [unit] with the prefix, femto to giga, that leaves one to three digits before the point: 6e-05, "m" -> "60 um". At
+/// most twelve significant digits, so that what arithmetic leaves behind is not shown. No prefix for 0, for values beyond the
+/// prefixes, and for a unit that takes none: "kg/m^3", "1/m^2", "".
+[[nodiscard]] inline std::string engineering(double value, std::string_view unit) {
+  constexpr std::array<std::pair<int, std::string_view>, 9> prefixes{
+      {{9, "G"}, {6, "M"}, {3, "k"}, {0, ""}, {-3, "m"}, {-6, "u"}, {-9, "n"}, {-12, "p"}, {-15, "f"}}};
+  const auto text = [](double number) {
+    std::array<char, 32> buffer;
+    return std::string(buffer.data(), static_cast<std::size_t>(std::snprintf(buffer.data(), buffer.size(), "%.12g", number)));
+  };
+  if (unit.empty()) return text(value);
+  std::string_view chosen;
+  double number = value;
+  if (!unit.starts_with("kg") && !unit.starts_with("1/")) {
+    for (const auto& [exponent, prefix] : prefixes) {
+      const double scaled = value / std::pow(10, exponent), size = std::abs(scaled) * (1 + 1e-12);  // 999.999... counts as 1000
+      if (size >= 1 && size < 1000) {
+        number = scaled;
+        chosen = prefix;
+      }
+    }
+  }
+  return text(number) + " " + std::string(chosen) + std::string(unit);
+}
+
+}  // namespace softland
