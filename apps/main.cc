@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "apps/verbs.h"
 #include "base/require.h"
@@ -20,7 +21,9 @@ std::atomic<bool> stop_requested{false};
 
 extern "C" void on_signal(int number) {
   // The second Ctrl-C ends the program at once.
-  if (stop_requested.exchange(true)) std::signal(number, SIG_DFL);
+  if (!stop_requested.exchange(true)) return;
+  std::signal(number, SIG_DFL);
+  std::raise(number);
 }
 
 // Quoted so that the line can be pasted into a shell.
@@ -39,7 +42,7 @@ std::string command_line(int argc, char** argv) {
 }
 
 std::string optimizer_help() {
-  std::string text = "optimizers:\n";
+  std::string text = "\nOptimizers:\n";
   for (const std::string_view name : optimizer_names()) {
     text += "  " + std::string(name) + std::string(14 - std::min<std::size_t>(13, name.size()), ' ') +
             std::string(optimizer_description(name)) + "\n";
@@ -72,10 +75,13 @@ int run(int argc, char** argv) {
 
   CLI::App app{
       "softland lands MEMS switches softly: it simulates the closing of a described switch and searches the open-loop drive\n"
-      "waveform that closes it fast and without bounce."};
+      "waveform that closes it fast and without bounce.\n"};
   app.name("softland");
+  app.get_formatter()->label("SUBCOMMAND", "VERB");
+  app.get_formatter()->column_width(24);
   app.require_subcommand(1);
-  app.set_version_flag("--version", "softland " + std::string(version));
+  app.set_help_flag("-h,--help", "print this help");
+  app.set_version_flag("--version", "softland " + std::string(version), "print the version");
   app.footer(
       "Examples:\n"
       "  softland optimize --target bounce --actuator pzt\n"
@@ -83,74 +89,90 @@ int run(int argc, char** argv) {
       "  softland check my-switch.toml\n"
       "  softland simulate my-switch.toml --set gap.contact=\"1.8 um\" --out closing\n"
       "  softland optimize my-switch.toml --actuator electrostatic --waveform pulse --budget \"90 s\"\n"
-      "Exit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 130 interrupted (best so far is "
+      "\nExit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 130 interrupted (best so far is "
       "written).");
 
+  // `word` stands for the value in --help. Empty text is never meant: it comes from an unset shell variable.
+  const auto option = [](CLI::App* verb, const char* name, std::string& value, const char* word, const char* about) {
+    return verb->add_option(name, value, about)->type_name(word)->check([](const std::string& text) {
+      return text.empty() ? "must not be empty" : "";
+    });
+  };
+  const auto positional = [&](CLI::App* verb, const char* name, std::string& value, const char* about) {
+    return option(verb, name, value, "", about);
+  };
+  // Empty text is looked at with the value.
+  const auto optional = [](CLI::App* verb, const char* name, std::optional<std::string>& value, const char* word,
+                           const char* about) {
+    verb->add_option_function<std::string>(
+            name, [&value](const std::string& text) { value = text; }, about)
+        ->type_name(word);
+  };
+  const auto add_verb = [&](const char* name, const char* about) { return app.add_subcommand(name, about)->group("Verbs"); };
   const auto with_scene = [&](CLI::App* verb, bool required) {
-    verb->add_option("scene", common.scene, "scene file (TOML)")->required(required);
-    verb->add_option("--set", common.set, "change one key: --set gap.contact=\"1.8 um\" (may be repeated)")
+    positional(verb, "SCENE", common.scene, "scene file (TOML)")->required(required);
+    verb->add_option("--set", common.set, "change one key: --set gap.contact=\"1.8 um\"; may be repeated")
+        ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
     verb->add_flag("--quiet", common.quiet, "no progress and no notes on standard error");
   };
   const auto with_json = [&](CLI::App* verb) {
-    verb->add_option("--json", common.json, "write the result as JSON to this file, or - for standard output");
+    option(verb, "--json", common.json, "FILE", "write the result as JSON to this file, or - for standard output");
   };
 
-  CLI::App* simulate = app.add_subcommand("simulate", "simulate the closing that a scene describes");
+  CLI::App* simulate = add_verb("simulate", "simulate the closing that a scene describes");
   with_scene(simulate, true);
   with_json(simulate);
-  simulate->add_option("--out", common.out, "folder for report.html, gap.svg, result.json and trajectory.csv");
+  option(simulate, "--out", common.out, "FOLDER", "folder for report.html, gap.svg, result.json and trajectory.csv");
   simulate->footer("Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -");
 
-  CLI::App* pull_in = app.add_subcommand("pull-in", "static and dynamic pull-in voltage and release voltage of every electrode");
+  CLI::App* pull_in = add_verb("pull-in", "static and dynamic pull-in voltage and release voltage of every electrode");
   with_scene(pull_in, true);
   with_json(pull_in);
   pull_in->footer("Example:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"");
 
-  CLI::App* modes = app.add_subcommand("modes", "natural frequencies");
+  CLI::App* modes = add_verb("modes", "natural frequencies");
   with_scene(modes, true);
   with_json(modes);
   modes->footer("Example:\n  softland modes scenes/mem-gold-pzt.toml --set structure.modes=8");
 
-  CLI::App* check = app.add_subcommand("check", "validate a scene and print derived numbers and warnings");
+  CLI::App* check = add_verb("check", "validate a scene and print derived numbers and warnings");
   with_scene(check, true);
   check->footer("Example:\n  softland check my-switch.toml");
 
-  CLI::App* optimize = app.add_subcommand("optimize", "search the drive waveform that closes without bounce");
+  CLI::App* optimize = add_verb("optimize", "search the drive waveform that closes without bounce");
   with_scene(optimize, false);
   with_json(optimize);
-  optimize->add_option("--target", request.target, "bounce | settling | rebound | count | impact | energy")
-      ->capture_default_str();
-  optimize->add_option("--actuator", request.actuator, "electrostatic | pzt | both: which drives the search may shape")
-      ->capture_default_str();
-  optimize->add_option("--waveform", request.waveform, "family to search: pulse | harmonic | step")->capture_default_str();
-  optimize->add_option("--optimizer", request.optimizer, "auto, or one of the names below")->capture_default_str();
-  optimize->add_option(
-      "--budget", request.budget,
-      "number of evaluations, or time (\"90 s\"); 2500 | 5000 | 10000 for electrostatic | pzt | both if not given");
-  optimize->add_option("--seed", request.seed, "same seed, same result, whatever --jobs is")->capture_default_str();
-  optimize->add_option("--jobs", request.jobs, "threads; one per core if not given");
-  optimize->add_option("--out", common.out,
-                       "folder for report.html, gap.svg, best.toml, best.csv, result.json, trajectory.csv, evaluations.csv "
-                       "(default: softland-out)");
+  option(optimize, "--target", request.target, "NAME", "bounce (default), settling, rebound, count, impact or energy");
+  option(optimize, "--actuator", request.actuator, "NAME",
+         "drives that the search may shape: electrostatic (default), pzt or both");
+  option(optimize, "--waveform", request.waveform, "NAME", "family to search: pulse (default), harmonic or step");
+  option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
+  optional(optimize, "--budget", request.budget, "N|TIME",
+           "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 5000 for pzt, 10000 for both");
+  optional(optimize, "--seed", request.seed, "N",
+           "whole number from 0 on (default 1): same seed, same result, whatever --jobs is");
+  optional(optimize, "--jobs", request.jobs, "N", "threads (default: one per core)");
+  option(optimize, "--out", common.out, "FOLDER",
+         "folder for the report, the waveform found and all data (default: softland-out)");
   optimize->footer(
       "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n" +
       optimizer_help() +
-      "Examples:\n  softland optimize --target bounce --actuator pzt\n"
+      "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
       "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3");
 
-  CLI::App* fresh = app.add_subcommand("new", "print a commented scene to start from");
-  fresh->add_option("kind", kind, "cantilever | cantilever-pzt")->capture_default_str();
+  CLI::App* fresh = add_verb("new", "print a commented scene to start from");
+  positional(fresh, "KIND", kind, "cantilever (default) or cantilever-pzt");
   fresh->footer("Example:\n  softland new cantilever > my-switch.toml");
 
-  CLI::App* exporting = app.add_subcommand("export", "print the waveforms of a result for a generator or a circuit simulator");
-  exporting->add_option("result", result, "folder of optimize, result.json, or a scene file")->required();
-  exporting->add_option("--format", format, "csv | spice-pwl")->capture_default_str();
+  CLI::App* exporting = add_verb("export", "print the waveforms of a result for a generator or a circuit simulator");
+  positional(exporting, "RESULT", result, "folder that --out named, result.json, or a scene file")->required();
+  option(exporting, "--format", format, "NAME", "csv (default) or spice-pwl");
   exporting->footer("Example:\n  softland export softland-out --format spice-pwl > drive.cir");
 
-  CLI::App* report = app.add_subcommand("report", "make report.html and gap.svg of a result.json again");
-  report->add_option("result", result, "folder, or result.json")->required();
-  report->add_option("--out", report_out, "folder to write to (default: beside the result)");
+  CLI::App* report = add_verb("report", "make report.html and gap.svg of a result.json again");
+  positional(report, "RESULT", result, "folder that --out named, or its result.json")->required();
+  option(report, "--out", report_out, "FOLDER", "folder to write them to (default: beside the result)");
   report->footer("Example:\n  softland report softland-out");
 
   if (!words.empty() && !words.front().starts_with("-")) {
@@ -163,14 +185,17 @@ int run(int argc, char** argv) {
     std::reverse(words.begin(), words.end());  // CLI11 takes the words from the back
     app.parse(words);
   } catch (const CLI::CallForHelp&) {
-    const auto chosen = app.get_subcommands();
-    std::cout << (chosen.empty() ? app : *chosen.front()).help();
+    std::cout << app.help();
     return exit_done;
   } catch (const CLI::CallForVersion&) {
     std::cout << app.version() << "\n";
     return exit_done;
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
+    if (chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+      throw InvalidInput(
+          "a verb is required: simulate, pull-in, modes, check, optimize, new, export or report (see softland --help)");
+    }
     throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
                        "--help)");
   }

@@ -9,7 +9,8 @@
 
 namespace softland::apps {
 
-SearchFolder::SearchFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+SearchFolder::SearchFolder(std::filesystem::path folder, std::vector<std::string> variables)
+    : folder_(std::move(folder)), variables_(std::move(variables)) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   require(!error, fmt::format("--out {}: the folder cannot be created: {}", folder_.string(), error.message()));
@@ -33,7 +34,7 @@ void SearchFolder::improved(const SceneFile& best) {
 void SearchFolder::flush() {
   if (!best_.empty()) write_whole(folder_ / "best.toml", best_);
   std::string log = "index,cost";
-  for (const std::string& name : names_) log += "," + name;
+  for (const std::string& name : variables_) log += "," + name;
   log += "\n";
   for (const auto& [index, e] : evaluations_) {
     log += fmt::format("{},{}", index, e.value);

@@ -15,8 +15,9 @@ namespace softland::apps {
 
 class SearchFolder {
  public:
-  /// Creates the folder. Throws InvalidInput when it cannot be written to.
-  explicit SearchFolder(std::filesystem::path folder);
+  /// Creates the folder and removes what an earlier run left in it: only for a search that has been found valid. `variables` are
+  /// the columns of evaluations.csv. Throws InvalidInput when the folder cannot be written to.
+  SearchFolder(std::filesystem::path folder, std::vector<std::string> variables);
 
   /// Notes an evaluation for evaluations.csv.
   void evaluated(const Evaluation& evaluation);
@@ -27,11 +28,10 @@ class SearchFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
-  void name_variables(std::vector<std::string> names) { names_ = std::move(names); }
 
  private:
   std::filesystem::path folder_;
-  std::vector<std::string> names_;
+  std::vector<std::string> variables_;
   std::map<long, Evaluation> evaluations_;  // by index: the order that does not depend on the number of jobs
   std::string best_;
   bool pending_ = false;

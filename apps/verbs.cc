@@ -4,11 +4,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <limits>
+#include <optional>
+#include <system_error>
 #include <thread>
 
 #include "apps/search_folder.h"
@@ -36,8 +42,12 @@ SceneFile load_scene(const Common& c) {
 }
 
 std::string read_text(const fs::path& path) {
+  std::error_code ignored;
+  errno = 0;
   std::ifstream in(path, std::ios::binary);
-  require(in.good(), fmt::format("{}: cannot be read", path.string()));
+  const int reason = fs::is_directory(path, ignored) ? EISDIR : errno;
+  require(in.is_open() && reason != EISDIR,
+          fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(reason)));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -61,21 +71,26 @@ void write_report(const fs::path& folder, const json& result) {
   write_whole(folder / "gap.svg", svg_gap_chart(result));
 }
 
-// Everything a result leaves behind, in one place.
-void write_outputs(const Common& c, const json& result, const std::string& text) {
+// Everything a result leaves behind, in one place. `left` names what stands in the folder already.
+void write_outputs(const Common& c, const json& result, std::vector<std::string> left = {}) {
   if (!c.out.empty()) {
     const fs::path folder = c.out;
-    write_whole(folder / "result.json", result.dump(2) + "\n");
+    write_whole(folder / "result.json", result.dump() + "\n");
     write_report(folder, result);
+    left.insert(left.begin(), {"report.html", "gap.svg", "result.json"});
     const auto curves = result.at("curves").find("best");
-    if (curves != result.at("curves").end()) write_whole(folder / "trajectory.csv", trajectory_csv(*curves));
+    if (curves != result.at("curves").end()) {
+      write_whole(folder / "trajectory.csv", trajectory_csv(*curves));
+      left.emplace_back("trajectory.csv");
+    }
   }
+  if (!c.json.empty() && c.json != "-") write_whole(c.json, summary_json(result).dump(2) + "\n");
   if (c.json == "-") {
-    std::cout << result.dump(2) << "\n";
+    std::cout << summary_json(result).dump(2) << "\n";
     return;
   }
-  if (!c.json.empty()) write_whole(c.json, result.dump(2) + "\n");
-  std::cout << text;
+  std::cout << text_report(result);
+  if (!left.empty()) std::cout << "\n" << wrapped(fmt::format("In {}: {}", c.out, fmt::join(left, ", "))) << "\n";
 }
 
 // Pull-in of every electrode, without any waveform of the scene.
@@ -112,14 +127,25 @@ int status_code(Status s) {
   }
 }
 
+// As the shell takes it: an empty value is seen.
+std::string shown(const std::string& text) { return text.empty() ? "''" : text; }
+
+template <class Number>
+Number whole_number(const char* option, const std::string& text, Number least) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  require(error != std::errc::result_out_of_range,
+          fmt::format("{} {}: must be a whole number from {} to {}", option, text, least, std::numeric_limits<Number>::max()));
+  require(error == std::errc() && end == text.data() + text.size() && value >= least,
+          fmt::format("{} {}: must be a whole number from {} on", option, shown(text), least));
+  return value;
+}
+
 // "2500" evaluations or "90 s".
 void read_budget(const std::string& text, OptimizeOptions& options) {
-  if (text.empty()) {
-    options.max_evaluations = default_budget(options.actuator);
-    return;
-  }
   const auto rule = [&](bool ok) {
-    require(ok, fmt::format("--budget {}: must be a whole number of evaluations such as 2500, or a time such as \"90 s\"", text));
+    require(ok, fmt::format("--budget {}: must be a whole number of evaluations such as 2500, or a time such as \"90 s\"",
+                            shown(text)));
   };
   Quantity q;
   try {
@@ -137,36 +163,51 @@ void read_budget(const std::string& text, OptimizeOptions& options) {
   }
 }
 
-// A line on standard error that is rewritten in place on a terminal and printed now and then elsewhere.
+// How far a search is, on standard error: a bar that is rewritten in place on a terminal, elsewhere a line every ten seconds.
 class Progress {
  public:
-  Progress(bool quiet, long budget, double seconds)
-      : terminal_(isatty(2) != 0), quiet_(quiet), budget_(budget), seconds_(seconds) {}
-  void show(const OptimizeProgress& p) {
+  Progress(bool quiet, const OptimizeOptions& options)
+      : quiet_(quiet), budget_(options.max_evaluations), seconds_(options.max_seconds) {}
+
+  void show(const OptimizeProgress& progress) {
+    progress_ = progress;
     const auto now = std::chrono::steady_clock::now();
-    if (quiet_ || now - shown_ < std::chrono::milliseconds(terminal_ ? 200 : 10000)) return;
+    if (now - shown_ < std::chrono::milliseconds(terminal_ ? 200 : 10000)) return;
     shown_ = now;
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const double part = std::max(static_cast<double>(p.evaluations) / static_cast<double>(budget_), elapsed / seconds_);
-    constexpr int cells = 24;
-    const int full = std::clamp(static_cast<int>(part * cells), 0, cells);
-    const std::string line =
-        fmt::format("[{}{}] {:3.0f} %  {} evaluations  best cost {:.4f}  {:.0f} s",
-                    std::string(static_cast<std::size_t>(full), '#'), std::string(static_cast<std::size_t>(cells - full), '.'),
-                    std::min(100.0, 100 * part), p.evaluations, p.best_cost, elapsed);
-    fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", line, terminal_ ? "\033[K" : "\n");
-    std::fflush(stderr);
-    open_ = terminal_;
+    print();
   }
+  /// Leaves the last state of the bar on the screen.
   void close() {
-    if (open_) fmt::print(stderr, "\n");
-    open_ = false;
+    if (!terminal_ || quiet_) return;
+    print();
+    fmt::print(stderr, "\n");
   }
 
  private:
-  bool terminal_, quiet_, open_ = false;
+  void print() const {
+    if (quiet_) return;
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const bool timed = std::isfinite(seconds_);
+    std::string state = timed ? fmt::format("{:.0f} of {:g} s, {} evaluations", elapsed, seconds_, progress_.evaluations)
+                              : fmt::format("{} of {} evaluations, {:.0f} s", progress_.evaluations, budget_, elapsed);
+    state += std::isfinite(progress_.best_cost)
+                 ? fmt::format(", cost {:.4f} (plain step {:.4f})", progress_.best_cost, progress_.baseline_cost)
+                 : ", no feasible waveform yet";
+    if (terminal_) {
+      constexpr int cells = 24;
+      const double part = timed ? elapsed / seconds_ : static_cast<double>(progress_.evaluations) / static_cast<double>(budget_);
+      const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(part * cells), 0, cells));
+      fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(full, '#'), std::string(cells - full, '.'), state);
+    } else {
+      fmt::print(stderr, "softland: {}\n", state);
+    }
+    std::fflush(stderr);
+  }
+
+  bool terminal_ = isatty(2) != 0, quiet_;
   long budget_;
   double seconds_;
+  OptimizeProgress progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
 };
 
@@ -181,14 +222,26 @@ fs::path shipped_scene(const std::string& name) {
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
 }
 
-// The scene text of a result: a folder of optimize, a result.json, or a scene file itself.
+json read_result(const fs::path& path) {
+  json j = json::parse(read_text(path), nullptr, false);
+  require(j.is_object() && j.contains("kind") && (j["kind"] == "simulate" || j["kind"] == "optimize"),
+          fmt::format("{}: is not a result.json of softland", path.string()));
+  return j;
+}
+
+// The scene of a result: a folder that --out named, a result.json, or a scene file itself.
 SceneFile scene_of_result(const std::string& result) {
-  const fs::path path = fs::is_directory(result) ? fs::path(result) / "best.toml" : fs::path(result);
+  fs::path path = result;
+  if (fs::is_directory(path)) {
+    const auto here = [&](const char* name) { return fs::exists(fs::path(result) / name); };
+    require(here("best.toml") || here("result.json"), fmt::format("{}: holds neither best.toml nor result.json", result));
+    path /= here("best.toml") ? "best.toml" : "result.json";
+  }
   if (path.extension() != ".json") return SceneFile::load(path);
-  const json j = json::parse(read_text(path), nullptr, false);
-  require(j.is_object() && j.contains("scene_toml") && j["scene_toml"].is_string(),
-          fmt::format("{}: is not a result.json of softland", result));
-  return SceneFile::parse(j["scene_toml"].get<std::string>(), result);
+  const json j = read_result(path);
+  require(j.contains("scene_toml") && j["scene_toml"].is_string(),
+          fmt::format("{}: holds no text of the scene; give the result.json in the folder that --out named", path.string()));
+  return SceneFile::parse(j["scene_toml"].get<std::string>(), path.string());
 }
 
 }  // namespace
@@ -198,7 +251,7 @@ int simulate_verb(const Common& c) {
   if (!c.out.empty()) make_folder(c.out);
   const Closing closing = simulate(prepared, true, c.stop);
   const json result = result_json(prepared, closing, {.command = c.command});
-  write_outputs(c, result, text_report(result));
+  write_outputs(c, result);
   if (!closing.trajectory.message.empty())
     fmt::print(stderr, "softland: {} ({})\n", closing.trajectory.message, to_string(closing.metrics.status));
   return status_code(closing.metrics.status);
@@ -246,28 +299,35 @@ int check_verb(const Common& c) {
   const Prepared p = prepare(load_scene(c), true);
   const Structure& s = p.scene.device.structure;
   std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + p.scene.title + ")");
-  text += "natural frequencies  ";
-  for (const double omega : p.device.angular_frequencies()) text += fmt::format("{:.6g} kHz  ", omega / (2e3 * pi));
-  text += fmt::format("\nin-contact period    {:.4g} us\n", p.device.in_contact_period() * 1e6);
+  const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
+  std::vector<std::string> frequencies;
+  for (const double omega : p.device.angular_frequencies()) frequencies.push_back(fmt::format("{:.6g} kHz", omega / (2e3 * pi)));
+  add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
+  add("in-contact period", fmt::format("{:.4g} us", p.device.in_contact_period() * 1e6));
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const auto found = pull_in_of(p, k);
     const json& v = found["pull_in"];
-    text += fmt::format("electrode {}: Vsp {}, Vdp {}, release {}\n", p.scene.device.electrodes[k].name, volts(v["static_V"]),
-                        volts(v["dynamic_V"]), volts(v["release_V"]));
+    add("electrode " + p.scene.device.electrodes[k].name,
+        fmt::format("Vsp {}, Vdp {}, release {}", volts(v["static_V"]), volts(v["dynamic_V"]), volts(v["release_V"])));
   }
   if (p.scene.device.gas) {
     const double g = p.scene.device.gap.electrode;
-    text += fmt::format(
-        "squeeze number       {:.3g} (first mode, rest gap, 101325 Pa; the strip film holds below about 10)\n",
-        12 * p.scene.device.gas->viscosity * s.width * s.width * p.device.angular_frequencies()[0] / (101325 * g * g));
-    text +=
-        fmt::format("Knudsen number       {:.3g} at the rest gap, {:.3g} closed (mean free path 65 nm: air, 101325 Pa, 300 K)\n",
-                    65e-9 / g, 65e-9 / (g - p.scene.device.gap.contact));
+    add("squeeze number", fmt::format("{:.3g} (first mode, rest gap, 101325 Pa; the strip film holds below about 10)",
+                                      12 * p.scene.device.gas->viscosity * s.width * s.width * p.device.angular_frequencies()[0] /
+                                          (101325 * g * g)));
+    add("Knudsen number", fmt::format("{:.3g} at the rest gap, {:.3g} closed (mean free path 65 nm: air, 101325 Pa, 300 K)",
+                                      65e-9 / g, 65e-9 / (g - p.scene.device.gap.contact)));
   }
-  for (const auto& [name, signal] : named_signals(p))
-    text += fmt::format("drive {}: hold {:.6g} V, peak {:.6g} V\n", name, signal.hold_level(), signal.peak());
-  text += fmt::format("window               {:.4g} us, integrator tolerance {:.3g}\n", p.duration * 1e6, p.tolerance);
-  for (const std::string& w : p.scene.warnings) text += "warning: " + w + "\n";
+  for (const auto& [name, signal] : named_signals(p)) {
+    const auto limits = p.drives.limits.find(name);
+    add("drive " + name,
+        fmt::format("hold {:.6g} V, peak {:.6g} V, {}", signal.hold_level(), signal.peak(),
+                    limits == p.drives.limits.end()
+                        ? "driver without limits"
+                        : fmt::format("driver {:.6g} V to {:.6g} V", limits->second.min_voltage, limits->second.max_voltage)));
+  }
+  add("window", fmt::format("{:.4g} us, integrator tolerance {:.3g}", p.duration * 1e6, p.tolerance));
+  for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   std::cout << text;
   return exit_done;
 }
@@ -279,8 +339,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   const auto target = target_from(request.target);
   require(target.has_value(),
           fmt::format("--target {}: must be bounce, settling, rebound, count, impact or energy", request.target));
-  OptimizeOptions options{
-      .target = *target, .family = request.waveform, .optimizer = request.optimizer, .seed = request.seed, .stop = c.stop};
+  OptimizeOptions options{.target = *target, .family = request.waveform, .optimizer = request.optimizer, .stop = c.stop};
   if (request.actuator == "pzt") {
     options.actuator = Actuator::pzt;
   } else if (request.actuator == "both") {
@@ -289,44 +348,42 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
     require(request.actuator == "electrostatic",
             fmt::format("--actuator {}: must be electrostatic, pzt or both", request.actuator));
   }
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  require(request.jobs >= 0, fmt::format("--jobs {}: must be at least 1", request.jobs));
-  options.jobs = request.jobs > 0 ? request.jobs : static_cast<int>(cores);
-  read_budget(request.budget, options);
+  options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (request.jobs) options.jobs = whole_number("--jobs", *request.jobs, 1);
+  if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
+  options.max_evaluations = default_budget(options.actuator);
+  if (request.budget) read_budget(*request.budget, options);
 
   const SceneFile file = load_scene(c);
-  SearchFolder folder(c.out);
-  if (!c.quiet)
-    fmt::print(stderr, "softland: searching a {} drive for {}, {} waveform; results go to {}\n", request.actuator, c.scene,
-               request.waveform, c.out);
-  Progress progress(c.quiet, options.max_evaluations, options.max_seconds);
-  options.on_variables = [&](const std::vector<std::string>& names) { folder.name_variables(names); };
+  Progress progress(c.quiet, options);
+  std::optional<SearchFolder> folder;
+  options.on_start = [&](const std::vector<std::string>& variables) {
+    folder.emplace(c.out, variables);
+    if (!c.quiet)
+      fmt::print(stderr, "softland: {}: searching a {} waveform, actuator {}, target {}; results go to {}\n", c.scene,
+                 request.waveform, request.actuator, request.target, c.out);
+  };
   options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress& p) {
-    folder.evaluated(e);
+    folder->evaluated(e);
     progress.show(p);
   };
-  options.on_improvement = [&](const Evaluation&, const SceneFile& best) { folder.improved(best); };
+  options.on_improvement = [&](const Evaluation&, const SceneFile& best) { folder->improved(best); };
   const OptimizeResult result = optimize(file, options);
   progress.close();
-  folder.flush();
+  folder->flush();
 
   json j = result_json(result, options, {.command = c.command});
-  for (const auto& [index, e] : folder.evaluations()) {
+  for (const auto& [index, e] : folder->evaluations()) {
     j["search"]["evaluations"].push_back({index, std::isfinite(e.value) ? json(e.value) : json(nullptr)});
   }
   j["reproduce"] = {c.command, fmt::format("softland simulate {}", (fs::path(c.out) / "best.toml").string())};
-  const auto leave = [&](const char* name, const std::string& text) { write_whole(folder.path() / name, text); };
+  std::vector<std::string> left{"evaluations.csv"};
   if (result.best_scene) {
-    leave("best.toml", result.best_scene->scene.file.text());
-    leave("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
+    write_whole(folder->path() / "best.toml", result.best_scene->scene.file.text());
+    write_whole(folder->path() / "best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
+    left.insert(left.begin(), {"best.toml (run it with `softland simulate`)", "best.csv"});
   }
-  write_outputs(c, j, text_report(j));
-  if (c.json != "-") {
-    std::cout << fmt::format(
-        "\nIn {}: report.html, gap.svg, best.toml (run it with `softland simulate`), best.csv, trajectory.csv, result.json, "
-        "evaluations.csv\n",
-        c.out);
-  }
+  write_outputs(c, j, left);
   if (result.search.termination == Termination::interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }
@@ -348,8 +405,7 @@ int export_verb(const std::string& result, const std::string& format) {
 
 int report_verb(const std::string& result, const std::string& out) {
   const fs::path path = fs::is_directory(result) ? fs::path(result) / "result.json" : fs::path(result);
-  const json j = json::parse(read_text(path), nullptr, false);
-  require(j.is_object() && j.contains("kind"), fmt::format("{}: is not a result.json of softland", path.string()));
+  const json j = read_result(path);
   const fs::path folder = out.empty() ? path.parent_path() : fs::path(out);
   if (!out.empty()) make_folder(out);
   write_report(folder, j);

@@ -24,9 +24,9 @@ struct OptimizeRequest {
   std::string actuator = "electrostatic";
   std::string waveform = "pulse";
   std::string optimizer = "auto";
-  std::string budget;  ///< evaluations ("2500") or time ("90 s"); empty: the default
-  std::uint64_t seed = 1;
-  int jobs = 0;  ///< 0: one per core
+  std::optional<std::string> budget;  ///< evaluations ("2500") or time ("90 s"); default: default_budget()
+  std::optional<std::string> seed;    ///< default: 1
+  std::optional<std::string> jobs;    ///< default: one per core
 };
 
 inline constexpr int exit_done = 0, exit_bad_input = 2, exit_numerical_failure = 3, exit_no_success = 4, exit_interrupted = 130;

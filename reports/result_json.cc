@@ -204,4 +204,14 @@ json result_json(const OptimizeResult& r, const OptimizeOptions& options, const 
   return j;
 }
 
+json summary_json(json result) {
+  for (const char* key : {"curves", "scene_toml", "search"}) result.erase(key);
+  if (result.contains("baseline")) {
+    result["baseline"].erase("waveforms");
+  } else {
+    result.erase("best");  // a single run: its figures stand above
+  }
+  return result;
+}
+
 }  // namespace softland

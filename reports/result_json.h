@@ -17,9 +17,12 @@ struct Provenance {
 /// The result of simulate. Curves have the resolution of the integration.
 [[nodiscard]] nlohmann::json result_json(const Prepared& prepared, const Closing& closing, const Provenance& provenance);
 
-/// The result of optimize. Equal for equal seeds but for wall_s.
+/// The result of optimize. Equal for equal seeds but for wall_s and the command line.
 [[nodiscard]] nlohmann::json result_json(const OptimizeResult& result, const OptimizeOptions& options,
                                          const Provenance& provenance);
+
+/// What --json gives: a result without what is large (curves, the text of the scene, the log of the search) or said twice.
+[[nodiscard]] nlohmann::json summary_json(nlohmann::json result);
 
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 [[nodiscard]] std::string_view to_string(Actuator actuator);

@@ -26,8 +26,25 @@ std::string padded(const std::string& text, std::size_t columns) {
 
 }  // namespace
 
+std::string wrapped(std::string_view text, std::size_t columns) {
+  std::string out;
+  std::size_t used = 0;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    if (used > 0) {
+      const bool fits = used + 1 + width(word) <= columns;
+      out += fits ? ' ' : '\n';
+      used = fits ? used + 1 : 0;
+    }
+    out += word;
+    used += width(word);
+  }
+  return out;
+}
+
 std::string text_report(const json& result) {
-  std::string out = internal::headline(result).whole() + "\n\n";
+  std::string out = wrapped(internal::headline(result).whole()) + "\n\n";
   const bool compares = internal::is_optimize(result);
   const json& best = internal::best_metrics(result);
   const json& baseline = internal::baseline_metrics(result);
@@ -47,8 +64,13 @@ std::string text_report(const json& result) {
     while (!out.empty() && out.back() == ' ') out.pop_back();
     out += "\n";
   }
-  if (compares && result.contains("checks") && !result["checks"].empty()) out += "\n" + internal::checks_caption(result) + "\n";
-  for (const json& warning : result.value("warnings", json::array())) out += "\nwarning: " + warning.get<std::string>() + "\n";
+  // Of a winner that bounces there is nothing to confirm.
+  const bool lands_softly = compares && internal::number(best, {"bounce_count"}) == 0;
+  if (const std::string checks = internal::checks_caption(result); lands_softly && !checks.empty())
+    out += "\n" + wrapped(checks) + "\n";
+  for (const json& warning : internal::at(result, {"warnings"})) {
+    if (warning.is_string()) out += "\n" + wrapped("warning: " + warning.get<std::string>()) + "\n";
+  }
   return out;
 }
 

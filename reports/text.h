@@ -3,11 +3,15 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 namespace softland {
 
 /// Headline, table of figures (baseline and winner side by side for optimize; value and error for simulate), confirmations and
 /// warnings of a result.json.
 [[nodiscard]] std::string text_report(const nlohmann::json& result);
+
+/// Blanks turned into line breaks so that lines have at most `columns` characters where words permit it.
+[[nodiscard]] std::string wrapped(std::string_view text, std::size_t columns = 100);
 
 }  // namespace softland

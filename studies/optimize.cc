@@ -11,6 +11,7 @@
 namespace softland {
 namespace {
 
+constexpr double never_touched = 10;  // costs from here on: see cost()
 constexpr double latest_touch = 2.5;  // times the baseline's first touch
 // Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
@@ -76,6 +77,7 @@ bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
 }
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
+  static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   Prepared given = prepare(file, true);
   require(given.device.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
 
@@ -94,7 +96,6 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   if (given.device.has_piezo()) plain[std::string(piezo_drive)] = Step{.level = 0};
   Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml", given);
   OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true)};
-  if (options.on_baseline) options.on_baseline(result.baseline);
 
   // How candidates are scored.
   const double period = 2 * pi / given.device.angular_frequencies()[0];
@@ -141,12 +142,12 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   };
 
   const Problem problem{.variables = space.variables(), .objective = evaluate, .starts = space.starts()};
-  if (options.on_variables) {
+  if (options.on_start) {
     std::vector<std::string> variable_names;
     for (const Variable& v : problem.variables) variable_names.push_back(v.name);
-    options.on_variables(variable_names);
+    options.on_start(variable_names);
   }
-  OptimizeProgress progress;
+  OptimizeProgress progress{.baseline_cost = result.baseline_cost};
   OptimizerOptions search{.optimizer = options.optimizer,
                           .max_evaluations = options.max_evaluations,
                           .max_seconds = options.max_seconds,
@@ -159,7 +160,8 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   };
   search.on_improvement = [&](const Evaluation& e) {
     progress.best_cost = e.value;
-    if (options.on_improvement) options.on_improvement(e, with_waveforms(baseline_scene, space.waveforms(e.x)));
+    if (options.on_improvement && e.value < never_touched)
+      options.on_improvement(e, with_waveforms(baseline_scene, space.waveforms(e.x)));
   };
   result.search = minimize(problem, search);
 
@@ -167,7 +169,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   const auto& found = result.search.improvements;
   for (std::size_t i = 0; i < std::min(most_candidates, found.size()); ++i) {
     const Evaluation& candidate = found[found.size() - 1 - i];
-    if (!(candidate.value < 10)) break;  // never touched
+    if (!(candidate.value < never_touched)) break;
     Prepared scene = read_back(with_waveforms(baseline_scene, space.waveforms(candidate.x)), "best.toml", given);
     Closing closing = simulate(scene, true);
     const bool met = goal_met(options.target, closing.metrics, result.baseline.metrics);

@@ -27,7 +27,8 @@ namespace softland {
 /// What is known while a search runs.
 struct OptimizeProgress {
   long evaluations = 0;
-  double best_cost = std::numeric_limits<double>::quiet_NaN();
+  double best_cost = std::numeric_limits<double>::quiet_NaN();  ///< NaN before a waveform was feasible
+  double baseline_cost = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Evaluations that found bounce-free waveforms from every seed tried, on the shipped scenes and their variants: the landscape of
@@ -45,13 +46,12 @@ struct OptimizeOptions {
   int jobs = 1;
   /// Set from outside (Ctrl-C): ends the search. Baseline, verification and confirming runs are short and always run to the end.
   const std::atomic<bool>* stop = nullptr;
-  /// Called once, when the baseline is known.
-  std::function<void(const Closing&)> on_baseline = {};
-  /// Called once, with the names of the searched parameters in the order of Evaluation::x.
-  std::function<void(const std::vector<std::string>&)> on_variables = {};
+  /// Called once, when scene and options have been found valid and before the first evaluation, with the names of the searched
+  /// parameters in the order of Evaluation::x.
+  std::function<void(const std::vector<std::string>&)> on_start = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
-  /// Called under the same lock at every improvement with the scene file that gives it.
+  /// Called under the same lock at every improvement that touches, with the scene file that gives it.
   std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
 };
 
@@ -75,7 +75,8 @@ struct OptimizeResult {
   bool better_than_baseline = false;
 };
 
-/// Throws InvalidInput for a scene or options that cannot be searched. Numerical trouble is in the result.
+/// Throws InvalidInput for a scene or options that cannot be searched, before on_start is called. Numerical trouble is in the
+/// result.
 [[nodiscard]] OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options);
 
 /// Goal of a target: bounce, rebound, count: no significant rebound; settling, impact, energy: settled and better than the

@@ -20,7 +20,6 @@ Metrics difference(const Metrics& a, const Metrics& b) {
   d.impact_velocity = std::abs(a.impact_velocity - b.impact_velocity);
   d.peak_contact_force = std::abs(a.peak_contact_force - b.peak_contact_force);
   d.impact_energy = std::abs(a.impact_energy - b.impact_energy);
-  d.hold_force = std::abs(a.hold_force - b.hold_force);
   d.drive_energy = std::abs(a.drive_energy - b.drive_energy);
   return d;
 }
@@ -48,7 +47,6 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
     options.tolerance = std::max(1e-13, prepared.tolerance / 100);
     Trajectory tighter = simulate_closing(prepared.device, signals, options);
     if (tighter.status == Status::done) {
-      tighter.hold_force = c.trajectory.hold_force;
       const Metrics better = metrics(tighter, prepared.scene.metrics);
       c.errors = difference(c.metrics, better);
       if (c.errors.bounce_count > 0 || c.errors.bounce_time > 0.01 * std::abs(c.metrics.bounce_time)) {
