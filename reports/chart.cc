@@ -266,13 +266,17 @@ void add_time_charts(const json& result, Picture& out) {
 }
 
 void add_search_chart(const json& result, Picture& out) {
-  const Points tried = points_of(at(result, {"search", "evaluations"}));
+  Points tried = points_of(at(result, {"search", "evaluations"}));
   Points best = points_of(at(result, {"search", "best_so_far"}));
   if (tried.empty() && best.empty()) return;
+  const std::vector<double> indices = evaluation_indices(result);
+  for (Points* points : {&tried, &best}) {
+    for (auto& [index, value] : *points) index = evaluations_until(indices, index);
+  }
   double last = std::max(tried.empty() ? 0.0 : tried.back()[0], best.empty() ? 0.0 : best.back()[0]);
   last = std::fmax(last, number(result, {"evaluations"}));
   bool positive = true;
-  for (const Points* points : {&tried, &std::as_const(best)}) {
+  for (const Points* points : {&tried, &best}) {
     positive = positive && std::all_of(points->begin(), points->end(), [](const auto& point) { return point[1] > 0; });
   }
   Chart chart;
@@ -280,7 +284,7 @@ void add_search_chart(const json& result, Picture& out) {
   chart.title = "Convergence";
   chart.caption = search_caption(result);
   chart.x_column = "evaluation";
-  chart.x_label = "Evaluation";
+  chart.x_label = "Evaluations";
   chart.x_home = chart.x_whole = {0, std::max(1.0, last)};
   chart.y_label = text(result, {"search", "value_name"});
   if (chart.y_label.empty()) chart.y_label = "cost";

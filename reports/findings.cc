@@ -337,7 +337,7 @@ std::string search_caption(const json& result) {
   words += last < first ? fmt::format(" fell from {} to {}{}", plain_number(first), plain_number(last),
                                       in_brackets(change(first, last, true)))
                         : " stayed at " + plain_number(first);
-  return words + fmt::format("; the winner is evaluation {:.0f}.", found_at);
+  return words + fmt::format("; the winner is number {:.0f} of them.", evaluations_until(evaluation_indices(result), found_at));
 }
 
 bool checks_agree(const json& result) {

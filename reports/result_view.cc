@@ -64,6 +64,22 @@ double window_end(const json& result) {
   return end;
 }
 
+std::vector<double> evaluation_indices(const json& result) {
+  std::vector<double> indices;
+  const json& tried = at(result, {"search", "evaluations"});
+  if (!tried.is_array()) return indices;
+  for (const json& one : tried) {
+    if (one.is_array() && !one.empty() && one[0].is_number()) indices.push_back(number(one[0]));
+  }
+  std::sort(indices.begin(), indices.end());
+  return indices;
+}
+
+double evaluations_until(const std::vector<double>& indices, double index) {
+  if (indices.empty()) return index;
+  return static_cast<double>(std::upper_bound(indices.begin(), indices.end(), index) - indices.begin());
+}
+
 double significant_rebound(const json& result) {
   constexpr double usual = 1e-9;
   const json& given = at(result, {"scene", "metrics", "significant_rebound"});

@@ -28,6 +28,10 @@ namespace softland::internal {
 [[nodiscard]] const nlohmann::json& baseline_metrics(const nlohmann::json& result);
 /// The simulated time [s]: the last time of any curve; NaN without curves.
 [[nodiscard]] double window_end(const nlohmann::json& result);
+/// Indices of the listed evaluations of a search, ascending; they may have gaps.
+[[nodiscard]] std::vector<double> evaluation_indices(const nlohmann::json& result);
+/// How many evaluations had been made up to and with the one of this index; the index itself where none are listed.
+[[nodiscard]] double evaluations_until(const std::vector<double>& indices, double index);
 /// Height from which a rebound counts [m]; 1 nm unless the scene says otherwise.
 [[nodiscard]] double significant_rebound(const nlohmann::json& result);
 

@@ -125,6 +125,14 @@ TEST(Charts, KeepExtremesWhenThinned) {
   }
 }
 
+TEST(Charts, CountEvaluationsWhoseIndicesHaveGaps) {
+  const json result{
+      {"search", {{"evaluations", {{0, 4.0}, {3, 2.0}, {90, nullptr}, {100, 3.0}}}, {"best_so_far", {{0, 4.0}, {3, 2.0}}}}}};
+  const Picture drawn = picture(result);
+  EXPECT_EQ(drawn.tables.at("tried").at("evaluation"), (std::vector<double>{1, 2, 4}));
+  EXPECT_EQ(drawn.tables.at("search").at("evaluation"), (std::vector<double>{1, 2, 2, 4}));
+}
+
 TEST(Charts, OfCostsThatReachZeroAreLinear) {
   json result{{"search", {{"best_so_far", {{1, 3.0}, {9, 0.0}}}}}};
   EXPECT_EQ(picture(result).charts.at(0).scale, Scale::linear);

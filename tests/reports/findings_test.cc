@@ -144,16 +144,17 @@ TEST(Captions, OfASearchNameTheWinner) {
   EXPECT_EQ(search_caption(result),
             "Cost of every waveform tried (dots) and of the best so far (line). In 300 evaluations the cost fell from 2 to 0.5 "
             "(4.0 times lower); the winner is "
-            "evaluation 120.");
+            "number 120 of them.");
   result["search"]["best_so_far"] = {{1, 2.0}, {40, 1.0}, {120, 0.5}};
   result["best"]["cost"] = 1.0;  // the lowest missed the goal
   result["baseline"]["cost"] = 0.97;
   EXPECT_EQ(search_caption(result),
             "Cost of every waveform tried (dots) and of the best so far (line); the plain step's is 0.97. In 300 evaluations "
-            "the cost fell from 2 to 0.5 (4.0 times lower); the winner is evaluation 40.");
+            "the cost fell from 2 to 0.5 (4.0 times lower); the winner is number 40 of them.");
   result["search"]["best_so_far"] = {{0, 2.0}};
   result["best"]["cost"] = 2.0;
-  EXPECT_TRUE(search_caption(result).ends_with("In 300 evaluations the cost stayed at 2; the winner is evaluation 0."));
+  result["search"]["evaluations"] = {{0, 2.0}, {7, 3.0}};
+  EXPECT_TRUE(search_caption(result).ends_with("In 300 evaluations the cost stayed at 2; the winner is number 1 of them."));
 }
 
 TEST(Goal, IsOfTheFiguresThatTheTargetIsAbout) {
