@@ -35,7 +35,7 @@ std::string svg_gap_chart(const nlohmann::json& result) {
   constexpr double margin = 24;
   constexpr double between = 14;
   constexpr double line_height = 24;
-  constexpr std::size_t columns = 84;
+  constexpr std::size_t columns = 88;
 
   std::string body;
   double top = margin;
