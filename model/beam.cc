@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/require.h"
 #include "model/gauss.h"
@@ -12,9 +13,8 @@
 namespace softland {
 namespace {
 
-constexpr int bubbles = 6;             // internal functions per element: polynomials up to degree 9
-constexpr int unknowns = 4 + bubbles;  // w, w' at both ends, then the internal functions
-constexpr int shortest_count = 6;      // elements over the length, at least
+constexpr int functions = 8;       // per element: curvatures up to degree 7, so deflections up to degree 9
+constexpr int shortest_count = 6;  // elements over the length, at least
 
 // Legendre polynomials P_0 ... P_n at xi.
 std::vector<double> legendre(double xi, int n) {
@@ -28,39 +28,24 @@ std::vector<double> legendre(double xi, int n) {
   return p;
 }
 
-using ElementRow = Eigen::Matrix<double, 1, unknowns>;
-
-// Shape functions of one element of length h and their derivatives with respect to x, at xi in [-1, 1].
-ElementRow element_shape(double xi, double h, int derivative) {
+// The functions of one element, at rest left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals of P_m from
+// -1. For m >= 2 both vanish at the right end.
+using ElementRow = Eigen::Matrix<double, 1, functions>;
+ElementRow integrals(double xi, int derivative) {
+  const auto p = legendre(xi, functions + 1);
   ElementRow n;
-  const double x1 = xi, x2 = xi * xi, x3 = x2 * xi, j = h / 2;  // j = dx/dxi
-  switch (derivative) {
-    case 0:
-      n.head<4>() << (2 - 3 * x1 + x3) / 4, j * (1 - x1 - x2 + x3) / 4, (2 + 3 * x1 - x3) / 4, j * (-1 - x1 + x2 + x3) / 4;
-      break;
-    case 1:
-      n.head<4>() << (-3 + 3 * x2) / 4, j * (-1 - 2 * x1 + 3 * x2) / 4, (3 - 3 * x2) / 4, j * (-1 + 2 * x1 + 3 * x2) / 4;
-      break;
-    default:
-      n.head<4>() << 6 * x1 / 4, j * (-2 + 6 * x1) / 4, -6 * x1 / 4, j * (2 + 6 * x1) / 4;
-      break;
+  if (derivative == 0) {
+    n.head<2>() << (xi + 1) * (xi + 1) / 2, (xi + 1) * (xi + 1) * (xi - 2) / 6;
+  } else {
+    n.head<2>() << xi + 1, (xi + 1) * (xi - 1) / 2;
   }
-  const auto p = legendre(xi, bubbles + 3);
-  for (int b = 0; b < bubbles; ++b) {
-    const int m = b + 2;  // second derivative is sqrt(m + 1/2) P_m
+  for (int m = 2; m < functions; ++m) {
     const auto i = static_cast<std::size_t>(m);
-    double v = 0;
-    if (derivative == 0) {
-      v = p[i + 2] / ((2 * m + 1) * (2 * m + 3)) - 2 * p[i] / ((2 * m - 1) * (2 * m + 3)) +
-          p[i - 2] / ((2 * m + 1) * (2 * m - 1));
-    } else if (derivative == 1) {
-      v = (p[i + 1] - p[i - 1]) / (2 * m + 1);
-    } else {
-      v = p[i];
-    }
-    n[4 + b] = std::sqrt(m + 0.5) * v;
+    n[m] = derivative == 0 ? p[i + 2] / ((2 * m + 1) * (2 * m + 3)) - 2 * p[i] / ((2 * m - 1) * (2 * m + 3)) +
+                                 p[i - 2] / ((2 * m + 1) * (2 * m - 1))
+                           : (p[i + 1] - p[i - 1]) / (2 * m + 1);
   }
-  return n / std::pow(j, derivative);
+  return n;
 }
 
 }  // namespace
@@ -120,71 +105,65 @@ BeamModes::BeamModes(std::vector<BeamSection> sections, int modes) {
   frequency_scale_ = std::sqrt(ei / (mu * length_)) / std::pow(length_, 1.5);
 
   const int count = std::max(shortest_count, modes);
-  std::vector<double> rigidity, mass;
+  std::vector<double> mass;
   for (const BeamSection& s : sections) {
     const double begin = s.begin / length_, end = s.end / length_;
     const int parts = std::max(1, static_cast<int>(std::ceil((end - begin) * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
-      elements_.push_back({begin + (end - begin) * k / parts, k + 1 == parts ? end : begin + (end - begin) * (k + 1) / parts});
-      rigidity.push_back(s.rigidity / ei);
+      elements_.push_back({.begin = begin + (end - begin) * k / parts,
+                           .end = k + 1 == parts ? end : begin + (end - begin) * (k + 1) / parts,
+                           .rigidity = s.rigidity / ei});
       mass.push_back(s.mass_per_length / mu);
     }
   }
 
-  // Unknowns: per node (w, w') from the second node on (the first is clamped), then the internal functions element by element.
-  const auto n = static_cast<Eigen::Index>(elements_.size());
-  const Eigen::Index total = 2 * n + bubbles * n;
-  stiffness_ = Eigen::MatrixXd::Zero(total, total);
+  const GaussRule rule = gauss_rule(functions + 2);  // exact for squares of polynomials of degree 9
+  const auto points = static_cast<Eigen::Index>(rule.points.size()),
+             total = functions * static_cast<Eigen::Index>(elements_.size());
   mass_ = Eigen::MatrixXd::Zero(total, total);
-  const GaussRule rule = gauss_rule(unknowns + 1);  // exact for products of degree 2 (bubbles + 3)
-  for (Eigen::Index e = 0; e < n; ++e) {
-    const Element& element = elements_[static_cast<std::size_t>(e)];
-    const double h = element.end - element.begin;
-    Eigen::Matrix<double, unknowns, unknowns> k = Eigen::Matrix<double, unknowns, unknowns>::Zero(), m = k;
-    for (std::size_t g = 0; g < rule.points.size(); ++g) {
-      const ElementRow d0 = element_shape(rule.points[g], h, 0), d2 = element_shape(rule.points[g], h, 2);
-      const double w = rule.weights[g] * h / 2;
-      k += w * rigidity[static_cast<std::size_t>(e)] * d2.transpose() * d2;
-      m += w * mass[static_cast<std::size_t>(e)] * d0.transpose() * d0;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Element& element = elements_[e];
+    const double half = (element.end - element.begin) / 2;
+    Eigen::MatrixXd rows(points, total);
+    for (Eigen::Index g = 0; g < points; ++g) {
+      const auto i = static_cast<std::size_t>(g);
+      rows.row(g) = std::sqrt(mass[e] * rule.weights[i] * half) * shape(element, rule.points[i], 0);
     }
-    for (int i = 0; i < unknowns; ++i) {
-      const Eigen::Index gi = i < 4 ? 2 * (e - 1) + i : 2 * n + bubbles * e + (i - 4);
-      if (gi < 0) continue;
-      for (int j = 0; j < unknowns; ++j) {
-        const Eigen::Index gj = j < 4 ? 2 * (e - 1) + j : 2 * n + bubbles * e + (j - 4);
-        if (gj < 0) continue;
-        stiffness_(gi, gj) += k(i, j);
-        mass_(gi, gj) += m(i, j);
-      }
-    }
+    mass_ += rows.transpose() * rows;
   }
 
-  // M x = (1/omega^2) K x: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass_, stiffness_);
+  // M x = x / omega^2: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass_);
   frequencies_.resize(modes);
   shapes_.resize(total, modes);
+  const Eigen::RowVectorXd tip = shape(elements_.back(), 1, 0);
   for (int i = 0; i < modes; ++i) {
     const double inverse_square = solver.eigenvalues()[total - 1 - i];
     frequencies_[i] = frequency_scale_ / std::sqrt(inverse_square);
-    const Eigen::VectorXd x = solver.eigenvectors().col(total - 1 - i);
-    shapes_.col(i) = x / std::sqrt(x.dot(mass_ * x));
-    if (shapes_(2 * n - 2, i) < 0) shapes_.col(i) *= -1;
+    shapes_.col(i) = solver.eigenvectors().col(total - 1 - i) / std::sqrt(inverse_square);
+    if (tip.dot(shapes_.col(i)) < 0) shapes_.col(i) *= -1;
   }
 }
 
-Eigen::RowVectorXd BeamModes::shape(double x, int derivative) const {
-  const auto n = static_cast<Eigen::Index>(elements_.size());
-  Eigen::Index e = 0;
-  while (e + 1 < n && x > elements_[static_cast<std::size_t>(e)].end) ++e;
-  const Element& element = elements_[static_cast<std::size_t>(e)];
-  const double h = element.end - element.begin;
-  const ElementRow local = element_shape(2 * (x - element.begin) / h - 1, h, derivative);
-  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(stiffness_.rows());
-  for (int i = 0; i < unknowns; ++i) {
-    const Eigen::Index gi = i < 4 ? 2 * (e - 1) + i : 2 * n + bubbles * e + (i - 4);
-    if (gi >= 0) row[gi] = local[i];
+Eigen::RowVectorXd BeamModes::shape(const Element& element, double xi, int derivative) const {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(mass_.rows());
+  const double x = element.begin + (element.end - element.begin) * (1 + xi) / 2;
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Element& other = elements_[e];
+    if (other.begin > element.begin) break;
+    const double half = (other.end - other.begin) / 2;
+    const bool inside = other.begin == element.begin;
+    ElementRow local = integrals(inside ? xi : 1, derivative) * std::pow(half, 2 - derivative);
+    if (!inside && derivative == 0) local += (x - other.end) * half * integrals(1, 1);  // straight on
+    for (int m = 0; m < functions; ++m) local[m] *= std::sqrt((m + 0.5) / (half * other.rigidity));
+    row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local;
   }
   return row;
+}
+
+Eigen::RowVectorXd BeamModes::shape(double x, int derivative) const {
+  const auto element = std::find_if(elements_.begin(), std::prev(elements_.end()), [&](const Element& e) { return x <= e.end; });
+  return shape(*element, 2 * (x - element->begin) / (element->end - element->begin) - 1, derivative);
 }
 
 Eigen::VectorXd BeamModes::value(double x) const { return scale_ * (shape(x / length_, 0) * shapes_).transpose(); }
@@ -192,13 +171,12 @@ Eigen::VectorXd BeamModes::value(double x) const { return scale_ * (shape(x / le
 Eigen::VectorXd BeamModes::slope(double x) const { return scale_ / length_ * (shape(x / length_, 1) * shapes_).transpose(); }
 
 double BeamModes::pinned_frequency(double x) const {
-  // Project K and M on the space orthogonal to the constraint row.
+  // Project M on the space orthogonal to the constraint row.
   const Eigen::VectorXd c = shape(x / length_, 0).transpose();
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(c);
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(c.size(), c.size());
   const Eigen::MatrixXd z = q.rightCols(c.size() - 1);
-  const Eigen::MatrixXd k = z.transpose() * stiffness_ * z, m = z.transpose() * mass_ * z;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(m, k, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(z.transpose() * mass_ * z, Eigen::EigenvaluesOnly);
   return frequency_scale_ / std::sqrt(solver.eigenvalues().maxCoeff());
 }
 

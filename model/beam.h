@@ -3,10 +3,10 @@
 //   (EI(x) phi'')'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0,   (EI phi'')(L) = (EI phi'')'(L) = 0
 //
 // EI rigidity [N m^2], mu mass per length [kg/m], omega [rad/s]. Modes are mass-normalised, integral of mu phi_i phi_j =
-// delta_ij, so phi has the unit kg^(-1/2), and positive at the free end. Discretisation: Hermite beam elements (deflection and
-// slope at the nodes) enriched with internal functions whose second derivatives are Legendre polynomials; nodes stand at every
-// change of section. The stiffness of the internal functions is diagonal, and a handful of long elements reaches 1e-9, where many
-// short cubic elements lose the low modes to round-off. Source: textbook Ritz-Galerkin; integrated Legendre shape functions:
+// delta_ij, so phi has the unit kg^(-1/2), and positive at the free end. Discretisation: the curvature is a polynomial of degree
+// 7 on each element, written in Legendre polynomials, and integrated twice from the clamped end; nodes stand at every change of
+// section. These functions are orthonormal in the bending energy, so the stiffness is the unit matrix whatever the lengths of the
+// elements, and a handful of long elements reaches 1e-9. Source: textbook Ritz-Galerkin; integrated Legendre shape functions:
 // Szabo & Babuska, Finite Element Analysis, 1991, sec. 6.
 #pragma once
 
@@ -59,16 +59,19 @@ class BeamModes {
 
  private:
   struct Element {
-    double begin, end;  // in units of the length
+    double begin = 0, end = 0;  // in units of the length
+    double rigidity = 0;        // in units of that of the first section
   };
-  [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;  // over all unknowns, x in units of the length
+  // All functions, x in units of the length; xi in [-1, 1] over an element.
+  [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
+  [[nodiscard]] Eigen::RowVectorXd shape(const Element& element, double xi, int derivative) const;
 
   double length_;
   double scale_;            // converts a unit-mass, unit-length shape to kg^(-1/2)
   double frequency_scale_;  // [rad/s]
   std::vector<Element> elements_;
-  Eigen::MatrixXd stiffness_, mass_;  // dimensionless, for the pinned beam
-  Eigen::MatrixXd shapes_;            // unknowns x modes
+  Eigen::MatrixXd mass_;    // dimensionless
+  Eigen::MatrixXd shapes_;  // functions x modes
   Eigen::VectorXd frequencies_;
 };
 

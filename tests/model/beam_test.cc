@@ -79,6 +79,33 @@ TEST(BeamModes, DoNotDependOnHowTheBeamIsCut) {
   }
 }
 
+TEST(BeamModes, DoNotJumpWhenASectionVanishes) {
+  // A layer that ends just short of a place, or covers next to nothing, is nearly one that ends there, or none.
+  const Device device = test::gold_pzt_cantilever();
+  const double length = device.structure.length;
+  const auto modes = [&](double begin, double end) {
+    Device d = device;
+    d.piezo->begin = begin;
+    d.piezo->end = end;
+    return BeamModes(beam_sections(d), 4);
+  };
+  const BeamModes full = modes(0, length), bare(beam_sections(test::gold_cantilever()), 4);
+  for (double part = 1e-3; part > 1e-16; part /= 10) {
+    const auto expect_close = [&](const BeamModes& found, const BeamModes& limit, const char* what) {
+      for (int i = 0; i < 4; ++i) {
+        const double expected = limit.angular_frequencies()[i], bound = (20 * part + mode_digits) * expected;
+        EXPECT_NEAR(found.angular_frequencies()[i], expected, bound) << what << ", part " << part << ", mode " << i;
+      }
+      EXPECT_NEAR(found.pinned_frequency(247.5_um), limit.pinned_frequency(247.5_um),
+                  (20 * part + mode_digits) * limit.pinned_frequency(247.5_um));
+      EXPECT_NEAR(found.slope(200_um)[1], limit.slope(200_um)[1], (20 * part + 1e-7) * limit.slope(length)[1]);
+    };
+    expect_close(modes(0, length * (1 - part)), full, "short of the tip");
+    expect_close(modes(length * part, length), full, "short of the root");
+    expect_close(modes(length / 2, length / 2 * (1 + part)), bare, "a sliver");
+  }
+}
+
 TEST(BeamModes, OfASteppedBeamAreTheZerosOfTheTransferDeterminant) {
   const std::vector<BeamSection> sections = beam_sections(test::gold_pzt_cantilever());
   ASSERT_EQ(sections.size(), 3u);
