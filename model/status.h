@@ -9,7 +9,7 @@ enum class Status {
   not_run,
   done,
   no_contact,         ///< the contact point never reached the contact gap in the window
-  not_settled,        ///< a rebound was under way, or had only just ended, at the end of the window
+  not_settled,        ///< a rebound was under way, or contact had only just begun, at the end of the window
   collapsed_at_rest,  ///< no stable static equilibrium to start from
   numerical_failure,
   interrupted,

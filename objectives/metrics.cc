@@ -156,7 +156,10 @@ Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options) {
     ++result.bounce_count;
     permanent = rebound.end;
   }
-  const bool long_enough = result.bounce_count == 0 || window_end - permanent >= trajectory.in_contact_period;
+  const double rest = window_end - permanent;
+  // A period that nobody knows matters only after a rebound.
+  const bool long_enough =
+      rest >= trajectory.in_contact_period || (result.bounce_count == 0 && std::isnan(trajectory.in_contact_period));
   result.settled = trajectory.status == Status::done && !under_way && long_enough;
   if (!result.settled) {
     if (trajectory.status == Status::done) result.status = Status::not_settled;

@@ -146,6 +146,19 @@ TEST(Metrics, SettlesOneInContactPeriodAfterTheLastSignificantRebound) {
       << "without a significant rebound the period does not matter";
 }
 
+TEST(Metrics, FirstTouchAtTheEndOfTheWindowIsNotYetSettled) {
+  const BouncingBall ball;
+  Trajectory trajectory = ball.trajectory(0, ball.first_impact() + 2_us);
+  EXPECT_TRUE(metrics(trajectory).settled);
+  trajectory.points.pop_back();  // now it ends where it touches
+  const Metrics m = metrics(trajectory);
+  EXPECT_EQ(m.status, Status::not_settled) << "the rebound, if any, is still to come";
+  EXPECT_FALSE(m.settled);
+  EXPECT_TRUE(std::isnan(m.permanent_contact_time));
+  EXPECT_NEAR(m.initial_contact_time, ball.first_impact(), kRounding * ball.first_impact());
+  EXPECT_EQ(m.bounce_count, 0);
+}
+
 TEST(Metrics, ReboundUnderWayAtTheEndIsALowerBound) {
   const BouncingBall ball;
   Trajectory trajectory = ball.trajectory(1, 0, 5);
