@@ -149,7 +149,7 @@ int run(int argc, char** argv) {
   option(optimize, "--waveform", request.waveform, "NAME", "family to search: pulse (default), harmonic or step");
   option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
   optional(optimize, "--budget", request.budget, "N|TIME",
-           "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 5000 for pzt, 10000 for both");
+           "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both");
   optional(optimize, "--seed", request.seed, "N",
            "whole number from 0 on (default 1): same seed, same result, whatever --jobs is");
   optional(optimize, "--jobs", request.jobs, "N", "threads (default: one per core)");

@@ -5,7 +5,7 @@
 // fixed time after its own first contact, must touch within 2.5 times the baseline's first-touch time, stays inside the driver's
 // limits, and is infeasible if the beam comes near the electrode. The winner is believed only after a run over the whole window
 // at the scene's accuracy, read back from the very text of best.toml; runs with a tighter integrator and with two more modes
-// confirm it. If the best candidate fails there, the next ones of the search are tried.
+// confirm it. Where the best candidate fails one of these, the next ones of the search are tried.
 #pragma once
 
 #include <atomic>
