@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "model/quintic.h"
 #include "model/stepper.h"
@@ -205,7 +206,7 @@ class Run {
     out_.smallest_gap = std::min(out_.smallest_gap, gap);
     if (ended_) return;
     if (gap < device_.gap_floor()) {
-      return fail(fmt::format("the beam came within {:.3g} m of the electrode", device_.gap_floor()));
+      return fail(fmt::format("the beam came within {} of the electrode", engineering(device_.gap_floor(), "m")));
     }
     if (out_.work.steps >= options_.max_steps) return fail(fmt::format("more than {} steps needed", options_.max_steps));
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);

@@ -234,7 +234,7 @@ TEST(Closing, FailsWhenTheBeamReachesTheElectrode) {
       const Trajectory t =
           simulate_closing(device, std::vector<Signal>{Signal::constant(volts)}, {.duration = 200_us, .integrator = integrator});
       EXPECT_EQ(t.status, Status::numerical_failure) << volts;
-      EXPECT_NE(t.message.find("the beam came within 3.5e-08 m of the electrode"), std::string::npos) << t.message;
+      EXPECT_NE(t.message.find("the beam came within 35 nm of the electrode"), std::string::npos) << t.message;
       EXPECT_EQ(t.message.rfind("at t = ", 0), 0u) << t.message;
       EXPECT_LT(t.smallest_gap, device.gap_floor());
       EXPECT_TRUE(std::isfinite(t.points.back().position));

@@ -189,6 +189,14 @@ TEST(Switch, CapacitanceAtRestIsThatOfTheStraightBeam) {
   EXPECT_EQ(Switch(test::gold_pzt_cantilever()).capacitance(1, rest.data(), work), 0) << "the layer's own is not described";
 }
 
+TEST(Quadrature, CornersThatDifferByARoundingAreOne) {
+  Device d = test::gold_cantilever();
+  d.electrodes[0].end = d.structure.length - d.contact->pad_length;
+  const Eigen::Index points = Switch(d).points();
+  d.electrodes[0].end = std::nextafter(d.electrodes[0].end, 0.0);
+  EXPECT_EQ(Switch(d).points(), points);
+}
+
 TEST(Switch, QuadratureKnowsEveryCorner) {
   const Switch device(test::gold_pzt_cantilever());
   // Weights over any stretch between corners add up to its length: seen through the capacitance of a straight beam.
