@@ -36,13 +36,13 @@ struct Key {
   std::vector<std::string_view> pending = {};  ///< choices of the design that do not exist yet
   std::string_view fallback = {};              ///< the default as TOML; empty: none
   bool required = false;
-  std::string_view only_for = {};                 ///< the choice of the section's selector this key belongs to; empty: all
+  std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty: all
   std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
   std::string_view about = {};                    ///< one line for people
 
   /// No dimension is due: a TOML number is accepted as well.
   [[nodiscard]] bool is_bare_number() const;
-  [[nodiscard]] bool belongs_to(std::string_view choice) const { return only_for.empty() || only_for == choice; }
+  [[nodiscard]] bool belongs_to(std::string_view choice) const;
 };
 
 struct Section {

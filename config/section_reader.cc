@@ -111,8 +111,10 @@ void SectionReader::read_selector() {
   for (const auto& [name, node] : *table_) {
     const Key& key = *section_.find(name.str(), choice_);
     if (key.belongs_to(choice_)) continue;
+    std::vector<std::string> owners;
+    for (const std::string_view owner : key.only_for) owners.push_back(toml_string(owner));
     file_.fail(path(name.str()),
-               fmt::format("belongs to {} = {}, not to {}", section_.selector, toml_string(key.only_for), toml_string(choice_)));
+               fmt::format("belongs to {} = {}, not to {}", section_.selector, fmt::join(owners, " or "), toml_string(choice_)));
   }
 }
 
