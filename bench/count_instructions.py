@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""What an effect costs: instructions of one right-hand side, scene by scene, and with one effect added or taken away.
+
+    bench/count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs] > results/instructions.md
+
+Counts with callgrind (needs valgrind): the difference of two runs of bench_rhs that differ in their number of calls only, so the same
+twice whatever else the machine does. BEFORE is the program of an older revision, in which later effects do not exist: scenes that
+do not use them must cost the same there.
+"""
+import datetime
+import pathlib
+import platform
+import re
+import subprocess
+import sys
+
+SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
+FEW, MANY = 1000, 3000
+# A scene, what is changed in words, and the assignments that change it.
+CHANGES = []
+
+
+def collected(program, calls, scene, assignments):
+    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, str(calls), scene, *assignments],
+                         capture_output=True, text=True)
+    found = re.search(r"Collected : (\d+)", run.stderr)
+    if run.returncode != 0 or not found:
+        return None
+    return int(found.group(1))
+
+
+def instructions(program, scene, assignments=()):
+    """Instructions of one right-hand side; None where the program cannot run the scene."""
+    few, many = (collected(program, calls, scene, assignments) for calls in (FEW, MANY))
+    return None if few is None or many is None else (many - few) / (MANY - FEW)
+
+
+def text(count, base=None):
+    if count is None:
+        return "-"
+    return f"{count:.0f}" if base is None else f"{count:.0f} ({100 * (count / base - 1):+.1f} %)"
+
+
+def main():
+    if len(sys.argv) not in (2, 3):
+        sys.exit("usage: count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs] > results/instructions.md")
+    program, before = sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else None
+    revision = subprocess.run(["git", "-C", SCENES, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
+    print(f"""# Instructions of one right-hand side
+
+Contact closed, every drive at its peak. Counted by callgrind as the difference of {MANY} and {FEW} calls of `bench_rhs`.
+
+- made by `bench/count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs]`, {datetime.date.today().isoformat()}, revision {revision or 'unknown'}
+- machine: {platform.machine()}, {platform.system()} {platform.release()}; the counts depend on compiler and instruction set only
+""")
+    print("| scene | change | instructions |" + (" before the effects existed |" if before else ""))
+    print("|---|---|---|" + ("---|" if before else ""))
+    bases = {}
+    for scene in sorted(SCENES.glob("*.toml")):
+        bases[scene.name] = count = instructions(program, scene)
+        print(f"| {scene.name} | | {text(count)} |" + (f" {text(instructions(before, scene), count)} |" if before else ""), flush=True)
+    for name, words, assignments in CHANGES:
+        count = instructions(program, SCENES / name, assignments)
+        print(f"| {name} | {words} | {text(count, bases[name])} |" + (" |" if before else ""), flush=True)
+
+
+if __name__ == "__main__":
+    main()

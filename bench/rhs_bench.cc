@@ -1,0 +1,52 @@
+// Right-hand sides of a scene and nothing else, to count instructions by: bench_rhs CALLS SCENE [key=value ...]
+//
+// The contact is closed and every drive stands at its peak, so that every law of the scene takes part.
+// bench/count_instructions.py runs it under callgrind with two numbers of CALLS and takes the difference.
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "studies/prepared.h"
+
+namespace softland {
+namespace {
+
+int run(long calls, SceneFile file, const std::vector<std::string>& assignments) {
+  for (const std::string& assignment : assignments) file.set(assignment);
+  const Prepared prepared = prepare(file);
+  const Switch& device = prepared.device;
+  std::vector<double> volts;
+  for (const Signal& signal : prepared.signals()) volts.push_back(signal.peak());
+
+  // The contact point a nanometre beyond the plane, by the first mode, and on its way.
+  const auto n = static_cast<std::size_t>(device.modes());
+  std::vector<double> q(n), v(n), a(n);
+  q[0] = (device.device().gap.contact + 1e-9) / device.contact_shape()[0];
+  v[0] = device.angular_frequencies()[0] * q[0];
+  Switch::Workspace work = device.workspace();
+  double sum = 0;
+  for (long i = 0; i < calls; ++i) {
+    device.accelerations(q.data(), v.data(), volts, device.has_contact(), work, a.data());
+    sum += a[0];
+  }
+  return std::isfinite(sum) ? 0 : 3;  // also keeps the loop alive
+}
+
+}  // namespace
+}  // namespace softland
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::cerr << "usage: bench_rhs CALLS SCENE [key=value ...]\n";
+    return 2;
+  }
+  try {
+    return softland::run(std::atol(argv[1]), softland::SceneFile::load(argv[2]), {argv + 3, argv + argc});
+  } catch (const std::exception& error) {
+    std::cerr << "bench_rhs: " << error.what() << "\n";
+    return 2;
+  }
+}
