@@ -70,16 +70,21 @@ std::pair<double, double> read_span(const SectionReader& in, const SectionReader
 Contact read_contact(const SectionReader& in, const SectionReader& structure) {
   Contact contact{.pad_length = in.number("pad_length")};
   in.require(contact.pad_length < structure.number("length"), "pad_length", "must be less than " + structure.written("length"));
-  if (in.text("model") == "linear") {
-    contact.model = ContactModel::linear;
-    contact.stiffness = in.number("stiffness");
-  } else {
-    contact.model = ContactModel::asperity_uniform;
-    contact.asperity_radius = in.number("asperity_radius");
-    contact.asperity_density = in.number("asperity_density");
-    contact.asperity_height = in.number("asperity_height");
-    contact.effective_modulus = in.number("effective_modulus");
+  for (const ContactModel model :
+       {ContactModel::linear, ContactModel::asperity_uniform, ContactModel::asperity_gaussian, ContactModel::adhesive}) {
+    if (in.text("model") == to_string(model)) contact.model = model;
   }
+  const auto read = [&](const char* key, double& value) {
+    if (in.has_value(key)) value = in.number(key);
+  };
+  read("stiffness", contact.stiffness);
+  read("asperity_radius", contact.asperity_radius);
+  read("asperity_density", contact.asperity_density);
+  read("asperity_height", contact.asperity_height);
+  read("asperity_deviation", contact.asperity_deviation);
+  read("effective_modulus", contact.effective_modulus);
+  read("adhesion_energy", contact.adhesion_energy);
+  read("damping", contact.damping);
   return contact;
 }
 

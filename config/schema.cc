@@ -12,6 +12,9 @@ constexpr Range positive{.least = 0, .least_open = true};
 constexpr Range not_negative{.least = 0};
 constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 
+/// Contact laws of asperities.
+const std::vector<std::string_view> rough_contacts{"asperity-uniform", "asperity-gaussian", "adhesive"};
+
 /// An electrode's voltages may be multiples of its pull-in voltages.
 const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
@@ -126,8 +129,8 @@ std::vector<Section> make_schema() {
            {
                {.name = "model",
                 .type = choice,
-                .choices = {"linear", "asperity-uniform"},
-                .pending = {"hysteretic", "asperity-gaussian", "elastic-plastic", "adhesive"},
+                .choices = {"linear", "asperity-uniform", "asperity-gaussian", "adhesive"},
+                .pending = {"hysteretic", "elastic-plastic"},
                 .required = true,
                 .about = "law of the contact force"},
                {.name = "pad_length",
@@ -145,26 +148,43 @@ std::vector<Section> make_schema() {
                 .dimensions = {dimension::length},
                 .range = positive,
                 .required = true,
-                .only_for = {"asperity-uniform"},
+                .only_for = rough_contacts,
                 .about = "radius of the summits"},
                {.name = "asperity_density",
                 .dimensions = {dimension::area_density},
                 .range = positive,
                 .required = true,
-                .only_for = {"asperity-uniform"},
+                .only_for = rough_contacts,
                 .about = "summits per area"},
                {.name = "asperity_height",
                 .dimensions = {dimension::length},
                 .range = positive,
                 .required = true,
-                .only_for = {"asperity-uniform"},
+                .only_for = {"asperity-uniform", "adhesive"},
                 .about = "summit heights are uniform on [0, asperity_height]"},
+               {.name = "asperity_deviation",
+                .dimensions = {dimension::length},
+                .range = positive,
+                .required = true,
+                .only_for = {"asperity-gaussian"},
+                .about = "standard deviation of the summit heights; first touch at four of them above their mean"},
                {.name = "effective_modulus",
                 .dimensions = {dimension::pressure},
                 .range = positive,
                 .required = true,
-                .only_for = {"asperity-uniform"},
+                .only_for = rough_contacts,
                 .about = "E* of the pair of surfaces"},
+               {.name = "adhesion_energy",
+                .dimensions = {dimension::stiffness},
+                .range = positive,
+                .required = true,
+                .only_for = {"adhesive"},
+                .about = "work of adhesion per area of the pair of surfaces"},
+               {.name = "damping",
+                .dimensions = {dimension::slowness},
+                .range = positive,
+                .only_for = {"linear", "asperity-uniform", "asperity-gaussian"},
+                .about = "of Hunt and Crossley: restitution about 1 - damping times impact velocity; absent: none"},
            },
        .about = "contact under the tip; absent: the tip meets nothing"},
       {.name = "piezo",

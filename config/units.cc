@@ -80,6 +80,7 @@ constexpr std::array names{
     Name{dimension::pressure, "a pressure", "Pa", "78 GPa"},
     Name{dimension::viscosity, "a viscosity", "Pa s", "1.86e-5 Pa s"},
     Name{dimension::stiffness, "a stiffness", "N/m", "100 N/m"},
+    Name{dimension::slowness, "an inverse velocity", "s/m", "0.3 s/m"},
     Name{dimension::voltage, "a voltage", "V", "45 V"},
     Name{dimension::slew_rate, "a slew rate", "V/s", "3 V/us"},
     Name{dimension::charge, "a charge", "C", "1 pC"},

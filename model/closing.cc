@@ -231,11 +231,12 @@ class Run {
 
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
     const double y = device_.contact_deflection(knot.state.data());
+    const double velocity = device_.contact_deflection(knot.state.data() + n_);
     return {.time = knot.time,
             .position = y,
-            .velocity = device_.contact_deflection(knot.state.data() + n_),
+            .velocity = velocity,
             .acceleration = device_.contact_deflection(knot.acceleration.data()),
-            .contact_force = in_contact_ ? contact_force(device_.contact(), y - plane_) : 0};
+            .contact_force = in_contact_ ? contact_force(device_.contact(), y - plane_, velocity) : 0};
   }
 
   void record(const Knot& knot, bool on_plane = false) {
@@ -313,14 +314,19 @@ class Run {
       const double d = deepest - plane_;
       Touch& touch = out_.touches.back();
       touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d));
+      if (device_.has_damped_contact()) {  // then the peak comes before the deepest point
+        touch.peak_force = std::max(touch.peak_force, point(next_).contact_force);
+      }
       touch.peak_energy = std::max(touch.peak_energy, contact_energy(device_.contact(), d));
       out_.deepest_penetration = std::max(out_.deepest_penetration, d);
     }
 
     if (device_.damped()) {
-      const double power = device_.dissipated_power(next_.state.data() + n_, work_);  // take_state() left the field there
+      const double* q = next_.state.data();
+      const double power = device_.dissipated_power(q + n_, work_) + contact_power(q);  // take_state() left the field there
       halve_step();
-      const double halfway = device_.dissipated_power(middle_.data(), middle_.data() + n_, work_);
+      const double* q_half = middle_.data();
+      const double halfway = device_.dissipated_power(q_half, q_half + n_, work_) + contact_power(q_half);
       dissipated_ += (t1 - t0) / 6 * (power_ + 4 * halfway + power);
       power_ = power;
     }
@@ -334,6 +340,11 @@ class Run {
       };
       source_work_ -= (t1 - t0) / 6 * (flow(t0, here_.state) + 4 * flow((t0 + t1) / 2, middle_) + flow(t1, next_.state));
     }
+  }
+
+  // Dissipated by the contact law in state y = (q, v).
+  [[nodiscard]] double contact_power(const double* y) const {
+    return in_contact_ && device_.has_damped_contact() ? device_.contact_dissipation(y, y + n_) : 0;
   }
 
   // Work of the sources over a stretch: integral of V dQ = [V Q] - integral of Q dV, of which this adds the bracket.
@@ -400,12 +411,9 @@ class Run {
           "energy balance: {:.2g} % of the bending energy came from nowhere: the tolerance {:g} is too loose for this closing",
           100 * error, options_.tolerance));
     }
-    if (const auto* c = std::get_if<UniformAsperityContact>(device_.has_contact() ? &device_.contact() : nullptr)) {
-      if (out_.deepest_penetration > c->height) {
-        out_.warnings.push_back(
-            fmt::format("contact law asperity-uniform: interference {:.3g} m exceeds the asperity height {:.3g} m",
-                        out_.deepest_penetration, c->height));
-      }
+    if (const auto& contact = device_.device().contact; contact && out_.deepest_penetration > largest_interference(*contact)) {
+      out_.warnings.push_back(fmt::format("contact law {}: interference {:.3g} m exceeds the asperity height {:.3g} m",
+                                          to_string(contact->model), out_.deepest_penetration, largest_interference(*contact)));
     }
   }
 

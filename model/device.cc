@@ -20,6 +20,20 @@ void span(double begin, double end, double length, const std::string& name) {
 
 }  // namespace
 
+std::string_view to_string(ContactModel model) {
+  switch (model) {
+    case ContactModel::linear:
+      return "linear";
+    case ContactModel::asperity_gaussian:
+      return "asperity-gaussian";
+    case ContactModel::adhesive:
+      return "adhesive";
+    case ContactModel::asperity_uniform:
+      break;
+  }
+  return "asperity-uniform";
+}
+
 void validate(const Device& d) {
   const Structure& s = d.structure;
   positive(s.length, "m", "structure.length");
@@ -48,9 +62,19 @@ void validate(const Device& d) {
     } else {
       positive(c.asperity_radius, "m", "contact.asperity_radius");
       positive(c.asperity_density, "1/m^2", "contact.asperity_density");
-      positive(c.asperity_height, "m", "contact.asperity_height");
       positive(c.effective_modulus, "Pa", "contact.effective_modulus");
+      if (c.model == ContactModel::asperity_gaussian) {
+        positive(c.asperity_deviation, "m", "contact.asperity_deviation");
+      } else {
+        positive(c.asperity_height, "m", "contact.asperity_height");
+      }
     }
+    if (c.model == ContactModel::adhesive) positive(c.adhesion_energy, "J/m^2", "contact.adhesion_energy");
+    require(c.damping >= 0 && c.damping < 1e6,
+            fmt::format("contact.damping = {}: must not be negative", engineering(c.damping, "s/m")));
+    require(c.damping == 0 || c.model != ContactModel::adhesive,
+            fmt::format("contact.damping = {}: an adhesive contact would gain energy from it where it pulls",
+                        engineering(c.damping, "s/m")));
   }
   if (d.piezo) {
     const Piezo& p = *d.piezo;

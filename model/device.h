@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace softland {
@@ -43,16 +44,21 @@ struct Gas {
   double viscosity = 0;  ///< mu [Pa s]
 };
 
-enum class ContactModel { linear, asperity_uniform };
+enum class ContactModel { linear, asperity_uniform, asperity_gaussian, adhesive };
+
+[[nodiscard]] std::string_view to_string(ContactModel model);
 
 struct Contact {
   ContactModel model = ContactModel::asperity_uniform;
-  double pad_length = 0;         ///< lt [m]: the pad is [L - lt, L]; the force acts at its centre
-  double stiffness = 0;          ///< linear: [N/m]
-  double asperity_radius = 0;    ///< R [m]
-  double asperity_density = 0;   ///< eta [1/m^2]
-  double asperity_height = 0;    ///< Hm [m]
-  double effective_modulus = 0;  ///< E* [Pa]
+  double pad_length = 0;          ///< lt [m]: the pad is [L - lt, L]; the force acts at its centre
+  double stiffness = 0;           ///< linear: [N/m]
+  double asperity_radius = 0;     ///< R [m]
+  double asperity_density = 0;    ///< eta [1/m^2]
+  double asperity_height = 0;     ///< Hm [m]: heights uniform on [0, Hm]
+  double asperity_deviation = 0;  ///< asperity_gaussian: standard deviation of the heights [m]
+  double effective_modulus = 0;   ///< E* [Pa]
+  double adhesion_energy = 0;     ///< adhesive: work of adhesion W [J/m^2]
+  double damping = 0;             ///< of Hunt and Crossley [s/m]; not for adhesive
 };
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.

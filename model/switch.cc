@@ -159,7 +159,11 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   const double damping = 2 * device_.structure.damping_ratio;
   for (int i = 0; i < n; ++i) a[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
   if (device_.piezo) a += volts.back() * piezo_shape_;
-  if (in_contact) a -= contact_force(*contact_, contact_deflection(q) - device_.gap.contact) * contact_shape_;
+  if (in_contact) {
+    const double d = contact_deflection(q) - device_.gap.contact;
+    const auto rate = [&] { return contact_deflection(v); };
+    a -= std::visit([&](const auto& law) { return force_of(law, d, rate); }, *contact_) * contact_shape_;
+  }
 }
 
 void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
@@ -176,9 +180,13 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   by_q.diagonal() -= squares_;
   by_v.diagonal() -= 2 * device_.structure.damping_ratio * frequencies_;
   if (in_contact) {
-    const Dual d(contact_deflection(q) - device_.gap.contact, 1);
-    const double stiffness = std::visit([&](const auto& l) { return l.force(d).slope; }, *contact_);
-    by_q -= stiffness * contact_shape_ * contact_shape_.transpose();
+    const double d = contact_deflection(q) - device_.gap.contact, rate = contact_deflection(v);
+    const auto slope = [&](double by_d, double by_rate) {
+      return std::visit([&](const auto& law) { return force_of(law, Dual(d, by_d), [&] { return Dual(rate, by_rate); }).slope; },
+                        *contact_);
+    };
+    by_q -= slope(1, 0) * contact_shape_ * contact_shape_.transpose();
+    by_v -= slope(0, 1) * contact_shape_ * contact_shape_.transpose();
   }
 }
 
@@ -213,6 +221,10 @@ double Switch::dissipated_power(const double* v, Workspace& work) const {
   const double modal =
       2 * device_.structure.damping_ratio * Eigen::Map<const Eigen::VectorXd>(v, modes()).cwiseAbs2().dot(frequencies_);
   return modal - (weights_ * work.load.head(points()) * work.field.velocity.head(points())).sum();
+}
+
+double Switch::contact_dissipation(const double* q, const double* v) const {
+  return softland::contact_dissipation(*contact_, contact_deflection(q) - device_.gap.contact, contact_deflection(v));
 }
 
 double Switch::potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const {

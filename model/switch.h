@@ -78,12 +78,17 @@ class Switch {
   [[nodiscard]] double piezo_charge(const double* q) const;
   [[nodiscard]] double kinetic_energy(const double* v) const;  ///< [J]
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< bending, without piezo coupling and contact [J]
-  /// Whether anything takes energy out: gas or modal damping.
-  [[nodiscard]] bool damped() const { return !passive_laws_.empty() || device_.structure.damping_ratio > 0; }
+  /// Whether anything takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
+  [[nodiscard]] bool damped() const {
+    return !passive_laws_.empty() || device_.structure.damping_ratio > 0 || has_damped_contact();
+  }
+  [[nodiscard]] bool has_damped_contact() const { return contact_ && is_rate_dependent(*contact_); }
   /// Power taken out by gas and modal damping [W].
   [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work) const;
   /// The same in the field last computed with `work`, whose velocities are `v`.
   [[nodiscard]] double dissipated_power(const double* v, Workspace& work) const;
+  /// Power taken out by the contact law while it is active [W].
+  [[nodiscard]] double contact_dissipation(const double* q, const double* v) const;
   /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
   [[nodiscard]] double bending_energy() const { return bending_energy_; }
   /// Energy of the closed system under constant voltages: elastic + contact - 1/2 C V^2 - V theta q [J]. Its gradient is minus

@@ -39,7 +39,7 @@ struct Work {
 struct EnergyBalance {
   double source_work = std::numeric_limits<double>::quiet_NaN();  ///< integral of V dQ over all drives [J]
   double stored = 0;      ///< change of kinetic + elastic + electrostatic + contact energy [J]
-  double dissipated = 0;  ///< gas and modal damping [J]
+  double dissipated = 0;  ///< gas, modal damping, contact [J]
   [[nodiscard]] double residual() const { return source_work - stored - dissipated; }
 };
 

@@ -99,6 +99,26 @@ TEST(Scene, AsperitiesArrive) {
   EXPECT_EQ(contact.effective_modulus, 48e9);
 }
 
+TEST(Scene, EveryContactLawArrives) {
+  const auto contact = [](const std::string& keys) {
+    return *read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", keys)).device.contact;
+  };
+  const std::string summits =
+      "pad_length = \"5 um\"\nasperity_radius = \"100 nm\"\nasperity_density = \"1e11 1/m^2\"\neffective_modulus = \"48 GPa\"\n";
+  const Contact gaussian =
+      contact(summits + "model = \"asperity-gaussian\"\nasperity_deviation = \"30 nm\"\ndamping = \"0.2 s/m\"");
+  EXPECT_EQ(gaussian.model, ContactModel::asperity_gaussian);
+  EXPECT_EQ(gaussian.asperity_deviation, 30e-9);
+  EXPECT_EQ(gaussian.effective_modulus, 48e9);
+  EXPECT_EQ(gaussian.damping, 0.2);
+  const Contact adhesive =
+      contact(summits + "model = \"adhesive\"\nasperity_height = \"100 nm\"\nadhesion_energy = \"0.05 J/m^2\"");
+  EXPECT_EQ(adhesive.model, ContactModel::adhesive);
+  EXPECT_EQ(adhesive.asperity_height, 100e-9);
+  EXPECT_EQ(adhesive.adhesion_energy, 0.05);
+  EXPECT_EQ(adhesive.damping, 0);
+}
+
 TEST(Scene, ElectrodesComeSortedByName) {
   const Scene scene = read(edited(small_scene, "[gas]", "[electrode.back]\nspan = [\"0 m\", \"50 um\"]\n[gas]"));
   ASSERT_EQ(scene.device.electrodes.size(), 2U);

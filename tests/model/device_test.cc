@@ -56,6 +56,18 @@ TEST(Device, NamesWhatIsWrongWithIt) {
   expect_message([](Device& d) { d.contact->asperity_height = 0; }, "contact.asperity_height = 0 m: must be positive");
   expect_message([](Device& d) { d.contact->effective_modulus = 0; }, "contact.effective_modulus = 0 Pa: must be positive");
   expect_message([](Device& d) { d.contact->model = ContactModel::linear; }, "contact.stiffness = 0 N/m: must be positive");
+  expect_message([](Device& d) { d.contact->model = ContactModel::asperity_gaussian; },
+                 "contact.asperity_deviation = 0 m: must be positive");
+  expect_message([](Device& d) { d.contact->model = ContactModel::adhesive; },
+                 "contact.adhesion_energy = 0 J/m^2: must be positive");
+  expect_message([](Device& d) { d.contact->damping = -1; }, "contact.damping = -1 s/m: must not be negative");
+  expect_message(
+      [](Device& d) {
+        d.contact->model = ContactModel::adhesive;
+        d.contact->adhesion_energy = 0.1;
+        d.contact->damping = 1;
+      },
+      "contact.damping = 1 s/m: an adhesive contact would gain energy from it where it pulls");
   expect_message([](Device& d) { d.piezo->begin = -1e-6, d.piezo->end = 2e-4; },
                  "piezo.span = [-1 um, 200 um]: must increase and lie on the beam, from 0 m to 250 um");
   expect_message([](Device& d) { d.piezo->thickness = 0; }, "piezo.thickness = 0 m: must be positive");

@@ -51,25 +51,26 @@ TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryCombination) {
   for (const bool layer : {false, true}) {
     for (const Loss& loss :
          {Loss{"none", false, 0}, Loss{"gas", true, 0}, Loss{"modal", false, 0.02}, Loss{"both", true, 0.02}}) {
-      for (const ContactModel contact : {ContactModel::linear, ContactModel::asperity_uniform}) {
+      for (const Contact& contact : test::contacts()) {
         for (const int kind : {0, 1, 2}) {
           Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
           if (!loss.gas) d.gas.reset();
           d.structure.damping_ratio = loss.damping_ratio;
-          d.contact->model = contact;
-          d.contact->stiffness = 1e4_N_m;
+          d.contact = contact;
           const Switch device(d);
           const Trajectory t = simulate_closing(device, waveforms(kind, layer ? 28_V : step_level, layer),
                                                 {.duration = 150_us, .tolerance = tolerance});
-          const std::string name =
-              fmt::format("piezo {}, loss {}, contact {}, waveform {}", layer, loss.name, static_cast<int>(contact), kind);
+          const std::string name = fmt::format("piezo {}, loss {}, contact {} {}, waveform {}", layer, loss.name,
+                                               to_string(contact.model), contact.damping, kind);
           ASSERT_EQ(t.status, Status::done) << name;
-          EXPECT_GE(t.touches.size(), 5u) << name;
+          EXPECT_GE(t.touches.size(), 3u) << name;
           EXPECT_GT(t.energy.source_work, 0) << name;
           EXPECT_LT(std::abs(t.energy.residual()), balance * t.energy.source_work) << name;
           EXPECT_LT(std::abs(t.energy.residual()), measured * t.energy.source_work) << name;
           if (loss.gas || loss.damping_ratio > 0) {
             EXPECT_GT(t.energy.dissipated, 0.01 * t.energy.source_work) << name;
+          } else if (contact.damping > 0) {
+            EXPECT_GT(t.energy.dissipated, 1e-4 * t.energy.source_work) << name;
           } else {
             EXPECT_EQ(t.energy.dissipated, 0) << name;
           }

@@ -30,15 +30,14 @@ std::vector<Combination> combinations() {
     for (const bool layer : {false, true}) {
       for (const bool gas : {false, true}) {
         for (const double damping : {0.0, 0.03}) {
-          for (const ContactModel contact : {ContactModel::linear, ContactModel::asperity_uniform}) {
+          for (const Contact& contact : test::contacts()) {
             Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
             d.electrodes[0].fringing = fringing;
             d.structure.damping_ratio = damping;
             if (!gas) d.gas.reset();
-            d.contact->model = contact;
-            d.contact->stiffness = 1e4;
-            all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {}", static_cast<int>(fringing), layer,
-                                       gas, damping, static_cast<int>(contact)),
+            d.contact = contact;
+            all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {} {}", static_cast<int>(fringing),
+                                       layer, gas, damping, to_string(contact.model), contact.damping),
                            d});
           }
         }
@@ -150,14 +149,17 @@ TEST(Switch, DissipatedPowerIsWhatTheVelocityDependentForcesTakeOut) {
     Switch::Workspace work = device.workspace();
     const Eigen::Index n = device.modes();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n);
-    const State s = random_state(device, false, random);
+    const bool in_contact = random() % 2 == 1;
+    const State s = random_state(device, in_contact, random);
     Eigen::VectorXd moving(n), still(n);
-    device.accelerations(s.q.data(), s.v.data(), s.volts, false, work, moving.data());
-    device.accelerations(s.q.data(), rest.data(), s.volts, false, work, still.data());
-    const double power = device.dissipated_power(s.q.data(), s.v.data(), work);
+    device.accelerations(s.q.data(), s.v.data(), s.volts, in_contact, work, moving.data());
+    device.accelerations(s.q.data(), rest.data(), s.volts, in_contact, work, still.data());
+    double power = device.dissipated_power(s.q.data(), s.v.data(), work);
+    if (in_contact) power += device.contact_dissipation(s.q.data(), s.v.data());
     EXPECT_NEAR(power, -s.v.dot(moving - still), rounding * (std::abs(power) + s.v.norm() * still.norm())) << c.name;
     EXPECT_GE(power, 0) << c.name;
-    if (!c.device.gas && c.device.structure.damping_ratio == 0) {
+    EXPECT_EQ(device.damped(), c.device.gas || c.device.structure.damping_ratio > 0 || c.device.contact->damping > 0) << c.name;
+    if (!c.device.gas && c.device.structure.damping_ratio == 0 && !(in_contact && c.device.contact->damping > 0)) {
       EXPECT_EQ(power, 0) << c.name;
     } else {
       EXPECT_GT(power, 0) << c.name;

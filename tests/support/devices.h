@@ -1,6 +1,8 @@
 // The devices that tests share, as data sheets.
 #pragma once
 
+#include <vector>
+
 #include "base/literals.h"
 #include "model/device.h"
 
@@ -22,6 +24,26 @@ namespace softland::test {
                          .asperity_height = 100_nm,
                          .effective_modulus = 48_GPa},
   };
+}
+
+/// The contact of that device under every contact law, in the order of ContactModel, and with damping where the law takes it.
+[[nodiscard]] inline std::vector<Contact> contacts() {
+  using namespace literals;
+  std::vector<Contact> all;
+  for (const ContactModel model :
+       {ContactModel::linear, ContactModel::asperity_uniform, ContactModel::asperity_gaussian, ContactModel::adhesive}) {
+    for (const double damping : {0.0, 0.5}) {
+      if (damping > 0 && model == ContactModel::adhesive) continue;
+      Contact c = *gold_cantilever().contact;
+      c.model = model;
+      c.stiffness = 1e4_N_m;
+      c.asperity_deviation = 30_nm;
+      c.adhesion_energy = 0.05_N_m;
+      c.damping = damping;
+      all.push_back(c);
+    }
+  }
+  return all;
 }
 
 /// The same with a PZT-5A layer: the device of scenes/mem-gold-pzt.toml.

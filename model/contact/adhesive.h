@@ -1,0 +1,39 @@
+// Rough contact with adhesion: asperities of uniform heights, each pulled by the DMT force once it touches.
+//
+//   P = P_u(d) - 2 pi R W N(d),    N = eta An min(d, Hm) / Hm
+//   U = U_u(d) - pi R W eta An [d^2 - max(0, d - Hm)^2] / Hm
+//
+// P force on the beam, away from the contact [N]: negative at small d, where adhesion wins; P_u, U_u force [N] and energy [J] of
+// the law asperity-uniform; N summits in touch; R their radius [m]; W work of adhesion [J/m^2]; eta summits per area [1/m^2]; An
+// = width x pad length [m^2]; Hm [m]; d interference [m]. Lossless. Attraction between summits that do not touch is left out, so
+// nothing acts before first touch and the force starts from zero; for d < 0 continued as an odd function. W = 0 is
+// asperity-uniform. Validity: Tabor number (R W^2 / (E*^2 z0^3))^(1/3) below about 0.1 with z0 some 0.2 to 0.4 nm; beyond about 5
+// adhesion makes a neck (JKR) and breaking dissipates, which this law does not. Source: Derjaguin, Muller & Toporov 1975; the sum
+// over heights as in Greenwood & Williamson 1966.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/constants.h"
+#include "model/contact/asperity_uniform.h"
+
+namespace softland {
+
+struct AdhesiveAsperityContact {
+  UniformAsperityContact repulsion = {};
+  double attraction = 0;  ///< 2 pi R W eta An / Hm [N/m]
+
+  template <class S>
+  S force(S d) const {
+    return repulsion.force(d) - S(attraction) * (d > repulsion.height    ? S(repulsion.height)
+                                                 : d < -repulsion.height ? S(-repulsion.height)
+                                                                         : d);
+  }
+  [[nodiscard]] double energy(double d) const {
+    const double over = std::max(0.0, std::abs(d) - repulsion.height);
+    return repulsion.energy(d) - attraction * (d * d - over * over) / 2;
+  }
+};
+
+}  // namespace softland

@@ -1,0 +1,40 @@
+// Rough contact: Hertz asperities with heights uniform on [0, Hm].
+//
+//   P = (8/15) eta An E* sqrt(R) [d^2.5 - max(0, d - Hm)^2.5] / Hm
+//   U = (16/105) eta An E* sqrt(R) [d^3.5 - max(0, d - Hm)^3.5] / Hm
+//
+// P force on the beam, away from the contact [N]; d interference [m]; radius R [m]; eta summits per area [1/m^2]; An = width x
+// pad length [m^2]; effective modulus E* [Pa]; U stored energy [J]. Lossless. Force zero at d = 0 with two continuous
+// derivatives; for d < 0 continued as an odd function: the right-hand side stays smooth past the event that ends contact.
+// Validity: elastic asperities that do not touch each other: d well below Hm and R. Source: Greenwood & Williamson 1966 with the
+// uniform heights of Wang et al. 2009 (closed form: integral of the Hertz law over heights).
+#pragma once
+
+#include <cmath>
+
+namespace softland {
+
+struct UniformAsperityContact {
+  double strength = 0;  ///< eta An E* sqrt(R) / Hm [N / m^2.5]
+  double height = 0;    ///< Hm [m]
+
+  template <class S>
+  S force(S d) const {
+    using std::abs;
+    using std::sqrt;
+    const S m = abs(d);
+    S p = m * m * sqrt(m);
+    if (m > height) {
+      const S over = m - S(height);
+      p = p - over * over * sqrt(over);
+    }
+    return d < 0 ? -(S(strength * 8 / 15) * p) : S(strength * 8 / 15) * p;
+  }
+  [[nodiscard]] double energy(double d) const {
+    const double m = std::abs(d);
+    const auto power = [](double x) { return x > 0 ? x * x * x * std::sqrt(x) : 0; };
+    return strength * 16 / 105 * (power(m) - power(m - height));
+  }
+};
+
+}  // namespace softland

@@ -1,0 +1,50 @@
+#include "model/contact/contact_law.h"
+
+#include <limits>
+
+namespace softland {
+namespace {
+
+template <class Elastic>
+ContactLaw damped(Elastic law, double damping) {
+  if (damping > 0) return HuntCrossley<Elastic>{.elastic = law, .damping = damping};
+  return law;
+}
+
+}  // namespace
+
+ContactLaw contact_law(const Contact& c, double width) {
+  const double summits = c.asperity_density * width * c.pad_length;
+  const double hertz = summits * c.effective_modulus * std::sqrt(c.asperity_radius);
+  const UniformAsperityContact uniform{.strength = hertz / c.asperity_height, .height = c.asperity_height};
+  switch (c.model) {
+    case ContactModel::linear:
+      return damped(LinearContact{.stiffness = c.stiffness}, c.damping);
+    case ContactModel::asperity_gaussian: {
+      const double sigma = c.asperity_deviation;
+      return damped(GaussianAsperityContact{.strength = 4.0 / 3 * hertz * sigma * std::sqrt(sigma), .deviation = sigma},
+                    c.damping);
+    }
+    case ContactModel::adhesive:
+      return AdhesiveAsperityContact{.repulsion = uniform,
+                                     .attraction = 2 * pi * c.asperity_radius * c.adhesion_energy * summits / c.asperity_height};
+    case ContactModel::asperity_uniform:
+      break;
+  }
+  return damped(uniform, c.damping);
+}
+
+double largest_interference(const Contact& c) {
+  switch (c.model) {
+    case ContactModel::linear:
+      return std::numeric_limits<double>::infinity();
+    case ContactModel::asperity_gaussian:
+      return GaussianAsperityContact::first_touch * c.asperity_deviation;
+    case ContactModel::asperity_uniform:
+    case ContactModel::adhesive:
+      break;
+  }
+  return c.asperity_height;
+}
+
+}  // namespace softland

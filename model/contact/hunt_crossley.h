@@ -1,0 +1,35 @@
+// Damping in contact that grows with the load (Hunt-Crossley), added to any lossless law that only pushes.
+//
+//   P = max(0, P0(d) (1 + 1.5 c d'))        dissipated power (P - P0) d' >= 0
+//
+// P force on the beam, away from the contact [N]; P0 force of the law without damping [N]; d interference [m] and d' its rate
+// [m/s]; c damping [s/m]; the stored energy is that of P0. Unlike a dashpot the force starts from zero and never pulls. A mass
+// that hits at v_i leaves with the restitution e given by G(v_i) = G(-e v_i), G(v) = v/g - ln(1 + g v)/g^2, g = 1.5 c, whatever
+// P0: e -> 1 - c v_i for c v_i -> 0. A single mass never reaches the cap; other modes may pull the contact point out faster than
+// 1/(1.5 c), then the force has a corner there, which the step control has to find. Validity: c v_i well below 1, where c is a
+// property of the pair. Source: Hunt & Crossley 1975, eqs. 8 to 11.
+#pragma once
+
+namespace softland {
+
+template <class Elastic>
+struct HuntCrossley {
+  Elastic elastic = {};
+  double damping = 0;  ///< c [s/m]
+
+  template <class S>
+  S force(S d, S rate) const {
+    const S factor = S(1) + S(1.5 * damping) * rate;
+    return factor > 0 ? elastic.force(d) * factor : S(0);
+  }
+  /// [W]
+  [[nodiscard]] double dissipation(double d, double rate) const { return (force(d, rate) - elastic.force(d)) * rate; }
+  /// The static law.
+  template <class S>
+  S force(S d) const {
+    return elastic.force(d);
+  }
+  [[nodiscard]] double energy(double d) const { return elastic.energy(d); }
+};
+
+}  // namespace softland
