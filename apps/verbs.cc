@@ -310,13 +310,16 @@ int check_verb(const Common& c) {
     add("electrode " + p.scene.device.electrodes[k].name,
         fmt::format("Vsp {}, Vdp {}, release {}", volts(v["static_V"]), volts(v["dynamic_V"]), volts(v["release_V"])));
   }
-  if (p.scene.device.gas) {
+  if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
+    const Gas& gas = *p.scene.device.gas;
     const double g = p.scene.device.gap.electrode;
-    add("squeeze number", fmt::format("{:.3g} (first mode, rest gap, 101325 Pa; the strip film holds below about 10)",
-                                      12 * p.scene.device.gas->viscosity * s.width * s.width * p.device.angular_frequencies()[0] /
-                                          (101325 * g * g)));
-    add("Knudsen number", fmt::format("{:.3g} at the rest gap, {:.3g} closed (mean free path 65 nm: air, 101325 Pa, 300 K)",
-                                      65e-9 / g, 65e-9 / (g - p.scene.device.gap.contact)));
+    const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
+    const double omega = p.device.angular_frequencies()[0];
+    add("squeeze number",
+        fmt::format("{:.3g} at the rest gap, {:.3g} closed (first mode; the film laws hold below about {:g})",
+                    squeeze_number(gas, s.width, g, omega), squeeze_number(gas, s.width, closed, omega), incompressible));
+    add("Knudsen number", fmt::format("{:.3g} at the rest gap, {:.3g} closed (mean free path {:.3g} nm)", lambda / g,
+                                      lambda / closed, lambda * 1e9));
   }
   for (const auto& [name, signal] : named_signals(p)) {
     const auto limits = p.drives.limits.find(name);

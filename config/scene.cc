@@ -8,6 +8,7 @@
 #include "base/require.h"
 #include "config/drives.h"
 #include "config/section_reader.h"
+#include "model/gas/gas_law.h"
 
 namespace softland {
 namespace {
@@ -88,6 +89,21 @@ Contact read_contact(const SectionReader& in, const SectionReader& structure) {
   return contact;
 }
 
+Gas read_gas(const SectionReader& in) {
+  Gas gas;
+  for (const GasModelEntry& e : gas_models) {
+    if (e.name == in.text("model")) gas.model = e.model;
+  }
+  gas.damping = in.number("damping");
+  gas.quality_factor = in.number("quality_factor");
+  if (gas.model == GasModel::linear) return gas;
+  gas.viscosity = in.number("viscosity");
+  gas.pressure = in.number("pressure");
+  gas.temperature = in.number("temperature");
+  gas.mean_free_path = in.number("mean_free_path");
+  return gas;
+}
+
 Device read_device(const SceneFile::Impl& file) {
   const SectionReader structure(file, "structure");
   Device device{.structure = read_structure(structure), .gap = read_gap(SectionReader(file, "gap"))};
@@ -97,7 +113,7 @@ Device read_device(const SceneFile::Impl& file) {
     const auto [begin, end] = read_span(in, structure);
     device.electrodes.push_back({.name = name, .begin = begin, .end = end, .fringing = fringing(in.text("fringing"))});
   }
-  if (const SectionReader in(file, "gas"); in.is_present()) device.gas = Gas{.viscosity = in.number("viscosity")};
+  if (const SectionReader in(file, "gas"); in.is_present()) device.gas = read_gas(in);
   if (const SectionReader in(file, "contact"); in.is_present()) device.contact = read_contact(in, structure);
   if (const SectionReader in(file, "piezo"); in.is_present()) {
     const auto [begin, end] = read_span(in, structure);

@@ -18,6 +18,9 @@ const std::vector<std::string_view> rough_contacts{"asperity-uniform", "asperity
 /// An electrode's voltages may be multiples of its pull-in voltages.
 const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
+/// Gas models that describe a gas, not a damper.
+const std::vector<std::string_view> gas_films{"strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko"};
+
 std::vector<Section> make_schema() {
   using enum KeyType;
   return {
@@ -112,15 +115,45 @@ std::vector<Section> make_schema() {
        .selector = "model",
        .keys = {{.name = "model",
                  .type = choice,
-                 .choices = {"strip"},
-                 .pending = {"veijola", "gallis-torczynski", "near-contact", "linear"},
+                 .choices = {"strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko", "linear"},
                  .required = true,
                  .about = "law of the squeeze film"},
                 {.name = "viscosity",
                  .dimensions = {dimension::viscosity},
                  .range = positive,
+                 .only_for = gas_films,
+                 .about = "absent: that of air at the temperature"},
+                {.name = "pressure",
+                 .dimensions = {dimension::pressure},
+                 .range = positive,
+                 .fallback = "'101325 Pa'",
+                 .only_for = gas_films,
+                 .about = "ambient"},
+                {.name = "temperature",
+                 .dimensions = {dimension::temperature},
+                 .range = positive,
+                 .fallback = "'300 K'",
+                 .only_for = gas_films,
+                 .about = "of the gas"},
+                {.name = "mean_free_path",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .only_for = gas_films,
+                 .about = "absent: from viscosity, pressure and temperature"},
+                {.name = "damping",
+                 .dimensions = {dimension::viscosity},
+                 .range = positive,
                  .required = true,
-                 .about = "dynamic viscosity of the gas"}},
+                 .only_for = {"linear"},
+                 .instead_of = {"quality_factor"},
+                 .about = "constant force per length and velocity [N s/m^2]"},
+                {.name = "quality_factor",
+                 .dimensions = {dimension::none},
+                 .range = positive,
+                 .required = true,
+                 .only_for = {"linear"},
+                 .instead_of = {"damping"},
+                 .about = "of the first mode, instead of damping"}},
        .about = "gas between beam and electrode; absent: none"},
       {.name = "contact",
        .may_vary = true,

@@ -9,6 +9,7 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "model/gas/gas_law.h"
 #include "model/quintic.h"
 #include "model/stepper.h"
 
@@ -411,6 +412,7 @@ class Run {
           "energy balance: {:.2g} % of the bending energy came from nowhere: the tolerance {:g} is too loose for this closing",
           100 * error, options_.tolerance));
     }
+    for (std::string& warning : gas_warnings(device_.device(), out_)) out_.warnings.push_back(std::move(warning));
     if (const auto& contact = device_.device().contact; contact && out_.deepest_penetration > largest_interference(*contact)) {
       out_.warnings.push_back(fmt::format("contact law {}: interference {:.3g} m exceeds the asperity height {:.3g} m",
                                           to_string(contact->model), out_.deepest_penetration, largest_interference(*contact)));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/engineering.h"
 #include "base/require.h"
 
@@ -51,7 +53,20 @@ void validate(const Device& d) {
           fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
                       engineering(d.gap.electrode, "m")));
   for (const Electrode& e : d.electrodes) span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
-  if (d.gas) positive(d.gas->viscosity, "Pa s", "gas.viscosity");
+  if (d.gas) {
+    const Gas& g = *d.gas;
+    const auto positive_if_given = [](double value, const char* unit, const char* name) {
+      if (!std::isnan(value)) positive(value, unit, name);
+    };
+    positive(g.pressure, "Pa", "gas.pressure");
+    positive(g.temperature, "K", "gas.temperature");
+    positive_if_given(g.viscosity, "Pa s", "gas.viscosity");
+    positive_if_given(g.mean_free_path, "m", "gas.mean_free_path");
+    positive_if_given(g.damping, "N s/m^2", "gas.damping");
+    positive_if_given(g.quality_factor, "", "gas.quality_factor");
+    require(g.model != GasModel::linear || std::isnan(g.damping) != std::isnan(g.quality_factor),
+            "gas.model = linear: needs either damping or quality_factor");
+  }
   if (d.contact) {
     const Contact& c = *d.contact;
     require(c.pad_length > 0 && c.pad_length < s.length,

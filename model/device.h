@@ -37,11 +37,17 @@ struct Electrode {
   Fringing fringing = Fringing::meijs_fokkema;
 };
 
-enum class GasModel { strip };
+enum class GasModel { strip, veijola, gallis_torczynski, near_contact, guo_alexeenko, linear };
 
+/// What is not a number is not given: see model/gas/air.h for what stands in.
 struct Gas {
   GasModel model = GasModel::strip;
-  double viscosity = 0;  ///< mu [Pa s]
+  double viscosity = std::numeric_limits<double>::quiet_NaN();       ///< mu [Pa s]
+  double pressure = 101325;                                          ///< p, ambient [Pa]
+  double temperature = 300;                                          ///< T [K]
+  double mean_free_path = std::numeric_limits<double>::quiet_NaN();  ///< lambda [m]
+  double damping = std::numeric_limits<double>::quiet_NaN();         ///< linear: c [N s/m^2]
+  double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };
 
 enum class ContactModel { linear, asperity_uniform, asperity_gaussian, adhesive };

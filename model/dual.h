@@ -30,6 +30,12 @@ struct DualOf {
     using std::log;
     return {log(a.value), a.slope / a.value};
   }
+  /// For positive a.
+  friend DualOf pow(DualOf a, double exponent) {
+    using std::pow;
+    const T power = pow(a.value, exponent);
+    return {power, T(exponent) * power / a.value * a.slope};
+  }
   friend DualOf abs(DualOf a) { return a.value < 0 ? -a : a; }
   friend constexpr bool operator<(DualOf a, double b) { return a.value < b; }
   friend constexpr bool operator>(DualOf a, double b) { return a.value > b; }

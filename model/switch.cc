@@ -5,7 +5,6 @@
 #include <set>
 
 #include "model/forces/electrostatic.h"
-#include "model/gas/strip.h"
 #include "model/gauss.h"
 
 namespace softland {
@@ -85,7 +84,9 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
     electrode_laws_.push_back(electrostatic(e.fringing, s, points_in(positions_, e.begin, e.end), gap_floor()));
   }
   if (device_.gas) {
-    passive_laws_.push_back(erased(StripSqueezeFilm{.viscosity = device_.gas->viscosity, .width = s.width}, {0, n}, gap_floor()));
+    const double first_mode = (weights_ * shapes_.col(0).head(n).array().square()).sum();
+    gas_ = gas_law(*device_.gas, s, frequencies_[0] / first_mode);
+    passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, {0, n}, gap_floor()); }, *gas_));
   }
   // What bends the beam by the contact gap at x_c.
   const double compliance = contact_shape_.cwiseAbs2().cwiseQuotient(squares_).sum();

@@ -19,6 +19,7 @@
 #include "model/contact/contact_law.h"
 #include "model/device.h"
 #include "model/distributed_law.h"
+#include "model/gas/gas_law.h"
 
 namespace softland {
 
@@ -43,6 +44,7 @@ class Switch {
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
   [[nodiscard]] bool has_contact() const { return contact_.has_value(); }
   [[nodiscard]] const ContactLaw& contact() const { return *contact_; }
+  [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& point_positions() const { return positions_; }  ///< [m]
 
@@ -112,6 +114,7 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> electrode_laws_;  // one per electrode
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;    // not driven by a voltage
   std::optional<ContactLaw> contact_;
+  std::optional<GasLaw> gas_;
   double in_contact_period_ = 0;
   double penetration_scale_ = 0;
   double bending_energy_ = 0;

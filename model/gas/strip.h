@@ -21,7 +21,6 @@ struct StripSqueezeFilm {
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap);
   }
-  [[nodiscard]] double capacitance(double) const { return 0; }
 };
 
 }  // namespace softland

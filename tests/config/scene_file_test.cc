@@ -198,6 +198,8 @@ fringing = "meijs-fokkema"
 [gas]
 model = "strip"
 viscosity = "1.86e-5 Pa s"
+pressure = "101325 Pa"
+temperature = "300 K"
 
 [contact]
 model = "linear"

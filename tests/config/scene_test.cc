@@ -1,11 +1,13 @@
 #include "config/scene.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/literals.h"
+#include "model/gas/gas_law.h"
 #include "tests/config/small_scene.h"
 
 namespace softland {
@@ -51,6 +53,28 @@ TEST(Scene, EverySectionOfTheSmallSceneArrives) {
   EXPECT_EQ(scene.simulate.accuracy, 1e-5);
   EXPECT_THAT(scene.need_pull_in, testing::ElementsAre("main"));
   EXPECT_THAT(scene.warnings, testing::IsEmpty());
+}
+
+TEST(Scene, GasModelsAreThoseOfTheScene) {
+  const std::string section = "model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"";
+  for (const GasModelEntry& e : gas_models) {
+    const std::string keys = e.model == GasModel::linear ? "\nquality_factor = 7" : "\npressure = \"1 kPa\"";
+    const Gas gas = *read(edited(small_scene, section, fmt::format("model = \"{}\"{}", e.name, keys))).device.gas;
+    EXPECT_EQ(gas.model, e.model);
+    EXPECT_EQ(gas.pressure, e.model == GasModel::linear ? Gas{}.pressure : 1000);
+    EXPECT_TRUE(std::isnan(gas.viscosity)) << "that of air";
+  }
+  const Gas gas = *read(edited(small_scene, section, R"(model = "veijola"
+viscosity = "2e-5 Pa s"
+temperature = "350 K"
+mean_free_path = "70 nm")"))
+                       .device.gas;
+  EXPECT_EQ(gas.viscosity, 2e-5);
+  EXPECT_EQ(gas.pressure, 101325);
+  EXPECT_EQ(gas.temperature, 350);
+  EXPECT_EQ(gas.mean_free_path, 70e-9);
+  EXPECT_EQ(read(edited(small_scene, section, "model = \"linear\"\ndamping = \"0.5 N s/m^2\"")).device.gas->damping, 0.5);
+  EXPECT_EQ(read(edited(small_scene, section, "model = \"linear\"\nquality_factor = 7")).device.gas->quality_factor, 7);
 }
 
 TEST(Scene, WhatIsNotGivenTakesTheDefaultsOfTheStructs) {

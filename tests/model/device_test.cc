@@ -49,6 +49,15 @@ TEST(Device, NamesWhatIsWrongWithIt) {
   expect_message([](Device& d) { d.electrodes[0].begin = d.electrodes[0].end = 60_um; },
                  "electrode.main.span = [60 um, 60 um]: must increase and lie on the beam, from 0 m to 250 um");
   expect_message([](Device& d) { d.gas->viscosity = 0; }, "gas.viscosity = 0 Pa s: must be positive");
+  expect_message([](Device& d) { d.gas->pressure = 0; }, "gas.pressure = 0 Pa: must be positive");
+  expect_message([](Device& d) { d.gas->temperature = -1; }, "gas.temperature = -1 K: must be positive");
+  expect_message([](Device& d) { d.gas->mean_free_path = 0; }, "gas.mean_free_path = 0 m: must be positive");
+  expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear}; },
+                 "gas.model = linear: needs either damping or quality_factor");
+  expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear, .damping = 1, .quality_factor = 2}; },
+                 "gas.model = linear: needs either damping or quality_factor");
+  expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear, .damping = 0}; },
+                 "gas.damping = 0 N s/m^2: must be positive");
   expect_message([](Device& d) { d.contact->pad_length = 1; },
                  "contact.pad_length = 1 m: must be positive and below structure.length = 250 um");
   expect_message([](Device& d) { d.contact->asperity_radius = 0; }, "contact.asperity_radius = 0 m: must be positive");

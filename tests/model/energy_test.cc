@@ -91,6 +91,20 @@ TEST(EnergyBalance, ClosesForEveryFringingFactor) {
   }
 }
 
+TEST(EnergyBalance, ClosesForEveryGasModel) {
+  for (const GasModelEntry& e : gas_models) {
+    Device d = test::gold_cantilever();
+    d.gas->model = e.model;
+    if (e.model == GasModel::linear) d.gas->quality_factor = 5;
+    const std::vector<Signal> drives = waveforms(1, step_level, false);
+    const Trajectory t = simulate_closing(Switch(d), drives, {.duration = 100_us, .tolerance = 1e-9});
+    ASSERT_EQ(t.status, Status::done) << e.name;
+    EXPECT_GE(t.touches.size(), 2u) << e.name;
+    EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << e.name;
+    EXPECT_GT(t.energy.dissipated, 0.001 * t.energy.source_work) << e.name;
+  }
+}
+
 TEST(EnergyBalance, ResidualFallsWithTheTolerance) {
   const Switch device(test::gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(step_level)};

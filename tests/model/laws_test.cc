@@ -6,6 +6,8 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 #include <complex>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -15,7 +17,7 @@
 #include "model/distributed_law.h"
 #include "model/dual.h"
 #include "model/forces/electrostatic.h"
-#include "model/gas/strip.h"
+#include "model/gas/gas_law.h"
 
 namespace softland {
 namespace {
@@ -149,29 +151,121 @@ TEST(FringingFactor, OfMeijsAndFokkemaIsCloseToTheBoundaryElementSolution) {
 
 // ---- gas
 
-TEST(StripSqueezeFilm, OpposesTheMotionAndTakesItsEnergy) {
-  const StripSqueezeFilm film{.viscosity = 1.86e-5_Pa_s, .width = 20_um};
+// A film of air under a strip of this width; the linear damper is as strong as the strip film at 2 um.
+template <class Law>
+Law gas_law_of_type(double width, double free_path, double viscosity = 1.86e-5_Pa_s) {
+  for (const GasModelEntry& e : gas_models) {
+    Gas gas{.model = e.model, .viscosity = viscosity, .mean_free_path = free_path};
+    if (e.model == GasModel::linear) gas.damping = viscosity * 1000;
+    const GasLaw law = gas_law(gas, {.width = width, .thickness = 4_um}, 1);
+    if (const Law* found = std::get_if<Law>(&law)) return *found;
+  }
+  throw std::logic_error("no model makes this law");
+}
+
+template <class Law>
+class GasLawOfType : public testing::Test {};
+using GasLaws =
+    testing::Types<StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm, GuoAlexeenkoFilm, LinearDamper>;
+TYPED_TEST_SUITE(GasLawOfType, GasLaws);
+
+TYPED_TEST(GasLawOfType, OpposesTheMotionAndTakesItsEnergy) {
+  const auto law = gas_law_of_type<TypeParam>(20_um, 65_nm);
   for (const double h : gaps) {
     for (const double v : {-1.0, -1e-3, 1e-3, 1.0}) {
-      EXPECT_LE(film.load(h, v) * v, 0);
-      EXPECT_EQ(film.load(h, v), -film.load(h, -v));
-      EXPECT_NEAR(film.load(h, v), -1.86e-5 * std::pow(20_um / h, 3) * v, 1e-14 * std::abs(film.load(h, v)));
+      EXPECT_LT(law.load(h, v) * v, 0) << "gap " << h;
+      EXPECT_EQ(law.load(h, v), -law.load(h, -v));
+      EXPECT_NEAR(law.load(h, v), v * law.load(h, 1.0), 1e-14 * std::abs(law.load(h, v))) << "linear in the velocity";
     }
-    EXPECT_EQ(film.load(h, 0.0), 0);
-    EXPECT_EQ(film.capacitance(h), 0);
+    EXPECT_EQ(law.load(h, 0.0), 0);
+    EXPECT_EQ(damping_per_length(law, h), -law.load(h, 1.0));
   }
 }
 
-TEST(StripSqueezeFilm, DualSlopesAreTheComplexStepDerivatives) {
-  constexpr double step = 1e-30;
-  const StripSqueezeFilm film{.viscosity = 1.86e-5_Pa_s, .width = 20_um};
-  using Complex = std::complex<double>;
-  for (const double h : gaps) {
-    const double by_gap = film.load(Complex(h, step), Complex(0.2)).imag() / step;
-    const double by_velocity = film.load(Complex(h), Complex(0.2, step)).imag() / step;
-    EXPECT_NEAR(film.load(Dual(h, 1), Dual(0.2)).slope, by_gap, 1e-13 * std::abs(by_gap));
-    EXPECT_NEAR(film.load(Dual(h), Dual(0.2, 1)).slope, by_velocity, 1e-13 * std::abs(by_velocity));
+TYPED_TEST(GasLawOfType, DualSlopesAreTheComplexStepDerivatives) {
+  if constexpr (!std::is_same_v<TypeParam, NearContactFilm>) {  // its pieces are told apart by an order that complex numbers lack
+    constexpr double step = 1e-30;
+    const auto law = gas_law_of_type<TypeParam>(20_um, 65_nm);
+    using Complex = std::complex<double>;
+    for (const double h : gaps) {
+      const double by_gap = law.load(Complex(h, step), Complex(0.2)).imag() / step;
+      const double by_velocity = law.load(Complex(h), Complex(0.2, step)).imag() / step;
+      EXPECT_NEAR(law.load(Dual(h, 1), Dual(0.2)).slope, by_gap, 1e-12 * std::abs(by_gap));
+      EXPECT_NEAR(law.load(Dual(h), Dual(0.2, 1)).slope, by_velocity, 1e-13 * std::abs(by_velocity));
+    }
   }
+}
+
+TEST(StripSqueezeFilm, IsTheTextbookOne) {
+  const StripSqueezeFilm film{.viscosity = 1.86e-5_Pa_s, .width = 20_um};
+  for (const double h : gaps) {
+    const double expected = -1.86e-5 * std::pow(20_um / h, 3) * 0.3;
+    EXPECT_NEAR(film.load(h, 0.3), expected, 1e-14 * std::abs(expected));
+  }
+}
+
+TEST(GasLaw, HasTheTabulatedDampingPerLength) {
+  // Computed independently: a = 123 um, b = 4 um, mean free path 65.45 nm; viscosity 1.8033e-5 Pa s, near contact 1.98e-5 Pa s.
+  // As printed: the tolerance is half a unit of the last digit.
+  struct Row {
+    double gap;
+    const char *strip, *veijola, *gallis_torczynski, *near_contact, *guo_alexeenko;
+  };
+  constexpr std::array<Row, 6> table{{{4_um, "0.524", "0.485", "0.539", "0.448", "1.142"},
+                                      {2_um, "4.19", "3.55", "3.68", "2.56", "5.33"},
+                                      {1_um, "33.6", "23.8", "23.7", "5.36", "17.5"},
+                                      {0.5_um, "268", "140", "136", "4.95", "47.0"},
+                                      {0.2_um, "4195", "1152", "1098", "3.56", "157"},
+                                      {0.1_um, "33557", "4866", "4740", "2.71", "382"}}};
+  const auto expect = [](const GasLaw& law, double gap, const std::string& printed) {
+    const std::size_t point = printed.find('.');
+    const double digit = point == std::string::npos ? 1 : std::pow(10, -static_cast<double>(printed.size() - point - 1));
+    EXPECT_NEAR(damping_per_length(law, gap), std::stod(printed), 0.501 * digit) << "gap " << gap << ", law " << law.index();
+  };
+  const double mu = air_viscosity(300);
+  for (const Row& row : table) {
+    expect(gas_law_of_type<StripSqueezeFilm>(123_um, 65.45_nm, mu), row.gap, row.strip);
+    expect(gas_law_of_type<VeijolaFilm>(123_um, 65.45_nm, mu), row.gap, row.veijola);
+    expect(gas_law_of_type<GallisTorczynskiFilm>(123_um, 65.45_nm, mu), row.gap, row.gallis_torczynski);
+    expect(gas_law_of_type<NearContactFilm>(123_um, 65.45_nm, 1.98e-5), row.gap, row.near_contact);
+    expect(gas_law_of_type<GuoAlexeenkoFilm>(123_um, 65.45_nm), row.gap, row.guo_alexeenko);
+  }
+}
+
+TEST(VeijolaFilm, HasTheTabulatedViscosityAtEveryPressure) {
+  constexpr double printed = 6.3e-4;  // relative: half a unit of the last digit of 8.02e-4
+  const Structure strip{.width = 20_um};
+  for (const auto& [pressure, reduction] : {std::pair{101325.0, 0.7098}, {1e4, 0.1431}, {1e3, 0.01145}, {100.0, 8.02e-4}}) {
+    const Gas gas{.model = GasModel::veijola, .pressure = pressure};
+    const Gas continuum{.model = GasModel::strip};
+    const double ratio =
+        damping_per_length(gas_law(gas, strip, 1), 1_um) / damping_per_length(gas_law(continuum, strip, 1), 1_um);
+    EXPECT_NEAR(ratio, reduction, printed * reduction) << pressure << " Pa";
+  }
+}
+
+TEST(RarefiedFilm, BecomesTheStripFilmWhereTheMeanFreePathVanishes) {
+  const auto strip = gas_law_of_type<StripSqueezeFilm>(1e4 * 1_um, 1e-3 * 1_nm);
+  const auto veijola = gas_law_of_type<VeijolaFilm>(1e4 * 1_um, 1e-3 * 1_nm);
+  const auto gallis_torczynski = gas_law_of_type<GallisTorczynskiFilm>(1e4 * 1_um, 1e-3 * 1_nm);
+  const double expected = strip.load(1_um, 1.0);  // Kn = 1e-6, h/a = 1e-4
+  EXPECT_NEAR(veijola.load(1_um, 1.0), expected, 2e-6 * std::abs(expected));
+  EXPECT_NEAR(gallis_torczynski.load(1_um, 1.0) / expected, 1 + 6 * 0.634 * 1e-4 - 6 * 1e-6, 1e-7);
+}
+
+TEST(NearContactFilm, GoesOnSmoothlyWhereItsTangentBegins) {
+  constexpr double little = 1e-9;
+  const auto film = gas_law_of_type<NearContactFilm>(20_um, 65_nm);
+  const double begins = 0.015 * 20_um;
+  const auto slope = [&](double h) { return film.load(Dual(h, 1), Dual(0.2)).slope; };
+  EXPECT_NEAR(film.load(begins * (1 - little), 0.2), film.load(begins * (1 + little), 0.2), 10 * little * 20);
+  EXPECT_NEAR(slope(begins * (1 - little)), slope(begins * (1 + little)), 100 * little * std::abs(slope(begins)));
+  for (const double h : gaps) {
+    const double expected = derivative([&](double x) { return film.load(x, 0.2); }, h, h / 200);
+    EXPECT_NEAR(slope(h), expected, 1e-9 * std::abs(expected)) << "gap " << h;
+  }
+  EXPECT_LT(damping_per_length(film, 0.05_um), damping_per_length(film, 0.2_um)) << "falls towards contact";
+  EXPECT_TRUE(std::isfinite(damping_per_length(film, 1e-6 * 1_nm)));
 }
 
 // ---- contact
@@ -462,6 +556,7 @@ TEST(Dual, FollowsTheRulesOfDifferentiation) {
   expect(abs(Dual(3, 5)), 3, 5);
   expect(2 * x + 1, 7, 2);
   expect(1 / x, 1.0 / 3, -1.0 / 9);
+  expect(pow(x, 1.5), std::pow(3.0, 1.5), 1.5 * std::sqrt(3.0));
   EXPECT_TRUE(x > 2.9);
   EXPECT_TRUE(x < 3.1);
   EXPECT_FALSE(x < 3);
@@ -518,16 +613,17 @@ template <class Law>
 class LawAlongTheBeam : public testing::Test {
  protected:
   static Law physics() {
-    if constexpr (std::is_same_v<Law, StripSqueezeFilm>) {
-      return {.viscosity = 1.86e-5_Pa_s, .width = 20_um};
-    } else {
+    if constexpr (Law::driven) {
       return {fringing<decltype(Law::fringing)>(20_um, 2_um)};
+    } else {
+      return gas_law_of_type<Law>(20_um, 65_nm);
     }
   }
 };
 using LawsAlongTheBeam =
     testing::Types<ElectrostaticForce<NoFringing>, ElectrostaticForce<LinearFringing>, ElectrostaticForce<MeijsFokkemaFringing>,
-                   ElectrostaticForce<Bao2001Fringing>, StripSqueezeFilm>;
+                   ElectrostaticForce<Bao2001Fringing>, StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm,
+                   GuoAlexeenkoFilm, LinearDamper>;
 TYPED_TEST_SUITE(LawAlongTheBeam, LawsAlongTheBeam);
 
 constexpr double gap_floor = 35_nm;

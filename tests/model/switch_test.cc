@@ -44,6 +44,14 @@ std::vector<Combination> combinations() {
       }
     }
   }
+  for (const GasModelEntry& e : gas_models) {
+    for (const bool layer : {false, true}) {
+      Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
+      d.gas->model = e.model;
+      if (e.model == GasModel::linear) d.gas->quality_factor = 5;
+      all.push_back({fmt::format("gas {}, piezo {}", e.name, layer), d});
+    }
+  }
   Device two = test::gold_cantilever();  // two electrodes that overlap on a part of the beam
   two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
   all.push_back({"two electrodes", two});

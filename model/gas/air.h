@@ -1,0 +1,35 @@
+// State of the gas: viscosity and mean free path, one convention for every law.
+//
+//   mu(T) = 1.7894e-5 (T / 297 K)^0.77                      air, where a scene gives no viscosity
+//   lambda = (mu / p) sqrt(pi R_g T / 2)                    where a scene gives no mean free path
+//   Kn = lambda / h
+//
+// mu viscosity [Pa s], T temperature [K], p ambient pressure [Pa], R_g = 287 J/(kg K) of air, lambda mean free path [m], h local
+// gap [m], Kn Knudsen number. lambda belongs to the viscosity that is used, also where the scene gives that one: 65.45 nm for air
+// at 101325 Pa and 300 K. Other conventions (hard spheres: about 53 nm) differ by 20 %; a scene that wants one gives
+// mean_free_path. mu(T) is a fit for room temperature and some 100 K around it. Source: Purdue PRISM, PUQ 2.2 (MIT licence),
+// examples/matlab/springmassdamperl.m; textbook definition of the viscosity-based mean free path.
+#pragma once
+
+#include <cmath>
+
+#include "model/constants.h"
+#include "model/device.h"
+
+namespace softland {
+
+inline constexpr double gas_constant_of_air = 287;  ///< R_g [J/(kg K)]
+
+[[nodiscard]] inline double air_viscosity(double temperature) { return 1.7894e-5 * std::pow(temperature / 297, 0.77); }
+
+/// mu [Pa s]: as given, or that of air.
+[[nodiscard]] inline double viscosity(const Gas& gas) {
+  return std::isnan(gas.viscosity) ? air_viscosity(gas.temperature) : gas.viscosity;
+}
+/// lambda [m]: as given, or from viscosity, pressure and temperature.
+[[nodiscard]] inline double mean_free_path(const Gas& gas) {
+  if (!std::isnan(gas.mean_free_path)) return gas.mean_free_path;
+  return viscosity(gas) / gas.pressure * std::sqrt(pi * gas_constant_of_air * gas.temperature / 2);
+}
+
+}  // namespace softland

@@ -1,0 +1,31 @@
+// Squeezed film under a long strip of rarefied gas, with the pressure that remains at the strip's edges.
+//
+//   f = -mu (a / h)^3 [1 + 6 Z (h/a) + 12 E (h/a)^2] / (1 + 6 X Kn) v,   Kn = lambda / h    [N/m], positive towards the electrode
+//   X = (1 + 8.834 Kn) / (1 + 5.118 Kn),  Z = (0.634 + 1.572 Kn) / (1 + 0.537 Kn),  E = (0.445 + 11.20 Kn) / (1 + 5.510 Kn)
+//
+// mu viscosity [Pa s], a width [m], h local gap [m], lambda mean free path [m], v velocity towards the electrode [m/s]. X: slip
+// at the walls; Z and E: pressure and flow at the edges, fitted to direct simulation Monte Carlo with full accommodation.
+// Incompressible: squeeze numbers 12 mu a^2 omega / (p h^2) below about 10. Kn -> 0 and h/a -> 0: the strip film. Singular at
+// h = 0. Source: Gallis & Torczynski, J. Microelectromech. Syst. 13 (2004) 653, eqs. 16-18.
+#pragma once
+
+namespace softland {
+
+struct GallisTorczynskiFilm {
+  double viscosity = 0;       ///< [Pa s]
+  double mean_free_path = 0;  ///< [m]
+  double width = 0;           ///< [m]
+  static constexpr bool driven = false;
+
+  /// [N/m]
+  template <class S>
+  S load(S gap, S velocity) const {
+    const S kn = S(mean_free_path) / gap, x = gap / S(width);
+    const S slip = (S(1) + S(8.834) * kn) / (S(1) + S(5.118) * kn);
+    const S pressure = (S(0.634) + S(1.572) * kn) / (S(1) + S(0.537) * kn);
+    const S flow = (S(0.445) + S(11.20) * kn) / (S(1) + S(5.510) * kn);
+    return S(-viscosity) * velocity * (S(1) + x * (S(6) * pressure + S(12) * flow * x)) / (x * x * x * (S(1) + S(6) * slip * kn));
+  }
+};
+
+}  // namespace softland

@@ -1,0 +1,63 @@
+#include "model/gas/gas_law.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softland {
+
+const GasModelEntry& entry(GasModel model) {
+  return *std::find_if(gas_models.begin(), gas_models.end(), [&](const GasModelEntry& e) { return e.model == model; });
+}
+
+GasLaw gas_law(const Gas& gas, const Structure& s, double damping_of_unit_quality) {
+  const double mu = viscosity(gas), lambda = mean_free_path(gas);
+  switch (gas.model) {
+    case GasModel::veijola:
+      return VeijolaFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
+    case GasModel::gallis_torczynski:
+      return GallisTorczynskiFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
+    case GasModel::near_contact:
+      return NearContactFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
+    case GasModel::guo_alexeenko:
+      return GuoAlexeenkoFilm{.mean_free_path = lambda, .width = s.width, .thickness = s.thickness};
+    case GasModel::linear:
+      return LinearDamper{.damping = std::isnan(gas.damping) ? damping_of_unit_quality / gas.quality_factor : gas.damping};
+    case GasModel::strip:
+      break;
+  }
+  return StripSqueezeFilm{.viscosity = mu, .width = s.width};
+}
+
+double squeeze_number(const Gas& gas, double width, double gap, double rate) {
+  return 12 * viscosity(gas) * width * width * rate / (gas.pressure * gap * gap);
+}
+
+std::vector<std::string> gas_warnings(const Device& device, const Trajectory& trajectory) {
+  std::vector<std::string> warnings;
+  if (!device.gas) return warnings;
+  const Gas& gas = *device.gas;
+  const GasModelEntry& law = entry(gas.model);
+  const double rest = device.gap.electrode;
+  const double lambda = mean_free_path(gas);
+  if (const double kn = lambda / trajectory.smallest_gap; kn > law.most_knudsen) {
+    warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} exceeds {:.2g}", law.name, kn, law.most_knudsen));
+  }
+  if (const double kn = lambda / rest; kn < law.least_knudsen) {
+    warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} is below {:.2g}", law.name, kn, law.least_knudsen));
+  }
+  if (!std::isfinite(law.most_squeeze)) return warnings;
+  double largest = 0;
+  for (const TrajectoryPoint& p : trajectory.points) {
+    const double h = rest - p.position;
+    if (h > 0) largest = std::max(largest, squeeze_number(gas, device.structure.width, h, std::abs(p.velocity) / h));
+  }
+  if (largest > law.most_squeeze) {
+    warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: the film is compressed, not squeezed out",
+                                   law.name, largest, law.most_squeeze));
+  }
+  return warnings;
+}
+
+}  // namespace softland

@@ -1,0 +1,46 @@
+// Squeezed film of rarefied gas down to contact: the form of Gallis & Torczynski with coefficients refitted for gaps much
+// smaller than the width.
+//
+//   f = -c v,   c = mu g(h/a) / (1 + 6 X Kn),   Kn = lambda / h                           [N/m], positive towards the electrode
+//   g(x) = x^-3 (1 + 6 Z x + 12 E x^2) for x >= 0.015, below that its tangent at 0.015 (Z and E stay those of the local Kn)
+//   X = 5.5964,  Z = 48.62 Kn / (1 + 0.3405 Kn),  E = (1 + 210.79 Kn) / (67.59 Kn)
+//
+// mu viscosity [Pa s] (1.98e-5 in the source), a width [m], h local gap [m], lambda mean free path [m], v velocity towards the
+// electrode [m/s]. f has a continuous derivative at x = 0.015. Not for continuum flow: E diverges as Kn -> 0; 210.79 Kn below 1
+// is a warning. In contrast to the other films c FALLS towards contact where the tangent acts. Finite at h -> 0. Source:
+// coefficients as coded in the public force code of the Purdue PRISM centre (ComputeForce.py); the paper behind them is
+// presumably Parkos et al., J. Microelectromech. Syst. 22 (2013), which was not read.
+#pragma once
+
+namespace softland {
+
+struct NearContactFilm {
+  double viscosity = 0;       ///< [Pa s]
+  double mean_free_path = 0;  ///< [m]
+  double width = 0;           ///< [m]
+  static constexpr bool driven = false;
+  static constexpr double near = 0.015;       ///< h/a below which g is continued by its tangent
+  static constexpr double rarefied = 210.79;  ///< E is that of rarefied gas for Kn well above one over this
+
+  /// [N/m]
+  template <class S>
+  S load(S gap, S velocity) const {
+    const S kn = S(mean_free_path) / gap;
+    const S z = S(6 * 48.62) * kn / (S(1) + S(0.3405) * kn);
+    const S e = S(12) * (S(1) + S(rarefied) * kn) / (S(67.59) * kn);
+    return S(-viscosity) * velocity * shape(gap / S(width), z, e) / (S(1) + S(6 * 5.5964) * kn);
+  }
+
+ private:
+  /// g(x) with z = 6 Z and e = 12 E.
+  template <class S>
+  static S shape(S x, S z, S e) {
+    if (!(x < near)) return (S(1) + x * (z + e * x)) / (x * x * x);
+    constexpr double r = 1 / near;
+    const S value = S(r) * (S(r) * (S(r) + z) + e);
+    const S slope = S(-r * r) * (S(r) * (S(3 * r) + S(2) * z) + e);
+    return value + slope * (x - S(near));
+  }
+};
+
+}  // namespace softland

@@ -1,0 +1,30 @@
+// Squeezed film under a long strip of rarefied gas: the strip film with an effective viscosity.
+//
+//   f = -mu_eff (a / h)^3 v,   mu_eff = mu / (1 + 9.638 Kn^1.159),   Kn = lambda / h     [N/m], positive towards the electrode
+//
+// mu viscosity [Pa s], a width [m], h local gap [m], lambda mean free path [m], v velocity towards the electrode [m/s]. The fit
+// is within 5 % of the linearised Boltzmann solution of Poiseuille flow for Kn up to 880. Incompressible: squeeze numbers 12 mu
+// a^2 omega / (p h^2) below about 10. Kn -> 0: the strip film. Singular at h = 0. Source: Veijola, Kuisma, Lahdenpera & Ryhanen,
+// Sensors and Actuators A 48 (1995) 239, for the flow conductance of Fukui & Kaneko 1988.
+#pragma once
+
+#include <cmath>
+
+namespace softland {
+
+struct VeijolaFilm {
+  double viscosity = 0;       ///< [Pa s]
+  double mean_free_path = 0;  ///< [m]
+  double width = 0;           ///< [m]
+  double mu_a3 = viscosity * width * width * width;
+  static constexpr bool driven = false;
+
+  /// [N/m]
+  template <class S>
+  S load(S gap, S velocity) const {
+    using std::pow;
+    return S(-mu_a3) * velocity / (gap * gap * gap * (S(1) + S(9.638) * pow(S(mean_free_path) / gap, 1.159)));
+  }
+};
+
+}  // namespace softland

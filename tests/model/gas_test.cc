@@ -1,0 +1,89 @@
+// State of the gas, the linear damper's quality factor, and the limits of the gas laws.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/literals.h"
+#include "model/closing.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+TEST(Gas, OfAirHasTheMeanFreePathOfItsViscosity) {
+  constexpr double printed = 1e-4;  // relative: four digits
+  EXPECT_NEAR(mean_free_path({}), 65.45_nm, printed * 65.45_nm);
+  EXPECT_NEAR(viscosity({.temperature = 297}), 1.7894e-5, 1e-12);
+  EXPECT_DOUBLE_EQ(viscosity({.temperature = 2 * 297}) / viscosity({.temperature = 297}), std::pow(2, 0.77));
+  EXPECT_DOUBLE_EQ(mean_free_path({.pressure = 1e3}), 101.325 * mean_free_path({}));
+  EXPECT_DOUBLE_EQ(mean_free_path({.viscosity = 3.6e-5}), 2 * mean_free_path({.viscosity = 1.8e-5}));
+  EXPECT_DOUBLE_EQ(mean_free_path({.viscosity = 1.8e-5, .temperature = 1200}),
+                   2 * mean_free_path({.viscosity = 1.8e-5, .temperature = 300}));
+}
+
+TEST(Gas, GivenNumbersWin) {
+  EXPECT_EQ(viscosity({.viscosity = 2e-5, .temperature = 500}), 2e-5);
+  EXPECT_EQ(mean_free_path({.pressure = 7, .mean_free_path = 64_nm}), 64_nm);
+}
+
+TEST(LinearDamper, GivesTheFirstModeItsQualityFactor) {
+  constexpr double quadrature = 1e-9;
+  for (Device d : {test::gold_cantilever(), test::gold_pzt_cantilever()}) {
+    d.gas = Gas{.model = GasModel::linear, .quality_factor = 8};
+    const Switch device(d);
+    Switch::Workspace work = device.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+    const Eigen::VectorXd v = Eigen::VectorXd::Unit(device.modes(), 0);
+    // Q = omega_1 times twice the mean kinetic energy over the power, for a velocity of one.
+    const double power = device.dissipated_power(rest.data(), v.data(), work);
+    EXPECT_NEAR(device.angular_frequencies()[0] / power, 8, quadrature * 8);
+  }
+}
+
+TEST(LinearDamper, OfAUniformBeamDampsEveryModeAtTheSameRate) {
+  Device damper = test::gold_cantilever(), modal = damper;
+  damper.gas = Gas{.model = GasModel::linear, .quality_factor = 8};
+  modal.gas.reset();
+  modal.structure.modes = damper.structure.modes = 1;
+  modal.structure.damping_ratio = 1.0 / 16;
+  const Switch a(damper), b(modal);
+  Switch::Workspace work_a = a.workspace(), work_b = b.workspace();
+  const double rest = 0, v = 1;
+  EXPECT_NEAR(a.dissipated_power(&rest, &v, work_a), b.dissipated_power(&rest, &v, work_b), 1e-9 * a.angular_frequencies()[0]);
+}
+
+Trajectory closing(Gas gas) {
+  Device d = test::gold_cantilever();
+  d.gas = gas;
+  return simulate_closing(Switch(d), std::vector<Signal>{Signal::constant(17.771)}, {.duration = 60_us});
+}
+
+TEST(GasLimits, AreNotMentionedWithinThem) {
+  EXPECT_THAT(closing({.viscosity = 1.86e-5_Pa_s}).warnings, testing::IsEmpty());
+  EXPECT_THAT(closing({.model = GasModel::linear, .quality_factor = 3}).warnings, testing::IsEmpty());
+  EXPECT_THAT(closing({.model = GasModel::veijola, .pressure = 1e3}).warnings, testing::IsEmpty());
+}
+
+TEST(GasLimits, ThatATrajectoryLeavesAreWarnings) {
+  using testing::ElementsAre;
+  // The closed gap is 1.5 um; 1e4 Pa make the mean free path 663 nm and the contact gives a little.
+  EXPECT_THAT(closing({.pressure = 1e4}).warnings, ElementsAre("gas law strip: Knudsen number 0.45 exceeds 0.1"));
+  EXPECT_THAT(closing({.model = GasModel::near_contact, .mean_free_path = 10_nm}).warnings,
+              ElementsAre("gas law near-contact: Knudsen number 0.0029 is below 0.0047"));
+  // Squeeze numbers of 12 mu a^2 v / (p h^3): about 0.025 at 101325 Pa.
+  const auto thin = closing({.model = GasModel::veijola, .pressure = 100, .mean_free_path = 65_nm}).warnings;
+  ASSERT_EQ(thin.size(), 1u);
+  EXPECT_THAT(thin[0],
+              testing::MatchesRegex("gas law veijola: squeeze number .* exceeds 10: the film is compressed, not squeezed out"));
+}
+
+TEST(SqueezeNumber, IsTheTextbookOne) {
+  const Gas gas{.viscosity = 2e-5};
+  EXPECT_DOUBLE_EQ(squeeze_number(gas, 20_um, 2_um, 1e5), 12 * 2e-5 * 4e-10 * 1e5 / (101325 * 4e-12));
+}
+
+}  // namespace
+}  // namespace softland
