@@ -50,7 +50,7 @@ std::string optimizer_help() {
   return text;
 }
 
-const std::vector<std::string> coming{"effects", "explore", "robustness", "accuracy"};
+const std::vector<std::string> coming{"explore", "robustness", "accuracy"};
 
 int run(int argc, char** argv) {
   Common common{.command = command_line(argc, argv), .stop = &stop_requested};
@@ -140,6 +140,11 @@ int run(int argc, char** argv) {
   with_scene(check, true);
   check->footer("Example:\n  softland check my-switch.toml");
 
+  CLI::App* effects = add_verb("effects", "which laws matter in a scene, by how much, and what they cost (so far: the gas)");
+  with_scene(effects, true);
+  with_json(effects);
+  effects->footer("Example:\n  softland effects scenes/mem-gold.toml --set gas.pressure=\"1 kPa\"");
+
   CLI::App* optimize = add_verb("optimize", "search the drive waveform that closes without bounce");
   with_scene(optimize, false);
   with_json(optimize);
@@ -194,7 +199,7 @@ int run(int argc, char** argv) {
     const auto chosen = app.get_subcommands();
     if (chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
       throw InvalidInput(
-          "a verb is required: simulate, pull-in, modes, check, optimize, new, export or report (see softland --help)");
+          "a verb is required: simulate, pull-in, modes, check, effects, optimize, new, export or report (see softland --help)");
     }
     throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
                        "--help)");
@@ -204,6 +209,7 @@ int run(int argc, char** argv) {
   if (*pull_in) return pull_in_verb(common);
   if (*modes) return modes_verb(common);
   if (*check) return check_verb(common);
+  if (*effects) return effects_verb(common);
   if (*optimize) return optimize_verb(common, request);
   if (*fresh) return new_verb(kind);
   if (*exporting) return export_verb(result, format);

@@ -21,6 +21,7 @@
 #include "base/require.h"
 #include "config/units.h"
 #include "model/constants.h"
+#include "reports/effects_report.h"
 #include "reports/files.h"
 #include "reports/html.h"
 #include "reports/result_json.h"
@@ -333,6 +334,13 @@ int check_verb(const Common& c) {
   for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   std::cout << text;
   return exit_done;
+}
+
+int effects_verb(const Common& c) {
+  const Prepared p = prepare(load_scene(c));
+  const Effects effects = compare_effects(p, c.stop);
+  print_json_or(c, effects_json(p, effects, {.command = c.command}), effects_text(effects));
+  return status_code(effects.own("gas").metrics.status);
 }
 
 int optimize_verb(const Common& given, const OptimizeRequest& request) {

@@ -20,6 +20,7 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "objectives/metrics.h"
+#include "studies/effects.h"
 #include "studies/prepared.h"
 
 namespace softland {
@@ -90,42 +91,6 @@ Row measure(const Prepared& prepared, const std::vector<Signal>& signals, Named 
   return row;
 }
 
-// Seconds per Switch::accelerations, over the very states that a closing goes through: in flight and in contact in their true
-// proportion.
-double rhs_seconds(const Prepared& prepared, const std::vector<Signal>& signals, int repeats) {
-  const auto n = static_cast<std::size_t>(prepared.device.modes());
-  std::vector<double> states;  // q then v, one after the other
-  ClosingOptions options{.duration = window, .tolerance = 1e-6};
-  options.observer = [&](double, const double* q, const double* v) {
-    states.insert(states.end(), q, q + n);
-    states.insert(states.end(), v, v + n);
-    return false;
-  };
-  (void)simulate_closing(prepared.device, signals, options);
-  const std::size_t count = states.size() / (2 * n);
-  std::vector<char> touching(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    touching[i] = prepared.device.contact_deflection(&states[2 * n * i]) > prepared.device.device().gap.contact;
-  }
-
-  std::vector<double> volts;
-  for (const Signal& signal : signals) volts.push_back(signal.hold_level());
-  Switch::Workspace work = prepared.device.workspace();
-  std::vector<double> result(n), times;
-  double sum = 0;
-  for (int r = 0; r < repeats; ++r) {
-    const auto start = Clock::now();
-    for (std::size_t i = 0; i < count; ++i) {
-      const double* q = &states[2 * n * i];
-      prepared.device.accelerations(q, q + n, volts, touching[i] != 0, work, result.data());
-      sum += result[0];
-    }
-    times.push_back(seconds_since(start) / static_cast<double>(count));
-  }
-  if (!std::isfinite(sum)) throw std::runtime_error("the right-hand side is not finite");  // also keeps the loop alive
-  return median(times);
-}
-
 nlohmann::json as_json(const Row& row) {
   return {{"integrator", row.integrator},
           {"tolerance", row.tolerance},
@@ -180,7 +145,7 @@ void run(const Options& options) {
 
   const Metrics reference = metrics(
       simulate_closing(prepared.device, signals, {.duration = window, .tolerance = reference_tolerance}), prepared.scene.metrics);
-  const double rhs = rhs_seconds(prepared, signals, options.runs * 20);
+  const double rhs = right_hand_side_seconds(prepared.device, signals, window, options.runs * 20);
   std::vector<Row> rows;
   for (const Named& which : integrators) {
     if (options.integrator && *options.integrator != which.name) continue;

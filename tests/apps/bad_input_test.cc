@@ -51,12 +51,11 @@ class BadInput : public testing::Test {
 
 TEST_F(BadInput, Verbs) {
   const std::string missing =
-      "a verb is required: simulate, pull-in, modes, check, optimize, new, export or report (see softland --help)";
+      "a verb is required: simulate, pull-in, modes, check, effects, optimize, new, export or report (see softland --help)";
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "there is no verb 'frobnicate' (see softland --help)"},
       {{"--frob"}, missing},
-      {{"effects", "gold.toml"}, "the verb 'effects' is not available yet"},
       {{"explore", "gold.toml", "--shard", "1/2"}, "the verb 'explore' is not available yet"},
       {{"robustness", "gold.toml"}, "the verb 'robustness' is not available yet"},
       {{"accuracy", "gold.toml"}, "the verb 'accuracy' is not available yet"},

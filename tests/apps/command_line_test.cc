@@ -22,7 +22,7 @@ std::set<std::string> keys(const json& object) {
 
 TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
   const Workplace here;
-  for (const char* verb : {"", "simulate", "pull-in", "modes", "check", "optimize", "new", "export", "report"}) {
+  for (const char* verb : {"", "simulate", "pull-in", "modes", "check", "effects", "optimize", "new", "export", "report"}) {
     std::vector<std::string> words;
     if (*verb != '\0') words.emplace_back(verb);
     words.emplace_back("--help");
@@ -35,7 +35,7 @@ TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
     EXPECT_THAT(o.out, Not(HasSubstr("ubcommand"))) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("TEXT"))) << verb;
     for (const char* coming :
-         {"effects", "explore", "robustness", "accuracy", "--certify", "--robust", "--samples", "--resume", "--shard", "--vary"})
+         {"explore", "robustness", "accuracy", "--certify", "--robust", "--samples", "--resume", "--shard", "--vary"})
       EXPECT_THAT(o.out, Not(HasSubstr(coming))) << verb;
   }
 }
@@ -169,6 +169,31 @@ TEST(New, WritesScenesThatCheckAccepts) {
     EXPECT_THAT(checked.out, HasSubstr("new.toml: valid"));
     EXPECT_THAT(checked.out, HasSubstr("Vdp"));
   }
+}
+
+TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas) {
+  const Workplace here;
+  const auto check = [&](const char* setting) { return here.run({"check", "gold.toml", "--set", setting}).out; };
+  EXPECT_THAT(check("gas.mean_free_path=\"70 nm\""),
+              HasSubstr("Knudsen number       0.02 at the rest gap, 0.0467 closed (mean free path 70 nm)"));
+  // mu / p sqrt(pi R_g T / 2) with the scene's viscosity.
+  EXPECT_THAT(check("gas.pressure=\"1 kPa\""), HasSubstr("(mean free path 6.84e+03 nm)"));
+}
+
+TEST(Effects, PrintATableAndTheAgreedJson) {
+  const Workplace here;
+  const Outcome table = here.run({"effects", "gold.toml"}), data = here.run({"effects", "gold.toml", "--json", "-"});
+  EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("* strip"));
+  EXPECT_THAT(table.out, HasSubstr("The gas laws differ on this scene"));
+  const json j = json::parse(data.out);
+  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "effects", "relative_spread", "scene", "version", "command"}));
+  EXPECT_EQ(j["effects"].size(), 6U);
+  EXPECT_EQ(keys(j["effects"][0]),
+            (std::set<std::string>{"section", "choice", "in_scene", "status", "magnitude", "dimensionless_group", "metrics",
+                                   "relative_change", "rhs_s", "warnings"}));
+  EXPECT_GT(j["relative_spread"]["gas"]["impact_velocity"], 0);
+  EXPECT_GT(j["effects"][1]["rhs_s"], 0);
 }
 
 TEST(Export, PrintsTheWaveformsOfAScene) {

@@ -1,0 +1,15 @@
+// What `softland effects` found: JSON with SI units in the names, and a table for a terminal.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reports/result_json.h"
+#include "studies/effects.h"
+
+namespace softland {
+
+[[nodiscard]] nlohmann::json effects_json(const Prepared& prepared, const Effects& effects, const Provenance& provenance);
+[[nodiscard]] std::string effects_text(const Effects& effects);
+
+}  // namespace softland

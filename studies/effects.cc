@@ -1,0 +1,111 @@
+#include "studies/effects.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "model/closing.h"
+#include "model/gas/gas_law.h"
+
+namespace softland {
+namespace {
+
+constexpr int passes = 9;  // over the states of a closing: enough for a median that one interruption does not move
+
+Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const std::atomic<bool>* stop) {
+  Device described = prepared.scene.device;
+  described.gas = gas;
+  const Switch device(described);
+  const std::vector<Signal> signals = prepared.signals();
+  const Trajectory t =
+      simulate_closing(device, signals, {.duration = prepared.duration, .tolerance = prepared.tolerance, .stop = stop});
+  Effect e{.section = "gas",
+           .choice = "none",
+           .magnitude = {.name = "damping per length, closed", .unit = "N s/m^2", .value = 0},
+           .group = {.name = "Knudsen number, closed"},
+           .metrics = metrics(t, prepared.scene.metrics),
+           .rhs_seconds = right_hand_side_seconds(device, signals, prepared.duration, passes),
+           .warnings = t.warnings};
+  if (!gas) return e;
+  const double closed = described.gap.electrode - described.gap.contact;
+  e.choice = entry(gas->model).name;
+  e.magnitude.value = damping_per_length(*device.gas(), closed);
+  if (gas->model != GasModel::linear) e.group.value = mean_free_path(*gas) / closed;
+  return e;
+}
+
+}  // namespace
+
+const Effect& Effects::own(const std::string& section) const {
+  return *std::find_if(list.begin(), list.end(), [&](const Effect& e) { return e.in_scene && e.section == section; });
+}
+
+double Effects::spread(const std::string& section, double Metrics::*figure) const {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Effect& e : list) {
+    if (e.section != section || e.choice == "none") continue;
+    const double value = e.metrics.*figure;
+    if (!std::isfinite(value)) return Metrics::unset;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return (most - least) / (own(section).metrics.*figure);
+}
+
+double relative_change(const Effect& effect, const Effect& own, double Metrics::*figure) {
+  return (effect.metrics.*figure - own.metrics.*figure) / (own.metrics.*figure);
+}
+
+Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop) {
+  const std::optional<Gas>& own = prepared.scene.device.gas;
+  Effects found;
+  found.list.push_back(closing_with(prepared, std::nullopt, stop));
+  found.list.back().in_scene = !own;
+  for (const GasModelEntry& e : gas_models) {
+    Gas gas = own.value_or(Gas{});
+    const bool in_scene = own && own->model == e.model;
+    if (e.model == GasModel::linear && !in_scene) continue;
+    gas.model = e.model;
+    found.list.push_back(closing_with(prepared, gas, stop));
+    found.list.back().in_scene = in_scene;
+  }
+  return found;
+}
+
+double right_hand_side_seconds(const Switch& device, const std::vector<Signal>& signals, double duration, int repeats) {
+  using Clock = std::chrono::steady_clock;
+  const auto n = static_cast<std::size_t>(device.modes());
+  std::vector<double> states;  // q then v, one after the other
+  ClosingOptions options{.duration = duration, .tolerance = 1e-6};
+  options.observer = [&](double, const double* q, const double* v) {
+    states.insert(states.end(), q, q + n);
+    states.insert(states.end(), v, v + n);
+    return false;
+  };
+  (void)simulate_closing(device, signals, options);
+  const std::size_t count = states.size() / (2 * n);
+  if (count == 0) return Metrics::unset;
+  std::vector<char> touching(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    touching[i] = device.has_contact() && device.contact_deflection(&states[2 * n * i]) > device.device().gap.contact;
+  }
+  std::vector<double> volts;
+  for (const Signal& signal : signals) volts.push_back(signal.hold_level());
+  Switch::Workspace work = device.workspace();
+  std::vector<double> result(n), times;
+  double sum = 0;
+  for (int r = 0; r < repeats; ++r) {
+    const auto start = Clock::now();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* q = &states[2 * n * i];
+      device.accelerations(q, q + n, volts, touching[i] != 0, work, result.data());
+      sum += result[0];
+    }
+    times.push_back(std::chrono::duration<double>(Clock::now() - start).count() / static_cast<double>(count));
+  }
+  const auto middle = times.begin() + repeats / 2;
+  std::nth_element(times.begin(), middle, times.end());
+  return std::isfinite(sum) ? *middle : Metrics::unset;  // the sum also keeps the loop alive
+}
+
+}  // namespace softland

@@ -1,0 +1,90 @@
+// The closing of a scene repeated with every law.
+#include "studies/effects.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "model/gas/gas_law.h"
+#include "scenes.h"
+#include "studies/simulate.h"
+
+namespace softland {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<std::string> choices(const Effects& effects) {
+  std::vector<std::string> names;
+  for (const Effect& e : effects.list) names.push_back(e.choice);
+  return names;
+}
+
+const Effect& find(const Effects& effects, const std::string& choice) {
+  return *std::find_if(effects.list.begin(), effects.list.end(), [&](const Effect& e) { return e.choice == choice; });
+}
+
+SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
+  SceneFile file = gold(
+      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
+  for (const std::string_view change : changes) file.set(change);
+  return file;
+}
+
+TEST(Effects, CompareEveryGasLawWithTheScenesOwn) {
+  const Prepared p = prepare(gold_at_17_volts());
+  const Effects effects = compare_effects(p);
+  EXPECT_THAT(choices(effects), ElementsAre("none", "strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko"));
+  const Effect& own = effects.own("gas");
+  EXPECT_EQ(own.choice, "strip");
+  const Metrics alone = simulate(p, false).metrics;
+  EXPECT_EQ(own.metrics.initial_contact_time, alone.initial_contact_time) << "the very run of simulate";
+  EXPECT_EQ(own.metrics.major_bounce_height, alone.major_bounce_height);
+  EXPECT_EQ(relative_change(own, own, &Metrics::impact_velocity), 0);
+  for (const Effect& e : effects.list) {
+    EXPECT_EQ(e.in_scene, &e == &own);
+    EXPECT_GT(e.rhs_seconds, 0) << e.choice;
+    EXPECT_GT(e.metrics.initial_contact_time, 0) << e.choice;
+  }
+  // At the closed gap of 1.5 um: mu (a/h)^3 and the mean free path of this viscosity.
+  EXPECT_NEAR(own.magnitude.value, 1.86e-5 * std::pow(20 / 1.5, 3), 1e-12);
+  EXPECT_NEAR(own.group.value, mean_free_path({.viscosity = 1.86e-5}) / 1.5e-6, 1e-12);
+  EXPECT_EQ(find(effects, "none").magnitude.value, 0);
+  // Less damping closes faster and harder.
+  EXPECT_LT(relative_change(find(effects, "none"), own, &Metrics::initial_contact_time), 0);
+  EXPECT_GT(relative_change(find(effects, "none"), own, &Metrics::impact_velocity), 0);
+  EXPECT_LT(relative_change(find(effects, "veijola"), own, &Metrics::initial_contact_time), 0);
+}
+
+TEST(Effects, SpreadIsOverTheGasLawsAndNotOverTheVacuum) {
+  const Effects effects = compare_effects(prepare(gold_at_17_volts()));
+  double least = 1, most = 0;
+  for (const Effect& e : effects.list) {
+    if (e.choice == "none") continue;
+    least = std::min(least, e.metrics.impact_velocity);
+    most = std::max(most, e.metrics.impact_velocity);
+  }
+  EXPECT_NEAR(effects.spread("gas", &Metrics::impact_velocity), (most - least) / effects.own("gas").metrics.impact_velocity,
+              1e-12);
+  EXPECT_GT(effects.spread("gas", &Metrics::impact_velocity), 0.01);
+}
+
+TEST(Effects, OfASceneWithoutGasAreThoseOfAirAndOfALinearDamperItsOwn) {
+  const Effects vacuum = compare_effects(prepare(without(gold_at_17_volts(), "gas")));
+  EXPECT_EQ(vacuum.own("gas").choice, "none");
+  EXPECT_NEAR(find(vacuum, "veijola").group.value, 65.45e-9 / 1.5e-6, 1e-5);
+
+  const Effects damped = compare_effects(prepare(gold_at_17_volts({"gas={ model = \"linear\", quality_factor = 4 }"})));
+  EXPECT_EQ(damped.own("gas").choice, "linear");
+  EXPECT_TRUE(std::isnan(damped.own("gas").group.value));
+}
+
+TEST(Effects, WithoutContactHaveNoSpreadOfWhatIsMissing) {
+  const Effects effects = compare_effects(prepare(gold_at_17_volts({"waveform.main.level=3 V"})));
+  EXPECT_TRUE(std::isnan(effects.spread("gas", &Metrics::impact_velocity)));
+  EXPECT_EQ(effects.own("gas").metrics.status, Status::no_contact);
+}
+
+}  // namespace
+}  // namespace softland
