@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "model/power.h"
+
 namespace softland {
 
 template <class T>
@@ -31,10 +33,9 @@ struct DualOf {
     return {log(a.value), a.slope / a.value};
   }
   /// For positive a.
-  friend DualOf pow(DualOf a, double exponent) {
-    using std::pow;
-    const T power = pow(a.value, exponent);
-    return {power, T(exponent) * power / a.value * a.slope};
+  friend DualOf power(DualOf a, double exponent) {
+    const T raised = power(a.value, exponent);
+    return {raised, T(exponent) * raised / a.value * a.slope};
   }
   friend DualOf abs(DualOf a) { return a.value < 0 ? -a : a; }
   friend constexpr bool operator<(DualOf a, double b) { return a.value < b; }

@@ -11,6 +11,8 @@
 
 #include <cmath>
 
+#include "model/power.h"
+
 namespace softland {
 
 struct GuoAlexeenkoFilm {
@@ -24,9 +26,8 @@ struct GuoAlexeenkoFilm {
   /// [N/m]
   template <class S>
   S load(S gap, S velocity) const {
-    using std::pow;
     const S ratio = S(width) / gap;
-    return S(-strength) * velocity * pow(ratio, 3.100) / (S(1) + S(rarefaction) * pow(ratio, 1.825));
+    return S(-strength) * velocity * power(ratio, 3.100) / (S(1) + S(rarefaction) * power(ratio, 1.825));
   }
 };
 

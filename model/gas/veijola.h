@@ -8,7 +8,7 @@
 // Sensors and Actuators A 48 (1995) 239, for the flow conductance of Fukui & Kaneko 1988.
 #pragma once
 
-#include <cmath>
+#include "model/power.h"
 
 namespace softland {
 
@@ -22,8 +22,7 @@ struct VeijolaFilm {
   /// [N/m]
   template <class S>
   S load(S gap, S velocity) const {
-    using std::pow;
-    return S(-mu_a3) * velocity / (gap * gap * gap * (S(1) + S(9.638) * pow(S(mean_free_path) / gap, 1.159)));
+    return S(-mu_a3) * velocity / (gap * gap * gap * (S(1) + S(9.638) * power(S(mean_free_path) / gap, 1.159)));
   }
 };
 

@@ -556,10 +556,25 @@ TEST(Dual, FollowsTheRulesOfDifferentiation) {
   expect(abs(Dual(3, 5)), 3, 5);
   expect(2 * x + 1, 7, 2);
   expect(1 / x, 1.0 / 3, -1.0 / 9);
-  expect(pow(x, 1.5), std::pow(3.0, 1.5), 1.5 * std::sqrt(3.0));
+  expect(power(x, 1.5), std::pow(3.0, 1.5), 1.5 * std::sqrt(3.0));
   EXPECT_TRUE(x > 2.9);
   EXPECT_TRUE(x < 3.1);
   EXPECT_FALSE(x < 3);
+}
+
+TEST(Power, IsThatOfTheLibrary) {
+  constexpr double claimed = 5e-15;  // relative
+  double worst = 0;
+  for (double x = 1e-9; x < 1e9; x *= 1.0037) {
+    for (const double y : {1.159, 3.1, 1.825, 0.966, -1.2, 0.0}) {
+      if (std::abs(y * std::log2(x)) > 50) continue;
+      const double expected = std::pow(x, y);
+      worst = std::max(worst, std::abs(power(x, y) - expected) / expected);
+    }
+  }
+  EXPECT_LT(worst, claimed);
+  EXPECT_EQ(power(1.0, 1.159), 1);
+  EXPECT_TRUE(!(worst < 0.01 * claimed)) << "the test looked at something";
 }
 
 TEST(Dual, RootAtZeroHasNoInfiniteSlope) {

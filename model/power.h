@@ -1,0 +1,48 @@
+// x^y for laws along the beam: for doubles written so that a loop over points becomes vector instructions. The library's pow is a
+// call per point that costs many times what the rest of a film law does.
+//
+//   x = 2^e m, sqrt(1/2) <= m < sqrt(2);   log2 x = e + (2 / ln 2) (f + f^3/3 + ... + f^21/21),  f = (m - 1)/(m + 1)
+//   2^z = 2^n (1 + r + ... + r^13/13!),    n = round z,  r = (z - n) ln 2
+//
+// For positive normal x; relative error below 5e-15 for |y log2 x| < 50 (tested). The result must be a normal number. Textbook
+// series, cut where the next term is below the rounding.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace softland {
+
+[[nodiscard]] inline double power(double x, double y) {
+  constexpr double ln2 = 0.69314718055994530942;
+  // Bits of 2^52 + 2^51: adding it puts a rounded number, negative or not, into the low bits.
+  constexpr double shift = 6755399441055744.0;
+  constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
+  const auto bits = std::bit_cast<std::int64_t>(x);
+  const std::int64_t above = bits - low_root;                          // e in the exponent's place, then what m is above the root
+  const std::int64_t mantissa = (above & 0xFFFFFFFFFFFFF) + low_root;  // m
+  const double m = std::bit_cast<double>(mantissa);
+  // Shifted as an unsigned number, with a bias that is taken off again: vectors have no signed shift.
+  const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
+  const double e = std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
+  const double f = (m - 1) / (m + 1), s = f * f;
+  double series = 1.0 / 21;
+  for (int k = 19; k >= 1; k -= 2) series = series * s + 1.0 / k;
+  const double z = y * (e + (2 / ln2) * f * series);
+  const double shifted = z + shift;
+  const double n = shifted - shift, r = (z - n) * ln2;
+  double sum = 1;
+  for (int k = 13; k >= 1; --k) sum = 1 + sum * (r * (1.0 / k));
+  const std::int64_t exponent = (std::bit_cast<std::int64_t>(shifted) << 52) + one;  // of 2^n
+  return sum * std::bit_cast<double>(exponent);
+}
+
+/// For other scalars (complex numbers in tests) the library's.
+template <class S>
+[[nodiscard]] S power(const S& x, double y) {
+  using std::pow;
+  return pow(x, y);
+}
+
+}  // namespace softland
