@@ -71,8 +71,7 @@ std::pair<double, double> read_span(const SectionReader& in, const SectionReader
 Contact read_contact(const SectionReader& in, const SectionReader& structure) {
   Contact contact{.pad_length = in.number("pad_length")};
   in.require(contact.pad_length < structure.number("length"), "pad_length", "must be less than " + structure.written("length"));
-  for (const ContactModel model :
-       {ContactModel::linear, ContactModel::asperity_uniform, ContactModel::asperity_gaussian, ContactModel::adhesive}) {
+  for (const ContactModel model : all_contact_models) {
     if (in.text("model") == to_string(model)) contact.model = model;
   }
   const auto read = [&](const char* key, double& value) {
@@ -86,6 +85,15 @@ Contact read_contact(const SectionReader& in, const SectionReader& structure) {
   read("effective_modulus", contact.effective_modulus);
   read("adhesion_energy", contact.adhesion_energy);
   read("damping", contact.damping);
+  read("unloading_stiffness", contact.unloading_stiffness);
+  read("hardness", contact.hardness);
+  if (contact.model == ContactModel::hysteretic) {
+    in.require(contact.unloading_stiffness >= contact.stiffness, "unloading_stiffness",
+               "must not be below " + in.written("stiffness"));
+  }
+  in.require(contact.model != ContactModel::elastic_plastic || in.text("plasticity") != "ceb", "plasticity",
+             "the force of Chang, Etsion and Bogy as published jumps by about half at the critical interference, which no "
+             "integrator of motion can use; take \"zmc\"");
   return contact;
 }
 

@@ -13,7 +13,7 @@ constexpr Range not_negative{.least = 0};
 constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 
 /// Contact laws of asperities.
-const std::vector<std::string_view> rough_contacts{"asperity-uniform", "asperity-gaussian", "adhesive"};
+const std::vector<std::string_view> rough_contacts{"asperity-uniform", "asperity-gaussian", "adhesive", "elastic-plastic"};
 
 /// An electrode's voltages may be multiples of its pull-in voltages.
 const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
@@ -162,8 +162,7 @@ std::vector<Section> make_schema() {
            {
                {.name = "model",
                 .type = choice,
-                .choices = {"linear", "asperity-uniform", "asperity-gaussian", "adhesive"},
-                .pending = {"hysteretic", "elastic-plastic"},
+                .choices = {"linear", "asperity-uniform", "asperity-gaussian", "adhesive", "hysteretic", "elastic-plastic"},
                 .required = true,
                 .about = "law of the contact force"},
                {.name = "pad_length",
@@ -175,8 +174,14 @@ std::vector<Section> make_schema() {
                 .dimensions = {dimension::stiffness},
                 .range = positive,
                 .required = true,
-                .only_for = {"linear"},
-                .about = "contact force per penetration"},
+                .only_for = {"linear", "hysteretic"},
+                .about = "contact force per penetration; hysteretic: while loading"},
+               {.name = "unloading_stiffness",
+                .dimensions = {dimension::stiffness},
+                .range = positive,
+                .required = true,
+                .only_for = {"hysteretic"},
+                .about = "not below stiffness; restitution squared is stiffness over this"},
                {.name = "asperity_radius",
                 .dimensions = {dimension::length},
                 .range = positive,
@@ -193,7 +198,7 @@ std::vector<Section> make_schema() {
                 .dimensions = {dimension::length},
                 .range = positive,
                 .required = true,
-                .only_for = {"asperity-uniform", "adhesive"},
+                .only_for = {"asperity-uniform", "adhesive", "elastic-plastic"},
                 .about = "summit heights are uniform on [0, asperity_height]"},
                {.name = "asperity_deviation",
                 .dimensions = {dimension::length},
@@ -207,6 +212,18 @@ std::vector<Section> make_schema() {
                 .required = true,
                 .only_for = rough_contacts,
                 .about = "E* of the pair of surfaces"},
+               {.name = "hardness",
+                .dimensions = {dimension::pressure},
+                .range = positive,
+                .required = true,
+                .only_for = {"elastic-plastic"},
+                .about = "of the softer surface"},
+               {.name = "plasticity",
+                .type = choice,
+                .choices = {"zmc", "ceb"},
+                .fallback = "'zmc'",
+                .only_for = {"elastic-plastic"},
+                .about = "law of one asperity; ceb jumps and is refused"},
                {.name = "adhesion_energy",
                 .dimensions = {dimension::stiffness},
                 .range = positive,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <vector>
@@ -32,6 +33,17 @@ struct Knot {
   std::vector<double> acceleration;  // q''
 };
 
+// Where the contact point stands: above the plane, or in contact. A law without memory is `loading` all through a touch; one with
+// memory turns from loading to unloading at its deepest point, and carries nothing in the dent it has left. See contact/memory.h.
+enum class Branch { flight, loading, unloading, dent };
+
+// An end of a branch: side * (position - level) is positive inside.
+struct Edge {
+  double level = 0;  // [m]
+  double side = 0;
+  Branch next = Branch::flight;
+};
+
 class Run {
  public:
   Run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options)
@@ -52,6 +64,8 @@ class Run {
     middle_ = here_.state;
     last_.time = -1;
     set_tolerances();
+    remembers_ = device.has_contact() && has_memory(device.contact());
+    enter(Branch::flight);
     out_.contact_gap = plane_;
     out_.in_contact_period = device.in_contact_period();
     out_.smallest_gap = device.device().gap.electrode;
@@ -81,7 +95,7 @@ class Run {
 
   void accelerations(double t, const double* y, double* a) {
     set_volts(t);
-    device_.accelerations(y, y + n_, volts_, in_contact_, work_, a);
+    device_.accelerations(y, y + n_, volts_, law_, work_, a);
     ++out_.work.rhs_evaluations;
   }
 
@@ -115,7 +129,7 @@ class Run {
     Eigen::Map<Eigen::MatrixXd> full(j, 2 * n, 2 * n);
     full.topRows(n).setZero();
     full.topRightCorner(n, n).setIdentity();
-    device_.jacobian(y, y + n_, volts_, in_contact_, work_, full.bottomLeftCorner(n, n), full.bottomRightCorner(n, n));
+    device_.jacobian(y, y + n_, volts_, law_, work_, full.bottomLeftCorner(n, n), full.bottomRightCorner(n, n));
   }
 
   // ---- stretches between breakpoints
@@ -195,15 +209,14 @@ class Run {
     const Quintic tip(from.time, from.position, from.velocity, from.acceleration, to.time, to.position, to.velocity,
                       to.acceleration);
     const double gap = Switch::smallest_gap(work_);
-    const double event = crossing(tip, from, to);
-    const bool crossed = event > 0;
-    if (crossed && !step_again(event)) return;
+    const Event event = next_event(tip, from, to);
+    if (event.time > 0 && !step_again(event.time)) return;
     account(tip);
     here_.state.swap(next_.state);
     here_.acceleration.swap(next_.acceleration);
     here_.time = next_.time;
-    record(here_, crossed);
-    if (crossed) toggle();
+    record(here_);
+    if (event.time > 0) pass(event);
     out_.smallest_gap = std::min(out_.smallest_gap, gap);
     if (ended_) return;
     if (gap < device_.gap_floor()) {
@@ -226,8 +239,7 @@ class Run {
     }
     set_volts(here_.time);
     const double* q = here_.state.data();
-    out_.landing_excess =
-        device_.kinetic_energy(q + n_) + device_.potential(q, volts_, in_contact_, work_) - options_.closed_potential;
+    out_.landing_excess = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, law_, work_) - options_.closed_potential;
   }
 
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
@@ -237,31 +249,46 @@ class Run {
             .position = y,
             .velocity = velocity,
             .acceleration = device_.contact_deflection(knot.acceleration.data()),
-            .contact_force = in_contact_ ? contact_force(device_.contact(), y - plane_, velocity) : 0};
+            .contact_force = law_.active ? contact_force(device_.contact(), y - plane_, law_, velocity) : 0};
   }
 
-  void record(const Knot& knot, bool on_plane = false) {
-    TrajectoryPoint p = point(knot);
-    if (on_plane) {
-      p.position = plane_;  // what the event is, to rounding
-      p.contact_force = 0;
+  void record(const Knot& knot) { out_.points.push_back(point(knot)); }
+
+  // The contact point passes an edge of its branch, or turns around while it loads a contact with memory (no edge).
+  struct Event {
+    double time = 0;  // in (from, to]; 0: there is none
+    const Edge* edge = nullptr;
+  };
+
+  [[nodiscard]] Event next_event(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) const {
+    Event first;
+    for (std::size_t i = 0; i < edge_count_; ++i) {
+      const double time = crossing(tip, from, to, edges_[i]);
+      if (time > 0 && !(first.time > 0 && first.time <= time)) first = {.time = time, .edge = &edges_[i]};
     }
-    out_.points.push_back(p);
+    if (remembers_ && branch_ == Branch::loading && to.velocity < 0) {
+      const double time = from.velocity > 0 ? velocity_zero(tip, from, to) : from.time;
+      if (!(first.time > 0 && first.time < time)) first = {.time = time};
+    }
+    return first;
   }
 
-  // Time in (from, to] at which the contact point crosses the plane outwards of its present side; 0 if it does not.
-  [[nodiscard]] double crossing(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) const {
-    const double side = in_contact_ ? 1 : -1;  // side * (position - plane) is positive on the side where the step began
-    const auto depth = [&](double t) { return side * (tip.position(t) - plane_); };
-    const double far = side * (to.position - plane_);
+  static double velocity_zero(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) {
+    return bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
+  }
+
+  // Time in (from, to] at which the contact point crosses an edge outwards; 0 if it does not.
+  [[nodiscard]] static double crossing(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
+                                       const Edge& edge) {
+    const double side = edge.side;
+    const auto depth = [&](double t) { return side * (tip.position(t) - edge.level); };
+    const double far = side * (to.position - edge.level);
     double outside = far < 0 ? to.time : 0;
     double inside = from.time;
-    // Just after an event the motion starts on the plane: the point deepest inside separates that zero from the next one.
-    if (side * from.velocity > 0 && side * to.velocity < 0) {
-      inside = bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
-    }
+    // Just after an event the motion starts on the edge: the point deepest inside separates that zero from the next one.
+    if (side * from.velocity > 0 && side * to.velocity < 0) inside = velocity_zero(tip, from, to);
     if (outside == 0 && side * from.velocity < 0 && side * to.velocity > 0) {  // dipped and came back: a grazing crossing
-      const double lowest = bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
+      const double lowest = velocity_zero(tip, from, to);
       if (depth(lowest) < 0) outside = lowest;
     }
     if (outside == 0) return 0;
@@ -286,27 +313,68 @@ class Run {
     return true;
   }
 
-  void toggle() {
+  // At here_: closes the books, records what the event is, and goes on to the next branch.
+  void pass(const Event& event) {
+    TrajectoryPoint& p = out_.points.back();
+    if (event.edge != nullptr) p.position = event.edge->level;  // to rounding
+    if (p.position == plane_) p.contact_force = 0;
     balance();
-    const TrajectoryPoint& p = out_.points.back();
-    if (in_contact_) {
-      out_.touches.back().end = p.time;
-      in_contact_ = false;
-    } else {
+    if (branch_ == Branch::flight) {
       out_.touches.push_back(
           {.begin = p.time, .end = std::numeric_limits<double>::quiet_NaN(), .impact_velocity = std::abs(p.velocity)});
       if (!device_.has_contact()) {
         out_.warnings.push_back("no [contact] section: the run ends at first touch");
         return end(Status::done);
       }
-      in_contact_ = true;
+    } else if (event.edge != nullptr && event.edge->next == Branch::flight) {
+      out_.touches.back().end = p.time;
+    }
+    if (event.edge == nullptr) {
+      // What is left of the velocity still carries it this much deeper.
+      deepest_ = p.position - plane_ - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0);
+      dent_ = dent(device_.contact(), deepest_);
+      enter(Branch::unloading);
+    } else {
+      enter(event.edge->next);
     }
     restart();
+  }
+
+  void enter(Branch branch) {
+    branch_ = branch;
+    in_contact_ = branch != Branch::flight;
+    if (!in_contact_ && dent_.heals) {
+      healed_ += dent_.lost;
+      dent_ = {};
+      deepest_ = 0;
+    }
+    law_ = branch == Branch::loading || branch == Branch::unloading;
+    law_.unloading = branch == Branch::unloading;
+    law_.shift = dent_.shift;
+    edge_count_ = 1;
+    switch (branch) {
+      case Branch::flight:
+        edges_[0] = {.level = plane_, .side = -1, .next = deepest_ > 0 ? Branch::dent : Branch::loading};
+        return;
+      case Branch::loading:
+        edges_[0] = {.level = plane_, .side = 1, .next = Branch::flight};
+        return;
+      case Branch::unloading:
+        edges_ = {Edge{.level = plane_ + dent_.shift, .side = 1, .next = Branch::dent},
+                  Edge{.level = plane_ + deepest_, .side = -1, .next = Branch::loading}};
+        break;
+      case Branch::dent:
+        edges_ = {Edge{.level = plane_, .side = 1, .next = Branch::flight},
+                  Edge{.level = plane_ + dent_.shift, .side = -1, .next = Branch::unloading}};
+        break;
+    }
+    edge_count_ = 2;
   }
 
   // Peaks and energies over the step that ends at next_.
   void account(const Quintic& tip) {
     const double t0 = here_.time, t1 = next_.time;
+    if (t0 == t1) return;
     if (in_contact_) {
       double deepest = std::max(tip.position(t0), tip.position(t1));
       if (tip.velocity(t0) > 0 && tip.velocity(t1) < 0) {
@@ -314,11 +382,13 @@ class Run {
       }
       const double d = deepest - plane_;
       Touch& touch = out_.touches.back();
-      touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d));
+      if (law_.active) {
+        touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d, law_, 0));
+        touch.peak_energy = std::max(touch.peak_energy, stored_energy(device_.contact(), d, law_));
+      }
       if (device_.has_damped_contact()) {  // then the peak comes before the deepest point
         touch.peak_force = std::max(touch.peak_force, point(next_).contact_force);
       }
-      touch.peak_energy = std::max(touch.peak_energy, contact_energy(device_.contact(), d));
       out_.deepest_penetration = std::max(out_.deepest_penetration, d);
     }
 
@@ -387,7 +457,9 @@ class Run {
       e.source_work += work;
       if (!is_piezo(k)) e.stored += work / 2;
     }
-    if (in_contact_) e.stored += contact_energy(device_.contact(), device_.contact_deflection(q) - plane_);
+    const double d = device_.contact_deflection(q) - plane_;
+    if (law_.active) e.stored += stored_energy(device_.contact(), d, law_);
+    if (remembers_) e.dissipated += healed_ + (branch_ == Branch::loading ? dent(device_.contact(), d) : dent_).lost;
     out_.energy_error = std::max(out_.energy_error, std::abs(e.residual()));
   }
 
@@ -435,7 +507,15 @@ class Run {
   double source_work_ = 0;      // without the charges that stand on the drives now [J]
   double dissipated_ = 0;       // [J]
   double power_ = 0;            // dissipated at here_ [W]
-  bool in_contact_ = false;
+  bool remembers_ = false;      // the contact law has memory
+  Branch branch_ = Branch::flight;
+  bool in_contact_ = false;  // not in flight
+  ContactState law_;
+  std::array<Edge, 2> edges_;
+  std::size_t edge_count_ = 0;
+  double deepest_ = 0;  // interference that the contact remembers [m]
+  Dent dent_;           // what it has left
+  double healed_ = 0;   // energy lost to dents that are forgotten [J]
   bool ended_ = false;
   double stop_ = 0;
   double last_step_ = 0;

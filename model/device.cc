@@ -30,6 +30,10 @@ std::string_view to_string(ContactModel model) {
       return "asperity-gaussian";
     case ContactModel::adhesive:
       return "adhesive";
+    case ContactModel::hysteretic:
+      return "hysteretic";
+    case ContactModel::elastic_plastic:
+      return "elastic-plastic";
     case ContactModel::asperity_uniform:
       break;
   }
@@ -72,7 +76,7 @@ void validate(const Device& d) {
     require(c.pad_length > 0 && c.pad_length < s.length,
             fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
                         engineering(c.pad_length, "m"), engineering(s.length, "m")));
-    if (c.model == ContactModel::linear) {
+    if (c.model == ContactModel::linear || c.model == ContactModel::hysteretic) {
       positive(c.stiffness, "N/m", "contact.stiffness");
     } else {
       positive(c.asperity_radius, "m", "contact.asperity_radius");
@@ -84,12 +88,19 @@ void validate(const Device& d) {
         positive(c.asperity_height, "m", "contact.asperity_height");
       }
     }
+    if (c.model == ContactModel::hysteretic) {
+      require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30,
+              fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}",
+                          engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m")));
+    }
+    if (c.model == ContactModel::elastic_plastic) positive(c.hardness, "Pa", "contact.hardness");
     if (c.model == ContactModel::adhesive) positive(c.adhesion_energy, "J/m^2", "contact.adhesion_energy");
     require(c.damping >= 0 && c.damping < 1e6,
             fmt::format("contact.damping = {}: must not be negative", engineering(c.damping, "s/m")));
-    require(c.damping == 0 || c.model != ContactModel::adhesive,
-            fmt::format("contact.damping = {}: an adhesive contact would gain energy from it where it pulls",
-                        engineering(c.damping, "s/m")));
+    require(
+        c.damping == 0 || c.model == ContactModel::linear || c.model == ContactModel::asperity_uniform ||
+            c.model == ContactModel::asperity_gaussian,
+        fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), to_string(c.model)));
   }
   if (d.piezo) {
     const Piezo& p = *d.piezo;

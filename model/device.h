@@ -2,6 +2,7 @@
 // Coordinates: x along the beam from the clamped end; deflection y and every force positive towards the electrode.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -50,21 +51,26 @@ struct Gas {
   double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };
 
-enum class ContactModel { linear, asperity_uniform, asperity_gaussian, adhesive };
+enum class ContactModel { linear, asperity_uniform, asperity_gaussian, adhesive, hysteretic, elastic_plastic };
 
+inline constexpr std::array all_contact_models{
+    ContactModel::linear,   ContactModel::asperity_uniform, ContactModel::asperity_gaussian,
+    ContactModel::adhesive, ContactModel::hysteretic,       ContactModel::elastic_plastic};
 [[nodiscard]] std::string_view to_string(ContactModel model);
 
 struct Contact {
   ContactModel model = ContactModel::asperity_uniform;
-  double pad_length = 0;          ///< lt [m]: the pad is [L - lt, L]; the force acts at its centre
-  double stiffness = 0;           ///< linear: [N/m]
-  double asperity_radius = 0;     ///< R [m]
-  double asperity_density = 0;    ///< eta [1/m^2]
-  double asperity_height = 0;     ///< Hm [m]: heights uniform on [0, Hm]
-  double asperity_deviation = 0;  ///< asperity_gaussian: standard deviation of the heights [m]
-  double effective_modulus = 0;   ///< E* [Pa]
-  double adhesion_energy = 0;     ///< adhesive: work of adhesion W [J/m^2]
-  double damping = 0;             ///< of Hunt and Crossley [s/m]; not for adhesive
+  double pad_length = 0;           ///< lt [m]: the pad is [L - lt, L]; the force acts at its centre
+  double stiffness = 0;            ///< linear; hysteretic: of loading [N/m]
+  double unloading_stiffness = 0;  ///< hysteretic [N/m]
+  double hardness = 0;             ///< elastic_plastic: of the softer surface [Pa]
+  double asperity_radius = 0;      ///< R [m]
+  double asperity_density = 0;     ///< eta [1/m^2]
+  double asperity_height = 0;      ///< Hm [m]: heights uniform on [0, Hm]
+  double asperity_deviation = 0;   ///< asperity_gaussian: standard deviation of the heights [m]
+  double effective_modulus = 0;    ///< E* [Pa]
+  double adhesion_energy = 0;      ///< adhesive: work of adhesion W [J/m^2]
+  double damping = 0;              ///< of Hunt and Crossley [s/m]; linear, asperity_uniform, asperity_gaussian
 };
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.

@@ -146,8 +146,8 @@ void Switch::project(const Workspace& work, double* result) const {
   }
 }
 
-void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
-                           double* result) const {
+void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
+                           Workspace& work, double* result) const {
   const int n = modes();
   set_field(q, v, work);
   work.load.setZero();
@@ -160,15 +160,15 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   const double damping = 2 * device_.structure.damping_ratio;
   for (int i = 0; i < n; ++i) a[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
   if (device_.piezo) a += volts.back() * piezo_shape_;
-  if (in_contact) {
+  if (contact.active) {
     const double d = contact_deflection(q) - device_.gap.contact;
     const auto rate = [&] { return contact_deflection(v); };
-    a -= std::visit([&](const auto& law) { return force_of(law, d, rate); }, *contact_) * contact_shape_;
+    a -= std::visit([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_) * contact_shape_;
   }
 }
 
-void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
-                      Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const {
+void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
+                      Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const {
   set_field(q, v, work);
   work.by_deflection.setZero();
   work.by_velocity.setZero();
@@ -180,11 +180,12 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   by_v = weighted_shapes_.transpose() * work.by_velocity.matrix().asDiagonal() * shapes_;
   by_q.diagonal() -= squares_;
   by_v.diagonal() -= 2 * device_.structure.damping_ratio * frequencies_;
-  if (in_contact) {
+  if (contact.active) {
     const double d = contact_deflection(q) - device_.gap.contact, rate = contact_deflection(v);
     const auto slope = [&](double by_d, double by_rate) {
-      return std::visit([&](const auto& law) { return force_of(law, Dual(d, by_d), [&] { return Dual(rate, by_rate); }).slope; },
-                        *contact_);
+      return std::visit(
+          [&](const auto& law) { return force_of(law, Dual(d, by_d), contact, [&] { return Dual(rate, by_rate); }).slope; },
+          *contact_);
     };
     by_q -= slope(1, 0) * contact_shape_ * contact_shape_.transpose();
     by_v -= slope(0, 1) * contact_shape_ * contact_shape_.transpose();
@@ -228,13 +229,16 @@ double Switch::contact_dissipation(const double* q, const double* v) const {
   return softland::contact_dissipation(*contact_, contact_deflection(q) - device_.gap.contact, contact_deflection(v));
 }
 
-double Switch::potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const {
+double Switch::potential(const double* q, std::span<const double> volts, const ContactState& contact, Workspace& work) const {
   double energy = elastic_energy(q);
   for (std::size_t e = 0; e < electrode_laws_.size(); ++e) {
     if (volts[e] != 0) energy -= capacitance(e, q, work) * volts[e] * volts[e] / 2;
   }
   if (device_.piezo) energy -= volts.back() * piezo_charge(q);
-  if (in_contact) energy += contact_energy(*contact_, contact_deflection(q) - device_.gap.contact);
+  if (contact.active) {
+    const double d = contact_deflection(q) - device_.gap.contact;
+    energy += contact.unloading ? stored_energy(*contact_, d, contact) : contact_energy(*contact_, d);
+  }
   return energy;
 }
 

@@ -63,10 +63,10 @@ class Switch {
   [[nodiscard]] Workspace workspace() const;
 
   /// Modal accelerations [m kg^(1/2) / s^2] for coordinates q, velocities v and drive voltages [V]; arrays of modes() doubles.
-  void accelerations(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
-                     double* result) const;
+  void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
+                     Workspace& work, double* result) const;
   /// Their derivatives with respect to q and v: modes x modes each.
-  void jacobian(const double* q, const double* v, std::span<const double> volts, bool in_contact, Workspace& work,
+  void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact, Workspace& work,
                 Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;
 
   [[nodiscard]] double contact_deflection(const double* q) const;  ///< y(x_c) [m]; also the velocity when given v
@@ -95,7 +95,8 @@ class Switch {
   [[nodiscard]] double bending_energy() const { return bending_energy_; }
   /// Energy of the closed system under constant voltages: elastic + contact - 1/2 C V^2 - V theta q [J]. Its gradient is minus
   /// the static force.
-  [[nodiscard]] double potential(const double* q, std::span<const double> volts, bool in_contact, Workspace& work) const;
+  [[nodiscard]] double potential(const double* q, std::span<const double> volts, const ContactState& contact,
+                                 Workspace& work) const;
 
  private:
   static constexpr Eigen::Index block = 8;  // points a pass over the modes handles at once

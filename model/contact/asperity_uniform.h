@@ -12,6 +12,8 @@
 
 #include <cmath>
 
+#include "model/dual.h"
+
 namespace softland {
 
 struct UniformAsperityContact {
@@ -34,6 +36,19 @@ struct UniformAsperityContact {
     const double m = std::abs(d);
     const auto power = [](double x) { return x > 0 ? x * x * x * std::sqrt(x) : 0; };
     return strength * 16 / 105 * (power(m) - power(m - height));
+  }
+  /// Interference that carries a force >= 0 [m]
+  [[nodiscard]] double interference(double load) const {
+    double d = std::pow(load / (strength * 8 / 15), 0.4);
+    if (d <= height) return d;
+    // Newton on a convex function, from the left: one step overshoots, the rest come down.
+    for (int i = 0; i < 50; ++i) {
+      const Dual at = force(Dual(d, 1));
+      const double step = (at.value - load) / at.slope;
+      d -= step;
+      if (std::abs(step) < 1e-15 * d) break;
+    }
+    return d;
   }
 };
 

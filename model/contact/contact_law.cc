@@ -28,6 +28,11 @@ ContactLaw contact_law(const Contact& c, double width) {
     case ContactModel::adhesive:
       return AdhesiveAsperityContact{.repulsion = uniform,
                                      .attraction = 2 * pi * c.asperity_radius * c.adhesion_energy * summits / c.asperity_height};
+    case ContactModel::hysteretic:
+      return HystereticContact{.loading = {.stiffness = c.stiffness}, .elastic = {.stiffness = c.unloading_stiffness}};
+    case ContactModel::elastic_plastic:
+      return PlasticAsperityContact{.loading = {summits, c.asperity_height, c.asperity_radius, c.hardness, c.effective_modulus},
+                                    .elastic = uniform};
     case ContactModel::asperity_uniform:
       break;
   }
@@ -37,11 +42,13 @@ ContactLaw contact_law(const Contact& c, double width) {
 double largest_interference(const Contact& c) {
   switch (c.model) {
     case ContactModel::linear:
+    case ContactModel::hysteretic:
       return std::numeric_limits<double>::infinity();
     case ContactModel::asperity_gaussian:
       return GaussianAsperityContact::first_touch * c.asperity_deviation;
     case ContactModel::asperity_uniform:
     case ContactModel::adhesive:
+    case ContactModel::elastic_plastic:
       break;
   }
   return c.asperity_height;

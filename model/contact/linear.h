@@ -15,6 +15,8 @@ struct LinearContact {
   S force(S d) const {
     return S(stiffness) * d;
   }
+  /// Interference that carries a force [m]
+  [[nodiscard]] double interference(double force) const { return force / stiffness; }
   [[nodiscard]] double energy(double d) const { return stiffness * d * d / 2; }
 };
 

@@ -141,6 +141,14 @@ TEST(Scene, EveryContactLawArrives) {
   EXPECT_EQ(adhesive.asperity_height, 100e-9);
   EXPECT_EQ(adhesive.adhesion_energy, 0.05);
   EXPECT_EQ(adhesive.damping, 0);
+  const Contact plastic = contact(summits + "model = \"elastic-plastic\"\nasperity_height = \"100 nm\"\nhardness = \"1 GPa\"");
+  EXPECT_EQ(plastic.model, ContactModel::elastic_plastic);
+  EXPECT_EQ(plastic.hardness, 1e9);
+  const Contact hysteretic =
+      contact("pad_length = \"5 um\"\nmodel = \"hysteretic\"\nstiffness = \"1e4 N/m\"\nunloading_stiffness = \"2e4 N/m\"");
+  EXPECT_EQ(hysteretic.model, ContactModel::hysteretic);
+  EXPECT_EQ(hysteretic.stiffness, 1e4);
+  EXPECT_EQ(hysteretic.unloading_stiffness, 2e4);
 }
 
 TEST(Scene, ElectrodesComeSortedByName) {

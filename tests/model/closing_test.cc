@@ -298,6 +298,41 @@ TEST(Closing, WarnsWhenTheAsperitiesAreCrushed) {
   EXPECT_NE(t.warnings[0].find("exceeds the asperity height 2e-09 m"), std::string::npos) << t.warnings[0];
 }
 
+TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
+  for (const ContactModel model : {ContactModel::hysteretic, ContactModel::elastic_plastic}) {
+    Device d = test::gold_cantilever();
+    d.gas.reset();
+    d.structure.modes = 1;
+    d.contact->model = model;
+    d.contact->stiffness = 1e5_N_m;
+    d.contact->unloading_stiffness = 2e5_N_m;
+    d.contact->hardness = 1_GPa;
+    const Switch device(d);
+    // One undamped mode, kicked at the contact and then left alone.
+    const std::vector<Signal> kick{Signal::piecewise_linear({{0, 0}, {0, 300}, {0.3_us, 300}, {0.3_us, 0}})};
+    const Trajectory t = simulate_closing(device, kick, {.duration = 200_us, .tolerance = 1e-9});
+    ASSERT_EQ(t.status, Status::done);
+    ASSERT_GE(t.touches.size(), 2u);
+    const auto speed = [&](double time) {
+      return std::find_if(t.points.begin(), t.points.end(), [&](const TrajectoryPoint& p) { return p.time == time; })->velocity;
+    };
+    const double mass = 1 / std::pow(device.contact_shape()[0], 2);
+    const double before = t.touches[0].impact_velocity, after = speed(t.touches[0].end);
+    const double expected = dent(device.contact(), t.deepest_penetration).lost;
+    EXPECT_LT(after, 0);
+    EXPECT_NEAR(mass * (before * before - after * after) / 2, expected, 1e-6 * expected);
+    // On its way back the beam passes rest and, driven no more, returns as fast as it left.
+    EXPECT_NEAR(t.touches[1].impact_velocity, -after, 1e-6 * before);
+    if (model == ContactModel::hysteretic) {
+      // The beam's own spring works beside the contact, by a share of the interference over the gap.
+      EXPECT_NEAR(std::pow(after / before, 2), 0.5, 0.01);
+      EXPECT_NEAR(std::pow(speed(t.touches[1].end) / after, 2), 0.5, 0.02) << "the dent heals";
+    } else {
+      EXPECT_NEAR(speed(t.touches[1].end), after, 1e-6 * before) << "a lighter impact on the dent is elastic";
+    }
+  }
+}
+
 TEST(Closing, RefusesBadArguments) {
   const auto run = [](const std::vector<Signal>& drives, double duration, double tolerance) {
     return [=] { (void)simulate_closing(gold(), drives, {.duration = duration, .tolerance = tolerance}); };

@@ -69,6 +69,15 @@ TEST(Device, NamesWhatIsWrongWithIt) {
                  "contact.asperity_deviation = 0 m: must be positive");
   expect_message([](Device& d) { d.contact->model = ContactModel::adhesive; },
                  "contact.adhesion_energy = 0 J/m^2: must be positive");
+  expect_message([](Device& d) { d.contact->model = ContactModel::elastic_plastic; },
+                 "contact.hardness = 0 Pa: must be positive");
+  expect_message(
+      [](Device& d) {
+        d.contact->model = ContactModel::hysteretic;
+        d.contact->stiffness = 100;
+        d.contact->unloading_stiffness = 50;
+      },
+      "contact.unloading_stiffness = 50 N/m: must not be below contact.stiffness = 100 N/m");
   expect_message([](Device& d) { d.contact->damping = -1; }, "contact.damping = -1 s/m: must not be negative");
   expect_message(
       [](Device& d) {
@@ -76,7 +85,7 @@ TEST(Device, NamesWhatIsWrongWithIt) {
         d.contact->adhesion_energy = 0.1;
         d.contact->damping = 1;
       },
-      "contact.damping = 1 s/m: an adhesive contact would gain energy from it where it pulls");
+      "contact.damping = 1 s/m: not with contact.model = \"adhesive\"");
   expect_message([](Device& d) { d.piezo->begin = -1e-6, d.piezo->end = 2e-4; },
                  "piezo.span = [-1 um, 200 um]: must increase and lie on the beam, from 0 m to 250 um");
   expect_message([](Device& d) { d.piezo->thickness = 0; }, "piezo.thickness = 0 m: must be positive");

@@ -1,6 +1,7 @@
 // Every force law: its value in closed form, its derivative, and the energy that belongs to it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/math/quadrature/exp_sinh.hpp>
 #include <boost/math/quadrature/tanh_sinh.hpp>
@@ -282,6 +283,8 @@ Contact pad(ContactModel model, double damping) {
   Contact c = gold_pad;
   c.model = model;
   c.stiffness = 1e4_N_m;
+  c.unloading_stiffness = 2.5e4_N_m;
+  c.hardness = 1_GPa;
   c.asperity_deviation = 30_nm;
   c.adhesion_energy = 0.05_N_m;
   c.damping = damping;
@@ -291,7 +294,10 @@ Contact pad(ContactModel model, double damping) {
 constexpr std::array damping_contacts{ContactModel::linear, ContactModel::asperity_uniform, ContactModel::asperity_gaussian};
 
 std::vector<ContactLaw> contact_laws() {
-  std::vector<ContactLaw> laws{contact_law(pad(ContactModel::adhesive, 0), beam_width)};
+  std::vector<ContactLaw> laws;
+  for (const ContactModel model : {ContactModel::adhesive, ContactModel::hysteretic, ContactModel::elastic_plastic}) {
+    laws.push_back(contact_law(pad(model, 0), beam_width));
+  }
   for (const ContactModel model : damping_contacts) {
     for (const double damping : {0.0, 0.4}) laws.push_back(contact_law(pad(model, damping), beam_width));
   }
@@ -330,18 +336,19 @@ TEST(ContactLaw, DualSlopeIsTheStiffness) {
 
 TEST(ContactLaw, BeginsAtZero) {
   for (const ContactLaw& law : contact_laws()) {
-    for (const double rate : {-0.1, 0.0, 0.1}) EXPECT_EQ(contact_force(law, 0, rate), 0);
+    for (const double rate : {-0.1, 0.0, 0.1}) EXPECT_EQ(contact_force(law, 0, true, rate), 0);
     EXPECT_EQ(contact_energy(law, 0), 0);
     EXPECT_EQ(contact_dissipation(law, 0, -0.1), 0);
   }
 }
 
 TEST(ContactLaw, OfClosedFormIsOddAndTheGaussianOneTendsToItsTail) {
-  for (const ContactModel model : {ContactModel::linear, ContactModel::asperity_uniform, ContactModel::adhesive}) {
+  for (const ContactModel model : {ContactModel::linear, ContactModel::asperity_uniform, ContactModel::adhesive,
+                                   ContactModel::hysteretic, ContactModel::elastic_plastic}) {
     const ContactLaw law = contact_law(pad(model, 0), beam_width);
     for (const double d : interferences) {
-      EXPECT_EQ(contact_force(law, -d), -contact_force(law, d));
-      EXPECT_EQ(contact_energy(law, -d), contact_energy(law, d));
+      EXPECT_DOUBLE_EQ(contact_force(law, -d), -contact_force(law, d));
+      EXPECT_DOUBLE_EQ(contact_energy(law, -d), contact_energy(law, d));
     }
   }
   const ContactLaw gaussian = contact_law(pad(ContactModel::asperity_gaussian, 0), beam_width);
@@ -363,6 +370,8 @@ TEST(ContactLaw, PushesEverMoreUnlessItIsAdhesive) {
 
 TEST(ContactLaw, KnowsHowFarItHolds) {
   EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::linear, 0))));
+  EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::hysteretic, 0))));
+  EXPECT_EQ(largest_interference(pad(ContactModel::elastic_plastic, 0)), 100_nm);
   EXPECT_EQ(largest_interference(pad(ContactModel::asperity_uniform, 0)), 100_nm);
   EXPECT_EQ(largest_interference(pad(ContactModel::adhesive, 0)), 100_nm);
   EXPECT_EQ(largest_interference(pad(ContactModel::asperity_gaussian, 0)), 4 * 30_nm);
@@ -473,7 +482,7 @@ TEST(GaussianAsperities, CarryTheHertzLawIntegratedOverTheirHeights) {
 /// Rebound velocity of a mass that hits the law at v, by Runge-Kutta; the last step is not finished.
 double rebound(const ContactLaw& law, double mass, double v) {
   double d = 0, time_step = 1e-3 * std::sqrt(mass / (contact_force(law, 10_nm) / 10_nm));
-  const auto acceleration = [&](double x, double u) { return -contact_force(law, x, u) / mass; };
+  const auto acceleration = [&](double x, double u) { return -contact_force(law, x, true, u) / mass; };
   while (true) {
     const double h = time_step;
     const double k1 = acceleration(d, v), v2 = v + h / 2 * k1, k2 = acceleration(d + h / 2 * v, v2);
@@ -516,7 +525,7 @@ TEST(HuntCrossley, NeverPullsAndAlwaysTakes) {
     for (const double d : interferences) {
       for (const double rate : {-10.0, -0.3, -0.01, 0.01, 0.3}) {
         const double elastic = contact_force(law, d), expected = std::max(0.0, elastic * (1 + 6 * rate));
-        EXPECT_NEAR(contact_force(law, d, rate), expected, 1e-14 * elastic);
+        EXPECT_NEAR(contact_force(law, d, true, rate), expected, 1e-14 * elastic);
         EXPECT_NEAR(contact_dissipation(law, d, rate), (expected - elastic) * rate, 1e-14 * elastic);
         EXPECT_GT(contact_dissipation(law, d, rate), 0);
       }
@@ -535,6 +544,122 @@ TEST(Adhesion, IsTheDmtForceOfEverySummitInTouch) {
     EXPECT_NEAR(contact_force(law, d), contact_force(repulsion, d) - pull, 1e-12 * pull) << "d = " << d;
   }
   EXPECT_LT(contact_force(law, 0.1_nm), 0) << "at small interference adhesion wins";
+}
+
+constexpr std::array remembering{ContactModel::hysteretic, ContactModel::elastic_plastic};
+
+ContactState unloading(const ContactLaw& law, double deepest) {
+  ContactState state = true;
+  state.unloading = true;
+  state.shift = dent(law, deepest).shift;
+  return state;
+}
+
+TEST(ContactMemory, ForceAndEnergyAreContinuousFromLoadingToUnloadingToTheDent) {
+  constexpr double rounding = 1e-12;
+  for (const ContactModel model : remembering) {
+    const ContactLaw law = contact_law(pad(model, 0), beam_width);
+    ASSERT_TRUE(has_memory(law));
+    for (const double deepest : interferences) {
+      const ContactState state = unloading(law, deepest);
+      const double peak = contact_force(law, deepest), work = contact_energy(law, deepest);
+      EXPECT_GT(state.shift, 0);
+      EXPECT_LT(state.shift, deepest);
+      EXPECT_NEAR(contact_force(law, deepest, state, 0), peak, rounding * peak) << deepest;
+      EXPECT_EQ(contact_force(law, state.shift, state, 0), 0);
+      EXPECT_EQ(stored_energy(law, state.shift, state), 0);
+      EXPECT_NEAR(stored_energy(law, deepest, state), stored_energy(law, deepest, true), rounding * work);
+      EXPECT_NEAR(stored_energy(law, deepest, true) + dent(law, deepest).lost, work, rounding * work);
+      EXPECT_GT(dent(law, deepest).lost, 0);
+    }
+  }
+  for (const ContactModel model : damping_contacts) EXPECT_FALSE(has_memory(contact_law(pad(model, 0), beam_width)));
+}
+
+TEST(ContactMemory, UnloadingForceIsTheSlopeOfWhatIsStored) {
+  constexpr double differences = 1e-9;
+  for (const ContactModel model : remembering) {
+    const ContactLaw law = contact_law(pad(model, 0), beam_width);
+    const ContactState state = unloading(law, 60_nm);
+    for (const double d : {state.shift + 1_nm, 59_nm}) {
+      const double slope = derivative([&](double x) { return stored_energy(law, x, state); }, d, 0.05_nm);
+      const double force = contact_force(law, d, state, 0);
+      EXPECT_NEAR(slope, force, differences * force);
+    }
+  }
+}
+
+TEST(ContactMemory, DeeperDentsHaveTakenMore) {
+  for (const ContactModel model : remembering) {
+    const ContactLaw law = contact_law(pad(model, 0), beam_width);
+    Dent last;
+    for (const double deepest : interferences) {
+      const Dent next = dent(law, deepest);
+      EXPECT_GT(next.shift, last.shift);
+      EXPECT_GT(next.lost, last.lost);
+      last = next;
+    }
+  }
+}
+
+TEST(Hysteretic, ReturnsTheShareOfTheWorkThatTheStiffnessesSay) {
+  const ContactLaw law = contact_law(pad(ContactModel::hysteretic, 0), beam_width);
+  for (const double deepest : interferences) {
+    EXPECT_NEAR(dent(law, deepest).lost / contact_energy(law, deepest), 1 - 1e4 / 2.5e4, 1e-12);
+  }
+  EXPECT_TRUE(dent(law, 1_nm).heals);
+}
+
+/// One asperity of Zhao, Maietta & Chang, as published.
+double zmc_asperity(double w, double radius, double hardness, double modulus) {
+  constexpr double k = 0.4;
+  const double w1 = std::pow(3 * pi * k * hardness / (4 * modulus), 2) * radius, w2 = 54 * w1;
+  if (w < w1) return 4.0 / 3 * modulus * std::sqrt(radius) * std::pow(w, 1.5);
+  if (w > w2) return 2 * pi * radius * w * hardness;
+  const double s = (w - w1) / (w2 - w1);
+  const double area = pi * radius * w * (1 - 2 * s * s * s + 3 * s * s);
+  return area * (hardness - hardness * (1 - k) * (std::log(w2) - std::log(w)) / (std::log(w2) - std::log(w1)));
+}
+
+TEST(ElasticPlastic, CarriesTheZmcLawIntegratedOverItsHeights) {
+  const ContactLaw law = contact_law(pad(ContactModel::elastic_plastic, 0), beam_width);
+  constexpr double hardness = 1e9, modulus = 48e9;
+  const double radius = 100_nm, w1 = std::pow(3 * pi * 0.4 * hardness / (4 * modulus), 2) * radius;
+  EXPECT_NEAR(w1, PlasticAsperityLoading::first_yield(radius, hardness, modulus), 1e-12 * w1);
+  boost::math::quadrature::tanh_sinh<double> integrator;
+  for (const double d : {0.3 * w1, 3 * w1, 40 * w1, 60 * w1, 60_nm, 100.02_nm, 101_nm, 150_nm}) {
+    double sum = 0;
+    std::vector<double> corners{std::max(0.0, d - 100_nm), d};
+    for (const double corner : {w1, 54 * w1}) {
+      if (corner > corners.front() && corner < d) corners.push_back(corner);
+    }
+    std::sort(corners.begin(), corners.end());
+    for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+      const double begin = corners[i], length = corners[i + 1] - begin;
+      sum += length * integrator.integrate([&](double x) { return zmc_asperity(begin + x * length, radius, hardness, modulus); },
+                                           0.0, 1.0);
+    }
+    const double expected = 1e11 * beam_width * 5_um / 100_nm * sum;
+    EXPECT_NEAR(contact_force(law, d), expected, 1e-9 * expected) << "d = " << d / w1 << " w1";
+  }
+}
+
+TEST(ElasticPlastic, IsElasticBelowFirstYieldAndSofterAbove) {
+  const ContactLaw law = contact_law(pad(ContactModel::elastic_plastic, 0), beam_width);
+  const ContactLaw elastic = contact_law(pad(ContactModel::asperity_uniform, 0), beam_width);
+  const double w1 = PlasticAsperityLoading::first_yield(100_nm, 1e9, 48e9);
+  EXPECT_NEAR(contact_force(law, 0.9 * w1), contact_force(elastic, 0.9 * w1), 1e-12 * contact_force(elastic, w1));
+  EXPECT_NEAR(dent(law, 0.9 * w1).lost, 0, 1e-12 * contact_energy(law, w1));
+  for (const double factor : {1.01, 2.0, 30.0, 80.0, 1000.0}) {
+    EXPECT_LT(contact_force(law, factor * w1), contact_force(elastic, factor * w1)) << factor;
+  }
+  EXPECT_FALSE(dent(law, 1_nm).heals);
+}
+
+TEST(UniformAsperities, InterferenceBelongsToItsForce) {
+  const auto law = std::get<UniformAsperityContact>(contact_law(gold_pad, beam_width));
+  for (const double d : interferences) EXPECT_NEAR(law.interference(law.force(d)), d, 1e-13 * d);
+  EXPECT_EQ(law.interference(0), 0);
 }
 
 // ---- dual numbers

@@ -287,5 +287,24 @@ TEST(ClosedEquilibrium, IsPressedHarderByAPiezoThatPullsDown) {
   EXPECT_LT(force(0.1), force(0));
 }
 
+TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
+  const std::vector<double> volts{17.771};
+  for (const Contact& contact : test::contacts()) {
+    Device d = test::gold_cantilever();
+    d.contact = contact;
+    const Switch device(d);
+    const auto closed = closed_equilibrium(device, volts);
+    ASSERT_TRUE(closed.has_value()) << to_string(contact.model);
+    EXPECT_GT(closed->contact_force, 0);
+    Switch::Workspace work = device.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+    Eigen::VectorXd left(device.modes());
+    device.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
+    constexpr double digits = 1e-6;  // of the contact force
+    EXPECT_LT(left.norm(), digits * closed->contact_force * device.contact_shape().norm()) << to_string(contact.model);
+    EXPECT_GT(release_voltage(device, 0), 0) << to_string(contact.model);
+  }
+}
+
 }  // namespace
 }  // namespace softland

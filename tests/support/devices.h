@@ -30,13 +30,14 @@ namespace softland::test {
 [[nodiscard]] inline std::vector<Contact> contacts() {
   using namespace literals;
   std::vector<Contact> all;
-  for (const ContactModel model :
-       {ContactModel::linear, ContactModel::asperity_uniform, ContactModel::asperity_gaussian, ContactModel::adhesive}) {
+  for (const ContactModel model : all_contact_models) {
     for (const double damping : {0.0, 0.5}) {
-      if (damping > 0 && model == ContactModel::adhesive) continue;
+      if (damping > 0 && model > ContactModel::asperity_gaussian) continue;
       Contact c = *gold_cantilever().contact;
       c.model = model;
       c.stiffness = 1e4_N_m;
+      c.unloading_stiffness = 1.5e4_N_m;
+      c.hardness = 1_GPa;
       c.asperity_deviation = 30_nm;
       c.adhesion_energy = 0.05_N_m;
       c.damping = damping;

@@ -1,0 +1,71 @@
+// Contact that remembers its deepest interference: it loads along one curve and unloads along the elastic curve of the same
+// surfaces, shifted so that it passes through the turning point.
+//
+//   loading        P = L(d)                          d deeper than ever before
+//   unloading      P = Pe(d - s),  s = d_m - d_e,  Pe(d_e) = L(d_m)       between s and the deepest interference d_m
+//   dent           P = 0                             d < s
+//
+// P force on the beam, away from the contact [N]; d interference [m]; L and Pe loading and elastic law, L <= Pe; s residual
+// interference [m]. Stored energy: Ue(d_e) while loading, Ue(d - s) after; energy lost: work of loading less Ue(d_e), at d_m. P
+// and both energies are continuous. Reloading follows the unloading curve up to d_m. Each piece is continued smoothly past its
+// end; the integrator restarts there. Statics (pull-in, release, closed equilibrium) are those of first loading.
+//
+//   hysteretic        L = k_l d, Pe = k_u d: a mass rebounds with e^2 = k_l / k_u. The dent heals when contact ends: every touch
+//                     loses the same share. Source: Tung et al. 2014 (loading and unloading stiffness).
+//   elastic-plastic   L of plastic_asperity.h, Pe the law asperity-uniform. The dent stays for the rest of the run, so that later
+//   and
+//                     lighter impacts are elastic. Source of elastic unloading: Johnson 1985, sec. 6.4; the shift of the whole
+//                     curve is ours. It leaves the summits as sharp as they were; flattened ones are stiffer and lose more.
+#pragma once
+
+#include <concepts>
+
+#include "model/contact/asperity_uniform.h"
+#include "model/contact/linear.h"
+#include "model/contact/plastic_asperity.h"
+
+namespace softland {
+
+/// Where a contact law stands. Laws without memory know only whether they act.
+struct ContactState {
+  constexpr ContactState() = default;
+  constexpr ContactState(std::same_as<bool> auto acts) : active(acts) {}  // NOLINT: for most laws that is all there is
+
+  bool active = false;
+  bool unloading = false;  ///< along the shifted elastic curve
+  double shift = 0;        ///< s [m], where unloading
+};
+
+template <class Loading, class Elastic, bool Heals>
+struct ContactWithMemory {
+  Loading loading = {};
+  Elastic elastic = {};
+
+  static constexpr bool heals = Heals;  ///< whether the dent is forgotten when contact ends
+
+  /// First loading and its work.
+  template <class S>
+  S force(S d) const {
+    return loading.force(d);
+  }
+  [[nodiscard]] double energy(double d) const { return loading.energy(d); }
+
+  template <class S>
+  S force(S d, const ContactState& state) const {
+    return state.unloading ? elastic.force(d - S(state.shift)) : loading.force(d);
+  }
+  [[nodiscard]] double stored(double d, const ContactState& state) const {
+    return elastic.energy(state.unloading ? d - state.shift : elastic.interference(loading.force(d)));
+  }
+  /// Residual interference after the deepest one [m]
+  [[nodiscard]] double shift(double deepest) const { return deepest - elastic.interference(loading.force(deepest)); }
+  /// Energy that loading to the deepest interference has taken [J]
+  [[nodiscard]] double lost(double deepest) const {
+    return loading.energy(deepest) - elastic.energy(elastic.interference(loading.force(deepest)));
+  }
+};
+
+using HystereticContact = ContactWithMemory<LinearContact, LinearContact, true>;
+using PlasticAsperityContact = ContactWithMemory<PlasticAsperityLoading, UniformAsperityContact, false>;
+
+}  // namespace softland
