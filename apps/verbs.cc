@@ -13,6 +13,7 @@
 #include <iostream>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -400,11 +401,12 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
 }
 
 int new_verb(const std::string& kind) {
-  if (kind == "cantilever" || kind == "cantilever-pzt") {
-    std::cout << read_text(shipped_scene(kind == "cantilever" ? "mem-gold.toml" : "mem-gold-pzt.toml"));
-    return exit_done;
-  }
-  throw InvalidInput(fmt::format("new {}: must be cantilever or cantilever-pzt", kind));
+  const std::map<std::string, std::string> scenes{
+      {"cantilever", "mem-gold.toml"}, {"cantilever-pzt", "mem-gold-pzt.toml"}, {"plate", "purdue-nickel.toml"}};
+  const auto found = scenes.find(kind);
+  require(found != scenes.end(), fmt::format("new {}: must be cantilever, cantilever-pzt or plate", kind));
+  std::cout << read_text(shipped_scene(found->second));
+  return exit_done;
 }
 
 int export_verb(const std::string& result, const std::string& format) {

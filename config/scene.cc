@@ -40,7 +40,24 @@ void check_section_names(const SceneFile::Impl& file) {
   }
 }
 
+Structure read_plate(const SectionReader& in) {
+  const double area = in.number("area");
+  // Where no law needs its width a plate is as good as square.
+  const double width = in.is_given("width") ? in.number("width") : std::sqrt(area);
+  return {.kind = StructureKind::plate,
+          .length = area / width,
+          .width = width,
+          .thickness = in.number("thickness"),
+          .modes = 1,
+          .mass = in.number("mass"),
+          .stiffness = in.number("stiffness"),
+          .damping_ratio = in.number("damping_ratio")};
+}
+
+bool is_plate(const SectionReader& structure) { return structure.text("kind") == "plate"; }
+
 Structure read_structure(const SectionReader& in) {
+  if (is_plate(in)) return read_plate(in);
   in.require(!in.flag("plate_strain") || in.is_given("poissons_ratio"), "plate_strain", "needs structure.poissons_ratio");
   return {.length = in.number("length"),
           .width = in.number("width"),
@@ -59,6 +76,11 @@ Gap read_gap(const SectionReader& in) {
   return gap;
 }
 
+/// What a law per length needs to know of a plate, if this is one.
+void require_of_plate(const SectionReader& in, std::string_view key, const SectionReader& structure, std::string_view needed) {
+  in.require(!is_plate(structure) || structure.is_given(needed), key, fmt::format("needs structure.{} on a plate", needed));
+}
+
 /// A span along the beam: [begin, end] in metres.
 std::pair<double, double> read_span(const SectionReader& in, const SectionReader& structure) {
   const double begin = in.quantities("span")[0].value;
@@ -68,9 +90,35 @@ std::pair<double, double> read_span(const SectionReader& in, const SectionReader
   return {begin, end};
 }
 
-Contact read_contact(const SectionReader& in, const SectionReader& structure) {
-  Contact contact{.pad_length = in.number("pad_length")};
-  in.require(contact.pad_length < structure.number("length"), "pad_length", "must be less than " + structure.written("length"));
+/// Where an electrode begins and ends [m]; a plate counts the length that gives its area.
+std::pair<double, double> read_extent(const SceneFile::Impl& file, const SectionReader& in, const SectionReader& structure,
+                                      const Structure& s) {
+  if (is_plate(structure)) {
+    in.require(!in.is_given("span"), "span", "belongs to a beam; the electrode of a plate has an area");
+    if (!in.is_given("area")) return {0, s.length};
+    in.require(in.number("area") <= structure.number("area"), "area", "must not exceed " + structure.written("area"));
+    return {0, in.number("area") / s.width};
+  }
+  in.require(!in.is_given("area"), "area", "belongs to a plate; the electrode of a beam has a span");
+  if (!in.is_given("span")) file.fail_section(in.path(), R"(missing key 'span' (a list such as ["2 um", "2 um"]))");
+  return read_span(in, structure);
+}
+
+double read_pad_length(const SceneFile::Impl& file, const SectionReader& in, const SectionReader& structure, const Structure& s) {
+  const bool is_spring = in.text("model") == "linear" || in.text("model") == "hysteretic";
+  if (!in.is_given("pad_length")) {
+    if (is_plate(structure) && is_spring) return 0;  // only the area of a plate's pad would count
+    file.fail_section(in.path(), R"(missing key 'pad_length' (a length such as "2 um"))");
+  }
+  if (!is_spring) require_of_plate(in, "pad_length", structure, "width");
+  const double pad_length = in.number("pad_length");
+  in.require(pad_length < s.length, "pad_length",
+             "must be less than " + (is_plate(structure) ? "structure.area / structure.width" : structure.written("length")));
+  return pad_length;
+}
+
+Contact read_contact(const SceneFile::Impl& file, const SectionReader& in, const SectionReader& structure, const Structure& s) {
+  Contact contact{.pad_length = read_pad_length(file, in, structure, s)};
   for (const ContactModel model : all_contact_models) {
     if (in.text("model") == to_string(model)) contact.model = model;
   }
@@ -118,12 +166,28 @@ Device read_device(const SceneFile::Impl& file) {
   for (const std::string& name : file.names_in("electrode")) {
     internal::check_drive_name(file, name);
     const SectionReader in(file, "electrode", name);
-    const auto [begin, end] = read_span(in, structure);
-    device.electrodes.push_back({.name = name, .begin = begin, .end = end, .fringing = fringing(in.text("fringing"))});
+    const auto [begin, end] = read_extent(file, in, structure, device.structure);
+    const Fringing law = fringing(in.text("fringing"));
+    if (law != Fringing::none && is_plate(structure)) {
+      const auto given = [&](std::string_view key) { return structure.is_given(key); };
+      if (!given("width") || (law != Fringing::linear && !given("thickness"))) {
+        file.fail_section(in.path(), fmt::format("fringing = {} needs structure.width{} on a plate; fringing = \"none\" does not",
+                                                 internal::toml_string(in.text("fringing")),
+                                                 law == Fringing::linear ? "" : " and structure.thickness"));
+      }
+    }
+    device.electrodes.push_back({.name = name, .begin = begin, .end = end, .fringing = law});
   }
-  if (const SectionReader in(file, "gas"); in.is_present()) device.gas = read_gas(in);
-  if (const SectionReader in(file, "contact"); in.is_present()) device.contact = read_contact(in, structure);
+  if (const SectionReader in(file, "gas"); in.is_present()) {
+    if (!in.is_given("quality_factor")) require_of_plate(in, "model", structure, "width");
+    if (in.text("model") == "guo-alexeenko") require_of_plate(in, "model", structure, "thickness");
+    device.gas = read_gas(in);
+  }
+  if (const SectionReader in(file, "contact"); in.is_present()) {
+    device.contact = read_contact(file, in, structure, device.structure);
+  }
   if (const SectionReader in(file, "piezo"); in.is_present()) {
+    if (is_plate(structure)) file.fail_section(in.path(), "a plate does not bend; a layer needs a beam");
     const auto [begin, end] = read_span(in, structure);
     device.piezo = Piezo{.begin = begin,
                          .end = end,
@@ -160,7 +224,8 @@ const internal::Key& varied_key(const SceneFile::Impl& file, const SectionReader
   if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
     const SectionReader varied(file, parts[0], section->is_named ? parts[1] : std::string());
     for (const internal::Key& key : section->keys) {
-      if (key.type == internal::KeyType::quantity && varied.has_value(key.name)) candidates.push_back(key.name);
+      if (key.type == internal::KeyType::quantity && varied.find(key.name) == &key && varied.has_value(key.name))
+        candidates.push_back(key.name);
     }
     if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) return *varied.find(parts.back());
   }
@@ -191,7 +256,8 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   constexpr double wide = 5;          // width over thickness from which the beam bends more like a plate
   constexpr double rounding = 1e-12;  // 20 um is not more than five times 4 um, whatever the last bit says
   const Structure& structure = device.structure;
-  if (!structure.plate_strain && structure.width > wide * structure.thickness * (1 + rounding)) {
+  if (structure.kind != StructureKind::plate && !structure.plate_strain &&
+      structure.width > wide * structure.thickness * (1 + rounding)) {
     warnings.push_back(fmt::format(
         "{}: {}: more than five thicknesses; youngs_modulus is used as given, plate_strain = true with poissons_ratio would "
         "use E / (1 - nu^2)",

@@ -42,11 +42,17 @@ std::string_view to_string(ContactModel model) {
 
 void validate(const Device& d) {
   const Structure& s = d.structure;
+  const bool plate = s.kind == StructureKind::plate;
   positive(s.length, "m", "structure.length");
   positive(s.width, "m", "structure.width");
-  positive(s.thickness, "m", "structure.thickness");
-  positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
-  positive(s.density, "kg/m^3", "structure.density");
+  if (plate) {
+    positive(s.mass, "kg", "structure.mass");
+    positive(s.stiffness, "N/m", "structure.stiffness");
+  } else {
+    positive(s.thickness, "m", "structure.thickness");
+    positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
+    positive(s.density, "kg/m^3", "structure.density");
+  }
   require(s.modes >= 1 && s.modes <= 20, fmt::format("structure.modes = {}: must be from 1 to 20", s.modes));
   require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
           fmt::format("structure.damping_ratio = {}: must not be negative", s.damping_ratio));
@@ -56,7 +62,12 @@ void validate(const Device& d) {
   require(d.gap.contact > 0 && d.gap.contact < d.gap.electrode,
           fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
                       engineering(d.gap.electrode, "m")));
-  for (const Electrode& e : d.electrodes) span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
+  for (const Electrode& e : d.electrodes) {
+    span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
+    if (e.fringing == Fringing::meijs_fokkema || e.fringing == Fringing::bao_2001) {
+      positive(s.thickness, "m", "structure.thickness");
+    }
+  }
   if (d.gas) {
     const Gas& g = *d.gas;
     const auto positive_if_given = [](double value, const char* unit, const char* name) {
@@ -64,6 +75,7 @@ void validate(const Device& d) {
     };
     positive(g.pressure, "Pa", "gas.pressure");
     positive(g.temperature, "K", "gas.temperature");
+    if (g.model == GasModel::guo_alexeenko) positive(s.thickness, "m", "structure.thickness");
     positive_if_given(g.viscosity, "Pa s", "gas.viscosity");
     positive_if_given(g.mean_free_path, "m", "gas.mean_free_path");
     positive_if_given(g.damping, "N s/m^2", "gas.damping");
@@ -73,7 +85,8 @@ void validate(const Device& d) {
   }
   if (d.contact) {
     const Contact& c = *d.contact;
-    require(c.pad_length > 0 && c.pad_length < s.length,
+    const bool no_pad = plate && c.model == ContactModel::linear && c.pad_length == 0;  // only its area would count
+    require(no_pad || (c.pad_length > 0 && c.pad_length < s.length),
             fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
                         engineering(c.pad_length, "m"), engineering(s.length, "m")));
     if (c.model == ContactModel::linear || c.model == ContactModel::hysteretic) {
@@ -104,6 +117,7 @@ void validate(const Device& d) {
   }
   if (d.piezo) {
     const Piezo& p = *d.piezo;
+    require(!plate, "piezo: a rigid plate does not bend; a layer needs a beam");
     span(p.begin, p.end, s.length, "piezo.span");
     positive(p.thickness, "m", "piezo.thickness");
     positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");

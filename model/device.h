@@ -11,14 +11,19 @@
 
 namespace softland {
 
-/// A cantilever of rectangular section (Euler-Bernoulli).
+enum class StructureKind { cantilever, plate };
+
+/// What moves: a beam of rectangular section (Euler-Bernoulli), or a rigid plate on springs.
 struct Structure {
-  double length = 0;          ///< L [m]
+  StructureKind kind = StructureKind::cantilever;
+  double length = 0;          ///< L [m]; plate: its area over its width
   double width = 0;           ///< a [m]
   double thickness = 0;       ///< b [m]
   double youngs_modulus = 0;  ///< E [Pa], used as given unless plate_strain
   double density = 0;         ///< rho [kg/m^3]
-  int modes = 4;
+  int modes = 4;              ///< plate: has one, whatever is said here
+  double mass = 0;            ///< plate: moving mass [kg]
+  double stiffness = 0;       ///< plate: of all springs together [N/m]
   double damping_ratio = 0;   ///< zeta of every mode
   bool plate_strain = false;  ///< use E / (1 - nu^2)
   double poissons_ratio = std::numeric_limits<double>::quiet_NaN();
@@ -33,7 +38,7 @@ enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
 struct Electrode {
   std::string name = {};
-  double begin = 0;  ///< [m] from the clamped end
+  double begin = 0;  ///< [m] from the clamped end; of a plate only the length counts: the electrode's area over the plate's width
   double end = 0;    ///< [m]
   Fringing fringing = Fringing::meijs_fokkema;
 };

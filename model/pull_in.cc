@@ -256,24 +256,28 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
   const std::vector<double> rest(static_cast<std::size_t>(device.modes()), 0.0);
   Switch::Workspace work = device.workspace();
 
-  // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane never gets there. The pass
-  // is the unstable equilibrium, or the state held at the plane where that comes first.
-  const auto pass = [&](double volts, std::span<const double> all) {
+  // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane before it is over it never
+  // gets there. The pass is the unstable equilibrium, or the state held at the plane where that comes first. Where the contact
+  // point is on it no shape has less energy, so its deflection tells the two sides apart.
+  struct Pass {
+    double deflection, potential;
+  };
+  const auto pass = [&](double volts, std::span<const double> all) -> Pass {
     const double square = volts * volts;
     if (static_result.kind == StaticKind::fold && branch(plane) < square) {
       const double s = bracketed_zero([&](double x) { return branch(x) - square; }, static_result.deflection, plane);
       branch(s);
-      return statics.potential(branch.q(), all);
+      return {s, statics.potential(branch.q(), all)};
     }
     const auto held = statics.pinned(all, plane);
-    return held ? statics.potential(held->q, all) : nan;
+    return {plane, held ? statics.potential(held->q, all) : nan};
   };
 
   const auto reaches = [&](double volts) {
     std::vector<double> all(device.drives(), 0.0);
     all[drive] = volts;
-    const double barrier = pass(volts, all);
-    if (device.potential(rest.data(), all, false, work) < barrier) return false;
+    const Pass barrier = pass(volts, all);
+    if (device.potential(rest.data(), all, false, work) < barrier.potential) return false;
     std::vector<Signal> signals(device.drives());
     signals[drive] = Signal::constant(volts);
     ClosingOptions options{
@@ -281,7 +285,8 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     int step = 0;
     options.observer = [&](double, const double* q, const double* v) {
       if (++step % 8 != 0) return false;  // looking more often costs more than it saves
-      return device.kinetic_energy(v) + device.potential(q, all, false, work) < barrier;
+      return device.contact_deflection(q) < barrier.deflection &&
+             device.kinetic_energy(v) + device.potential(q, all, false, work) < barrier.potential;
     };
     return !simulate_closing(device, signals, options).touches.empty();
   };

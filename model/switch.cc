@@ -6,6 +6,7 @@
 
 #include "model/forces/electrostatic.h"
 #include "model/gauss.h"
+#include "model/plate.h"
 
 namespace softland {
 namespace {
@@ -41,22 +42,22 @@ std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Str
 
 }  // namespace
 
-Switch::Switch(const Device& device, const SwitchOptions& options) : device_(device) {
-  validate(device_);
+template <class Modes>
+void Switch::move_in(const Modes& structure, double points_per_length, int fewest_points) {
   const Structure& s = device_.structure;
   const double x_c = device_.contact_position();
-  const BeamModes beam(beam_sections(device_), s.modes);
-  frequencies_ = beam.angular_frequencies();
+  frequencies_ = structure.angular_frequencies();
   squares_ = frequencies_.cwiseAbs2();
-  contact_shape_ = beam.value(x_c);
-  in_contact_period_ = 2 * pi / beam.pinned_frequency(x_c);
+  contact_shape_ = structure.value(x_c);
+  in_contact_period_ = 2 * pi / structure.pinned_frequency(x_c);
   piezo_shape_ = Eigen::VectorXd::Zero(modes());
 
   std::set<double> corners{0, s.length};
   for (const Electrode& e : device_.electrodes) corners.insert({e.begin, std::min(e.end, s.length)});
   if (device_.piezo) {
     corners.insert({device_.piezo->begin, device_.piezo->end});
-    piezo_shape_ = piezo_moment_per_volt(s, *device_.piezo) * (beam.slope(device_.piezo->end) - beam.slope(device_.piezo->begin));
+    piezo_shape_ =
+        piezo_moment_per_volt(s, *device_.piezo) * (structure.slope(device_.piezo->end) - structure.slope(device_.piezo->begin));
   }
   if (device_.contact) corners.insert(s.length - device_.contact->pad_length);
 
@@ -64,7 +65,8 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   for (auto corner = corners.begin(); std::next(corner) != corners.end(); ++corner) {
     const double begin = *corner, length = *std::next(corner) - begin;
     if (length < 1e-9 * s.length) continue;  // two names of one place that differ by a rounding
-    const GaussRule rule = gauss_rule(std::max(3, static_cast<int>(std::ceil(length / s.length * options.points_per_length))));
+    const GaussRule rule =
+        gauss_rule(std::max(fewest_points, static_cast<int>(std::ceil(length / s.length * points_per_length))));
     for (std::size_t i = 0; i < rule.points.size(); ++i) {
       positions.push_back(begin + length * (1 + rule.points[i]) / 2);
       weights.push_back(rule.weights[i] * length / 2);
@@ -76,9 +78,20 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   // Idle points, where no mode moves, fill the last block.
   shapes_ = weighted_shapes_ = Eigen::MatrixXd::Zero((n + block - 1) / block * block, modes());
   for (Eigen::Index p = 0; p < n; ++p) {
-    shapes_.row(p) = beam.value(positions_[p]).transpose();
+    shapes_.row(p) = structure.value(positions_[p]).transpose();
     weighted_shapes_.row(p) = weights_[p] * shapes_.row(p);
   }
+}
+
+Switch::Switch(const Device& device, const SwitchOptions& options) : device_(device) {
+  validate(device_);
+  const Structure& s = device_.structure;
+  if (s.kind == StructureKind::plate) {
+    move_in(RigidPlate(s), 0, 1);  // the gap is the same everywhere: one point each says it all
+  } else {
+    move_in(BeamModes(beam_sections(device_), s.modes), options.points_per_length, 3);
+  }
+  const Eigen::Index n = points();
 
   for (const Electrode& e : device_.electrodes) {
     electrode_laws_.push_back(electrostatic(e.fringing, s, points_in(positions_, e.begin, e.end), gap_floor()));

@@ -6,7 +6,7 @@
 // quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P contact force [N], d
 // interference [m]. Deflection y(x) = sum phi_i(x) q_i, positive towards the electrode. Galerkin projection on Gauss panels that
 // start and end where an electrode, the piezo layer or the pad does. Only the laws that the device has are composed: an absent
-// effect costs nothing.
+// effect costs nothing. A rigid plate is a strip that stays flat: one mode, one quadrature point per panel.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@
 namespace softland {
 
 struct SwitchOptions {
-  double points_per_length = 24;  ///< quadrature points over the beam's length (each panel has at least 3)
+  double points_per_length = 24;  ///< quadrature points over a beam's length (each panel has at least 3)
 };
 
 class Switch {
@@ -102,6 +102,9 @@ class Switch {
   static constexpr Eigen::Index block = 8;  // points a pass over the modes handles at once
   using Block = Eigen::Array<double, block, 1>;
 
+  /// Takes frequencies, shapes and quadrature from what moves, a beam or a plate.
+  template <class Modes>
+  void move_in(const Modes& structure, double points_per_length, int fewest_points);
   void set_gap(const double* q, Workspace& work) const;
   void set_field(const double* q, const double* v, Workspace& work) const;
   /// Modal forces of the load in `work`: the sum over points of w_p phi_i(x_p) f(x_p).

@@ -76,14 +76,14 @@ INSTANTIATE_TEST_SUITE_P(Quantities, BadFile, testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
-    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio))"},
+    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, mass, stiffness, area))"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
     Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, piezo, waveform, driver, simulate, metrics, spread)"},
     Edit{"[gap]", "[dispersion]", "x.toml:9: [dispersion]: not available yet"},
     Edit{R"(kind = "cantilever")", R"(kind = "cantilver")", R"(x.toml:3: structure.kind = "cantilver": unknown value (did you mean 'cantilever'?))"},
-    Edit{R"(kind = "cantilever")", R"(kind = "plate")", R"(x.toml:3: structure.kind = "plate": not available yet (available: cantilever))"},
-    Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever"},
+    Edit{R"(kind = "cantilever")", R"(kind = "clamped-clamped")", R"(x.toml:3: structure.kind = "clamped-clamped": not available yet (available: cantilever, plate))"},
+    Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever, plate"},
     structure_line(R"(modes = "auto")", R"(x.toml:9: structure.modes = "auto": not available yet)"),
     Edit{R"(model = "strip")", R"(model = "veijolla")", R"(x.toml:15: gas.model = "veijolla": unknown value (did you mean 'veijola'?))"},
     Edit{R"(model = "strip")", R"(model = "linear")", R"(x.toml:16: gas.viscosity = "1.86e-5 Pa s": belongs to model = "strip" or "veijola" or "gallis-torczynski" or "near-contact" or "guo-alexeenko", not to "linear")"},
@@ -130,6 +130,8 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", 240])", R"(x.toml:13: electrode.main.span = ["60 um", 240]: value 2: no unit (expected a list such as ["2 um", "2 um"]))"},
     Edit{R"(span = ["60 um", "240 um"])", R"(span = "60 um")", R"(x.toml:13: electrode.main.span = "60 um": expected a list such as ["2 um", "2 um"])"},
     Edit{R"(span = ["5 um", "240 um"])", R"(span = ["5 um", "0.3 mm"])", R"(x.toml:22: piezo.span = ["5 um", "0.3 mm"]: must end on the beam: structure.length = "250 um")"},
+    Edit{R"(span = ["60 um", "240 um"])", R"(area = "60 um^2")", R"(x.toml:13: electrode.main.area = "60 um^2": belongs to a plate; the electrode of a beam has a span)"},
+    Edit{"pad_length = \"5 um\"\n", "", R"(x.toml:17: [contact]: missing key 'pad_length' (a length such as "2 um"))"},
     Edit{R"(pad_length = "5 um")", R"(pad_length = "250 um")", R"(x.toml:19: contact.pad_length = "250 um": must be less than structure.length = "250 um")"},
     Edit{R"(title = "small")", R"(title = 3)", "x.toml:1: title = 3: expected a text in quotes"},
     Edit{R"(accuracy = 1e-5)", "accuracy = 0.2", "x.toml:39: simulate.accuracy = 0.2: must be in (0, 0.1]"},
@@ -191,6 +193,48 @@ INSTANTIATE_TEST_SUITE_P(Toml, BadFile, testing::Values(
     Edit{"thickness =", "length =", "x.toml:6:10: not TOML: Error while parsing key-value pair: cannot redefine existing string 'length'"},
     Edit{"[gas]", "[gap]", "x.toml:14:1: not TOML: Error while parsing table header: cannot redefine existing table 'gap'"},
     Edit{"[gas]", "[a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q]", "x.toml:14: a key has more than 16 parts"}));
+// clang-format on
+
+// A complete plate, changed the same way.
+constexpr std::string_view small_plate = R"([structure]
+kind = "plate"
+mass = "2.4e-9 kg"
+stiffness = "42 N/m"
+area = "1e4 um^2"
+width = "100 um"
+thickness = "3 um"
+[gap]
+electrode = "3.8 um"
+contact = "2.6 um"
+[electrode.main]
+area = "6e3 um^2"
+[gas]
+model = "strip"
+viscosity = "1.86e-5 Pa s"
+[contact]
+model = "linear"
+stiffness = "312 N/m"
+)";
+
+class BadPlate : public testing::TestWithParam<Edit> {};
+
+TEST_P(BadPlate, IsRefusedWithThisMessage) {
+  ASSERT_EQ(message(std::string(small_plate)), "");
+  ASSERT_NE(small_plate.find(GetParam().from), std::string_view::npos) << GetParam().from;
+  EXPECT_EQ(message(edited(small_plate, GetParam().from, GetParam().to)), GetParam().expected);
+}
+
+// clang-format off
+INSTANTIATE_TEST_SUITE_P(Plates, BadPlate, testing::Values(
+    Edit{"mass = \"2.4e-9 kg\"\n", "", R"(x.toml:1: [structure]: missing key 'mass' (a mass such as "1 kg"))"},
+    Edit{"mass = \"2.4e-9 kg\"", "mass = \"0 kg\"", R"(x.toml:3: structure.mass = "0 kg": must be greater than 0 kg)"},
+    Edit{"mass =", "modes = 4\nmass =", R"(x.toml:3: structure.modes = 4: belongs to kind = "cantilever", not to "plate")"},
+    Edit{"area = \"6e3", "span = [\"0 um\", \"9 um\"]\narea = \"6e3", R"(x.toml:12: electrode.main.span = ["0 um", "9 um"]: belongs to a beam; the electrode of a plate has an area)"},
+    Edit{"area = \"6e3", "area = \"6e4", R"(x.toml:12: electrode.main.area = "6e4 um^2": must not exceed structure.area = "1e4 um^2")"},
+    Edit{"thickness = \"3 um\"\n", "", R"(x.toml:10: [electrode.main]: fringing = "meijs-fokkema" needs structure.width and structure.thickness on a plate; fringing = "none" does not)"},
+    Edit{"width = \"100 um\"\nthickness = \"3 um\"\n[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]", "[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]\nfringing = \"none\"", R"(x.toml:13: gas.model = "strip": needs structure.width on a plate)"},
+    Edit{"[gas]", "[piezo]\nspan = [\"0 um\", \"9 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n[gas]", "x.toml:13: [piezo]: a plate does not bend; a layer needs a beam"},
+    Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\npad_length = \"1 mm\"", R"(x.toml:19: contact.pad_length = "1 mm": must be less than structure.area / structure.width)"}));
 // clang-format on
 
 struct Options {

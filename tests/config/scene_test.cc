@@ -104,6 +104,34 @@ TEST(Scene, OptionalKeysArrive) {
   EXPECT_EQ(scene.metrics.significant_rebound, 2e-9);
 }
 
+TEST(Scene, APlateIsAStripOfItsAreaAndWidth) {
+  const Device d = read_file("purdue-nickel.toml").device;
+  EXPECT_EQ(d.structure.kind, StructureKind::plate);
+  EXPECT_EQ(d.structure.mass, 9.2371e-10);
+  EXPECT_EQ(d.structure.stiffness, 91.303);
+  EXPECT_EQ(d.structure.width, 123e-6);
+  EXPECT_DOUBLE_EQ(d.structure.length, 510e-6);
+  EXPECT_EQ(d.structure.modes, 1);
+  EXPECT_DOUBLE_EQ(d.electrodes[0].end - d.electrodes[0].begin, 510e-6)
+      << "without an area of its own it is as large as the plate";
+
+  const Device square = read(R"([structure]
+kind = "plate"
+mass = "1e-9 kg"
+stiffness = "40 N/m"
+area = "1e4 um^2"
+[gap]
+electrode = "3.5 um"
+contact = "2 um"
+[electrode.main]
+area = "2500 um^2"
+fringing = "none"
+)")
+                            .device;
+  EXPECT_DOUBLE_EQ(square.structure.width, 100e-6) << "where no law needs its width";
+  EXPECT_DOUBLE_EQ(square.electrodes[0].end, 25e-6);
+}
+
 TEST(Scene, EveryFringingLawHasAName) {
   for (const auto& [name, law] : std::map<std::string, Fringing>{{"none", Fringing::none},
                                                                  {"bao-2001", Fringing::bao_2001},

@@ -94,6 +94,22 @@ TEST(Device, NamesWhatIsWrongWithIt) {
   expect_message([](Device& d) { d.piezo->d31 = std::nan(""); }, "piezo.d31 = nan m/V: must be between -1 m/V and 1 m/V");
 }
 
+TEST(Device, NamesWhatIsWrongWithAPlate) {
+  const auto expect = [](const std::function<void(Device&)>& damage, const std::string& message) {
+    Device device = test::full_plate();
+    damage(device);
+    test::expect_refused([&] { validate(device); }, message);
+  };
+  EXPECT_NO_THROW(validate(test::full_plate()));
+  expect([](Device& d) { d.structure.mass = 0; }, "structure.mass = 0 kg: must be positive");
+  expect([](Device& d) { d.structure.stiffness = -1; }, "structure.stiffness = -1 N/m: must be positive");
+  expect([](Device& d) { d.structure.thickness = 0; }, "structure.thickness = 0 m: must be positive");
+  expect([](Device& d) { d.piezo = test::gold_pzt_cantilever().piezo; },
+         "piezo: a rigid plate does not bend; a layer needs a beam");
+  expect([](Device& d) { d.contact->model = ContactModel::asperity_uniform; },
+         "contact.pad_length = 0 m: must be positive and below structure.length = 100 um");
+}
+
 TEST(Device, TakesItsFiguresAtTheCentreOfThePad) {
   Device device = test::gold_cantilever();
   EXPECT_DOUBLE_EQ(device.contact_position(), 247.5_um);

@@ -55,6 +55,14 @@ std::vector<Combination> combinations() {
   Device two = test::gold_cantilever();  // two electrodes that overlap on a part of the beam
   two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
   all.push_back({"two electrodes", two});
+  for (const bool gas : {false, true}) {
+    for (const double damping : {0.0, 0.03}) {
+      Device plate = test::full_plate();
+      plate.structure.damping_ratio = damping;
+      if (!gas) plate.gas.reset();
+      all.push_back({fmt::format("plate, gas {}, damping {}", gas, damping), plate});
+    }
+  }
   return all;
 }
 
@@ -293,6 +301,30 @@ TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(-by_q);
   const double period = 2 * pi / std::sqrt(solver.eigenvalues()[0]);
   EXPECT_NEAR(device.in_contact_period(), period, 1e-3 * period);
+}
+
+TEST(Switch, OfAPlateIsOneOscillator) {
+  Device d = test::full_plate();
+  d.structure.modes = 4;  // a plate has one, whatever is said
+  const Switch device(d);
+  ASSERT_EQ(device.modes(), 1);
+  EXPECT_EQ(device.points(), 3);  // where either electrode ends, and the rest
+  EXPECT_DOUBLE_EQ(device.angular_frequencies()[0], std::sqrt(42 / 2.4e-9));
+  const double x = 0.4_um, q = x / device.contact_shape()[0];
+  EXPECT_DOUBLE_EQ(device.contact_deflection(&q), x);
+  EXPECT_NEAR(device.elastic_energy(&q), 42 * x * x / 2, 1e-14 * 42 * x * x);
+  // Areas make the force: eps0 A V^2 / (2 h^2) and the film's mu a^2 A / h^3.
+  for (Electrode& e : d.electrodes) e.fringing = Fringing::none;
+  const Switch plain(d);
+  Switch::Workspace work = plain.workspace();
+  const double rest = 0, v = 0.1 / plain.contact_shape()[0];
+  double force = 0;
+  plain.accelerations(&q, &rest, std::vector<double>{0.0, 10.0}, false, work, &force);
+  const double h = 3.8_um - x, area = 100_um * 100_um;
+  const double expected = vacuum_permittivity * 0.3 * area * 100 / (2 * h * h) - 42 * x;
+  EXPECT_NEAR(force * plain.contact_shape()[0] * 2.4e-9, expected, 1e-12 * 42 * x);
+  const double power = 1e-6 * 1e-8 * area / (h * h * h) * 0.01;
+  EXPECT_NEAR(plain.dissipated_power(&q, &v, work), power, 1e-12 * power);
 }
 
 TEST(Switch, GapFloorIsAHundredthOfTheElectrodeGap) {

@@ -56,4 +56,30 @@ namespace softland::test {
   return device;
 }
 
+/// Nickel switch lumped to a plate on springs: the device of scenes/purdue-nickel.toml. 510 x 123 um.
+[[nodiscard]] inline Device nickel_plate() {
+  using namespace literals;
+  return {.structure = {.kind = StructureKind::plate,
+                        .length = 510_um,
+                        .width = 123_um,
+                        .thickness = 4_um,
+                        .mass = 9.2371e-10,
+                        .stiffness = 91.303},
+          .gap = {.electrode = 3.49_um, .contact = 3.14_um},
+          .electrodes = {{.name = "main", .begin = 0, .end = 510_um, .fringing = Fringing::none}}};
+}
+
+/// A plate on springs with everything a plate can have: two electrodes, film, linear contact.
+[[nodiscard]] inline Device full_plate() {
+  using namespace literals;
+  return {
+      .structure =
+          {.kind = StructureKind::plate, .length = 100_um, .width = 100_um, .thickness = 3_um, .mass = 2.4e-9, .stiffness = 42},
+      .gap = {.electrode = 3.8_um, .contact = 2.6_um},
+      .electrodes = {{.name = "main", .begin = 0, .end = 70_um, .fringing = Fringing::meijs_fokkema},
+                     {.name = "second", .begin = 0, .end = 30_um, .fringing = Fringing::linear}},
+      .gas = Gas{.model = GasModel::strip, .viscosity = 1e-6_Pa_s},
+      .contact = Contact{.model = ContactModel::linear, .stiffness = 1e4_N_m}};
+}
+
 }  // namespace softland::test
