@@ -21,7 +21,8 @@ CHANGES = []
 
 
 def collected(program, calls, scene, assignments):
-    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, str(calls), scene, *assignments],
+    run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null",
+                          "--toggle-collect=softland::Switch::accelerations*", program, str(calls), scene, *assignments],
                          capture_output=True, text=True)
     found = re.search(r"Collected : (\d+)", run.stderr)
     if run.returncode != 0 or not found:

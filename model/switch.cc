@@ -169,14 +169,18 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   }
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
   project(work, result);
-  Eigen::Map<Eigen::VectorXd> a(result, n);
   const double damping = 2 * device_.structure.damping_ratio;
-  for (int i = 0; i < n; ++i) a[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
-  if (device_.piezo) a += volts.back() * piezo_shape_;
+  for (int i = 0; i < n; ++i) result[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
+  // Plain loops: the vectors are too short for Eigen's to begin well.
+  if (device_.piezo) {
+    const double volt = volts.back();
+    for (int i = 0; i < n; ++i) result[i] += volt * piezo_shape_[i];
+  }
   if (contact.active) {
     const double d = contact_deflection(q) - device_.gap.contact;
     const auto rate = [&] { return contact_deflection(v); };
-    a -= std::visit([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_) * contact_shape_;
+    const double force = std::visit([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
+    for (int i = 0; i < n; ++i) result[i] -= force * contact_shape_[i];
   }
 }
 
