@@ -16,8 +16,16 @@ import sys
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 FEW, MANY = 1000, 3000
+# The gas film is a part of the scene, so a change of law is what the laws differ by.
 # A scene, what is changed in words, and the assignments that change it.
-CHANGES = []
+CHANGES = [("mem-gold.toml", words, assignments) for words, assignments in (
+    *((f"gas {model}", [f"gas.model={model}"]) for model in ("veijola", "gallis-torczynski", "near-contact", "guo-alexeenko")),
+    *((f"fringing {law}", [f"electrode.main.fringing={law}"]) for law in ("none", "linear", "bao-2001")),
+    ("contact damping", ["contact.damping=1 s/m"]),
+    ("2 modes", ["structure.modes=2"]),
+    ("8 modes", ["structure.modes=8"]),
+    ("a second electrode", ['electrode.root.span=["10 um","50 um"]', "waveform.root.family=step", "waveform.root.level=5 V"]),
+)]
 
 
 def collected(program, calls, scene, assignments):
@@ -50,6 +58,7 @@ def main():
     print(f"""# Instructions of one right-hand side
 
 Contact closed, every drive at its peak. Counted by callgrind as the difference of {MANY} and {FEW} calls of `bench_rhs`.
+Percentages are against the scene as shipped; in the last column against the count of today.
 
 - made by `bench/count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs]`, {datetime.date.today().isoformat()}, revision {revision or 'unknown'}
 - machine: {platform.machine()}, {platform.system()} {platform.release()}; the counts depend on compiler and instruction set only
