@@ -4,7 +4,7 @@
 //   x = 2^e m, sqrt(1/2) <= m < sqrt(2);   log2 x = e + (2 / ln 2) (f + f^3/3 + ... + f^21/21),  f = (m - 1)/(m + 1)
 //   2^z = 2^n (1 + r + ... + r^13/13!),    n = round z,  r = (z - n) ln 2
 //
-// For positive normal x; relative error below 5e-15 for |y log2 x| < 50 (tested). The result must be a normal number. Textbook
+// For positive normal x; relative error below 1e-14 for |y log2 x| < 50 (tested). The result must be a normal number. Textbook
 // series, cut where the next term is below the rounding.
 #pragma once
 

@@ -688,7 +688,7 @@ TEST(Dual, FollowsTheRulesOfDifferentiation) {
 }
 
 TEST(Power, IsThatOfTheLibrary) {
-  constexpr double claimed = 5e-15;  // relative
+  constexpr double claimed = 1e-14;  // relative; 4e-15 seen with fused multiply-add, 5.4e-15 without
   double worst = 0;
   for (double x = 1e-9; x < 1e9; x *= 1.0037) {
     for (const double y : {1.159, 3.1, 1.825, 0.966, -1.2, 0.0}) {

@@ -43,9 +43,9 @@ TEST_P(Quality, AMinimumInACornerIsFound) {
   EXPECT_LT(result.value, kCorner + (coarse ? 0.3 : 1e-4));
 }
 
-int runs_solved(const landscapes::Landscape& landscape, const std::string& optimizer, long budget) {
+int runs_solved(const landscapes::Landscape& landscape, const std::string& optimizer, long budget, std::uint64_t runs = 10) {
   int solved = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
     const OptimizerResult result =
         minimize(landscape.problem, {.optimizer = optimizer, .max_evaluations = budget, .seed = seed, .jobs = 2});
     if (result.value <= landscape.solved) ++solved;
@@ -54,13 +54,17 @@ int runs_solved(const landscapes::Landscape& landscape, const std::string& optim
 }
 
 TEST(Auto, SolvesTheLandscapesAsOftenAsMeasured) {
-  const std::map<std::string, int> at_least = {{"rosenbrock-4", 9}, {"rosenbrock-5", 9}, {"rosenbrock-7", 8}, {"ackley-5", 9},
-                                               {"creases-4", 9},    {"creases-6", 1},    {"valleys-4", 6},    {"valleys-6", 2},
-                                               {"landing-4", 7},    {"landing-7", 7}};
+  // Shares of 100 seeds that bench_optimizers found solved. Another rounding (no fused multiply-add, say) sends a search
+  // elsewhere, so a smaller number of runs is a sample of this share: three standard deviations below it is no accident.
+  const std::map<std::string, double> measured = {
+      {"rosenbrock-4", 0.96}, {"rosenbrock-5", 0.90}, {"rosenbrock-7", 0.83}, {"ackley-5", 0.99},  {"creases-4", 0.98},
+      {"creases-6", 0.64},    {"valleys-4", 0.66},    {"valleys-6", 0.25},    {"landing-4", 0.64}, {"landing-7", 0.59}};
+  constexpr int runs = 40;
   for (const landscapes::Landscape& landscape : landscapes::all()) {
-    const auto expected = at_least.find(landscape.name);
-    if (expected == at_least.end()) continue;
-    EXPECT_GE(runs_solved(landscape, "auto", 1500), expected->second) << landscape.name;
+    const auto share = measured.find(landscape.name);
+    if (share == measured.end()) continue;
+    const double p = share->second;
+    EXPECT_GE(runs_solved(landscape, "auto", 1500, runs), runs * p - 3 * std::sqrt(runs * p * (1 - p))) << landscape.name;
   }
 }
 
