@@ -75,8 +75,9 @@ TEST(Charts, WriteNoWordsOnReboundsTooSmallToSee) {
   json result = softland::testing::sample_optimize_result(6000);
   result["curves"]["best"]["rebounds"] = {{50e-6, 52e-6, 20e-9, 51e-6}};
   const auto words = [&](std::size_t chart) {
+    const Picture drawn = picture(result);
     std::string all;
-    for (const Mark& mark : picture(result).charts.at(chart).marks) all += mark.text;
+    for (const Mark& mark : drawn.charts.at(chart).marks) all += mark.text;
     return all;
   };
   EXPECT_EQ(words(0), "803\u00a0nm");
