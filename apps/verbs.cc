@@ -401,10 +401,12 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
 }
 
 int new_verb(const std::string& kind) {
-  const std::map<std::string, std::string> scenes{
-      {"cantilever", "mem-gold.toml"}, {"cantilever-pzt", "mem-gold-pzt.toml"}, {"plate", "purdue-nickel.toml"}};
+  const std::map<std::string, std::string> scenes{{"cantilever", "mem-gold.toml"},
+                                                  {"cantilever-pzt", "mem-gold-pzt.toml"},
+                                                  {"clamped-clamped", "hung-senturia.toml"},
+                                                  {"plate", "purdue-nickel.toml"}};
   const auto found = scenes.find(kind);
-  require(found != scenes.end(), fmt::format("new {}: must be cantilever, cantilever-pzt or plate", kind));
+  require(found != scenes.end(), fmt::format("new {}: must be cantilever, cantilever-pzt, clamped-clamped or plate", kind));
   std::cout << read_text(shipped_scene(found->second));
   return exit_done;
 }

@@ -8,6 +8,7 @@
 #include "base/require.h"
 #include "config/drives.h"
 #include "config/section_reader.h"
+#include "model/beam.h"
 #include "model/gas/gas_law.h"
 
 namespace softland {
@@ -58,16 +59,28 @@ bool is_plate(const SectionReader& structure) { return structure.text("kind") ==
 
 Structure read_structure(const SectionReader& in) {
   if (is_plate(in)) return read_plate(in);
-  in.require(!in.flag("plate_strain") || in.is_given("poissons_ratio"), "plate_strain", "needs structure.poissons_ratio");
-  return {.length = in.number("length"),
-          .width = in.number("width"),
-          .thickness = in.number("thickness"),
-          .youngs_modulus = in.number("youngs_modulus"),
-          .density = in.number("density"),
-          .modes = in.integer("modes"),
-          .damping_ratio = in.number("damping_ratio"),
-          .plate_strain = in.flag("plate_strain"),
-          .poissons_ratio = in.number("poissons_ratio")};
+  Structure s{.length = in.number("length"),
+              .width = in.number("width"),
+              .thickness = in.number("thickness"),
+              .youngs_modulus = in.number("youngs_modulus"),
+              .density = in.number("density"),
+              .modes = in.integer("modes"),
+              .damping_ratio = in.number("damping_ratio"),
+              .plate_strain = in.flag("plate_strain"),
+              .poissons_ratio = in.number("poissons_ratio")};
+  const auto needs_poissons_ratio = [&](const char* key) {
+    in.require(!in.flag(key) || in.is_given("poissons_ratio"), key, "needs structure.poissons_ratio");
+  };
+  needs_poissons_ratio("plate_strain");
+  if (in.text("kind") != "clamped-clamped") return s;
+  needs_poissons_ratio("biaxial");
+  s.kind = StructureKind::clamped_clamped;
+  s.residual_stress = in.number("residual_stress");
+  s.biaxial = in.flag("biaxial");
+  s.stretching = in.flag("stretching");
+  const std::string buckled = why_buckled(s);
+  in.require(buckled.empty(), "residual_stress", buckled);
+  return s;
 }
 
 Gap read_gap(const SectionReader& in) {
@@ -188,6 +201,11 @@ Device read_device(const SceneFile::Impl& file) {
   }
   if (const SectionReader in(file, "piezo"); in.is_present()) {
     if (is_plate(structure)) file.fail_section(in.path(), "a plate does not bend; a layer needs a beam");
+    if (device.structure.kind == StructureKind::clamped_clamped) {
+      file.fail_section(in.path(),
+                        "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and "
+                        "pull off its middle line; a layer needs a cantilever");
+    }
     const auto [begin, end] = read_span(in, structure);
     device.piezo = Piezo{.begin = begin,
                          .end = end,

@@ -22,7 +22,7 @@ const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static
 const std::vector<std::string_view> gas_films{"strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko"};
 
 /// Structures that bend.
-const std::vector<std::string_view> beams{"cantilever"};
+const std::vector<std::string_view> beams{"cantilever", "clamped-clamped"};
 
 std::vector<Section> make_schema() {
   using enum KeyType;
@@ -36,8 +36,7 @@ std::vector<Section> make_schema() {
            {
                {.name = "kind",
                 .type = choice,
-                .choices = {"cantilever", "plate"},
-                .pending = {"clamped-clamped"},
+                .choices = {"cantilever", "clamped-clamped", "plate"},
                 .required = true,
                 .about = "what moves"},
                {.name = "length",
@@ -91,7 +90,22 @@ std::vector<Section> make_schema() {
                 .dimensions = {dimension::none},
                 .range = {.least = -1, .most = 0.5, .least_open = true, .most_open = true},
                 .only_for = beams,
-                .about = "needed by plate_strain"},
+                .about = "needed by plate_strain and biaxial"},
+               {.name = "residual_stress",
+                .dimensions = {dimension::pressure},
+                .fallback = "'0 Pa'",
+                .only_for = {"clamped-clamped"},
+                .about = "along the beam before it bends, positive in tension"},
+               {.name = "biaxial",
+                .type = flag,
+                .fallback = "false",
+                .only_for = {"clamped-clamped"},
+                .about = "residual_stress is that of the unreleased film: the beam keeps residual_stress (1 - nu)"},
+               {.name = "stretching",
+                .type = flag,
+                .fallback = "true",
+                .only_for = {"clamped-clamped"},
+                .about = "bending stretches the beam: a cubic stiffness"},
                {.name = "mass",
                 .dimensions = {dimension::mass},
                 .range = positive,
@@ -213,7 +227,8 @@ std::vector<Section> make_schema() {
                {.name = "pad_length",
                 .dimensions = {dimension::length},
                 .range = positive,
-                .about = "the pad is [length - pad_length, length]; the force acts at its centre"},
+                .about =
+                    "the pad ends at the free end, or lies about the middle between two clamps; the force acts at its centre"},
                {.name = "stiffness",
                 .dimensions = {dimension::stiffness},
                 .range = positive,

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "base/engineering.h"
 #include "base/require.h"
+#include "model/constants.h"
 #include "model/gauss.h"
 
 namespace softland {
@@ -48,6 +51,13 @@ ElementRow integrals(double xi, int derivative) {
   return n;
 }
 
+// Orthonormal columns that are orthogonal to those of `held`.
+Eigen::MatrixXd complement(const Eigen::MatrixXd& held) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(held);
+  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(held.rows(), held.rows());
+  return q.rightCols(held.rows() - held.cols());
+}
+
 }  // namespace
 
 double bending_modulus(const Structure& s) {
@@ -72,6 +82,24 @@ double piezo_moment_per_volt(const Structure& s, const Piezo& p) {
   return p.d31 * p.youngs_modulus * s.width * (layered_section(s, p).neutral_axis - p.thickness / 2);
 }
 
+double axial_stress(const Structure& s) { return s.residual_stress * (s.biaxial ? 1 - s.poissons_ratio : 1); }
+
+double buckling_stress(const Structure& s) {
+  const double slenderness = 2 * pi / s.length;
+  return slenderness * slenderness * plain_section(s).rigidity / (s.width * s.thickness);
+}
+
+std::string why_buckled(const Structure& s) {
+  const double stress = axial_stress(s), limit = -buckling_stress(s);
+  if (stress > limit) return {};
+  return fmt::format("leaves {:.4g} MPa along the beam, which buckles at {:.4g} MPa", stress / 1e6, limit / 1e6);
+}
+
+BeamSupport beam_support(const Structure& s) {
+  if (s.kind != StructureKind::clamped_clamped) return {};
+  return {.far_clamp = true, .axial_force = axial_stress(s) * s.width * s.thickness};
+}
+
 std::vector<BeamSection> beam_sections(const Device& device) {
   const Structure& s = device.structure;
   const CompositeSection plain = plain_section(s);
@@ -90,7 +118,7 @@ std::vector<BeamSection> beam_sections(const Device& device) {
   return sections;
 }
 
-BeamModes::BeamModes(std::vector<BeamSection> sections, int modes) {
+BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support) {
   require(modes >= 1 && modes <= 40, fmt::format("modes = {}: must be from 1 to 40", modes));
   require(!sections.empty() && sections.front().begin == 0, "beam sections must start at x = 0");
   for (std::size_t i = 0; i < sections.size(); ++i) {
@@ -101,10 +129,13 @@ BeamModes::BeamModes(std::vector<BeamSection> sections, int modes) {
   }
   length_ = sections.back().end;
   const double ei = sections.front().rigidity, mu = sections.front().mass_per_length;
+  rigidity_ = ei;
   scale_ = 1 / std::sqrt(mu * length_);
   frequency_scale_ = std::sqrt(ei / (mu * length_)) / std::pow(length_, 1.5);
 
-  const int count = std::max(shortest_count, modes);
+  // A strong tension bends the beam close to its clamps only, over lengths of L / sqrt(N L^2 / EI).
+  const double layers = std::sqrt(std::max(0.0, support.axial_force * length_ * length_ / ei)) / 5;
+  const int count = std::max({shortest_count, modes, static_cast<int>(std::min(layers, 40.0))});
   std::vector<double> mass;
   for (const BeamSection& s : sections) {
     const double begin = s.begin / length_, end = s.end / length_;
@@ -121,32 +152,63 @@ BeamModes::BeamModes(std::vector<BeamSection> sections, int modes) {
   const auto points = static_cast<Eigen::Index>(rule.points.size()),
              total = functions * static_cast<Eigen::Index>(elements_.size());
   mass_ = Eigen::MatrixXd::Zero(total, total);
+  Eigen::MatrixXd slopes = mass_;  // integrals of products of slopes: what an axial force of one acts on
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const Element& element = elements_[e];
     const double half = (element.end - element.begin) / 2;
-    Eigen::MatrixXd rows(points, total);
-    for (Eigen::Index g = 0; g < points; ++g) {
-      const auto i = static_cast<std::size_t>(g);
-      rows.row(g) = std::sqrt(mass[e] * rule.weights[i] * half) * shape(element, rule.points[i], 0);
-    }
-    mass_ += rows.transpose() * rows;
+    const auto gram = [&](double factor, int derivative) {
+      Eigen::MatrixXd rows(points, total);
+      for (Eigen::Index g = 0; g < points; ++g) {
+        const auto i = static_cast<std::size_t>(g);
+        rows.row(g) = std::sqrt(factor * rule.weights[i] * half) * shape(element, rule.points[i], derivative);
+      }
+      return Eigen::MatrixXd(rows.transpose() * rows);
+    };
+    mass_ += gram(mass[e], 0);
+    slopes += gram(1, 1);
   }
+  support_by(support, slopes);
 
   // M x = x / omega^2: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass_);
   frequencies_.resize(modes);
   shapes_.resize(total, modes);
-  const Eigen::RowVectorXd tip = shape(elements_.back(), 1, 0);
+  constexpr double close_to_the_clamp = 1e-3;  // of the length: far short of the first zero of forty modes
+  const Eigen::RowVectorXd positive = shape(support.far_clamp ? close_to_the_clamp : 1, 0);
   for (int i = 0; i < modes; ++i) {
-    const double inverse_square = solver.eigenvalues()[total - 1 - i];
+    const Eigen::Index k = mass_.rows() - 1 - i;
+    const double inverse_square = solver.eigenvalues()[k];
     frequencies_[i] = frequency_scale_ / std::sqrt(inverse_square);
-    shapes_.col(i) = solver.eigenvectors().col(total - 1 - i) / std::sqrt(inverse_square);
-    if (tip.dot(shapes_.col(i)) < 0) shapes_.col(i) *= -1;
+    shapes_.col(i) = basis_ * solver.eigenvectors().col(k) / std::sqrt(inverse_square);
+    if (positive.dot(shapes_.col(i)) < 0) shapes_.col(i) *= -1;
   }
+  slope_products_ = scale_ * scale_ / length_ * shapes_.transpose() * slopes * shapes_;
+}
+
+void BeamModes::support_by(const BeamSupport& support, const Eigen::MatrixXd& slopes) {
+  const Eigen::Index total = mass_.rows();
+  basis_ = Eigen::MatrixXd::Identity(total, total);
+  if (!support.far_clamp) {
+    require(support.axial_force == 0, "a free end carries no axial force");
+    return;
+  }
+  Eigen::MatrixXd held(total, 2);  // what must vanish: value and slope at the far end
+  held << shape(1, 0).transpose(), shape(1, 1).transpose();
+  basis_ = complement(held);
+  const double force = support.axial_force * length_ * length_ / rigidity_;
+  if (force != 0) {
+    const Eigen::MatrixXd stiffness =
+        Eigen::MatrixXd::Identity(total - 2, total - 2) + force * basis_.transpose() * slopes * basis_;
+    const Eigen::LLT<Eigen::MatrixXd> root(stiffness);
+    require(root.info() == Eigen::Success,
+            fmt::format("axial force {}: beyond the buckling load of the beam", engineering(support.axial_force, "N")));
+    basis_ = root.matrixU().solve<Eigen::OnTheRight>(basis_);
+  }
+  mass_ = basis_.transpose() * mass_ * basis_;
 }
 
 Eigen::RowVectorXd BeamModes::shape(const Element& element, double xi, int derivative) const {
-  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(mass_.rows());
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(functions * static_cast<Eigen::Index>(elements_.size()));
   const double x = element.begin + (element.end - element.begin) * (1 + xi) / 2;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const Element& other = elements_[e];
@@ -171,11 +233,7 @@ Eigen::VectorXd BeamModes::value(double x) const { return scale_ * (shape(x / le
 Eigen::VectorXd BeamModes::slope(double x) const { return scale_ / length_ * (shape(x / length_, 1) * shapes_).transpose(); }
 
 double BeamModes::pinned_frequency(double x) const {
-  // Project M on the space orthogonal to the constraint row.
-  const Eigen::VectorXd c = shape(x / length_, 0).transpose();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(c);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(c.size(), c.size());
-  const Eigen::MatrixXd z = q.rightCols(c.size() - 1);
+  const Eigen::MatrixXd z = complement(combined(x / length_, 0).transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(z.transpose() * mass_ * z, Eigen::EigenvaluesOnly);
   return frequency_scale_ / std::sqrt(solver.eigenvalues().maxCoeff());
 }

@@ -1,16 +1,23 @@
-// Bending modes of a cantilever of piecewise constant rigidity and mass (Euler-Bernoulli).
+// Bending modes of a beam of piecewise constant rigidity and mass (Euler-Bernoulli), clamped at x = 0, its far end free or
+// clamped, under an axial force.
 //
-//   (EI(x) phi'')'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0,   (EI phi'')(L) = (EI phi'')'(L) = 0
+//   (EI(x) phi'')'' - N phi'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0
+//   free:     (EI phi'')(L) = (EI phi'')'(L) = 0, N = 0          clamped:  phi(L) = phi'(L) = 0
 //
-// EI rigidity [N m^2], mu mass per length [kg/m], omega [rad/s]. Modes are mass-normalised, integral of mu phi_i phi_j =
-// delta_ij, so phi has the unit kg^(-1/2), and positive at the free end. Discretisation: the curvature is a polynomial of degree
-// 7 on each element, written in Legendre polynomials, and integrated twice from the clamped end; nodes stand at every change of
-// section. These functions are orthonormal in the bending energy, so the stiffness is the unit matrix whatever the lengths of the
-// elements, and a handful of long elements reaches 1e-9. Source: textbook Ritz-Galerkin; integrated Legendre shape functions:
-// Szabo & Babuska, Finite Element Analysis, 1991, sec. 6.
+// EI rigidity [N m^2], N axial force, positive in tension [N], mu mass per length [kg/m], omega [rad/s]. Modes are
+// mass-normalised, integral of mu phi_i phi_j = delta_ij, so phi has the unit kg^(-1/2), and positive at the free end; between
+// two clamps they leave x = 0 towards positive values. Discretisation: the curvature is a polynomial of degree 7 on each element,
+// written in Legendre polynomials, and integrated twice from the clamped end; nodes stand at every change of section. These
+// functions are orthonormal in the bending energy, so the stiffness is the unit matrix whatever the lengths of the elements, and
+// a handful of long elements reaches 1e-9. A far clamp leaves the combinations with no value and no slope there, and an axial
+// force makes them orthonormal in the elastic energy anew: what follows sees a unit stiffness again. In compression that fails at
+// the buckling load, where the straight beam stops being stable. Source: textbook Ritz-Galerkin; integrated Legendre shape
+// functions: Szabo & Babuska, Finite Element Analysis, 1991, sec. 6; axial force and buckling: Timoshenko & Gere, Theory of
+// Elastic Stability, 1961, sec. 2.1.
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "model/device.h"
@@ -42,11 +49,26 @@ struct CompositeSection {
 [[nodiscard]] double piezo_moment_per_volt(const Structure& structure, const Piezo& piezo);
 /// The beam's sections in order.
 [[nodiscard]] std::vector<BeamSection> beam_sections(const Device& device);
+/// What residual_stress leaves in the released beam between two clamps [Pa]: all of a stress along the beam; of the equal biaxial
+/// stress of a film, sigma (1 - nu), since the beam's sides are free and its strain along the beam is held.
+[[nodiscard]] double axial_stress(const Structure& structure);
+/// Compressive stress at which the beam between two clamps buckles, 4 pi^2 E I / (A L^2) [Pa]: E as bending_modulus().
+[[nodiscard]] double buckling_stress(const Structure& structure);
+
+/// Why the beam cannot rest straight between two clamps under its axial stress; empty when it can.
+[[nodiscard]] std::string why_buckled(const Structure& structure);
+
+struct BeamSupport {
+  bool far_clamp = false;  ///< the end at L is clamped as well
+  double axial_force = 0;  ///< N, positive in tension; only between two clamps [N]
+};
+[[nodiscard]] BeamSupport beam_support(const Structure& structure);
 
 class BeamModes {
  public:
-  /// The first `modes` modes. Throws InvalidInput unless sections join, are positive, and modes is in [1, 40].
-  BeamModes(std::vector<BeamSection> sections, int modes);
+  /// The first `modes` modes. Throws InvalidInput unless sections join, are positive, modes is in [1, 40], and the axial force is
+  /// 0 on a free end and above the buckling load between two clamps.
+  BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {});
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
   [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s], rising
@@ -54,6 +76,8 @@ class BeamModes {
   [[nodiscard]] Eigen::VectorXd value(double x) const;
   /// phi_i'(x) [kg^(-1/2)/m].
   [[nodiscard]] Eigen::VectorXd slope(double x) const;
+  /// Integrals of phi_i' phi_j' over the beam [1/(kg m)].
+  [[nodiscard]] const Eigen::MatrixXd& slope_products() const { return slope_products_; }
   /// First angular frequency of the beam held at deflection 0 at x as well [rad/s]: the beam while in contact.
   [[nodiscard]] double pinned_frequency(double x) const;
 
@@ -62,16 +86,22 @@ class BeamModes {
     double begin = 0, end = 0;  // in units of the length
     double rigidity = 0;        // in units of that of the first section
   };
+  // Combines the functions to those that the support permits, orthonormal in the elastic energy.
+  void support_by(const BeamSupport& support, const Eigen::MatrixXd& slopes);
   // All functions, x in units of the length; xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const Element& element, double xi, int derivative) const;
+  [[nodiscard]] Eigen::RowVectorXd combined(double x, int derivative) const { return shape(x, derivative) * basis_; }
 
   double length_;
   double scale_;            // converts a unit-mass, unit-length shape to kg^(-1/2)
   double frequency_scale_;  // [rad/s]
+  double rigidity_;         // of the first section [N m^2]
   std::vector<Element> elements_;
-  Eigen::MatrixXd mass_;    // dimensionless
+  Eigen::MatrixXd basis_;   // functions x combinations
+  Eigen::MatrixXd mass_;    // of the combinations, dimensionless
   Eigen::MatrixXd shapes_;  // functions x modes
+  Eigen::MatrixXd slope_products_;
   Eigen::VectorXd frequencies_;
 };
 

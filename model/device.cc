@@ -6,6 +6,7 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "model/beam.h"
 
 namespace softland {
 namespace {
@@ -58,6 +59,17 @@ void validate(const Device& d) {
           fmt::format("structure.damping_ratio = {}: must not be negative", s.damping_ratio));
   require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
           fmt::format("structure.poissons_ratio = {}: plate_strain needs one between -1 and 0.5", s.poissons_ratio));
+  if (s.kind == StructureKind::clamped_clamped) {
+    require(!s.biaxial || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
+            fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio));
+    const std::string buckled = why_buckled(s);
+    require(buckled.empty() && s.residual_stress < 1e30,
+            fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"), buckled));
+    require(
+        !d.piezo,
+        "piezo: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off "
+        "its middle line; a layer needs a cantilever");
+  }
   positive(d.gap.electrode, "m", "gap.electrode");
   require(d.gap.contact > 0 && d.gap.contact < d.gap.electrode,
           fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),

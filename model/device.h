@@ -7,13 +7,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace softland {
 
-enum class StructureKind { cantilever, plate };
+enum class StructureKind { cantilever, clamped_clamped, plate };
 
-/// What moves: a beam of rectangular section (Euler-Bernoulli), or a rigid plate on springs.
+/// What moves: a beam of rectangular section (Euler-Bernoulli), clamped at one end or both, or a rigid plate on springs.
 struct Structure {
   StructureKind kind = StructureKind::cantilever;
   double length = 0;          ///< L [m]; plate: its area over its width
@@ -27,6 +28,9 @@ struct Structure {
   double damping_ratio = 0;   ///< zeta of every mode
   bool plate_strain = false;  ///< use E / (1 - nu^2)
   double poissons_ratio = std::numeric_limits<double>::quiet_NaN();
+  double residual_stress = 0;  ///< clamped_clamped: before the beam bends, positive in tension [Pa]
+  bool biaxial = false;        ///< residual_stress is that of a film: the beam keeps residual_stress (1 - nu)
+  bool stretching = true;      ///< clamped_clamped: bending stretches the beam
 };
 
 struct Gap {
@@ -65,7 +69,7 @@ inline constexpr std::array all_contact_models{
 
 struct Contact {
   ContactModel model = ContactModel::asperity_uniform;
-  double pad_length = 0;           ///< lt [m]: the pad is [L - lt, L]; the force acts at its centre
+  double pad_length = 0;           ///< lt [m]: see Device::contact_position()
   double stiffness = 0;            ///< linear; hysteretic: of loading [N/m]
   double unloading_stiffness = 0;  ///< hysteretic [N/m]
   double hardness = 0;             ///< elastic_plastic: of the softer surface [Pa]
@@ -96,8 +100,18 @@ struct Device {
   std::optional<Contact> contact = {};
   std::optional<Piezo> piezo = {};
 
-  /// x_c, the centre of the pad [m]: all figures of merit are taken there. The free end where there is no contact.
-  [[nodiscard]] double contact_position() const { return structure.length - (contact ? contact->pad_length / 2 : 0); }
+  /// x_c, the centre of the pad [m]: the contact force acts and all figures of merit are taken there. The pad ends at the free
+  /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle.
+  [[nodiscard]] double contact_position() const {
+    if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;
+    return structure.length - (contact ? contact->pad_length / 2 : 0);
+  }
+  /// Where the pad begins and ends [m]; of a device with a contact.
+  [[nodiscard]] std::pair<double, double> pad() const {
+    const double end =
+        structure.kind == StructureKind::clamped_clamped ? (structure.length + contact->pad_length) / 2 : structure.length;
+    return {end - contact->pad_length, end};
+  }
 };
 
 /// Throws InvalidInput naming the quantity, its value and the rule when a number is outside what the model can mean.

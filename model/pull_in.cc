@@ -39,19 +39,20 @@ class Statics {
 
   // Electrode `drive` alone holds the contact point at s against the contact force P(s - dt).
   std::optional<Held> on_branch(std::size_t drive, double s, Held start) {
-    std::vector<double> unit(device_.drives(), 0.0);
+    std::vector<double> unit(device_.drives(), 0.0), none = unit;
     unit[drive] = 1;
     const Eigen::VectorXd& shape = device_.contact_shape();
     const double d = s - device_.device().gap.contact;
     const double push = d > 0 && device_.has_contact() ? contact_force(device_.contact(), d) : 0;
+    Eigen::VectorXd others;
+    Eigen::MatrixXd others_by_q;
     return newton(s, std::move(start),
                   [&](const Held& h, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
+                    evaluate(h.q, none, others, others_by_q);
                     evaluate(h.q, unit, by_unknown, by_q);
-                    by_unknown += squares_.cwiseProduct(h.q);  // the electrostatic force at 1 V
-                    by_q.diagonal() += squares_;
-                    by_q *= h.unknown;
-                    by_q.diagonal() -= squares_;
-                    residual = h.unknown * by_unknown - squares_.cwiseProduct(h.q) - push * shape;
+                    by_unknown -= others;  // the electrostatic force at 1 V
+                    by_q = others_by_q + h.unknown * (by_q - others_by_q);
+                    residual = others + h.unknown * by_unknown - push * shape;
                   });
   }
 

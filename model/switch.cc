@@ -59,7 +59,10 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
     piezo_shape_ =
         piezo_moment_per_volt(s, *device_.piezo) * (structure.slope(device_.piezo->end) - structure.slope(device_.piezo->begin));
   }
-  if (device_.contact) corners.insert(s.length - device_.contact->pad_length);
+  if (device_.contact) {
+    const auto [begin, end] = device_.pad();
+    corners.insert({begin, end});
+  }
 
   std::vector<double> positions, weights;
   for (auto corner = corners.begin(); std::next(corner) != corners.end(); ++corner) {
@@ -89,7 +92,11 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   if (s.kind == StructureKind::plate) {
     move_in(RigidPlate(s), 0, 1);  // the gap is the same everywhere: one point each says it all
   } else {
-    move_in(BeamModes(beam_sections(device_), s.modes), options.points_per_length, 3);
+    const BeamModes beam(beam_sections(device_), s.modes, beam_support(s));
+    move_in(beam, options.points_per_length, 3);
+    if (s.kind == StructureKind::clamped_clamped && s.stretching) {
+      stretching_ = {.slopes = beam.slope_products(), .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};
+    }
   }
   const Eigen::Index n = points();
 
@@ -182,6 +189,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
     const double force = std::visit([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
     for (int i = 0; i < n; ++i) result[i] -= force * contact_shape_[i];
   }
+  if (stretching_) stretching_->add_force(q, result);
 }
 
 void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
@@ -207,6 +215,7 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
     by_q -= slope(1, 0) * contact_shape_ * contact_shape_.transpose();
     by_v -= slope(0, 1) * contact_shape_ * contact_shape_.transpose();
   }
+  if (stretching_) stretching_->add_derivative(q, by_q);
 }
 
 double Switch::contact_deflection(const double* q) const {
@@ -226,7 +235,8 @@ double Switch::piezo_charge(const double* q) const { return Eigen::Map<const Eig
 double Switch::kinetic_energy(const double* v) const { return Eigen::Map<const Eigen::VectorXd>(v, modes()).squaredNorm() / 2; }
 
 double Switch::elastic_energy(const double* q) const {
-  return Eigen::Map<const Eigen::VectorXd>(q, modes()).cwiseAbs2().dot(squares_) / 2;
+  const double bending = Eigen::Map<const Eigen::VectorXd>(q, modes()).cwiseAbs2().dot(squares_) / 2;
+  return stretching_ ? bending + stretching_->energy(q) : bending;
 }
 
 double Switch::dissipated_power(const double* q, const double* v, Workspace& work) const {

@@ -1,12 +1,14 @@
 // The switch as a system of ordinary differential equations in modal coordinates.
 //
 //   q_i'' = -omega_i^2 q_i - 2 zeta omega_i q_i' + V_piezo theta_i + sum over points p of w_p phi_i(x_p) f(x_p) - phi_i(x_c) P(d)
+//           + Q_i(q)
 //
 // q modal coordinates [m kg^(1/2)], phi mass-normalised modes [kg^(-1/2)], f load per length of all distributed laws [N/m], w
 // quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P contact force [N], d
-// interference [m]. Deflection y(x) = sum phi_i(x) q_i, positive towards the electrode. Galerkin projection on Gauss panels that
-// start and end where an electrode, the piezo layer or the pad does. Only the laws that the device has are composed: an absent
-// effect costs nothing. A rigid plate is a strip that stays flat: one mode, one quadrature point per panel.
+// interference [m], Q force of stretching (model/stretching.h). Deflection y(x) = sum phi_i(x) q_i, positive towards the
+// electrode. Galerkin projection on Gauss panels that start and end where an electrode, the piezo layer or the pad does. Only the
+// laws that the device has are composed: an absent effect costs nothing. A rigid plate is a strip that stays flat: one mode, one
+// quadrature point per panel.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +22,7 @@
 #include "model/device.h"
 #include "model/distributed_law.h"
 #include "model/gas/gas_law.h"
+#include "model/stretching.h"
 
 namespace softland {
 
@@ -79,7 +82,7 @@ class Switch {
   /// scene.
   [[nodiscard]] double piezo_charge(const double* q) const;
   [[nodiscard]] double kinetic_energy(const double* v) const;  ///< [J]
-  [[nodiscard]] double elastic_energy(const double* q) const;  ///< bending, without piezo coupling and contact [J]
+  [[nodiscard]] double elastic_energy(const double* q) const;  ///< of the beam, without piezo coupling and contact [J]
   /// Whether anything takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
   [[nodiscard]] bool damped() const {
     return !passive_laws_.empty() || device_.structure.damping_ratio > 0 || has_damped_contact();
@@ -119,6 +122,7 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;    // not driven by a voltage
   std::optional<ContactLaw> contact_;
   std::optional<GasLaw> gas_;
+  std::optional<MidPlaneStretching> stretching_;
   double in_contact_period_ = 0;
   double penetration_scale_ = 0;
   double bending_energy_ = 0;

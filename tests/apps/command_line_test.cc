@@ -159,7 +159,7 @@ TEST(Modes, PrintsTheAgreedJson) {
 
 TEST(New, WritesScenesThatCheckAccepts) {
   const Workplace here;
-  for (const char* kind : {"cantilever", "cantilever-pzt", "plate"}) {
+  for (const char* kind : {"cantilever", "cantilever-pzt", "clamped-clamped", "plate"}) {
     const Outcome fresh = here.run({"new", kind});
     EXPECT_EQ(fresh.status, 0);
     EXPECT_EQ(fresh.err, "");

@@ -104,6 +104,35 @@ TEST(Scene, OptionalKeysArrive) {
   EXPECT_EQ(scene.metrics.significant_rebound, 2e-9);
 }
 
+TEST(Scene, ABeamBetweenTwoClampsHasItsStress) {
+  const Structure s = read_file("hung-senturia.toml").device.structure;
+  EXPECT_EQ(s.kind, StructureKind::clamped_clamped);
+  EXPECT_EQ(s.residual_stress, -3.7e6);
+  EXPECT_FALSE(s.biaxial);
+  EXPECT_FALSE(s.stretching);
+  constexpr std::string_view bridge = R"([structure]
+kind = "clamped-clamped"
+length = "250 um"
+width = "20 um"
+thickness = "4 um"
+youngs_modulus = "78 GPa"
+density = "19300 kg/m^3"
+[gap]
+electrode = "3.5 um"
+contact = "2 um"
+)";
+  const Structure plain = read(std::string(bridge)).device.structure;
+  EXPECT_EQ(plain.residual_stress, Structure{}.residual_stress);
+  EXPECT_EQ(plain.biaxial, Structure{}.biaxial);
+  EXPECT_EQ(plain.stretching, Structure{}.stretching);
+  const Structure film =
+      read(edited(bridge, "[gap]", "biaxial = true\npoissons_ratio = 0.44\nresidual_stress = \"100 MPa\"\n[gap]"))
+          .device.structure;
+  EXPECT_TRUE(film.biaxial);
+  EXPECT_EQ(film.residual_stress, 100e6);
+  EXPECT_EQ(film.poissons_ratio, 0.44);
+}
+
 TEST(Scene, APlateIsAStripOfItsAreaAndWidth) {
   const Device d = read_file("purdue-nickel.toml").device;
   EXPECT_EQ(d.structure.kind, StructureKind::plate);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/literals.h"
+#include "base/require.h"
 #include "model/constants.h"
 #include "model/quintic.h"
 #include "tests/model/expect_refused.h"
@@ -36,14 +37,31 @@ double clamped_pinned_number(int mode) {
   return bracketed_zero([](double x) { return std::sin(x) - std::tanh(x) * std::cos(x); }, middle - 0.3, middle + 0.3);
 }
 
+/// The same, clamped at both ends: cos x cosh x = 1.
+double clamped_clamped_number(int mode) {
+  const double middle = (mode + 1.5) * pi;
+  return bracketed_zero([](double x) { return std::cos(x) - 1 / std::cosh(x); }, middle - 1, middle + 1);
+}
+
+/// Characteristic function of a uniform beam between two clamps under an axial force N, in units of EI/L^2 and w = omega L^2
+/// sqrt(mu/EI): with phi = combinations of cosh(a x), sinh(a x), cos(b x), sin(b x), a^2 - b^2 = N, a b = w, it is
+/// 2 a b (1 - cosh a cos b) + (a^2 - b^2) sinh a sin b, here over cosh a.
+double tension_characteristic(double force, double w) {
+  const double root = std::sqrt(force * force / 4 + w * w);
+  const double a = std::sqrt(root + force / 2), b = std::sqrt(root - force / 2);
+  return 2 * a * b * (1 / std::cosh(a) - std::cos(b)) + (a * a - b * b) * std::tanh(a) * std::sin(b);
+}
+
+constexpr BeamSupport two_clamps{.far_clamp = true};
+
 /// [rad/s] of a mode number of the uniform section above.
 double uniform_frequency(double number) {
   return number * number * std::sqrt(uniform.rigidity / uniform.mass_per_length) / (uniform.end * uniform.end);
 }
 
-/// Characteristic determinant of a stepped cantilever by transfer matrices of (deflection, slope, moment, shear), section by
-/// section in closed form: zero at the natural frequencies.
-double characteristic(const std::vector<BeamSection>& sections, double omega) {
+/// Characteristic determinant of a stepped beam by transfer matrices of (deflection, slope, moment, shear), section by section
+/// in closed form: zero at the natural frequencies. The far end is free, or clamped.
+double characteristic(const std::vector<BeamSection>& sections, double omega, bool far_clamp = false) {
   Eigen::Matrix4d transfer = Eigen::Matrix4d::Identity();
   for (const BeamSection& s : sections) {
     const double ei = s.rigidity, k = std::pow(s.mass_per_length * omega * omega / ei, 0.25), x = k * (s.end - s.begin);
@@ -56,7 +74,7 @@ double characteristic(const std::vector<BeamSection>& sections, double omega) {
         ei * k * k * k * b, ei * k * k * c, k * d, a;
     transfer = m * transfer;
   }
-  return transfer.bottomRightCorner<2, 2>().determinant();
+  return far_clamp ? transfer.topRightCorner<2, 2>().determinant() : transfer.bottomRightCorner<2, 2>().determinant();
 }
 
 TEST(BeamModes, OfTheUniformCantileverHaveTheClosedFormNumbers) {
@@ -176,6 +194,111 @@ TEST(BeamModes, SlopeIsTheDerivativeOfTheShape) {
     const double tolerance = (x == 5_um ? 1e-3 : 1e-7) * slope.cwiseAbs().maxCoeff();
     for (int i = 0; i < 6; ++i) EXPECT_NEAR(slope[i], difference[i], tolerance) << "mode " << i << " at " << x;
   }
+}
+
+TEST(BeamModes, BetweenTwoClampsHaveTheClosedFormNumbers) {
+  const BeamModes beam({uniform}, 20, two_clamps);
+  EXPECT_NEAR(clamped_clamped_number(0), 4.73004, 1e-5);
+  EXPECT_NEAR(clamped_clamped_number(1), 7.85320, 1e-5);
+  EXPECT_NEAR(clamped_clamped_number(2), 10.99561, 1e-5);
+  for (int i = 0; i < 20; ++i) {
+    const double expected = uniform_frequency(clamped_clamped_number(i));
+    EXPECT_NEAR(beam.angular_frequencies()[i], expected, mode_digits * expected) << "mode " << i;
+  }
+}
+
+TEST(BeamModes, BetweenTwoClampsAreClampedSymmetricAndPositiveAtFirst) {
+  const BeamModes beam({uniform}, 8, two_clamps);
+  constexpr double rounding = 1e-10;
+  const double length = uniform.end, middle = beam.value(length / 2)[0];
+  for (int i = 0; i < 8; ++i) {
+    for (const double end : {0.0, length}) {
+      EXPECT_NEAR(beam.value(end)[i], 0, rounding * middle) << "mode " << i;
+      EXPECT_NEAR(beam.slope(end)[i], 0, rounding * 50 * middle / length) << "mode " << i;
+    }
+    const double parity = i % 2 == 0 ? 1 : -1;
+    EXPECT_NEAR(beam.value(0.3 * length)[i], parity * beam.value(0.7 * length)[i], 1e-7 * middle) << "mode " << i;
+    EXPECT_GT(beam.value(0.01 * length)[i], 0) << "mode " << i;
+  }
+}
+
+TEST(BeamModes, OfASteppedBeamBetweenTwoClampsAreTheZerosOfTheTransferDeterminant) {
+  const std::vector<BeamSection> sections = beam_sections(test::gold_pzt_cantilever());
+  const BeamModes beam(sections, 4, two_clamps);
+  const double step = beam.angular_frequencies()[0] / 50;
+  for (int i = 0; i < 4; ++i) {
+    const double found = beam.angular_frequencies()[i];
+    const double zero =
+        bracketed_zero([&](double omega) { return characteristic(sections, omega, true); }, found - step, found + step);
+    EXPECT_NEAR(found, zero, mode_digits * zero) << "mode " << i;
+  }
+}
+
+TEST(BeamModes, UnderAnAxialForceAreTheZerosOfTheCharacteristicFunction) {
+  // From nearly buckled to a string; force in units of EI/L^2.
+  for (const double force : {-39.0, -20.0, 5.0, 100.0, 3000.0}) {
+    const double unit = uniform.rigidity / (uniform.end * uniform.end);
+    const BeamModes beam({uniform}, 6, {.far_clamp = true, .axial_force = force * unit});
+    const double scale = uniform_frequency(1);
+    for (int i = 0; i < 6; ++i) {
+      const double w = beam.angular_frequencies()[i] / scale;
+      const double zero = bracketed_zero([&](double x) { return tension_characteristic(force, x); }, 0.999 * w, 1.001 * w);
+      EXPECT_NEAR(w, zero, mode_digits * zero) << "force " << force << ", mode " << i;
+    }
+  }
+}
+
+TEST(BeamModes, BucklesAtTheClosedFormLoad) {
+  // -4 pi^2 EI/L^2: the first frequency goes to zero there, its square nearly in proportion, and beyond there is no stable beam.
+  const double load = -4 * pi * pi * uniform.rigidity / (uniform.end * uniform.end);
+  const auto beam = [&](double part) { return BeamModes({uniform}, 2, {.far_clamp = true, .axial_force = part * load}); };
+  constexpr double close = 1e-7;
+  const double free = beam(0).angular_frequencies()[0];
+  const double buckled = 16 * std::pow(pi, 4) / 3 * close;  // Rayleigh's quotient of the buckled shape, 1 - cos(2 pi x/L)
+  EXPECT_NEAR(std::pow(beam(1 - close).angular_frequencies()[0] / free, 2), buckled / std::pow(clamped_clamped_number(0), 4),
+              1e-4 * close);
+  EXPECT_NEAR(std::pow(beam(0.5).angular_frequencies()[0] / free, 2), 0.5, 0.02);
+  expect_refused([] { (void)BeamModes({uniform}, 2, {.far_clamp = true, .axial_force = -30}); },
+                 "axial force -30 N: beyond the buckling load of the beam");
+  EXPECT_THROW((void)beam(1 + close), InvalidInput);
+  expect_refused([] { (void)BeamModes({uniform}, 2, {.axial_force = 1}); }, "a free end carries no axial force");
+}
+
+TEST(BeamModes, SlopeProductsAreTheIntegrals) {
+  for (const bool clamp : {false, true}) {
+    const BeamModes beam({uniform}, 4, {.far_clamp = clamp});
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(4, 4);
+    constexpr int parts = 40;
+    using Rule = boost::math::quadrature::gauss<double, 7>;
+    const double half = uniform.end / parts / 2;
+    for (int p = 0; p < parts; ++p) {
+      for (std::size_t g = 0; g < Rule::abscissa().size(); ++g) {
+        for (const double sign : {-1.0, 1.0}) {
+          if (g == 0 && sign > 0) continue;  // the middle point
+          const Eigen::VectorXd slope = beam.slope(half * (2 * p + 1 + sign * Rule::abscissa()[g]));
+          sum += Rule::weights()[g] * half * slope * slope.transpose();
+        }
+      }
+    }
+    EXPECT_LT((beam.slope_products() - sum).cwiseAbs().maxCoeff(), 1e-9 * sum.maxCoeff()) << clamp;
+  }
+}
+
+TEST(PinnedBeam, BetweenTwoClampsHeldInTheMiddleIsTwoClampedPinnedHalves) {
+  const BeamModes beam({uniform}, 4, two_clamps);
+  const double expected = 4 * uniform_frequency(clamped_pinned_number(0));
+  EXPECT_NEAR(beam.pinned_frequency(uniform.end / 2), expected, mode_digits * expected);
+}
+
+TEST(AxialStress, OfAFilmIsWhatItsFreeSidesLeave) {
+  Structure s = test::hung_senturia().structure;
+  EXPECT_EQ(axial_stress(s), -3.7e6);
+  s.biaxial = true;
+  s.poissons_ratio = 0.25;
+  EXPECT_DOUBLE_EQ(axial_stress(s), 0.75 * -3.7e6);
+  EXPECT_DOUBLE_EQ(beam_support(s).axial_force, 0.75 * -3.7e6 * 40_um * 2.2_um);
+  EXPECT_DOUBLE_EQ(buckling_stress(s), pi * pi / 3 * 149_GPa * std::pow(2.2 / 610, 2));
+  EXPECT_FALSE(beam_support(test::gold_cantilever().structure).far_clamp);
 }
 
 TEST(PinnedBeam, HasTheClampedPinnedFrequencyWhenHeldAtTheTip) {

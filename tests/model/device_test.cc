@@ -29,6 +29,37 @@ TEST(Device, OfTheReferenceIsValid) {
   EXPECT_NO_THROW(validate(test::gold_pzt_cantilever()));
 }
 
+TEST(Device, NamesWhatIsWrongWithABeamBetweenTwoClamps) {
+  const auto expect = [](const std::function<void(Device&)>& damage, const std::string& message) {
+    Device device = test::hung_senturia();
+    damage(device);
+    test::expect_refused([&] { validate(device); }, message);
+    test::expect_refused([&] { (void)Switch(device); }, message);
+  };
+  expect([](Device& d) { d.structure.biaxial = true; }, "structure.poissons_ratio = nan: biaxial needs one between -1 and 0.5");
+  expect([](Device& d) { d.structure.residual_stress = -6.38e6; },
+         "structure.residual_stress = -6.38 MPa: leaves -6.38 MPa along the beam, which buckles at -6.376 MPa");
+  expect(
+      [](Device& d) {
+        d.structure.residual_stress = -10e6;
+        d.structure.biaxial = true;
+        d.structure.poissons_ratio = 0.25;
+      },
+      "structure.residual_stress = -10 MPa: leaves -7.5 MPa along the beam, which buckles at -6.376 MPa");
+  expect([](Device& d) { d.structure.residual_stress = std::nan(""); },
+         "structure.residual_stress = nan Pa: leaves nan MPa along the beam, which buckles at -6.376 MPa");
+  expect(
+      [](Device& d) { d.piezo = test::gold_pzt_cantilever().piezo; },
+      "piezo: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its "
+      "middle line; a layer needs a cantilever");
+  Device nearly = test::hung_senturia();
+  nearly.structure.residual_stress = -6.37e6;
+  EXPECT_NO_THROW(validate(nearly));
+  Device free = test::gold_cantilever();
+  free.structure.residual_stress = -1e9;  // released at the free end
+  EXPECT_DOUBLE_EQ(Switch(free).angular_frequencies()[0], Switch(test::gold_cantilever()).angular_frequencies()[0]);
+}
+
 TEST(Device, NamesWhatIsWrongWithIt) {
   expect_message([](Device& d) { d.structure.length = 0; }, "structure.length = 0 m: must be positive");
   expect_message([](Device& d) { d.structure.width = -1e-6; }, "structure.width = -1 um: must be positive");

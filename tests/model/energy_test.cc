@@ -105,6 +105,24 @@ TEST(EnergyBalance, ClosesForEveryGasModel) {
   }
 }
 
+TEST(EnergyBalance, ClosesBetweenTwoClamps) {
+  for (const bool gas : {false, true}) {
+    for (const bool stretching : {false, true}) {
+      Device d = test::gold_bridge();
+      if (!gas) d.gas.reset();
+      d.structure.stretching = stretching;
+      const Switch device(d);
+      const std::vector<Signal> drives{Signal::constant(static_pull_in(device, 0).voltage),
+                                       signal(Pulse{.levels = {30_V, 0_V}, .times = {2_us}, .edge = 0.5_us})};
+      const Trajectory t = simulate_closing(device, drives, {.duration = 20_us, .tolerance = 1e-9});
+      ASSERT_EQ(t.status, Status::done) << t.message;
+      EXPECT_GE(t.touches.size(), 2u) << gas << stretching;
+      EXPECT_EQ(t.energy.dissipated > 0, gas);
+      EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << gas << stretching;
+    }
+  }
+}
+
 TEST(EnergyBalance, ClosesForThePlate) {
   for (const bool gas : {false, true}) {
     for (const double damping : {0.0, 0.02}) {

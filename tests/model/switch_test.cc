@@ -56,6 +56,17 @@ std::vector<Combination> combinations() {
   two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
   all.push_back({"two electrodes", two});
   for (const bool gas : {false, true}) {
+    for (const bool stretching : {false, true}) {
+      for (const double stress : {-1e6, 0.0, 20e6}) {
+        Device bridge = test::gold_bridge();
+        bridge.structure.stretching = stretching;
+        bridge.structure.residual_stress = stress;
+        if (!gas) bridge.gas.reset();
+        all.push_back({fmt::format("bridge, gas {}, stretching {}, stress {}", gas, stretching, stress), bridge});
+      }
+    }
+  }
+  for (const bool gas : {false, true}) {
     for (const double damping : {0.0, 0.03}) {
       Device plate = test::full_plate();
       plate.structure.damping_ratio = damping;
@@ -78,7 +89,9 @@ State random_state(const Switch& device, bool in_contact, std::mt19937_64& rando
   const Eigen::Index n = device.modes();
   State s{Eigen::VectorXd(n), Eigen::VectorXd(n), {}};
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double share = device.contact_shape()[i] * static_cast<double>(1 + i * i);
+    // A mode that does not move the contact point moves the rest of the beam.
+    const double shape = std::max(std::abs(device.contact_shape()[i]), 0.1 * device.contact_shape()[0]);
+    const double share = shape * static_cast<double>(1 + i * i);
     s.q[i] = 0.3_um * uniform(random) / share;
     s.v[i] = 0.1 * uniform(random) / share;
   }
@@ -301,6 +314,39 @@ TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(-by_q);
   const double period = 2 * pi / std::sqrt(solver.eigenvalues()[0]);
   EXPECT_NEAR(device.in_contact_period(), period, 1e-3 * period);
+}
+
+TEST(Switch, BetweenTwoClampsHasItsContactInTheMiddle) {
+  Device d = test::gold_bridge();
+  const Switch device(d);
+  EXPECT_DOUBLE_EQ(d.contact_position(), 125_um);
+  EXPECT_DOUBLE_EQ(d.pad().first, 122.5_um);
+  EXPECT_DOUBLE_EQ(d.pad().second, 127.5_um);
+  // The middle is a node of every second mode.
+  for (const int i : {1, 3}) EXPECT_NEAR(device.contact_shape()[i], 0, 1e-9 * device.contact_shape()[0]);
+  d.contact.reset();
+  EXPECT_DOUBLE_EQ(d.contact_position(), 125_um);
+}
+
+TEST(Stretching, OfOneModeIsTheIntegralOfTheSlopes) {
+  // Held in the shape of its first mode the beam stores EA/(8 L) (int y'^2)^2.
+  Device d = test::gold_bridge();
+  d.structure.modes = 1;
+  d.structure.residual_stress = 0;
+  const Switch stretched(d);
+  d.structure.stretching = false;
+  const Switch plain(d);
+  const BeamModes beam(beam_sections(d), 1, beam_support(d.structure));
+  const double middle = 1.5_um, q = middle / beam.value(125_um)[0];
+  double squares = 0;
+  constexpr int points = 20000;  // midpoints: the integrand and its first derivative vanish at both ends
+  for (int k = 0; k < points; ++k) squares += std::pow(q * beam.slope(250_um * (k + 0.5) / points)[0], 2) * 250_um / points;
+  const double ea = 78e9 * 20_um * 2_um, expected = ea / (8 * 250_um) * squares * squares;
+  const double stored = stretched.elastic_energy(&q) - plain.elastic_energy(&q);
+  EXPECT_NEAR(stored, expected, 1e-7 * expected);
+  // The shape c (1 - cos(2 pi x/L))/2, much like it, stores 3/8 (c/b)^2 of its bending energy so.
+  const double cosine = 0.375 * std::pow(middle / 2_um, 2);
+  EXPECT_NEAR(stored / plain.elastic_energy(&q), cosine, 0.05 * cosine);
 }
 
 TEST(Switch, OfAPlateIsOneOscillator) {

@@ -56,6 +56,32 @@ namespace softland::test {
   return device;
 }
 
+/// Polysilicon beam between two clamps of Hung and Senturia 1999: the device of scenes/hung-senturia.toml, without its gas.
+[[nodiscard]] inline Device hung_senturia() {
+  using namespace literals;
+  return {.structure = {.kind = StructureKind::clamped_clamped,
+                        .length = 610_um,
+                        .width = 40_um,
+                        .thickness = 2.2_um,
+                        .youngs_modulus = 149_GPa,
+                        .density = 2330_kg_m3,
+                        .modes = 5,
+                        .residual_stress = -3.7e6,
+                        .stretching = false},
+          .gap = {.electrode = 2.3_um, .contact = 2.07_um},
+          .electrodes = {{.name = "main", .begin = 0, .end = 610_um, .fringing = Fringing::none}}};
+}
+
+/// A gold bridge in tension with everything a beam between two clamps can have: stretching, two electrodes, film, contact.
+[[nodiscard]] inline Device gold_bridge() {
+  Device device = gold_cantilever();
+  device.structure.kind = StructureKind::clamped_clamped;
+  device.structure.modes = 5;
+  device.structure.residual_stress = 2e6;
+  device.electrodes.push_back({.name = "second", .begin = 0, .end = 90e-6, .fringing = Fringing::linear});
+  return device;
+}
+
 /// Nickel switch lumped to a plate on springs: the device of scenes/purdue-nickel.toml. 510 x 123 um.
 [[nodiscard]] inline Device nickel_plate() {
   using namespace literals;
