@@ -57,19 +57,20 @@ Signal signal(const Harmonic& harmonic) {
 
   std::vector<double> begins;
   for (const Stretch& stretch : envelope) begins.push_back(stretch.begin);
-  std::vector<Stretch> share{{.begin = 0, .value = 1}};  // of the base
+  // In volts and by one division: a ramp whose slope is rounded twice ends beside the base, which would count as a jump.
+  std::vector<Stretch> straight_line{{.begin = 0, .value = base}};
   if (base != 0 && rise_time > 0) {
     const auto same = std::find_if(begins.begin(), begins.end(), [&](double t) { return internal::coincide(t, rise_time); });
     const double risen = same == begins.end() ? rise_time : *same;
-    share = {{.begin = 0, .value = 0, .slope = 1 / risen}, {.begin = risen, .value = 1}};
+    straight_line = {{.begin = 0, .value = 0, .slope = base / risen}, {.begin = risen, .value = base}};
     if (same == begins.end()) begins.insert(std::upper_bound(begins.begin(), begins.end(), risen), risen);
   }
 
   std::vector<SignalPiece> pieces;
   for (const double begin : begins) {
-    const Stretch& straight = stretch_at(share, begin);
+    const Stretch& straight = stretch_at(straight_line, begin);
     const Stretch& swing = stretch_at(envelope, begin);
-    pieces.push_back({.begin = begin, .value = base * straight.at(begin), .slope = base * straight.slope});
+    pieces.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
     if (swing.value == 0 && swing.slope == 0) continue;
     pieces.back().amplitude = amplitude * swing.at(begin);
     pieces.back().amplitude_slope = amplitude * swing.slope;

@@ -68,6 +68,21 @@ TEST(Harmonic, RisesToItsBaseWhereverTheSineBegins) {
   }
 }
 
+TEST(Harmonic, RisesWithoutAJumpWhateverTheBase) {
+  // A slope that is rounded twice misses the base by a bit for two bases in five.
+  for (int k = 0; k < 50; ++k) {
+    const double base = 28.087_V * (1 + 0.003 * k);
+    const Harmonic h{.base = base,
+                     .rise_time = base / 2e6,
+                     .amplitude = 2,
+                     .angular_frequency = 9e4,
+                     .start = 16_us,
+                     .end = 50_us,
+                     .fade = 5_us};
+    EXPECT_TRUE(std::isfinite(signal(h).peak_slew())) << base;
+  }
+}
+
 TEST(Harmonic, RisesAsAStepDoes) {
   const Harmonic calm{.base = 40_V, .rise_time = 7_us, .angular_frequency = 1e6_rad_s};
   EXPECT_EQ(signal(calm).pieces(), signal(Step{.level = 40_V, .rise_time = 7_us}).pieces());
