@@ -59,12 +59,14 @@ void make_folder(const std::string& out) {
   require(!error, fmt::format("--out {}: the folder cannot be created: {}", out, error.message()));
 }
 
-// Waveforms of the scene, for generators and simulators of circuits.
+// Voltages of the scene, for generators and simulators of circuits: the factor of the dispersion force is none.
 std::map<std::string, Signal> named_signals(const Prepared& p) {
   std::map<std::string, Signal> all;
   const std::vector<std::string> names = p.drive_names();
   const std::vector<Signal> signals = p.signals();
-  for (std::size_t k = 0; k < names.size(); ++k) all.emplace(names[k], signals[k]);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] != dispersion_drive) all.emplace(names[k], signals[k]);
+  }
   return all;
 }
 
@@ -312,6 +314,20 @@ int check_verb(const Common& c) {
     add("electrode " + p.scene.device.electrodes[k].name,
         fmt::format("Vsp {}, Vdp {}, release {}", volts(v["static_V"]), volts(v["dynamic_V"]), volts(v["release_V"])));
   }
+  if (p.scene.device.dispersion) {
+    const std::size_t k = p.scene.device.electrodes.size();
+    const StaticPullIn statically = static_pull_in(p.device, k);
+    const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically);
+    const auto factor = [](double value) {
+      return std::isfinite(value) ? fmt::format("{:.6g}", 1 + value) : std::string("none");
+    };
+    add("dispersion force", fmt::format("{}; closes by itself at {} (static) or a step to {} (dynamic) of its nominal strength",
+                                        p.device.rest() ? fmt::format("tip at rest {:.4g} nm down",
+                                                                      1e9 * p.device.contact_deflection(p.device.rest()->data()))
+                                                        : std::string("no open state at rest"),
+                                        factor(statically.voltage), factor(dynamically.voltage)));
+    add("drive dispersion", fmt::format("hold factor {:.6g}", 1 + p.signals()[k].hold_level()));
+  }
   if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
     const Gas& gas = *p.scene.device.gas;
     const double g = p.scene.device.gap.electrode;
@@ -401,12 +417,13 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
 }
 
 int new_verb(const std::string& kind) {
-  const std::map<std::string, std::string> scenes{{"cantilever", "mem-gold.toml"},
-                                                  {"cantilever-pzt", "mem-gold-pzt.toml"},
-                                                  {"clamped-clamped", "hung-senturia.toml"},
-                                                  {"plate", "purdue-nickel.toml"}};
+  const std::map<std::string, std::string> scenes{
+      {"cantilever", "mem-gold.toml"}, {"cantilever-pzt", "mem-gold-pzt.toml"}, {"clamped-clamped", "hung-senturia.toml"},
+      {"plate", "purdue-nickel.toml"}, {"nem-cantilever", "nem-tin.toml"},      {"nem-casimir", "nem-casimir.toml"}};
   const auto found = scenes.find(kind);
-  require(found != scenes.end(), fmt::format("new {}: must be cantilever, cantilever-pzt, clamped-clamped or plate", kind));
+  std::vector<std::string> kinds;
+  for (const auto& [name, scene] : scenes) kinds.push_back(name);
+  require(found != scenes.end(), fmt::format("new {}: must be one of {}", kind, fmt::join(kinds, ", ")));
   std::cout << read_text(shipped_scene(found->second));
   return exit_done;
 }

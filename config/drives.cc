@@ -23,6 +23,7 @@ enum class LimitChecks { without_pull_in, all };
 std::vector<std::string_view> drive_names(const Device& device) {
   std::vector<std::string_view> names;
   for (const Electrode& electrode : device.electrodes) names.push_back(electrode.name);
+  if (device.dispersion) names.push_back(dispersion_drive);
   if (device.piezo) names.push_back(piezo_drive);
   return names;
 }
@@ -31,9 +32,11 @@ std::vector<std::string_view> drive_names(const Device& device) {
 void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
   const std::vector<std::string_view> known = drive_names(device);
   for (const std::string& name : file.names_in(section)) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const std::string path = join_path(section, name);
+    if (name == dispersion_drive && section == "driver") file.fail_section(path, "a force factor has no driver limits");
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     if (name == piezo_drive) file.fail_section(path, "there is no [piezo] layer to drive");
+    if (name == dispersion_drive) file.fail_section(path, "there is no [dispersion] force to drive");
     file.fail_section(path, "no such electrode" + hint(name, known));
   }
 }
@@ -61,7 +64,7 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
 double amplitude(const SectionReader& in, std::string_view drive, const PullInVoltages& pull_in, double base,
                  const std::optional<double>& main_hold) {
   const Quantity& given = in.quantities("amplitude").front();
-  if (given.dimension != dimension::none) return volts(given, pull_in);
+  if (given.dimension != dimension::none || drive == dispersion_drive) return volts(given, pull_in);
   if (drive != piezo_drive) {
     in.require(base != 0, "amplitude", "is a percentage of the base, which is 0 V");
     return given.value * base;
@@ -170,7 +173,8 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    const Waveform waveform = read_waveform(file, in, drive, known, main_hold);
+    Waveform waveform = read_waveform(file, in, drive, known, main_hold);
+    if (drive == dispersion_drive) waveform = raised(std::move(waveform), -1);
     const Signal compiled = compile(file, in, waveform);
     if (drive == main_electrode(device)) main_hold = compiled.hold_level();
     if (limits && checks == LimitChecks::all) {
@@ -180,16 +184,29 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
         file.fail_section(in.path(), broken);
       }
     }
-    drives.waveforms[name] = waveform;
+    drives.waveforms[name] = std::move(waveform);
   }
   return drives;
 }
 
 }  // namespace
 
+Waveform raised(Waveform waveform, double by) {
+  if (auto* step = std::get_if<Step>(&waveform)) step->level += by;
+  if (auto* harmonic = std::get_if<Harmonic>(&waveform)) harmonic->base += by;
+  if (auto* pulse = std::get_if<Pulse>(&waveform)) {
+    for (double& level : pulse->levels) level += by;
+  }
+  if (auto* table = std::get_if<Table>(&waveform)) {
+    for (double& value : table->voltage) value += by;
+  }
+  return waveform;
+}
+
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode) {
   const std::string path = join_path("electrode", electrode);
   if (electrode == piezo_drive) file.fail_section(path, "the name 'piezo' is reserved for the piezo layer");
+  if (electrode == dispersion_drive) file.fail_section(path, "the name 'dispersion' is reserved for the dispersion force");
   // The name becomes a column of CSV files and a node of SPICE circuits.
   if (!is_bare_key(electrode)) file.fail_section(path, "a name may hold letters, digits, '_' and '-'");
 }

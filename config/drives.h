@@ -10,6 +10,12 @@
 
 namespace softland::internal {
 
+/// The name of the force factor among the drives. Its values inside are the factor less one, so that every drive rests at 0.
+inline constexpr std::string_view dispersion_drive = "dispersion";
+
+/// The waveform with every level raised by `by`.
+[[nodiscard]] Waveform raised(Waveform waveform, double by);
+
 /// Throws InvalidInput for an electrode name that cannot name a drive.
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode);
 

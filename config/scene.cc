@@ -23,10 +23,12 @@ Fringing fringing(const std::string& name) {
   return Fringing::meijs_fokkema;
 }
 
+Conductor conductor(const std::string& name) { return name == "gold" ? Conductor::gold : Conductor::ideal; }
+
 void check_section_names(const SceneFile::Impl& file) {
   std::vector<std::string_view> known;
   for (const internal::Section& section : internal::schema()) {
-    if (!section.pending && !section.name.empty()) known.push_back(section.name);
+    if (!section.pending && !section.name.empty() && section.entry.empty()) known.push_back(section.name);
   }
   for (const auto& [name, node] : file.root) {
     if (internal::find_section("")->find(name.str())) continue;
@@ -173,6 +175,23 @@ Gas read_gas(const SectionReader& in) {
   return gas;
 }
 
+Dispersion read_dispersion(const SectionReader& in, const Gap& gap) {
+  const std::string& model = in.text("model");
+  if (model == "casimir") {
+    return {.model = DispersionModel::casimir, .conductor = conductor(in.text("conductor"))};
+  }
+  Dispersion dispersion{.hamaker_constant = in.number("hamaker_constant"),
+                        .equilibrium_distance = in.number("equilibrium_distance")};
+  in.require(dispersion.equilibrium_distance < gap.electrode - gap.contact, "equilibrium_distance",
+             "must be less than the closed gap, gap.electrode - gap.contact");
+  if (model == "van-der-waals") {
+    dispersion.model = DispersionModel::van_der_waals;
+  } else {
+    dispersion.conductor = conductor(in.text("conductor"));
+  }
+  return dispersion;
+}
+
 Device read_device(const SceneFile::Impl& file) {
   const SectionReader structure(file, "structure");
   Device device{.structure = read_structure(structure), .gap = read_gap(SectionReader(file, "gap"))};
@@ -199,6 +218,7 @@ Device read_device(const SceneFile::Impl& file) {
   if (const SectionReader in(file, "contact"); in.is_present()) {
     device.contact = read_contact(file, in, structure, device.structure);
   }
+  if (const SectionReader in(file, "dispersion"); in.is_present()) device.dispersion = read_dispersion(in, device.gap);
   if (const SectionReader in(file, "piezo"); in.is_present()) {
     if (is_plate(structure)) file.fail_section(in.path(), "a plate does not bend; a layer needs a beam");
     if (device.structure.kind == StructureKind::clamped_clamped) {
@@ -237,7 +257,7 @@ const internal::Key& varied_key(const SceneFile::Impl& file, const SectionReader
     file.fail_section(in.path(), error.what());
   }
   std::vector<std::string_view> candidates;
-  const internal::Section* section = internal::find_section(parts.front());
+  const internal::Section* section = internal::find_section(parts.front(), parts.size() > 1 ? parts[1] : std::string());
   const std::size_t depth = section && section->is_named ? 3 : 2;
   if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
     const SectionReader varied(file, parts[0], section->is_named ? parts[1] : std::string());
@@ -268,7 +288,7 @@ bool check_spread(const SceneFile::Impl& file) {
 
 std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device& device, bool has_spread) {
   std::vector<std::string> warnings;
-  if (device.electrodes.empty() && !device.piezo) {
+  if (device.electrodes.empty() && !device.piezo && !file.find({"waveform", "dispersion"})) {
     warnings.push_back(file.name + ": neither an electrode nor a piezo layer: nothing drives this switch");
   }
   constexpr double wide = 5;          // width over thickness from which the beam bends more like a plate

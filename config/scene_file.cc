@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/require.h"
+#include "config/drives.h"
 #include "config/scene.h"
 #include "config/scene_file_impl.h"
 #include "config/schema.h"
@@ -431,7 +432,7 @@ void SceneFile::set(std::string_view assignment) {
     if (!table) throw InvalidInput(fmt::format("{}: {} is not a section", option, impl_->written(path_text)));
   }
   // An option that gives a quantity in one of two ways takes the place of the other way.
-  if (const internal::Section* section = internal::find_section(path.front());
+  if (const internal::Section* section = internal::find_section(path.front(), path.size() > 1 ? path[1] : std::string());
       section && path.size() == (section->is_named ? 3 : 2)) {
     const std::string parent = path_text.substr(0, path_text.size() - join_path("", path.back()).size() - 1);
     for (const internal::Key& key : section->keys) {
@@ -446,35 +447,57 @@ void SceneFile::set(std::string_view assignment) {
   impl_->origins[path_text] = {option, true};
 }
 
-void SceneFile::set_waveform(const std::string& drive, const Waveform& waveform) {
-  static_cast<void>(signal(waveform));  // a waveform that breaks its family's rules would write a scene that cannot be read
-  const auto text = [](double value, const Dimension& unit) { return quantity_text(value, unit); };
-  const auto texts = [](const std::vector<double>& values, const Dimension& unit) {
-    toml::array array;
-    for (const double value : values) array.push_back(quantity_text(value, unit));
-    return array;
-  };
+void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
+  static_cast<void>(signal(given));  // a waveform that breaks its family's rules would write a scene that cannot be read
+  const bool is_factor = drive == internal::dispersion_drive;
+  const Waveform waveform = is_factor ? internal::raised(given, 1) : given;
   toml::table table{{"family", std::string(family(waveform))}};
+  const auto insert_level = [&](std::string_view key, double value) {
+    if (is_factor) {
+      table.insert(key, value);
+    } else {
+      table.insert(key, quantity_text(value, dimension::voltage));
+    }
+  };
+  const auto insert_levels = [&](std::string_view key, const std::vector<double>& values) {
+    toml::array array;
+    for (const double value : values) {
+      if (is_factor) {
+        array.push_back(value);
+      } else {
+        array.push_back(quantity_text(value, dimension::voltage));
+      }
+    }
+    table.insert(key, std::move(array));
+  };
+  const auto insert = [&](std::string_view key, double value, const Dimension& unit) {
+    table.insert(key, quantity_text(value, unit));
+  };
+  const auto insert_times = [&](const std::vector<double>& values) {
+    toml::array array;
+    for (const double value : values) array.push_back(quantity_text(value, dimension::time));
+    table.insert("times", std::move(array));
+  };
   if (const auto* step = std::get_if<Step>(&waveform)) {
-    table.insert("level", text(step->level, dimension::voltage));
-    table.insert("rise_time", text(step->rise_time, dimension::time));
+    insert_level("level", step->level);
+    insert("rise_time", step->rise_time, dimension::time);
   } else if (const auto* harmonic = std::get_if<Harmonic>(&waveform)) {
-    table.insert("base", text(harmonic->base, dimension::voltage));
-    table.insert("rise_time", text(harmonic->rise_time, dimension::time));
-    table.insert("amplitude", text(harmonic->amplitude, dimension::voltage));
-    table.insert("angular_frequency", text(harmonic->angular_frequency, dimension::angular_frequency));
-    table.insert("phase", text(harmonic->phase, dimension::angle));
-    table.insert("start", text(harmonic->start, dimension::time));
-    if (std::isfinite(harmonic->end)) table.insert("end", text(harmonic->end, dimension::time));
-    table.insert("fade", text(harmonic->fade, dimension::time));
+    insert_level("base", harmonic->base);
+    insert("rise_time", harmonic->rise_time, dimension::time);
+    insert_level("amplitude", harmonic->amplitude);
+    insert("angular_frequency", harmonic->angular_frequency, dimension::angular_frequency);
+    insert("phase", harmonic->phase, dimension::angle);
+    insert("start", harmonic->start, dimension::time);
+    if (std::isfinite(harmonic->end)) insert("end", harmonic->end, dimension::time);
+    insert("fade", harmonic->fade, dimension::time);
   } else if (const auto* pulse = std::get_if<Pulse>(&waveform)) {
-    table.insert("levels", texts(pulse->levels, dimension::voltage));
-    table.insert("times", texts(pulse->times, dimension::time));
-    table.insert("edge", text(pulse->edge, dimension::time));
+    insert_levels("levels", pulse->levels);
+    insert_times(pulse->times);
+    insert("edge", pulse->edge, dimension::time);
   } else {
     const Table& rows = std::get<Table>(waveform);
-    table.insert("times", texts(rows.time, dimension::time));
-    table.insert("voltages", texts(rows.voltage, dimension::voltage));
+    insert_times(rows.time);
+    insert_levels("voltages", rows.voltage);
   }
   toml::table* waveforms = impl_->root["waveform"].as_table();
   if (!waveforms) waveforms = impl_->root.insert_or_assign("waveform", toml::table{}).first->second.as_table();

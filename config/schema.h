@@ -46,8 +46,9 @@ struct Key {
 };
 
 struct Section {
-  std::string_view name;  ///< empty: the keys above the first section
-  bool is_named = false;  ///< [name.NAME], any number of them
+  std::string_view name;        ///< empty: the keys above the first section
+  std::string_view entry = {};  ///< of a named section: the one NAME these keys are for; empty: every other one
+  bool is_named = false;        ///< [name.NAME], any number of them
   bool required = false;
   bool always_in_force = false;    ///< its defaults hold when the section is absent
   bool may_vary = false;           ///< [spread] may name its numbers
@@ -62,8 +63,8 @@ struct Section {
 
 /// In the order of a written scene.
 [[nodiscard]] const std::vector<Section>& schema();
-/// Null when there is none.
-[[nodiscard]] const Section* find_section(std::string_view name);
+/// [name] or [name.ENTRY]. Null when there is none.
+[[nodiscard]] const Section* find_section(std::string_view name, std::string_view entry = {});
 
 /// " (did you mean 'thickness'?)" for a near miss, else " (known: a, b, c)"; empty when nothing is known.
 [[nodiscard]] std::string hint(std::string_view word, const std::vector<std::string_view>& known);

@@ -27,7 +27,9 @@ std::string wanted(const Key& key) {
       break;
   }
   if (key.dimensions.empty()) return "a quantity with its unit";
-  if (key.is_bare_number()) return "a plain number such as 0.02";
+  if (key.is_bare_number()) {
+    return key.type == KeyType::quantities ? "a list such as [0.02, 0.02]" : "a plain number such as 0.02";
+  }
   std::vector<std::string> examples;
   for (const Dimension& dimension : key.dimensions) examples.push_back(toml_string(example(dimension)));
   if (key.type == KeyType::quantities) return fmt::format("a list such as [{0}, {0}]", examples.front());
@@ -71,7 +73,7 @@ std::string parse_choice(const Key& key, const std::string& text) {
 }  // namespace
 
 SectionReader::SectionReader(const SceneFile::Impl& file, std::string_view section, std::string_view name)
-    : file_(file), section_(*find_section(section)), path_(section) {
+    : file_(file), section_(*find_section(section, name)), path_(section) {
   std::vector<std::string> parts;
   if (!section.empty()) parts.emplace_back(section);
   if (!name.empty()) {

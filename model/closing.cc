@@ -60,6 +60,8 @@ class Run {
     system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, j); };
     stepper_ = internal::make_stepper(options.integrator, system_);
     here_ = {.time = 0, .state = std::vector<double>(2 * n_, 0.0), .acceleration = std::vector<double>(n_, 0.0)};
+    if (device.rest()) std::copy_n(device.rest()->data(), n_, here_.state.begin());
+    rest_energy_ = device.potential(here_.state.data(), volts_, false, work_);
     next_ = last_ = here_;
     middle_ = here_.state;
     last_.time = -1;
@@ -73,6 +75,11 @@ class Run {
 
   Trajectory run() {
     const auto start = std::chrono::steady_clock::now();
+    if (!device_.rest()) {
+      end(Status::collapsed_at_rest);
+      out_.message = "with every drive at rest the switch has no stable open state: the dispersion force closes it by itself";
+      return std::move(out_);
+    }
     const std::vector<double> stops = stretches();
     for (std::size_t i = 0; i + 1 < stops.size() && !ended_; ++i) {
       enter_stretch(i == 0);
@@ -156,7 +163,9 @@ class Run {
       const double after = volts_at(k, t);
       // A jump charges the electrode at fixed deflection: the limit of ever steeper edges.
       if (before != after) {
-        source_work_ += device_.capacitance(k, here_.state.data(), work_) * (after * after - before * before) / 2;
+        const double work =
+            (device_.strength(k, after) - device_.strength(k, before)) * device_.law_potential(k, here_.state.data(), work_);
+        source_work_ += holds_charge(k) ? -work : work;
       }
     }
     settle_charges(-1);
@@ -418,19 +427,18 @@ class Run {
     return in_contact_ && device_.has_damped_contact() ? device_.contact_dissipation(y, y + n_) : 0;
   }
 
-  // Work of the sources over a stretch: integral of V dQ = [V Q] - integral of Q dV, of which this adds the bracket.
+  // Work of the sources over a stretch: integral of V dQ = [V Q] - integral of Q dV, of which this adds the bracket. Who changes
+  // a force factor moves no charge: his work is the integral alone.
   void settle_charges(double sign) {
     for (std::size_t k = 0; k < drives_.size(); ++k) {
       const double v = volts_at(k, here_.time);
-      if (v != 0) source_work_ += sign * v * charge(k, v, here_.state.data());
+      if (v != 0 && holds_charge(k)) source_work_ += sign * v * charge(k, v, here_.state.data());
     }
   }
 
-  [[nodiscard]] bool is_piezo(std::size_t k) const { return device_.has_piezo() && k + 1 == drives_.size(); }
+  [[nodiscard]] bool holds_charge(std::size_t k) const { return device_.drive_kind(k) != DriveKind::dispersion; }
 
-  double charge(std::size_t k, double volts, const double* q) {
-    return is_piezo(k) ? device_.piezo_charge(q) : device_.capacitance(k, q, work_) * volts;
-  }
+  double charge(std::size_t k, double volts, const double* q) { return device_.charge(k, volts, q, work_); }
 
   // Where the step's quintic Hermite interpolant stands at half time.
   void halve_step() {
@@ -443,19 +451,19 @@ class Run {
     }
   }
 
-  // Closes the books at here_. At rest under 0 V nothing is stored.
+  // Closes the books at here_. What is stored is the potential and, where a source holds a charge at its voltage, V Q.
   void balance() {
     const double* q = here_.state.data();
+    for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = volts_at(k, here_.time);
     EnergyBalance& e = out_.energy;
     e = {.source_work = source_work_,
-         .stored = device_.kinetic_energy(q + n_) + device_.elastic_energy(q),
+         .stored = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, false, work_) - rest_energy_,
          .dissipated = dissipated_};
     for (std::size_t k = 0; k < drives_.size(); ++k) {
-      const double v = volts_at(k, here_.time);
-      if (v == 0) continue;
-      const double work = v * charge(k, v, q);
+      if (volts_[k] == 0 || !holds_charge(k)) continue;
+      const double work = volts_[k] * charge(k, volts_[k], q);
       e.source_work += work;
-      if (!is_piezo(k)) e.stored += work / 2;
+      e.stored += work;
     }
     const double d = device_.contact_deflection(q) - plane_;
     if (law_.active) e.stored += stored_energy(device_.contact(), d, law_);
@@ -504,6 +512,7 @@ class Run {
   std::vector<double> in_flight_, touching_;  // absolute tolerances
   Knot here_, next_, last_;
   std::vector<double> middle_;  // state halfway through a step
+  double rest_energy_ = 0;      // potential at the start [J]
   double source_work_ = 0;      // without the charges that stand on the drives now [J]
   double dissipated_ = 0;       // [J]
   double power_ = 0;            // dissipated at here_ [W]

@@ -136,6 +136,13 @@ void validate(const Device& d) {
     positive(p.density, "kg/m^3", "piezo.density");
     require(p.d31 > -1 && p.d31 < 1, fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")));
   }
+  if (d.dispersion && d.dispersion->model != DispersionModel::casimir) {
+    const Dispersion& v = *d.dispersion;
+    positive(v.hamaker_constant, "J", "dispersion.hamaker_constant");
+    require(v.equilibrium_distance >= 0 && v.equilibrium_distance < d.gap.electrode - d.gap.contact,
+            fmt::format("dispersion.equilibrium_distance = {}: must not be negative and lie below the closed gap of {}",
+                        engineering(v.equilibrium_distance, "m"), engineering(d.gap.electrode - d.gap.contact, "m")));
+  }
 }
 
 }  // namespace softland

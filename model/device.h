@@ -92,6 +92,17 @@ struct Piezo {
   double d31 = 0;             ///< [m/V], negative for the usual ceramics
 };
 
+enum class DispersionModel { casimir, van_der_waals, automatic };
+enum class Conductor { ideal, gold };
+
+/// Casimir and van der Waals forces between beam and electrode plane, over the whole length.
+struct Dispersion {
+  DispersionModel model = DispersionModel::automatic;
+  Conductor conductor = Conductor::ideal;  ///< casimir, automatic: of the Casimir law
+  double hamaker_constant = 0;             ///< A_h [J]; van_der_waals, automatic
+  double equilibrium_distance = 0;         ///< h0 [m], where attraction and repulsion balance; 0: no repulsion
+};
+
 struct Device {
   Structure structure = {};
   Gap gap = {};
@@ -99,6 +110,7 @@ struct Device {
   std::optional<Gas> gas = {};
   std::optional<Contact> contact = {};
   std::optional<Piezo> piezo = {};
+  std::optional<Dispersion> dispersion = {};
 
   /// x_c, the centre of the pad [m]: the contact force acts and all figures of merit are taken there. The pad ends at the free
   /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle.

@@ -1,6 +1,7 @@
 // A force law that acts along the beam, erased to one indirect call per law and right-hand side. A law is a small value that
-// gives load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives) and, if it is driven by a voltage,
-// its capacitance.
+// gives load(gap, velocity) over the scalar type (double for runs, Dual for exact derivatives). A conservative law is scaled by a
+// drive (`driven`: V^2 of an electrode, the factor of a force) and also gives its potential(gap), of which the load is the slope;
+// the others dissipate.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,18 +21,18 @@ struct GapField {
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// load += drive * law [N/m] at the law's points; `drive` is V^2 for electrostatic laws and ignored by the others.
+  /// load += drive * law [N/m] at the law's points; laws that are not driven ignore `drive`.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
   /// Derivatives of the load with respect to deflection and velocity, added at the law's points.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
-  /// Integral of the capacitance per length over the law's points [F]; 0 for laws without drive.
-  [[nodiscard]] virtual double capacitance(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
+  /// Integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that are not driven.
+  [[nodiscard]] virtual double potential(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
 };
 
 template <class Law>
 class DistributedLawOf final : public DistributedLaw {
  public:
-  /// Acts at the points [begin, end). Below `floor` [m] the load is continued by its tangent, the capacitance by the parabola
+  /// Acts at the points [begin, end). Below `floor` [m] the load is continued by its tangent, the potential by the parabola
   /// that belongs to it.
   DistributedLawOf(Law law, Eigen::Index begin, Eigen::Index end, double floor)
       : law_(law), begin_(begin), end_(end), floor_(floor) {}
@@ -61,16 +62,15 @@ class DistributedLawOf final : public DistributedLaw {
     }
   }
 
-  [[nodiscard]] double capacitance(const GapField& field, const Eigen::ArrayXd& weights) const override {
+  [[nodiscard]] double potential(const GapField& field, const Eigen::ArrayXd& weights) const override {
     double sum = 0;
     if constexpr (Law::driven) {
-      for (Eigen::Index p = begin_; p < end_; ++p) sum += weights[p] * law_.capacitance(std::max(field.gap[p], floor_));
+      for (Eigen::Index p = begin_; p < end_; ++p) sum += weights[p] * law_.potential(std::max(field.gap[p], floor_));
       if (begin_ == end_ || field.gap.segment(begin_, end_ - begin_).minCoeff() >= floor_) return sum;
-      // The load at 1 V is -c'/2: c goes on as the parabola that belongs to the tangent.
       const Dual at = law_.load(Dual(floor_, 1), Dual());
       for (Eigen::Index p = begin_; p < end_; ++p) {
         const double h = below(field.gap[p]);
-        sum -= weights[p] * (2 * at.value + at.slope * h) * h;
+        sum += weights[p] * (at.value + at.slope * h / 2) * h;
       }
     }
     return sum;

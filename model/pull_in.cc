@@ -16,8 +16,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// A static equilibrium with the contact point held at a given deflection. `unknown` is what keeps it there: V^2 of the driven
-// electrode [V^2], or the reaction of the holder [N].
+// A static equilibrium with the contact point held at a given deflection. `unknown` is what keeps it there: the strength of the
+// drive (V^2 of an electrode [V^2], the factor of the dispersion force), or the reaction of the holder [N].
 struct Held {
   Eigen::VectorXd q;
   double unknown = 0;
@@ -37,10 +37,13 @@ class Statics {
     return shape * (s / device_.contact_shape().dot(shape));
   }
 
-  // Electrode `drive` alone holds the contact point at s against the contact force P(s - dt).
+  // `drive` alone holds the contact point at s against the contact force P(s - dt).
   std::optional<Held> on_branch(std::size_t drive, double s, Held start) {
-    std::vector<double> unit(device_.drives(), 0.0), none = unit;
-    unit[drive] = 1;
+    // The force at unit strength as a difference: taken near the strength sought, where it does not drown in the others.
+    const double scale = start.unknown > 0 ? start.unknown : 1;
+    std::vector<double> some(device_.drives(), 0.0), none = some;
+    some[drive] = device_.value_of_strength(drive, scale);
+    none[drive] = device_.value_of_strength(drive, 0);
     const Eigen::VectorXd& shape = device_.contact_shape();
     const double d = s - device_.device().gap.contact;
     const double push = d > 0 && device_.has_contact() ? contact_force(device_.contact(), d) : 0;
@@ -49,9 +52,9 @@ class Statics {
     return newton(s, std::move(start),
                   [&](const Held& h, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
                     evaluate(h.q, none, others, others_by_q);
-                    evaluate(h.q, unit, by_unknown, by_q);
-                    by_unknown -= others;  // the electrostatic force at 1 V
-                    by_q = others_by_q + h.unknown * (by_q - others_by_q);
+                    evaluate(h.q, some, by_unknown, by_q);
+                    by_unknown = (by_unknown - others) / scale;
+                    by_q = others_by_q + h.unknown / scale * (by_q - others_by_q);
                     residual = others + h.unknown * by_unknown - push * shape;
                   });
   }
@@ -124,12 +127,12 @@ class Statics {
   Eigen::VectorXd rest_, squares_;
 };
 
-// The static branch of one electrode as a function of the contact point's deflection.
+// The static branch of one drive as a function of the contact point's deflection.
 class Branch {
  public:
   Branch(const Switch& device, std::size_t drive) : statics_(device), drive_(drive) {}
 
-  // V^2 at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
+  // Strength at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
     auto found = statics_.on_branch(drive_, s, start_);
@@ -198,22 +201,32 @@ std::optional<Minimum> first_minimum(F&& f, double step) {
 std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? "fold" : "contact"; }
 
 StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
+  // The branch of the dispersion force begins at the straight beam and factor 0, that of an electrode where the switch rests at 0
+  // V.
+  const bool from_straight = device.drive_kind(drive) == DriveKind::dispersion;
+  if (!from_straight && !device.rest()) return {.status = Status::collapsed_at_rest};
   Branch branch(device, drive);
   const double end = device.device().gap.contact;
+  const double begin = from_straight ? 0 : device.contact_deflection(device.rest()->data());
+  const auto place = [&](double k) { return begin + (end - begin) * k / branch_steps; };
   double best = 0;
   for (int k = 1; k <= branch_steps; ++k) {
-    const double s = end * k / branch_steps, square = branch(s);
-    if (!std::isfinite(square)) return {.status = Status::numerical_failure};
-    if (square <= best) {
+    const double s = place(k), strength = branch(s);
+    if (!std::isfinite(strength)) return {.status = Status::numerical_failure};
+    if (strength <= best) {
       // In units of the gap: Brent's tolerance is partly absolute. The top is flat, so that of the deflection is far more than
       // the voltage needs.
       const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
-                                                                     std::max(1e-6, (k - 2.0) / branch_steps), s / end, 30);
-      return {.status = Status::done, .voltage = std::sqrt(-value), .deflection = at * end, .kind = StaticKind::fold};
+                                                                     std::max(1e-6, place(k - 2) / end), s / end, 30);
+      return {.status = Status::done,
+              .voltage = device.value_of_strength(drive, -value),
+              .deflection = at * end,
+              .kind = StaticKind::fold};
     }
-    best = square;
+    best = strength;
   }
-  return {.status = Status::done, .voltage = std::sqrt(best), .deflection = end, .kind = StaticKind::contact};
+  return {
+      .status = Status::done, .voltage = device.value_of_strength(drive, best), .deflection = end, .kind = StaticKind::contact};
 }
 
 double release_voltage(const Switch& device, std::size_t drive) {
@@ -223,7 +236,7 @@ double release_voltage(const Switch& device, std::size_t drive) {
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
   // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, device.penetration_scale() / 16);
-  return lowest && lowest->value > 0 ? std::sqrt(lowest->value) : nan;
+  return lowest ? std::sqrt(std::max(lowest->value, 0.0)) : nan;
 }
 
 std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts) {
@@ -251,10 +264,11 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::s
 
 DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result, double tolerance) {
   if (static_result.status != Status::done) return {.status = static_result.status};
+  if (!device.rest()) return {.status = Status::collapsed_at_rest};
   Statics statics(device);
   Branch branch(device, drive);
   const double plane = device.device().gap.contact;
-  const std::vector<double> rest(static_cast<std::size_t>(device.modes()), 0.0);
+  const Eigen::VectorXd& rest = *device.rest();
   Switch::Workspace work = device.workspace();
 
   // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane before it is over it never
@@ -263,10 +277,10 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
   struct Pass {
     double deflection, potential;
   };
-  const auto pass = [&](double volts, std::span<const double> all) -> Pass {
-    const double square = volts * volts;
-    if (static_result.kind == StaticKind::fold && branch(plane) < square) {
-      const double s = bracketed_zero([&](double x) { return branch(x) - square; }, static_result.deflection, plane);
+  const auto pass = [&](double value, std::span<const double> all) -> Pass {
+    const double strength = device.strength(drive, value);
+    if (static_result.kind == StaticKind::fold && branch(plane) < strength) {
+      const double s = bracketed_zero([&](double x) { return branch(x) - strength; }, static_result.deflection, plane);
       branch(s);
       return {s, statics.potential(branch.q(), all)};
     }
@@ -274,13 +288,13 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     return {plane, held ? statics.potential(held->q, all) : nan};
   };
 
-  const auto reaches = [&](double volts) {
+  const auto reaches = [&](double value) {
     std::vector<double> all(device.drives(), 0.0);
-    all[drive] = volts;
-    const Pass barrier = pass(volts, all);
+    all[drive] = value;
+    const Pass barrier = pass(value, all);
     if (device.potential(rest.data(), all, false, work) < barrier.potential) return false;
     std::vector<Signal> signals(device.drives());
-    signals[drive] = Signal::constant(volts);
+    signals[drive] = Signal::constant(value);
     ClosingOptions options{
         .duration = 100 * 2 * pi / device.angular_frequencies()[0], .tolerance = tolerance, .after_contact = 0};
     int step = 0;

@@ -1,7 +1,9 @@
 // Where the switch snaps in and lets go: static and dynamic pull-in, release, and the closed equilibrium.
 //
-// Static equilibria of one electrode at voltage V, other drives 0 V:   omega_i^2 q_i = V^2 g_i(q) - phi_i(x_c) P(y(x_c) - dt)
-// are followed by the deflection of the contact point, which goes through the fold without turning back; V^2 is an unknown there.
+// Static equilibria of one electrode at voltage V, other drives 0:   omega_i^2 q_i = V^2 g_i(q) + f_i(q) - phi_i(x_c) P(y(x_c) -
+// dt) with f the dispersion force at factor 1 are followed by the deflection of the contact point, which goes through the fold
+// without turning back; V^2 is an unknown there. The same functions take the dispersion force as the drive, its factor as the
+// unknown.
 #pragma once
 
 #include <limits>
@@ -19,16 +21,18 @@ enum class StaticKind { fold, contact };
 
 struct StaticPullIn {
   Status status = Status::not_run;
-  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]; of the dispersion force its factor less one
   double deflection = std::numeric_limits<double>::quiet_NaN();  ///< of the contact point there [m]
   StaticKind kind = StaticKind::fold;  ///< fold of the branch, or the contact point reaches the contact plane before it
 };
 
-/// Fold of the static branch of electrode `drive`, or the voltage at which the contact point reaches the contact plane if that
-/// comes first.
+/// Fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that comes first.
+/// The branch of an electrode begins at the switch's rest, status collapsed_at_rest where there is none; that of the dispersion
+/// force at factor 0, so that a negative answer says how much too strong the nominal force is.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& device, std::size_t drive);
 
-/// Release voltage [V]: the smallest voltage with a closed equilibrium. NaN where there is no contact law, where the contact is
+/// Release voltage [V]: the smallest voltage with a closed equilibrium, 0 where the dispersion force keeps the switch closed by
+/// itself. NaN where there is no contact law, where the contact is
 /// too soft to keep the beam off the electrode at any voltage, or where the branch could not be followed.
 [[nodiscard]] double release_voltage(const Switch& device, std::size_t drive);
 
@@ -47,7 +51,7 @@ struct ClosedEquilibrium {
 /// or not it stays, within 100 periods of the first mode; to 1e-7 relative. NaN with a status when static pull-in fails.
 struct DynamicPullIn {
   Status status = Status::not_run;
-  double voltage = std::numeric_limits<double>::quiet_NaN();
+  double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; of the dispersion force its factor less one
 };
 [[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result,
                                             double tolerance = 1e-8);

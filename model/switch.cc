@@ -1,10 +1,13 @@
 #include "model/switch.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
+#include "model/forces/gold_casimir.h"
 #include "model/gauss.h"
 #include "model/plate.h"
 
@@ -38,6 +41,16 @@ std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Str
       break;
   }
   return erased(ElectrostaticForce<MeijsFokkemaFringing>{{.width = s.width, .thickness = s.thickness}}, range, floor);
+}
+
+std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, double width, PointRange range, double floor) {
+  const auto along = [&](auto law) { return erased(DispersionForce<decltype(law)>{.law = law, .width = width}, range, floor); };
+  const VanDerWaals near{.hamaker_constant = d.hamaker_constant, .equilibrium_distance = d.equilibrium_distance};
+  if (d.model == DispersionModel::van_der_waals) return along(near);
+  const auto with = [&](auto casimir) {
+    return d.model == DispersionModel::casimir ? along(casimir) : along(SmallerOfBoth<decltype(casimir)>{casimir, near});
+  };
+  return d.conductor == Conductor::gold ? with(GoldCasimir{}) : with(IdealCasimir{});
 }
 
 }  // namespace
@@ -100,8 +113,12 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   }
   const Eigen::Index n = points();
 
+  electrodes_ = device_.electrodes.size();
   for (const Electrode& e : device_.electrodes) {
-    electrode_laws_.push_back(electrostatic(e.fringing, s, points_in(positions_, e.begin, e.end), gap_floor()));
+    driven_laws_.push_back(electrostatic(e.fringing, s, points_in(positions_, e.begin, e.end), gap_floor()));
+  }
+  if (device_.dispersion) {
+    driven_laws_.push_back(dispersion_force(*device_.dispersion, s.width, {0, n}, gap_floor()));
   }
   if (device_.gas) {
     const double first_mode = (weights_ * shapes_.col(0).head(n).array().square()).sum();
@@ -122,6 +139,36 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
     }
     penetration_scale_ = high;
   }
+  rest_ = find_rest();
+}
+
+// Newton's method from the straight beam. The load grows ever faster as the gap closes, so the iterates stay on the near side of
+// the equilibrium and stable; where one is not, there is no stable equilibrium.
+std::optional<Eigen::VectorXd> Switch::find_rest() const {
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
+  if (!device_.dispersion) return q;
+  constexpr int most_iterations = 200;  // near the fold an iteration gains a factor of two
+  constexpr double rounding = 1e-14;    // of the gap
+  const Eigen::VectorXd zero = q;
+  const std::vector<double> drives(this->drives(), 0.0);
+  Workspace work = workspace();
+  Eigen::VectorXd force(modes());
+  Eigen::MatrixXd by_q(modes(), modes()), by_v(modes(), modes());
+  for (int i = 0; i < most_iterations; ++i) {
+    accelerations(q.data(), zero.data(), drives, false, work, force.data());
+    jacobian(q.data(), zero.data(), drives, false, work, by_q, by_v);
+    if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
+    // In units of each mode's own stiffness.
+    const Eigen::LLT<Eigen::MatrixXd> stiffness(
+        -(frequencies_.cwiseInverse().asDiagonal() * by_q * frequencies_.cwiseInverse().asDiagonal()));
+    if (stiffness.info() != Eigen::Success) return std::nullopt;
+    const Eigen::VectorXd step = stiffness.solve(force.cwiseQuotient(frequencies_)).cwiseQuotient(frequencies_);
+    q += step;
+    if (step.cwiseProduct(contact_shape_).cwiseAbs().sum() < rounding * device_.gap.electrode) {
+      return contact_deflection(q.data()) < device_.gap.contact ? std::optional(q) : std::nullopt;
+    }
+  }
+  return std::nullopt;
 }
 
 Switch::Workspace Switch::workspace() const {
@@ -171,8 +218,8 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   const int n = modes();
   set_field(q, v, work);
   work.load.setZero();
-  for (std::size_t e = 0; e < electrode_laws_.size(); ++e) {
-    if (volts[e] != 0) electrode_laws_[e]->add_load(work.field, volts[e] * volts[e], work.load.data());
+  for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
+    if (const double drive = strength(k, volts[k]); drive != 0) driven_laws_[k]->add_load(work.field, drive, work.load.data());
   }
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
   project(work, result);
@@ -197,8 +244,8 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   set_field(q, v, work);
   work.by_deflection.setZero();
   work.by_velocity.setZero();
-  for (std::size_t e = 0; e < electrode_laws_.size(); ++e) {
-    electrode_laws_[e]->add_derivatives(work.field, volts[e] * volts[e], work.by_deflection.data(), work.by_velocity.data());
+  for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
+    driven_laws_[k]->add_derivatives(work.field, strength(k, volts[k]), work.by_deflection.data(), work.by_velocity.data());
   }
   for (const auto& law : passive_laws_) law->add_derivatives(work.field, 0, work.by_deflection.data(), work.by_velocity.data());
   by_q = weighted_shapes_.transpose() * work.by_deflection.matrix().asDiagonal() * shapes_;
@@ -224,10 +271,26 @@ double Switch::contact_deflection(const double* q) const {
   return sum;
 }
 
-double Switch::capacitance(std::size_t drive, const double* q, Workspace& work) const {
-  if (drive >= electrode_laws_.size()) return 0;
+double Switch::law_potential(std::size_t drive, const double* q, Workspace& work) const {
+  if (drive >= driven_laws_.size()) return 0;
   set_gap(q, work);
-  return electrode_laws_[drive]->capacitance(work.field, weights_);
+  return driven_laws_[drive]->potential(work.field, weights_);
+}
+
+double Switch::capacitance(std::size_t drive, const double* q, Workspace& work) const {
+  return drive_kind(drive) == DriveKind::electrode ? -2 * law_potential(drive, q, work) : 0;
+}
+
+double Switch::charge(std::size_t drive, double value, const double* q, Workspace& work) const {
+  switch (drive_kind(drive)) {
+    case DriveKind::electrode:
+      return capacitance(drive, q, work) * value;
+    case DriveKind::dispersion:
+      return -law_potential(drive, q, work);
+    case DriveKind::piezo:
+      break;
+  }
+  return piezo_charge(q);
 }
 
 double Switch::piezo_charge(const double* q) const { return Eigen::Map<const Eigen::VectorXd>(q, modes()).dot(piezo_shape_); }
@@ -258,8 +321,8 @@ double Switch::contact_dissipation(const double* q, const double* v) const {
 
 double Switch::potential(const double* q, std::span<const double> volts, const ContactState& contact, Workspace& work) const {
   double energy = elastic_energy(q);
-  for (std::size_t e = 0; e < electrode_laws_.size(); ++e) {
-    if (volts[e] != 0) energy -= capacitance(e, q, work) * volts[e] * volts[e] / 2;
+  for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
+    if (const double drive = strength(k, volts[k]); drive != 0) energy += drive * law_potential(k, q, work);
   }
   if (device_.piezo) energy -= volts.back() * piezo_charge(q);
   if (contact.active) {

@@ -12,7 +12,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +32,8 @@ struct SwitchOptions {
   double points_per_length = 24;  ///< quadrature points over a beam's length (each panel has at least 3)
 };
 
+enum class DriveKind { electrode, dispersion, piezo };
+
 class Switch {
  public:
   /// Throws InvalidInput for a device that validate() refuses.
@@ -42,8 +46,19 @@ class Switch {
   /// Force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero where there is no layer.
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
   [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
-  /// Number of drives: the electrodes in order, then the piezo if there is one.
-  [[nodiscard]] std::size_t drives() const { return device_.electrodes.size() + (device_.piezo ? 1 : 0); }
+  /// Number of drives: the electrodes in order, then the dispersion force, then the piezo, if there are any. The values of
+  /// electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one. Every drive is 0 before t = 0.
+  [[nodiscard]] std::size_t drives() const { return driven_laws_.size() + (device_.piezo ? 1 : 0); }
+  [[nodiscard]] DriveKind drive_kind(std::size_t drive) const {
+    if (drive < electrodes_) return DriveKind::electrode;
+    return drive < driven_laws_.size() ? DriveKind::dispersion : DriveKind::piezo;
+  }
+  /// What multiplies the law of a drive with this value: V^2, or the force factor.
+  [[nodiscard]] double strength(std::size_t drive, double value) const { return drive < electrodes_ ? value * value : 1 + value; }
+  /// The non-negative inverse of strength().
+  [[nodiscard]] double value_of_strength(std::size_t drive, double strength) const {
+    return drive < electrodes_ ? std::sqrt(strength) : strength - 1;
+  }
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
   [[nodiscard]] bool has_contact() const { return contact_.has_value(); }
   [[nodiscard]] const ContactLaw& contact() const { return *contact_; }
@@ -76,8 +91,16 @@ class Switch {
   /// Smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
 
-  /// Charge on drive k per its own volt (capacitance) [F]; for the piezo 0: see piezo_charge.
+  /// The stable static equilibrium under drives of 0, which every run starts from; none when the beam collapses by itself or
+  /// rests on the contact plane.
+  [[nodiscard]] const std::optional<Eigen::VectorXd>& rest() const { return rest_; }
+  /// Charge on drive k per its own volt (capacitance) [F]; 0 unless it is an electrode.
   [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
+  /// Potential of a drive's law at unit strength [J]; 0 for the piezo.
+  [[nodiscard]] double law_potential(std::size_t drive, const double* q, Workspace& work) const;
+  /// Minus the derivative of potential() with respect to the drive's value: the charge of an electrode or of the piezo [C], minus
+  /// the dispersion law's potential [J].
+  [[nodiscard]] double charge(std::size_t drive, double value, const double* q, Workspace& work) const;
   /// Charge that the deflection puts on the piezo's electrodes, theta q [C]. The layer's own capacitance is not described by a
   /// scene.
   [[nodiscard]] double piezo_charge(const double* q) const;
@@ -96,8 +119,8 @@ class Switch {
   [[nodiscard]] double contact_dissipation(const double* q, const double* v) const;
   /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
   [[nodiscard]] double bending_energy() const { return bending_energy_; }
-  /// Energy of the closed system under constant voltages: elastic + contact - 1/2 C V^2 - V theta q [J]. Its gradient is minus
-  /// the static force.
+  /// Energy of the closed system under constant voltages: elastic + contact + dispersion - 1/2 C V^2 - V theta q [J]. Its
+  /// gradient is minus the static force.
   [[nodiscard]] double potential(const double* q, std::span<const double> volts, const ContactState& contact,
                                  Workspace& work) const;
 
@@ -112,17 +135,20 @@ class Switch {
   void set_field(const double* q, const double* v, Workspace& work) const;
   /// Modal forces of the load in `work`: the sum over points of w_p phi_i(x_p) f(x_p).
   void project(const Workspace& work, double* result) const;
+  [[nodiscard]] std::optional<Eigen::VectorXd> find_rest() const;
 
   Device device_;
+  std::size_t electrodes_ = 0;
   Eigen::VectorXd frequencies_, squares_, contact_shape_, piezo_shape_;
   Eigen::ArrayXd positions_, weights_;
-  Eigen::MatrixXd shapes_;                                             // phi_i(x_p), points and idle points x modes
-  Eigen::MatrixXd weighted_shapes_;                                    // w_p phi_i(x_p)
-  std::vector<std::shared_ptr<const DistributedLaw>> electrode_laws_;  // one per electrode
-  std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;    // not driven by a voltage
+  Eigen::MatrixXd shapes_;                                           // phi_i(x_p), points and idle points x modes
+  Eigen::MatrixXd weighted_shapes_;                                  // w_p phi_i(x_p)
+  std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
+  std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::optional<ContactLaw> contact_;
   std::optional<GasLaw> gas_;
   std::optional<MidPlaneStretching> stretching_;
+  std::optional<Eigen::VectorXd> rest_;
   double in_contact_period_ = 0;
   double penetration_scale_ = 0;
   double bending_energy_ = 0;

@@ -67,11 +67,11 @@ Points points_of(const json& pairs) {
   return points;
 }
 
-/// A drive from 0 V before t = 0 to the end of the window, where it holds its last value.
-Points whole_waveform(const json& pairs, double end) {
+/// A drive from where it rests before t = 0 to the end of the window, where it holds its last value.
+Points whole_waveform(const json& pairs, double rest, double end) {
   Points points = points_of(pairs);
   if (points.empty()) return points;
-  if (points.front()[1] != 0 && points.front()[0] <= 0) points.insert(points.begin(), {points.front()[0], 0.0});
+  if (points.front()[1] != rest && points.front()[0] <= 0) points.insert(points.begin(), {points.front()[0], rest});
   if (points.back()[0] < end) points.push_back({end, points.back()[1]});
   return points;
 }
@@ -123,7 +123,7 @@ double landing_end(const json& result, const Tables& tables, double window) {
     if (!name.starts_with("best/")) continue;
     Points points;
     for (std::size_t row = 0; row < table.at("time_s").size(); ++row)
-      points.push_back({table.at("time_s")[row], table.at("volts_V")[row]});
+      points.push_back({table.at("time_s")[row], table.at("level")[row]});
     if (last_move(points) < 0.5 * window) cover(last_move(points));
   }
   for (const char* run : {"baseline", "best"}) {
@@ -184,9 +184,9 @@ void add_time_charts(const json& result, Picture& out) {
     const json& waveforms = at(result, {run, "waveforms"});
     if (!waveforms.is_object()) continue;
     for (const auto& [drive, pairs] : waveforms.items()) {
-      const Points points = whole_waveform(pairs, window);
+      const Points points = whole_waveform(pairs, drive_scale(drive).rest, window);
       if (points.size() < 2) continue;
-      add_columns(out.tables[fmt::format("{}/{}", run, drive)], "time_s", "volts_V", points);
+      add_columns(out.tables[fmt::format("{}/{}", run, drive)], "time_s", "level", points);
       drives.insert(drive);
     }
   }
@@ -242,10 +242,10 @@ void add_time_charts(const json& result, Picture& out) {
   int index = 0;
   for (const std::string& drive : drives) {
     Chart chart = time_chart(fmt::format("drive-{}", index++), fmt::format("Drive: {}", drive), waveform_caption(result, drive));
-    chart.y_label = "Voltage";
-    chart.y_unit = "V";
+    chart.y_label = drive_scale(drive).name;
+    chart.y_unit = drive_scale(drive).unit;
     chart.height = 210;
-    add_series(chart, "/" + drive, "volts_V");
+    add_series(chart, "/" + drive, "level");
     keep(std::move(chart));
   }
 

@@ -288,6 +288,7 @@ std::string force_caption(const json& result) {
 std::string waveform_caption(const json& result, const std::string& drive) {
   const json& shape = at(result, {"best", "waveforms", drive});
   const bool equal = is_optimize(result) && !shape.is_null() && shape == at(result, {"baseline", "waveforms", drive});
+  const DriveScale scale = drive_scale(drive);
   const auto range = [&](const char* run) -> std::string {
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -lowest;
@@ -297,17 +298,17 @@ std::string waveform_caption(const json& result, const std::string& drive) {
       highest = std::max(highest, number(point[1]));
     }
     if (lowest > highest) return {};
-    if (lowest == highest) return fmt::format("{} at {}", equal ? "stay" : "stays", quantity(lowest, "V"));
-    return fmt::format("{} between {} and {}", equal ? "run" : "runs", quantity_beside(lowest, highest, "V"),
-                       quantity_beside(highest, lowest, "V"));
+    if (lowest == highest) return fmt::format("{} at {}", equal ? "stay" : "stays", quantity(lowest, scale.unit));
+    return fmt::format("{} between {} and {}", equal ? "run" : "runs", quantity_beside(lowest, highest, scale.unit),
+                       quantity_beside(highest, lowest, scale.unit));
   };
   const std::string own = range("best");
-  if (equal && !own.empty()) return fmt::format("Voltage of the drive “{}”. Both waveforms {}.", drive, own);
+  if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.", scale.name, drive, own);
   const std::string step = range("baseline");
   const std::string name = is_optimize(result) ? own_subject : "the waveform";
   const std::string found =
       joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
-  return fmt::format("Voltage of the drive “{}”.{}", drive, found.empty() ? "" : " " + found);
+  return fmt::format("{} of the drive “{}”.{}", scale.name, drive, found.empty() ? "" : " " + found);
 }
 
 std::string search_caption(const json& result) {

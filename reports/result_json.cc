@@ -38,8 +38,10 @@ json waveforms_json(const Prepared& p, double end) {
   const std::vector<Signal> signals = p.signals();
   for (std::size_t k = 0; k < names.size(); ++k) {
     const double swing = signals[k].maximum(end) - signals[k].minimum(end);
+    const bool is_factor = names[k] == dispersion_drive;
+    if (is_factor && signals[k].is_zero()) continue;  // nominal
     json points = json::array();
-    for (const auto& [t, v] : polyline(signals[k], end, 1e-3 * swing, 0)) points.push_back({t, v});
+    for (const auto& [t, v] : polyline(signals[k], end, 1e-3 * swing, 0)) points.push_back({t, is_factor ? 1 + v : v});
     all[names[k]] = std::move(points);
   }
   return all;

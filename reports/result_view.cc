@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "studies/prepared.h"
+
 namespace softland::internal {
 
 using nlohmann::json;
@@ -78,6 +80,11 @@ std::vector<double> evaluation_indices(const json& result) {
 double evaluations_until(const std::vector<double>& indices, double index) {
   if (indices.empty()) return index;
   return static_cast<double>(std::upper_bound(indices.begin(), indices.end(), index) - indices.begin());
+}
+
+DriveScale drive_scale(std::string_view drive) {
+  if (drive == dispersion_drive) return {.name = "Force factor", .unit = "", .rest = 1};
+  return {.name = "Voltage", .unit = "V", .rest = 0};
 }
 
 double significant_rebound(const json& result) {

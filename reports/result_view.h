@@ -32,6 +32,14 @@ namespace softland::internal {
 [[nodiscard]] std::vector<double> evaluation_indices(const nlohmann::json& result);
 /// How many evaluations had been made up to and with the one of this index; the index itself where none are listed.
 [[nodiscard]] double evaluations_until(const std::vector<double>& indices, double index);
+/// What a drive's waveform is made of.
+struct DriveScale {
+  std::string_view name;  ///< at the beginning of a sentence
+  std::string_view unit;  ///< empty: a plain number
+  double rest = 0;        ///< before t = 0
+};
+/// Volts, or the factor of the drive named "dispersion".
+[[nodiscard]] DriveScale drive_scale(std::string_view drive);
 /// Height from which a rebound counts [m]; 1 nm unless the scene says otherwise.
 [[nodiscard]] double significant_rebound(const nlohmann::json& result);
 

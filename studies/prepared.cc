@@ -12,6 +12,7 @@ namespace softland {
 std::vector<std::string> Prepared::drive_names() const {
   std::vector<std::string> names;
   for (const Electrode& e : scene.device.electrodes) names.push_back(e.name);
+  if (scene.device.dispersion) names.emplace_back(dispersion_drive);
   if (scene.device.piezo) names.emplace_back(piezo_drive);
   return names;
 }

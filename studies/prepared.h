@@ -21,6 +21,8 @@ struct ElectrodePullIn {
 
 /// The name of the piezo among the drives.
 inline constexpr std::string_view piezo_drive = "piezo";
+/// The name of the dispersion force's factor among the drives. Its signal is the factor less one.
+inline constexpr std::string_view dispersion_drive = "dispersion";
 
 struct Prepared {
   Scene scene;

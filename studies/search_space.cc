@@ -63,7 +63,9 @@ void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
 }  // namespace
 
 std::string searched_electrode(const Device& device) {
-  require(!device.electrodes.empty(), "optimize --actuator electrostatic|both needs an electrode, and the scene has none");
+  require(!device.electrodes.empty(),
+          fmt::format("optimize --actuator electrostatic|both needs an electrode, and the scene has none{}",
+                      device.dispersion ? "; the factor of a dispersion force is not searched" : ""));
   for (const Electrode& e : device.electrodes) {
     if (e.name == "main") return e.name;
   }

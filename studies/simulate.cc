@@ -39,8 +39,9 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
   c.warnings.insert(c.warnings.end(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {
-    const bool piezo = prepared.device.has_piezo() && k + 1 == signals.size();
-    if (!piezo || piezo_only) c.peak_voltage = std::max(c.peak_voltage, signals[k].peak(prepared.duration));
+    const DriveKind kind = prepared.device.drive_kind(k);
+    if (kind == DriveKind::dispersion) continue;  // a force factor is no voltage
+    if (kind == DriveKind::electrode || piezo_only) c.peak_voltage = std::max(c.peak_voltage, signals[k].peak(prepared.duration));
     c.peak_slew = std::max(c.peak_slew, signals[k].peak_slew(prepared.duration));
   }
   if (estimate_errors && c.trajectory.status == Status::done) {

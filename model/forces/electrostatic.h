@@ -92,6 +92,8 @@ struct ElectrostaticForce {
   }
   /// [F/m]
   [[nodiscard]] double capacitance(double gap) const { return vacuum_permittivity * fringing.capacitance_over_eps0(gap); }
+  /// [J / (m V^2)] at constant voltage
+  [[nodiscard]] double potential(double gap) const { return -capacitance(gap) / 2; }
 };
 
 }  // namespace softland

@@ -194,7 +194,8 @@ TEST_F(BadInput, Results) {
       {{"report", "odd"}, "odd/result.json: cannot be read: Is a directory"},
       {{"report", "gold.toml"}, "gold.toml: is not a result.json of softland"},
       {{"report", "odd.json"}, "odd.json: is not a result.json of softland"},
-      {{"new", "magnet"}, "new magnet: must be cantilever, cantilever-pzt, clamped-clamped or plate"},
+      {{"new", "magnet"},
+       "new magnet: must be one of cantilever, cantilever-pzt, clamped-clamped, nem-cantilever, nem-casimir, plate"},
   });
 }
 

@@ -122,6 +122,19 @@ TEST(Simulate, LeavesResultReportAndTrajectory) {
   EXPECT_THAT(read(here.path() / "a/b/report.html"), HasSubstr("<html"));
 }
 
+TEST(Simulate, GivesAForceFactorAsTheFactorItIsAndNeverAsAVoltage) {
+  const Workplace here;
+  write(here.path() / "casimir.toml", shipped("nem-casimir.toml"));
+  ASSERT_EQ(here.run({"simulate", "casimir.toml", "--out", "run"}).status, 0);
+  const json j = json::parse(read(here.path() / "run/result.json"));
+  EXPECT_EQ(j["best"]["waveforms"], json({{"dispersion", {{0, 1}, {0, 1.25}, {j["curves"]["best"]["time_s"].back(), 1.25}}}}));
+  EXPECT_EQ(j["metrics"]["peak_voltage_V"], 0);
+  EXPECT_THAT(read(here.path() / "run/gap.svg"), HasSubstr("Force factor"));
+  EXPECT_EQ(here.run({"optimize", "casimir.toml"}).err,
+            "softland: optimize --actuator electrostatic|both needs an electrode, and the scene has none; the factor of a "
+            "dispersion force is not searched\n");
+}
+
 TEST(Simulate, EndsWithFourWhenTheSwitchDoesNotClose) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--set", "waveform.main.level=0.5 Vdp", "--json", "-"});
@@ -159,7 +172,7 @@ TEST(Modes, PrintsTheAgreedJson) {
 
 TEST(New, WritesScenesThatCheckAccepts) {
   const Workplace here;
-  for (const char* kind : {"cantilever", "cantilever-pzt", "clamped-clamped", "plate"}) {
+  for (const char* kind : {"cantilever", "cantilever-pzt", "clamped-clamped", "plate", "nem-cantilever", "nem-casimir"}) {
     const Outcome fresh = here.run({"new", kind});
     EXPECT_EQ(fresh.status, 0);
     EXPECT_EQ(fresh.err, "");
@@ -167,7 +180,7 @@ TEST(New, WritesScenesThatCheckAccepts) {
     const Outcome checked = here.run({"check", "new.toml"});
     EXPECT_EQ(checked.status, 0) << checked.err;
     EXPECT_THAT(checked.out, HasSubstr("new.toml: valid"));
-    EXPECT_THAT(checked.out, HasSubstr("Vdp"));
+    EXPECT_THAT(checked.out, HasSubstr(kind == std::string("nem-casimir") ? "dispersion force" : "Vdp"));
   }
 }
 
@@ -194,6 +207,14 @@ TEST(Effects, PrintATableAndTheAgreedJson) {
                                    "relative_change", "rhs_s", "warnings"}));
   EXPECT_GT(j["relative_spread"]["gas"]["impact_velocity"], 0);
   EXPECT_GT(j["effects"][1]["rhs_s"], 0);
+}
+
+TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {
+  const Workplace here;
+  write(here.path() / "new.toml", here.run({"new", "nem-casimir"}).out);
+  const Outcome bad = here.run({"export", "new.toml"});
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, HasSubstr("there is no waveform to export"));
 }
 
 TEST(Export, PrintsTheWaveformsOfAScene) {

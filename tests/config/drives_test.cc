@@ -189,5 +189,36 @@ TEST(Drives, WrittenLimitsAreOrderedOnceVoltsAreKnown) {
   }
 }
 
+TEST(Drives, LevelsOfTheDispersionForceAreFactorsAndRestIsOne) {
+  const std::string section = "[dispersion]\nmodel = \"casimir\"\n[waveform.dispersion]\n";
+  const auto waveform = [&](const std::string& keys) {
+    const std::string text = edited(small_scene, "[gas]", section + keys + "[gas]");
+    return read_scene(SceneFile::parse(text, "x.toml")).drives(pull_in).waveforms.at("dispersion");
+  };
+  // Inside, the value of this drive is the factor less one.
+  EXPECT_EQ(std::get<Step>(waveform("family = \"step\"\nlevel = 1.25\n")).level, 0.25);
+  EXPECT_EQ(std::get<Step>(waveform("family = \"step\"\nlevel = \"125 %\"\n")).level, 0.25);
+  const auto pulse = std::get<Pulse>(waveform("family = \"pulse\"\nlevels = [1.5, 0.75]\ntimes = [\"1 us\"]\n"));
+  EXPECT_THAT(pulse.levels, testing::ElementsAre(0.5, -0.25));
+  const auto table = std::get<Table>(waveform("family = \"table\"\ntimes = [\"0 s\", \"1 us\"]\nvoltages = [1, 2]\n"));
+  EXPECT_THAT(table.voltage, testing::ElementsAre(0, 1));
+  const auto harmonic = std::get<Harmonic>(waveform("family = \"harmonic\"\namplitude = 0.1\nfrequency = \"1 MHz\"\n"));
+  EXPECT_EQ(harmonic.base, 0);
+  EXPECT_EQ(harmonic.amplitude, 0.1);
+}
+
+TEST(Drives, OfTheDispersionForceAreWrittenAsTheyWereRead) {
+  SceneFile file = SceneFile::parse(edited(small_scene, "[gas]", "[dispersion]\nmodel = \"casimir\"\n[gas]"), "x.toml");
+  const auto same = [&](const Waveform& given) {
+    file.set_waveform("dispersion", given);
+    const SceneFile again = SceneFile::parse(file.text(), "again.toml");
+    return signal(read_scene(again).drives(pull_in).waveforms.at("dispersion")).pieces() == signal(given).pieces();
+  };
+  EXPECT_TRUE(same(Step{.level = 0.25, .rise_time = 1e-6}));
+  EXPECT_TRUE(same(Pulse{.levels = {0.5, -0.25}, .times = {1e-6}, .edge = 1e-7}));
+  EXPECT_TRUE(same(Table{.time = {0, 1e-6}, .voltage = {0, 0.5}}));
+  EXPECT_TRUE(same(Harmonic{.base = 0.25, .amplitude = 0.5, .angular_frequency = 1e6, .end = 2e-5}));
+}
+
 }  // namespace
 }  // namespace softland

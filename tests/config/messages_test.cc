@@ -79,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, residual_stress, biaxial, stretching, mass, stiffness, area))"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
-    Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, piezo, waveform, driver, simulate, metrics, spread)"},
-    Edit{"[gap]", "[dispersion]", "x.toml:9: [dispersion]: not available yet"},
+    Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, piezo, dispersion, waveform, driver, simulate, metrics, spread)"},
+    Edit{"[gap]", "[surface]", "x.toml:9: [surface]: not available yet"},
     Edit{R"(kind = "cantilever")", R"(kind = "cantilver")", R"(x.toml:3: structure.kind = "cantilver": unknown value (did you mean 'cantilever'?))"},
     Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever, clamped-clamped, plate"},
     Edit{R"(kind = "cantilever")", R"(kind = "clamped-clamped")", "x.toml:21: [piezo]: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its middle line; a layer needs a cantilever"},
@@ -142,6 +142,24 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     Edit{R"(accuracy = 1e-5)", "accuracy = 0.2", "x.toml:39: simulate.accuracy = 0.2: must be in (0, 0.1]"},
     Edit{R"(accuracy = 1e-5)", "accuracy = 1e-5\ntolerance = 1e-9", "x.toml:39: simulate.accuracy = 1e-05: cannot stand beside simulate.tolerance = 1e-09: give one of them"},
     Edit{R"(accuracy = 1e-5)", "[metrics]\nsignificant_rebound = \"0 nm\"", R"(x.toml:40: metrics.significant_rebound = "0 nm": must be greater than 0 m)"}));
+
+const std::string casimir = "[dispersion]\nmodel = \"casimir\"\n";
+const std::string factor = "[waveform.dispersion]\nfamily = \"step\"\n";
+
+INSTANTIATE_TEST_SUITE_P(Dispersion, BadFile, testing::Values(
+    Edit{"[gas]", "[dispersion]\n[gas]", "x.toml:14: [dispersion]: missing key 'model' (one of casimir, van-der-waals, auto)"},
+    Edit{"[gas]", "[dispersion]\nmodel = \"casimr\"\n[gas]", R"(x.toml:15: dispersion.model = "casimr": unknown value (did you mean 'casimir'?))"},
+    Edit{"[gas]", "[dispersion]\nmodel = \"auto\"\n[gas]", R"(x.toml:14: [dispersion]: missing key 'hamaker_constant' (an energy such as "1 fJ"))"},
+    Edit{"[gas]", "[dispersion]\nmodel = \"auto\"\nhamaker_constant = \"0 J\"\n[gas]", R"(x.toml:16: dispersion.hamaker_constant = "0 J": must be greater than 0 J)"},
+    Edit{"[gas]", casimir + "hamaker_constant = \"4e-19 J\"\n[gas]", R"(x.toml:16: dispersion.hamaker_constant = "4e-19 J": belongs to model = "van-der-waals" or "auto", not to "casimir")"},
+    Edit{"[gas]", casimir + "conductor = \"silver\"\n[gas]", R"(x.toml:16: dispersion.conductor = "silver": unknown value (known: ideal, gold))"},
+    Edit{"[gas]", "[dispersion]\nmodel = \"auto\"\nhamaker_constant = \"4e-19 J\"\nequilibrium_distance = \"1.5 um\"\n[gas]", R"(x.toml:17: dispersion.equilibrium_distance = "1.5 um": must be less than the closed gap, gap.electrode - gap.contact)"},
+    Edit{"[gas]", casimir + factor + "level = \"1.25 V\"\n[gas]", R"(x.toml:18: waveform.dispersion.level = "1.25 V": expected a plain number, got a voltage [V])"},
+    Edit{"[gas]", casimir + factor + "[gas]", R"(x.toml:16: [waveform.dispersion]: missing key 'level' (a plain number such as 0.02))"},
+    Edit{"[gas]", casimir + "[waveform.dispersion]\nfamily = \"pulse\"\nlevels = 1.25\n[gas]", "x.toml:18: waveform.dispersion.levels = 1.25: expected a list such as [0.02, 0.02]"},
+    Edit{"[gas]", factor + "level = 1.25\n[gas]", "x.toml:14: [waveform.dispersion]: there is no [dispersion] force to drive"},
+    Edit{"[gas]", casimir + "[driver.dispersion]\nmax_voltage = \"2 V\"\n[gas]", "x.toml:16: [driver.dispersion]: a force factor has no driver limits"},
+    Edit{"[electrode.main]", "[electrode.dispersion]", "x.toml:12: [electrode.dispersion]: the name 'dispersion' is reserved for the dispersion force"}));
 
 INSTANTIATE_TEST_SUITE_P(Drives, BadFile, testing::Values(
     Edit{R"(level = "1.25 Vdp")", R"(level = "1.6 Vdp")", "x.toml:27: [waveform.main]: the voltage reaches 64 V, above the driver's max_voltage of 60 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},

@@ -208,6 +208,25 @@ TEST(Scene, EveryContactLawArrives) {
   EXPECT_EQ(hysteretic.unloading_stiffness, 2e4);
 }
 
+TEST(Scene, DispersionForcesArrive) {
+  const auto dispersion = [](const std::string& keys) {
+    return *read_scene(SceneFile::parse(edited(small_scene, "[gas]", "[dispersion]\n" + keys + "[gas]"), "x.toml"))
+                .device.dispersion;
+  };
+  const Dispersion casimir = dispersion("model = \"casimir\"\nconductor = \"gold\"\n");
+  EXPECT_EQ(casimir.model, DispersionModel::casimir);
+  EXPECT_EQ(casimir.conductor, Conductor::gold);
+  const Dispersion near =
+      dispersion("model = \"van-der-waals\"\nhamaker_constant = \"4e-19 J\"\nequilibrium_distance = \"0.3 nm\"\n");
+  EXPECT_EQ(near.model, DispersionModel::van_der_waals);
+  EXPECT_EQ(near.hamaker_constant, 4e-19);
+  EXPECT_EQ(near.equilibrium_distance, 0.3e-9);
+  const Dispersion both = dispersion("model = \"auto\"\nhamaker_constant = \"4e-19 J\"\n");
+  EXPECT_EQ(both.model, DispersionModel::automatic);
+  EXPECT_EQ(both.conductor, Conductor::ideal);
+  EXPECT_EQ(both.equilibrium_distance, 0);
+}
+
 TEST(Scene, ElectrodesComeSortedByName) {
   const Scene scene = read(edited(small_scene, "[gas]", "[electrode.back]\nspan = [\"0 m\", \"50 um\"]\n[gas]"));
   ASSERT_EQ(scene.device.electrodes.size(), 2U);

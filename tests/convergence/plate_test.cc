@@ -10,6 +10,8 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/forces/casimir.h"
+#include "model/forces/van_der_waals.h"
 #include "model/pull_in.h"
 
 namespace softland {
@@ -51,6 +53,23 @@ TEST(Plate, TheContactComesFirstBeforeAThirdOfTheGap) {
   EXPECT_EQ(found.kind, StaticKind::contact);
   // lambda = x (1 - x)^2 there, 4/27 at the fold.
   EXPECT_NEAR(found.voltage, static_voltage(d) * std::sqrt(0.25 * 0.5625 * 27 / 4), 1e-9 * found.voltage);
+}
+
+TEST(Plate, DispersionForcesCollapseItAtAFifthAndAQuarterOfTheGap) {
+  constexpr double factor_digits = 1e-9, deflection_digits = 1e-6;  // relative; the fold is flat
+  Device d = plate(0.9);
+  d.electrodes.clear();
+  const double spring = d.structure.stiffness * gap, area = side * side;
+  d.dispersion = Dispersion{.model = DispersionModel::casimir};
+  const StaticPullIn retarded = static_pull_in(Switch(d), 0);
+  const double casimir = IdealCasimir{}.pressure(gap) * area / spring;  // at factor 1
+  EXPECT_NEAR((1 + retarded.voltage) * casimir, 256.0 / 3125, factor_digits);
+  EXPECT_NEAR(retarded.deflection, gap / 5, deflection_digits * gap);
+  d.dispersion = Dispersion{.model = DispersionModel::van_der_waals, .hamaker_constant = 4e-19};
+  const StaticPullIn near = static_pull_in(Switch(d), 0);
+  const double van_der_waals = VanDerWaals{.hamaker_constant = 4e-19}.pressure(gap) * area / spring;
+  EXPECT_NEAR((1 + near.voltage) * van_der_waals, 27.0 / 256, factor_digits);
+  EXPECT_NEAR(near.deflection, gap / 4, deflection_digits * gap);
 }
 
 TEST(Plate, AnUndampedStepPullsInAtTheRootOf27Over32) {

@@ -9,6 +9,7 @@
 
 #include "base/literals.h"
 #include "model/closing.h"
+#include "model/constants.h"
 #include "model/pull_in.h"
 #include "tests/support/devices.h"
 #include "waveforms/harmonic.h"
@@ -138,6 +139,78 @@ TEST(EnergyBalance, ClosesForThePlate) {
       EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << gas << damping;
     }
   }
+}
+
+TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
+  constexpr double balance = 1e-6;  // of the energy that bends the beam by the contact gap
+  for (const DispersionModel model : {DispersionModel::casimir, DispersionModel::van_der_waals, DispersionModel::automatic}) {
+    for (const Conductor conductor : {Conductor::ideal, Conductor::gold}) {
+      for (const double edge : {0.0, 0.3}) {
+        Device d = test::casimir_cantilever();
+        // Weak enough to leave an open state under every law; the crossover of `auto` lies inside the travel.
+        d.structure.length = 3_um;
+        d.dispersion =
+            Dispersion{.model = model, .conductor = conductor, .hamaker_constant = 6e-19, .equilibrium_distance = 0.4_nm};
+        if (model == DispersionModel::automatic && conductor == Conductor::gold) d.dispersion->hamaker_constant = 1.2e-19;
+        const Switch device(d);
+        ASSERT_TRUE(device.rest().has_value());
+        const double period = 2 * pi / device.angular_frequencies()[0];
+        const StaticPullIn fold = static_pull_in(device, 0);
+        ASSERT_EQ(fold.status, Status::done);
+        const std::vector<Signal> drives{signal(Pulse{.levels = {1.4 * fold.voltage, 0.9 * fold.voltage, 1.2 * fold.voltage},
+                                                      .times = {period, 2 * period},
+                                                      .edge = edge * period})};
+        const Trajectory t = simulate_closing(device, drives, {.duration = 4 * period, .tolerance = 1e-9});
+        const std::string name =
+            fmt::format("model {}, conductor {}, edge {}", static_cast<int>(model), static_cast<int>(conductor), edge);
+        ASSERT_EQ(t.status, Status::done) << name << ": " << t.message;
+        EXPECT_GE(t.touches.size(), 1u) << name;
+        EXPECT_LT(std::abs(t.energy.source_work), 1e3 * device.bending_energy()) << name;
+        EXPECT_LT(t.energy_error, balance * device.bending_energy()) << name;
+        EXPECT_GT(t.energy.dissipated, 0.01 * device.bending_energy()) << name;
+      }
+    }
+  }
+}
+
+TEST(EnergyBalance, ClosesWhenAVoltageAndADispersionForceClose) {
+  const Switch device(test::nano_cantilever());
+  const std::vector<Signal> drives{signal(Pulse{.levels = {16_V, 10_V, 16_V}, .times = {1e-9, 2e-9}, .edge = 2e-10}),
+                                   signal(Pulse{.levels = {0.5, -0.5}, .times = {1.5e-9}, .edge = 1e-10})};
+  const Trajectory t = simulate_closing(device, drives, {.duration = 10e-9, .tolerance = 1e-9});
+  ASSERT_EQ(t.status, Status::done) << t.message;
+  EXPECT_GE(t.touches.size(), 2u);
+  EXPECT_LT(std::abs(t.energy.residual()), 1e-6 * t.energy.source_work);
+}
+
+TEST(Rest, IsWhereARunBegins) {
+  const Switch device(test::casimir_cantilever());
+  ASSERT_TRUE(device.rest().has_value());
+  const double tip = device.contact_deflection(device.rest()->data());
+  EXPECT_GT(tip, 1_nm);
+  // Nominal force: it stays there. At rest the steps of an explicit method grow until what it moves reaches the tolerance.
+  const std::vector<Signal> drives(1);
+  const Trajectory t = simulate_closing(device, drives, {.duration = 1_us, .tolerance = 1e-9});
+  EXPECT_EQ(t.status, Status::done);
+  for (const TrajectoryPoint& p : t.points) EXPECT_NEAR(p.position, tip, 1e-6 * tip);
+}
+
+TEST(Rest, IsMissingWhereTheForceClosesTheSwitchByItself) {
+  Device d = test::casimir_cantilever();
+  d.structure.length = 6_um;
+  const Switch device(d);
+  EXPECT_FALSE(device.rest().has_value());
+  const Trajectory t = simulate_closing(device, std::vector<Signal>(1), {.duration = 1_us});
+  EXPECT_EQ(t.status, Status::collapsed_at_rest);
+  EXPECT_TRUE(t.touches.empty());
+  EXPECT_LT(static_pull_in(device, 0).voltage, 0);
+  EXPECT_EQ(dynamic_pull_in(device, 0, static_pull_in(device, 0)).status, Status::collapsed_at_rest);
+}
+
+TEST(Rest, OfASwitchWithoutDispersionForceIsTheStraightBeam) {
+  const Switch device(test::gold_cantilever());
+  ASSERT_TRUE(device.rest().has_value());
+  EXPECT_TRUE(device.rest()->isZero(0));
 }
 
 TEST(EnergyBalance, ResidualFallsWithTheTolerance) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/quadrature/exp_sinh.hpp>
+#include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 #include <complex>
@@ -17,7 +18,9 @@
 #include "model/contact/contact_law.h"
 #include "model/distributed_law.h"
 #include "model/dual.h"
+#include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
+#include "model/forces/gold_casimir.h"
 #include "model/gas/gas_law.h"
 
 namespace softland {
@@ -148,6 +151,174 @@ TEST(FringingFactor, OfMeijsAndFokkemaIsCloseToTheBoundaryElementSolution) {
     EXPECT_GT(bao, 1.02 * row.truth) << "the header says 2 to 11 % too much force";
     EXPECT_LT(bao, 1.115 * row.truth);
   }
+}
+
+// ---- dispersion
+
+constexpr VanDerWaals gold_surfaces{.hamaker_constant = 4e-19, .equilibrium_distance = 0.3_nm};
+
+template <class Pressure>
+Pressure dispersion() {
+  if constexpr (requires(Pressure p) { p.van_der_waals; }) {
+    return {.casimir = {}, .van_der_waals = gold_surfaces};
+  } else if constexpr (std::is_same_v<Pressure, VanDerWaals>) {
+    return gold_surfaces;
+  } else {
+    return {};
+  }
+}
+
+template <class Pressure>
+class DispersionLaw : public testing::Test {};
+using DispersionLaws =
+    testing::Types<IdealCasimir, GoldCasimir, VanDerWaals, SmallerOfBoth<IdealCasimir>, SmallerOfBoth<GoldCasimir>>;
+TYPED_TEST_SUITE(DispersionLaw, DispersionLaws);
+
+// Between the knots of the gold table, at some of them, beyond its ends, and on both sides of the crossovers.
+constexpr std::array dispersion_gaps{0.2_nm, 0.7_nm, 1.4_nm, 5_nm, 8_nm, 20_nm, 33_nm, 60_nm, 62_nm, 300_nm, 2_um, 4_um, 9_um};
+
+TYPED_TEST(DispersionLaw, PressureIsTheSlopeOfTheEnergyThatVanishesFarAway) {
+  constexpr double differences = 1e-8;  // relative: rounding of the difference quotient
+  const TypeParam law = dispersion<TypeParam>();
+  for (const double h : dispersion_gaps) {
+    const double slope = derivative([&](double x) { return law.energy(x); }, h, h / 500);
+    EXPECT_NEAR(slope, law.pressure(h), differences * std::abs(slope)) << "gap " << h;
+  }
+  EXPECT_LT(std::abs(law.energy(1.0)), 1e-15 * std::abs(law.energy(1_nm)));
+}
+
+TYPED_TEST(DispersionLaw, DualSlopeIsTheDerivativeOfThePressure) {
+  constexpr double differences = 1e-8;
+  const TypeParam law = dispersion<TypeParam>();
+  for (const double h : dispersion_gaps) {
+    const double slope = derivative([&](double x) { return law.pressure(x); }, h, h / 500);
+    EXPECT_NEAR(law.pressure(Dual(h, 1)).slope, slope, differences * std::abs(slope)) << "gap " << h;
+  }
+}
+
+TEST(Casimir, PressureOfIdealConductorsIsTheTabulatedOne) {
+  constexpr double printed = 4e-4;  // relative: four digits
+  const IdealCasimir law;
+  for (const auto& [h, p] :
+       {std::pair{10_nm, 1.300e5}, {20_nm, 8126.0}, {50_nm, 208.0}, {100_nm, 13.00}, {200_nm, 0.8126}, {1_um, 1.300e-3}}) {
+    EXPECT_NEAR(law.pressure(h), p, printed * p) << h;
+  }
+}
+
+// eta of the header by Gauss-Legendre quadrature in t and z: K = -2 ln(1 - 3 t^2 + 2 t^3), u = K z^4.
+double lifshitz_factor(double gap) {
+  constexpr double hbar = 1.054571817e-34, c = 299792458, electron_volt = 1.602176634e-19;
+  const double plasma = 9 * electron_volt / hbar, gamma = 0.035 * electron_volt / hbar;
+  using Gauss = boost::math::quadrature::gauss<double, 60>;
+  const auto over_momentum = [&](double t) {
+    const double s = t * t * (3 - 2 * t), k0 = -2 * std::log1p(-s), e = std::exp(k0);
+    const auto over_frequency = [&](double z) {
+      const double u = k0 * std::pow(z, 4), xi = u * c / (2 * gap), eps = 1 + plasma * plasma / (xi * (xi + gamma));
+      const double k = std::sqrt(k0 * k0 + (eps - 1) * u * u);
+      const double te = (k0 - k) / (k0 + k), tm = (eps * k0 - k) / (eps * k0 + k);
+      return (1 / (e / (te * te) - 1) + 1 / (e / (tm * tm) - 1)) * 4 * z * z * z;
+    };
+    return std::pow(k0, 3) * Gauss::integrate(over_frequency, 0.0, 1.0) * 12 * t * (1 - t) / (1 - s);
+  };
+  return Gauss::integrate(over_momentum, 0.0, 1.0) * 15 / (2 * std::pow(pi, 4));
+}
+
+TEST(Casimir, OfGoldIsTheTabulatedFactorOfTheIdealOne) {
+  constexpr double printed = 6e-5;  // four decimals
+  struct Row {
+    double gap, eta;
+  };
+  constexpr std::array<Row, 11> table{{{10_nm, 0.0789},
+                                       {20_nm, 0.1421},
+                                       {30_nm, 0.1953},
+                                       {50_nm, 0.2826},
+                                       {70_nm, 0.3529},
+                                       {100_nm, 0.4366},
+                                       {150_nm, 0.5371},
+                                       {200_nm, 0.6072},
+                                       {300_nm, 0.6977},
+                                       {500_nm, 0.7909},
+                                       {1_um, 0.8777}}};
+  for (const Row& row : table) {
+    EXPECT_NEAR(GoldCasimir{}.pressure(row.gap) / IdealCasimir{}.pressure(row.gap), row.eta, printed) << row.gap;
+  }
+}
+
+TEST(Casimir, OfGoldIsTheLifshitzIntegralAlsoBetweenTheKnots) {
+  constexpr double interpolated = 2e-5;  // relative: what the header claims over the whole table
+  for (double h = 1.02_nm; h < 10_um; h *= 1.17) {
+    const double expected = lifshitz_factor(h);
+    EXPECT_NEAR(GoldCasimir{}.factor(h), expected, interpolated * expected) << h;
+  }
+}
+
+TEST(Casimir, OfGoldFollowsTheLifshitzIntegralBeyondTheTable) {
+  constexpr double extrapolated = 0.01;  // of eta below the table, of 1 - eta above it: what the header claims
+  for (const double h : {0.3_nm, 0.7_nm}) {
+    EXPECT_NEAR(GoldCasimir{}.factor(h), lifshitz_factor(h), extrapolated * lifshitz_factor(h)) << h;
+  }
+  for (const double h : {12_um, 20_um}) {
+    const double missing = 1 - lifshitz_factor(h);
+    EXPECT_NEAR(1 - GoldCasimir{}.factor(h), missing, extrapolated * missing) << h;
+  }
+}
+
+TEST(Casimir, OfGoldIsSmoothAtEveryKnotAndBeyondTheTable) {
+  constexpr double near = 1e-9, same = 1e-6;
+  for (std::size_t k = 0; k < GoldFactor::knots; ++k) {
+    const double h = GoldFactor::table().piece(1.01_nm * std::pow(10, static_cast<double>(k) / 10)).begin;
+    const Dual below = GoldCasimir{}.factor(Dual(h * (1 - near), 1)), above = GoldCasimir{}.factor(Dual(h * (1 + near), 1));
+    EXPECT_NEAR(above.value, below.value, same * below.value);
+    EXPECT_NEAR(above.slope, below.slope, same * below.slope);
+  }
+  double previous = 0;
+  for (double h = 0.1_nm; h < 50_um; h *= 1.01) {
+    EXPECT_GT(GoldCasimir{}.factor(h), previous);
+    previous = GoldCasimir{}.factor(h);
+  }
+  EXPECT_LT(previous, 1);
+}
+
+TEST(VanDerWaals, PressureIsTheTabulatedOne) {
+  constexpr double printed = 4e-4;  // relative: four digits
+  const VanDerWaals law{.hamaker_constant = 4e-19};
+  for (const auto& [h, p] : {std::pair{10_nm, 2.122e4}, {20_nm, 2653.0}, {50_nm, 169.8}, {100_nm, 21.22}}) {
+    EXPECT_NEAR(law.pressure(h), p, printed * p) << h;
+  }
+}
+
+TEST(VanDerWaals, RepelsBelowTheEquilibriumDistance) {
+  const double h0 = gold_surfaces.equilibrium_distance, unit = gold_surfaces.hamaker_constant / (6 * pi * h0 * h0 * h0);
+  EXPECT_NEAR(gold_surfaces.pressure(h0), 0, 1e-14 * unit);
+  EXPECT_LT(gold_surfaces.pressure(0.99 * h0), 0);
+  EXPECT_GT(gold_surfaces.pressure(1.01 * h0), 0);
+  const double strongest = std::pow(3, 1.0 / 6) * h0;
+  EXPECT_NEAR(gold_surfaces.pressure(strongest), 0.3849 * unit, 1e-4 * unit);
+  EXPECT_NEAR(gold_surfaces.pressure(Dual(strongest, 1)).slope * h0, 0, 1e-13 * unit);
+  // The published energy of separation at A = 4e-19 J and h0 = 0.165 nm without repulsion, times 3/4 with it.
+  const VanDerWaals surfaces{.hamaker_constant = 4e-19, .equilibrium_distance = 0.165_nm};
+  EXPECT_NEAR(surfaces.energy(0.165_nm), -0.75 * 0.390, 1e-3);
+}
+
+TEST(SmallerOfBoth, IsNeverTheSum) {
+  const SmallerOfBoth<IdealCasimir> law{.casimir = {}, .van_der_waals = {.hamaker_constant = 4e-19}};
+  for (const double h : dispersion_gaps) {
+    EXPECT_EQ(law.pressure(h), std::min(law.casimir.pressure(h), law.van_der_waals.pressure(h))) << h;
+  }
+}
+
+TEST(SmallerOfBoth, ChangesOverWhereTheLimitsAreEqual) {
+  for (const double hamaker : {4e-19, 1e-19}) {
+    const SmallerOfBoth<IdealCasimir> law{.casimir = {}, .van_der_waals = {.hamaker_constant = hamaker}};
+    const double expected = std::pow(pi, 3) * 1.054571817e-34 * 299792458 / (40 * hamaker);
+    EXPECT_NEAR(law.crossover, expected, 1e-12 * expected);
+    const double below = law.energy(law.crossover * (1 - 1e-12)), above = law.energy(law.crossover * (1 + 1e-12));
+    EXPECT_NEAR(below, above, 1e-10 * std::abs(above));
+  }
+  EXPECT_NEAR((SmallerOfBoth<IdealCasimir>{{}, {.hamaker_constant = 4e-19}}.crossover), 61.3_nm, 0.05_nm);
+  // The Lifshitz law of gold has a Hamaker constant of 2.1e-19 J of its own at short distance: a larger one is never the smaller.
+  EXPECT_EQ((SmallerOfBoth<GoldCasimir>{{}, {.hamaker_constant = 4e-19}}.crossover), 0);
+  EXPECT_GT((SmallerOfBoth<GoldCasimir>{{}, {.hamaker_constant = 1e-19}}.crossover), 10_nm);
 }
 
 // ---- gas
@@ -753,7 +924,9 @@ template <class Law>
 class LawAlongTheBeam : public testing::Test {
  protected:
   static Law physics() {
-    if constexpr (Law::driven) {
+    if constexpr (requires { Law::law; }) {
+      return {.law = dispersion<decltype(Law::law)>(), .width = 20_um};
+    } else if constexpr (Law::driven) {
       return {fringing<decltype(Law::fringing)>(20_um, 2_um)};
     } else {
       return gas_law_of_type<Law>(20_um, 65_nm);
@@ -763,7 +936,9 @@ class LawAlongTheBeam : public testing::Test {
 using LawsAlongTheBeam =
     testing::Types<ElectrostaticForce<NoFringing>, ElectrostaticForce<LinearFringing>, ElectrostaticForce<MeijsFokkemaFringing>,
                    ElectrostaticForce<Bao2001Fringing>, StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm,
-                   GuoAlexeenkoFilm, LinearDamper>;
+                   GuoAlexeenkoFilm, LinearDamper, DispersionForce<IdealCasimir>, DispersionForce<GoldCasimir>,
+                   DispersionForce<VanDerWaals>, DispersionForce<SmallerOfBoth<IdealCasimir>>,
+                   DispersionForce<SmallerOfBoth<GoldCasimir>>>;
 TYPED_TEST_SUITE(LawAlongTheBeam, LawsAlongTheBeam);
 
 constexpr double gap_floor = 35_nm;
@@ -792,10 +967,10 @@ TYPED_TEST(LawAlongTheBeam, HasTheEnergyOfItsLoadAboveAndBelowTheFloor) {
     constexpr double differences = 1e-5;  // relative; at the floor the third derivative jumps
     const DistributedLawOf law(TestFixture::physics(), 0, 1, gap_floor);
     const Eigen::ArrayXd weights = Eigen::ArrayXd::Constant(1, 10_um);
-    const auto energy = [&](double h) { return -law.capacitance(field({h}, 0), weights) / 2; };  // at 1 V
+    const auto energy = [&](double h) { return law.potential(field({h}, 0), weights); };
     for (const double h : around_the_floor) {
       const double slope = derivative(energy, h, 1e-3 * gap_floor);
-      EXPECT_NEAR(slope, 10_um * load_at(law, h, 0), differences * slope) << "gap " << h;
+      EXPECT_NEAR(slope, 10_um * load_at(law, h, 0), differences * std::abs(slope)) << "gap " << h;
     }
   }
 }
@@ -814,7 +989,7 @@ TEST(DistributedLaw, ActsAtItsOwnPointsOnly) {
   EXPECT_GT(by_deflection[1], 1) << "the force grows as the beam deflects";
   EXPECT_EQ(by_velocity, std::vector<double>(4, 1.0));
   const Eigen::ArrayXd weights = Eigen::ArrayXd::Constant(4, 10_um);
-  EXPECT_DOUBLE_EQ(law.capacitance(field(gap, 0), weights), vacuum_permittivity * 20e-6 * 10e-6 * (1 / 2e-6 + 1 / 3e-6));
+  EXPECT_DOUBLE_EQ(law.potential(field(gap, 0), weights), -vacuum_permittivity * 20e-6 * 10e-6 * (1 / 2e-6 + 1 / 3e-6) / 2);
 }
 
 TEST(DistributedLaw, OnePointBelowTheFloorChangesNothingAtTheOthers) {

@@ -74,6 +74,30 @@ std::vector<Combination> combinations() {
       all.push_back({fmt::format("plate, gas {}, damping {}", gas, damping), plate});
     }
   }
+  Device pulled = test::full_plate();
+  pulled.dispersion =
+      Dispersion{.model = DispersionModel::van_der_waals, .hamaker_constant = 1e-12};  // comparable with its springs
+  all.push_back({"plate, dispersion", pulled});
+  for (const DispersionModel model : {DispersionModel::casimir, DispersionModel::van_der_waals, DispersionModel::automatic}) {
+    for (const Conductor conductor : {Conductor::ideal, Conductor::gold}) {
+      for (const bool layer : {false, true}) {
+        Device d = test::nano_cantilever();
+        d.dispersion->model = model;
+        d.dispersion->conductor = conductor;
+        if (layer) {
+          d.piezo = Piezo{.begin = 20_nm,
+                          .end = 270_nm,
+                          .thickness = 5_nm,
+                          .youngs_modulus = 60_GPa,
+                          .density = 7500_kg_m3,
+                          .d31 = -100_pm_V};
+        }
+        all.push_back(
+            {fmt::format("dispersion {}, conductor {}, piezo {}", static_cast<int>(model), static_cast<int>(conductor), layer),
+             d});
+      }
+    }
+  }
   return all;
 }
 
@@ -87,19 +111,21 @@ struct State {
 State random_state(const Switch& device, bool in_contact, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const Eigen::Index n = device.modes();
+  const double plane = device.device().gap.contact;
   State s{Eigen::VectorXd(n), Eigen::VectorXd(n), {}};
   for (Eigen::Index i = 0; i < n; ++i) {
     // A mode that does not move the contact point moves the rest of the beam.
     const double shape = std::max(std::abs(device.contact_shape()[i]), 0.1 * device.contact_shape()[0]);
     const double share = shape * static_cast<double>(1 + i * i);
-    s.q[i] = 0.3_um * uniform(random) / share;
+    s.q[i] = 0.15 * plane * uniform(random) / share;
     s.v[i] = 0.1 * uniform(random) / share;
   }
-  const double plane = device.device().gap.contact;
-  const double wanted = in_contact ? plane + 60_nm + 25_nm * uniform(random) : plane * (0.5 + 0.4 * uniform(random));
+  const double wanted = in_contact ? plane * (1.03 + 0.0125 * uniform(random)) : plane * (0.5 + 0.4 * uniform(random));
   s.q[0] += (wanted - device.contact_deflection(s.q.data())) / device.contact_shape()[0];
-  for (std::size_t k = 0; k < device.drives(); ++k) s.volts.push_back(10 * uniform(random));
-  if (device.has_piezo()) s.volts.back() /= 20;
+  for (std::size_t k = 0; k < device.drives(); ++k) {
+    s.volts.push_back((device.drive_kind(k) == DriveKind::electrode ? 10 : 1) * uniform(random));
+  }
+  if (device.has_piezo()) s.volts.back() /= 2;
   return s;
 }
 
@@ -129,7 +155,7 @@ TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
         return Eigen::VectorXd(sum / (12 * h));
       };
       for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::VectorXd q_column = column(s.q, i, 0.1_nm / device.contact_shape().maxCoeff());
+        const Eigen::VectorXd q_column = column(s.q, i, 5e-5 * c.device.gap.contact / device.contact_shape().maxCoeff());
         EXPECT_LT((q_column - by_q.col(i)).cwiseAbs().maxCoeff(), differences * by_q.cwiseAbs().maxCoeff()) << c.name;
         const Eigen::VectorXd v_column = column(s.v, i, 0.01 / device.contact_shape().maxCoeff());
         EXPECT_LE((v_column - by_v.col(i)).cwiseAbs().maxCoeff(),
@@ -154,7 +180,7 @@ TEST(Switch, StaticForceIsMinusTheGradientOfThePotential) {
       Eigen::VectorXd force(n), gradient(n);
       device.accelerations(s.q.data(), rest.data(), s.volts, in_contact, work, force.data());
       for (Eigen::Index i = 0; i < n; ++i) {
-        const double at = s.q[i], h = 2_nm / device.contact_shape().maxCoeff();
+        const double at = s.q[i], h = 1e-3 * c.device.gap.contact / device.contact_shape().maxCoeff();
         double sum = 0;
         for (const auto& [offset, weight] : {std::pair{1, 672.0}, {2, -168.0}, {3, 32.0}, {4, -3.0}}) {
           s.q[i] = at + offset * h;

@@ -98,7 +98,20 @@ TEST(Charts, DrawADriveFromRestToTheEndOfTheWindow) {
   const Picture drawn = picture(softland::testing::sample_optimize_result(600));
   const Table& main = drawn.tables.at("best/main");
   EXPECT_EQ(main.at("time_s"), (std::vector<double>{0, 0, 600e-6}));
-  EXPECT_EQ(main.at("volts_V"), (std::vector<double>{0, 28.087, 28.087}));
+  EXPECT_EQ(main.at("level"), (std::vector<double>{0, 28.087, 28.087}));
+}
+
+TEST(Charts, DrawAForceFactorFromOneWithoutAUnit) {
+  json result = softland::testing::sample_optimize_result(600);
+  for (const char* run : {"best", "baseline"}) result[run]["waveforms"] = {{"dispersion", {{0, 1.25}}}};
+  const Picture drawn = picture(result);
+  EXPECT_EQ(drawn.tables.at("best/dispersion").at("level"), (std::vector<double>{1, 1.25, 1.25}));
+  const auto chart =
+      std::find_if(drawn.charts.begin(), drawn.charts.end(), [](const Chart& c) { return c.title == "Drive: dispersion"; });
+  ASSERT_NE(chart, drawn.charts.end());
+  EXPECT_EQ(chart->y_label, "Force factor");
+  EXPECT_EQ(chart->y_unit, "");
+  EXPECT_EQ(chart->caption, "Force factor of the drive “dispersion”. Both waveforms stay at 1.25.");
 }
 
 TEST(Charts, SurvivePackingToOnePartInTenMillion) {

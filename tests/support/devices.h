@@ -108,4 +108,49 @@ namespace softland::test {
       .contact = Contact{.model = ContactModel::linear, .stiffness = 1e4_N_m}};
 }
 
+/// Titanium nitride nano-cantilever: the device of scenes/nem-tin.toml.
+[[nodiscard]] inline Device nano_cantilever() {
+  using namespace literals;
+  return {
+      .structure = {.length = 300_nm,
+                    .width = 200_nm,
+                    .thickness = 30_nm,
+                    .youngs_modulus = 220_GPa,
+                    .density = 5400_kg_m3,
+                    .modes = 4,
+                    .damping_ratio = 0.01},
+      .gap = {.electrode = 20_nm, .contact = 15_nm},
+      .electrodes = {{.name = "main", .begin = 0, .end = 300_nm, .fringing = Fringing::meijs_fokkema}},
+      .contact = Contact{.model = ContactModel::asperity_uniform,
+                         .pad_length = 30_nm,
+                         .asperity_radius = 10_nm,
+                         .asperity_density = 4e15_per_m2,
+                         .asperity_height = 2_nm,
+                         .effective_modulus = 120_GPa},
+      .dispersion = Dispersion{.model = DispersionModel::automatic, .hamaker_constant = 4e-19, .equilibrium_distance = 0.3_nm},
+  };
+}
+
+/// Gold nano-cantilever that the Casimir force closes at 1.25 times its strength: the device of scenes/nem-casimir.toml.
+[[nodiscard]] inline Device casimir_cantilever() {
+  using namespace literals;
+  return {
+      .structure = {.length = 5.1_um,
+                    .width = 1_um,
+                    .thickness = 50_nm,
+                    .youngs_modulus = 78_GPa,
+                    .density = 19300_kg_m3,
+                    .modes = 4,
+                    .damping_ratio = 0.01},
+      .gap = {.electrode = 50_nm, .contact = 30_nm},
+      .contact = Contact{.model = ContactModel::asperity_uniform,
+                         .pad_length = 200_nm,
+                         .asperity_radius = 20_nm,
+                         .asperity_density = 1e14_per_m2,
+                         .asperity_height = 4_nm,
+                         .effective_modulus = 48_GPa},
+      .dispersion = Dispersion{.model = DispersionModel::casimir, .conductor = Conductor::gold},
+  };
+}
+
 }  // namespace softland::test

@@ -1,0 +1,70 @@
+// Dispersion force between beam and electrode plane, per length, over the whole length; and the rule that picks between its two
+// limits.
+//
+//   f(h) = F a p(h)     [N/m], positive towards the electrode      stored energy F a u(h) [J/m], p = u'(h)
+//
+// h local gap [m], a width [m], F force factor (1 = nominal; a drive can change it, e.g. a phase change of the plate), p one of
+// the laws per area: van_der_waals.h, casimir.h, gold_casimir.h, or the smaller of both limits:
+//
+//   p(h) = min(A / (6 pi h^3), p_Casimir(h)) - repulsion of van_der_waals.h
+//
+// Van der Waals and Casimir force are limits of one force, so they are never added: below the crossover the van der Waals law is
+// the smaller one, above it the Casimir law. There is one crossover (pi^3 hbar c / (40 A) for ideal conductors, 61 nm at A =
+// 4e-19 J) or, where the Casimir law of a real metal is smaller everywhere, none. The force is continuous there and its slope
+// jumps by a quarter; a run needs no restart for it: every quadrature point passes at its own time and carries a small part of
+// the load, and step size control absorbs the kink (the energy tests close the balance across it).
+#pragma once
+
+#include <cmath>
+
+#include "model/forces/van_der_waals.h"
+
+namespace softland {
+
+template <class Casimir>
+struct SmallerOfBoth {
+  Casimir casimir;
+  VanDerWaals van_der_waals;
+  double crossover = find_crossover();  ///< [m]; 0: none
+  double energy_step = crossover > 0 ? casimir.energy(crossover) - van_der_waals.attraction_energy(crossover) : 0;
+
+  template <class S>
+  S pressure(S h) const {
+    return (h < crossover ? van_der_waals.attraction(h) : casimir.pressure(h)) - van_der_waals.repulsion(h);
+  }
+  [[nodiscard]] double energy(double h) const {
+    return (h < crossover ? energy_step + van_der_waals.attraction_energy(h) : casimir.energy(h)) +
+           van_der_waals.repulsion_energy(h);
+  }
+
+ private:
+  // The ratio of Casimir to van der Waals law only falls with the gap: bisection of its logarithm.
+  [[nodiscard]] double find_crossover() const {
+    const auto retarded = [&](double h) { return casimir.pressure(h) < van_der_waals.attraction(h); };
+    double low = 1e-12, high = 1e-3;
+    if (retarded(low)) return 0;
+    while (high > low * (1 + 1e-15)) {
+      const double middle = std::sqrt(low) * std::sqrt(high);
+      if (middle <= low || middle >= high) break;
+      (retarded(middle) ? high : low) = middle;
+    }
+    return high;
+  }
+};
+
+template <class Pressure>
+struct DispersionForce {
+  Pressure law;
+  double width = 0;  ///< a [m]
+  static constexpr bool driven = true;
+
+  /// [N/m] at factor 1
+  template <class S>
+  S load(S gap, S /*velocity*/) const {
+    return S(width) * law.pressure(gap);
+  }
+  /// [J/m] at factor 1
+  [[nodiscard]] double potential(double gap) const { return width * law.energy(gap); }
+};
+
+}  // namespace softland
