@@ -156,7 +156,8 @@ Contact read_contact(const SceneFile::Impl& file, const SectionReader& in, const
   }
   in.require(contact.model != ContactModel::elastic_plastic || in.text("plasticity") != "ceb", "plasticity",
              "the force of Chang, Etsion and Bogy as published jumps by about half at the critical interference, which no "
-             "integrator of motion can use; take \"zmc\"");
+             "integrator of motion can use; take \"zmc\" or \"ke\"");
+  if (in.has_value("plasticity") && in.text("plasticity") == "ke") contact.plasticity = Plasticity::kogut_etsion;
   return contact;
 }
 

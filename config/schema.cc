@@ -400,7 +400,7 @@ std::vector<Section> make_schema() {
                 .about = "of the softer surface"},
                {.name = "plasticity",
                 .type = choice,
-                .choices = {"zmc", "ceb"},
+                .choices = {"zmc", "ke", "ceb"},
                 .fallback = "'zmc'",
                 .only_for = {"elastic-plastic"},
                 .about = "law of one asperity; ceb jumps and is refused"},

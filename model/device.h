@@ -67,19 +67,23 @@ inline constexpr std::array all_contact_models{
     ContactModel::adhesive, ContactModel::hysteretic,       ContactModel::elastic_plastic};
 [[nodiscard]] std::string_view to_string(ContactModel model);
 
+/// Law of one asperity of an elastic-plastic contact.
+enum class Plasticity { zmc, kogut_etsion };
+
 struct Contact {
   ContactModel model = ContactModel::asperity_uniform;
   double pad_length = 0;           ///< lt [m]: see Device::contact_position()
   double stiffness = 0;            ///< linear; hysteretic: of loading [N/m]
   double unloading_stiffness = 0;  ///< hysteretic [N/m]
-  double hardness = 0;             ///< elastic_plastic: of the softer surface [Pa]
-  double asperity_radius = 0;      ///< R [m]
-  double asperity_density = 0;     ///< eta [1/m^2]
-  double asperity_height = 0;      ///< Hm [m]: heights uniform on [0, Hm]
-  double asperity_deviation = 0;   ///< asperity_gaussian: standard deviation of the heights [m]
-  double effective_modulus = 0;    ///< E* [Pa]
-  double adhesion_energy = 0;      ///< adhesive: work of adhesion W [J/m^2]
-  double damping = 0;              ///< of Hunt and Crossley [s/m]; linear, asperity_uniform, asperity_gaussian
+  Plasticity plasticity = Plasticity::zmc;
+  double hardness = 0;            ///< elastic_plastic: of the softer surface [Pa]
+  double asperity_radius = 0;     ///< R [m]
+  double asperity_density = 0;    ///< eta [1/m^2]
+  double asperity_height = 0;     ///< Hm [m]: heights uniform on [0, Hm]
+  double asperity_deviation = 0;  ///< asperity_gaussian: standard deviation of the heights [m]
+  double effective_modulus = 0;   ///< E* [Pa]
+  double adhesion_energy = 0;     ///< adhesive: work of adhesion W [J/m^2]
+  double damping = 0;             ///< of Hunt and Crossley [s/m]; linear, asperity_uniform, asperity_gaussian
 };
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.

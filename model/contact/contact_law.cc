@@ -11,6 +11,12 @@ ContactLaw damped(Elastic law, double damping) {
   return law;
 }
 
+template <class Asperity>
+ContactLaw plastic(const Contact& c, double summits, const UniformAsperityContact& elastic) {
+  return PlasticAsperityContact<Asperity>{
+      .loading = {summits, c.asperity_height, c.asperity_radius, c.hardness, c.effective_modulus}, .elastic = elastic};
+}
+
 }  // namespace
 
 ContactLaw contact_law(const Contact& c, double width) {
@@ -31,8 +37,8 @@ ContactLaw contact_law(const Contact& c, double width) {
     case ContactModel::hysteretic:
       return HystereticContact{.loading = {.stiffness = c.stiffness}, .elastic = {.stiffness = c.unloading_stiffness}};
     case ContactModel::elastic_plastic:
-      return PlasticAsperityContact{.loading = {summits, c.asperity_height, c.asperity_radius, c.hardness, c.effective_modulus},
-                                    .elastic = uniform};
+      return c.plasticity == Plasticity::zmc ? plastic<ZmcAsperity>(c, summits, uniform)
+                                             : plastic<KogutEtsionAsperity>(c, summits, uniform);
     case ContactModel::asperity_uniform:
       break;
   }

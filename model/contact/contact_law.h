@@ -17,9 +17,10 @@
 
 namespace softland {
 
-using ContactLaw = std::variant<LinearContact, UniformAsperityContact, GaussianAsperityContact, AdhesiveAsperityContact,
-                                HuntCrossley<LinearContact>, HuntCrossley<UniformAsperityContact>,
-                                HuntCrossley<GaussianAsperityContact>, HystereticContact, PlasticAsperityContact>;
+using ContactLaw =
+    std::variant<LinearContact, UniformAsperityContact, GaussianAsperityContact, AdhesiveAsperityContact,
+                 HuntCrossley<LinearContact>, HuntCrossley<UniformAsperityContact>, HuntCrossley<GaussianAsperityContact>,
+                 HystereticContact, PlasticAsperityContact<ZmcAsperity>, PlasticAsperityContact<KogutEtsionAsperity>>;
 
 /// The law of a valid device's contact.
 [[nodiscard]] ContactLaw contact_law(const Contact& contact, double width);

@@ -66,6 +66,7 @@ struct ContactWithMemory {
 };
 
 using HystereticContact = ContactWithMemory<LinearContact, LinearContact, true>;
-using PlasticAsperityContact = ContactWithMemory<PlasticAsperityLoading, UniformAsperityContact, false>;
+template <class Asperity>
+using PlasticAsperityContact = ContactWithMemory<PlasticAsperityLoading<Asperity>, UniformAsperityContact, false>;
 
 }  // namespace softland

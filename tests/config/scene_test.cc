@@ -201,6 +201,11 @@ TEST(Scene, EveryContactLawArrives) {
   const Contact plastic = contact(summits + "model = \"elastic-plastic\"\nasperity_height = \"100 nm\"\nhardness = \"1 GPa\"");
   EXPECT_EQ(plastic.model, ContactModel::elastic_plastic);
   EXPECT_EQ(plastic.hardness, 1e9);
+  EXPECT_EQ(plastic.plasticity, Plasticity::zmc);
+  EXPECT_EQ(
+      contact(summits + "model = \"elastic-plastic\"\nasperity_height = \"100 nm\"\nhardness = \"1 GPa\"\nplasticity = \"ke\"")
+          .plasticity,
+      Plasticity::kogut_etsion);
   const Contact hysteretic =
       contact("pad_length = \"5 um\"\nmodel = \"hysteretic\"\nstiffness = \"1e4 N/m\"\nunloading_stiffness = \"2e4 N/m\"");
   EXPECT_EQ(hysteretic.model, ContactModel::hysteretic);

@@ -26,7 +26,8 @@ namespace softland::test {
   };
 }
 
-/// The contact of that device under every contact law, in the order of ContactModel, and with damping where the law takes it.
+/// The contact of that device under every contact law, in the order of ContactModel, with damping where the law takes it, and for
+/// both laws of yield.
 [[nodiscard]] inline std::vector<Contact> contacts() {
   using namespace literals;
   std::vector<Contact> all;
@@ -42,6 +43,10 @@ namespace softland::test {
       c.adhesion_energy = 0.05_N_m;
       c.damping = damping;
       all.push_back(c);
+      if (model == ContactModel::elastic_plastic) {
+        c.plasticity = Plasticity::kogut_etsion;
+        all.push_back(c);
+      }
     }
   }
   return all;
