@@ -120,12 +120,13 @@ std::pair<double, double> read_extent(const SceneFile::Impl& file, const Section
 }
 
 double read_pad_length(const SceneFile::Impl& file, const SectionReader& in, const SectionReader& structure, const Structure& s) {
-  const bool is_spring = in.text("model") == "linear" || in.text("model") == "hysteretic";
+  const std::string model = in.text("model");
+  const bool is_rough = model != "linear" && model != "hysteretic" && model != "rigid";
   if (!in.is_given("pad_length")) {
-    if (is_plate(structure) && is_spring) return 0;  // only the area of a plate's pad would count
+    if (is_plate(structure) && !is_rough) return 0;  // only the area of a plate's pad would count
     file.fail_section(in.path(), R"(missing key 'pad_length' (a length such as "2 um"))");
   }
-  if (!is_spring) require_of_plate(in, "pad_length", structure, "width");
+  if (is_rough) require_of_plate(in, "pad_length", structure, "width");
   const double pad_length = in.number("pad_length");
   in.require(pad_length < s.length, "pad_length",
              "must be less than " + (is_plate(structure) ? "structure.area / structure.width" : structure.written("length")));
@@ -150,6 +151,9 @@ Contact read_contact(const SceneFile::Impl& file, const SectionReader& in, const
   read("damping", contact.damping);
   read("unloading_stiffness", contact.unloading_stiffness);
   read("hardness", contact.hardness);
+  read("restitution", contact.restitution);
+  in.require(contact.model != ContactModel::rigid || is_plate(structure), "model",
+             "needs a plate: a beam has modes that take part in an impact");
   if (contact.model == ContactModel::hysteretic) {
     in.require(contact.unloading_stiffness >= contact.stiffness, "unloading_stiffness",
                "must not be below " + in.written("stiffness"));

@@ -35,7 +35,8 @@ struct Knot {
 
 // Where the contact point stands: above the plane, or in contact. A law without memory is `loading` all through a touch; one with
 // memory turns from loading to unloading at its deepest point, and carries nothing in the dent it has left. See contact/memory.h.
-enum class Branch { flight, loading, unloading, dent };
+// On a rigid contact the plate rests. See contact/rigid.h.
+enum class Branch { flight, loading, unloading, dent, rest };
 
 // An end of a branch: side * (position - level) is positive inside.
 struct Edge {
@@ -52,6 +53,7 @@ class Run {
         options_(options),
         n_(static_cast<std::size_t>(device.modes())),
         work_(device.workspace()),
+        rigid_(device.rigid_contact()),
         volts_(drives.size(), 0.0),
         pieces_(drives.size(), 0),
         plane_(device.device().gap.contact) {
@@ -64,6 +66,7 @@ class Run {
     rest_energy_ = device.potential(here_.state.data(), volts_, false, work_);
     next_ = last_ = here_;
     middle_ = here_.state;
+    free_ = here_.acceleration;
     last_.time = -1;
     set_tolerances();
     remembers_ = device.has_contact() && has_memory(device.contact());
@@ -82,8 +85,8 @@ class Run {
     }
     const std::vector<double> stops = stretches();
     for (std::size_t i = 0; i + 1 < stops.size() && !ended_; ++i) {
-      enter_stretch(i == 0);
       stop_ = stops[i + 1];
+      enter_stretch(i == 0);
       while (!ended_ && here_.time < stop_) advance();
     }
     if (!ended_) out_.status = Status::done;
@@ -196,6 +199,7 @@ class Run {
 
   void restart() {
     accelerations(here_.time, here_.state.data(), here_.acceleration.data());
+    if (branch_ == Branch::rest) return lie_down();
     double max_step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : drives_) max_step = std::min(max_step, signal.resolving_step(here_.time));
     const double first = last_step_ > 0 ? std::min(last_step_, max_step) : 0.01 / device_.angular_frequencies().maxCoeff();
@@ -208,6 +212,7 @@ class Run {
   // ----------------------------------------------------------------------------------------------------------
 
   void advance() {
+    if (branch_ == Branch::rest) return lie_on();
     if (!stepper_->step(stop_)) return fail(stepper_->message());
     ++out_.work.steps;
     take_state();
@@ -227,6 +232,11 @@ class Run {
     record(here_);
     if (event.time > 0) pass(event);
     out_.smallest_gap = std::min(out_.smallest_gap, gap);
+    look_around(gap);
+  }
+
+  // After a step.
+  void look_around(double gap) {
     if (ended_) return;
     if (gap < device_.gap_floor()) {
       return fail(fmt::format("the beam came within {} of the electrode", engineering(device_.gap_floor(), "m")));
@@ -248,7 +258,8 @@ class Run {
     }
     set_volts(here_.time);
     const double* q = here_.state.data();
-    out_.landing_excess = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, law_, work_) - options_.closed_potential;
+    out_.landing_excess =
+        device_.kinetic_energy(q + n_) + device_.potential(q, volts_, law_, work_) + impacts_ - options_.closed_potential;
   }
 
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
@@ -258,7 +269,9 @@ class Run {
             .position = y,
             .velocity = velocity,
             .acceleration = device_.contact_deflection(knot.acceleration.data()),
-            .contact_force = law_.active ? contact_force(device_.contact(), y - plane_, law_, velocity) : 0};
+            .contact_force = law_.active               ? contact_force(device_.contact(), y - plane_, law_, velocity)
+                             : branch_ == Branch::rest ? std::max(0.0, press_)
+                                                       : 0};
   }
 
   void record(const Knot& knot) { out_.points.push_back(point(knot)); }
@@ -335,6 +348,7 @@ class Run {
         out_.warnings.push_back("no [contact] section: the run ends at first touch");
         return end(Status::done);
       }
+      if (rigid_ != nullptr) return strike();
     } else if (event.edge != nullptr && event.edge->next == Branch::flight) {
       out_.touches.back().end = p.time;
     }
@@ -347,6 +361,68 @@ class Run {
       enter(event.edge->next);
     }
     restart();
+  }
+
+  // At here_, on a rigid contact: reverses the velocity, or ends the motion where the rebound would be too low.
+  void strike() {
+    double* q = here_.state.data();
+    double* v = q + n_;
+    const double shape = device_.contact_shape()[0];  // a plate has one mode
+    Touch& touch = out_.touches.back();
+    touch.peak_force = std::numeric_limits<double>::quiet_NaN();
+    touch.peak_energy = device_.kinetic_energy(v);
+    const double speed = rigid_->restitution * std::max(0.0, v[0] * shape);
+    q[0] = plane_ / shape;  // what the event's place is off would add up over many impacts
+    v[0] = 0;
+    if (RigidContact::rests(speed, press(here_.time) * shape * shape, plane_)) {
+      enter(Branch::rest);
+    } else {
+      v[0] = -speed / shape;
+      touch.end = here_.time;
+      enter(Branch::flight);
+    }
+    impacts_ += touch.peak_energy - device_.kinetic_energy(v);
+    if (device_.damped()) power_ = device_.dissipated_power(q, v, work_);
+    restart();
+    record(here_);
+  }
+
+  // Force with which the plate would press on a rigid contact at here_ under the voltages of another time [N]; negative: pull.
+  double press(double t) {
+    accelerations(t, here_.state.data(), free_.data());
+    return free_[0] / device_.contact_shape()[0];
+  }
+
+  void lie_down() {
+    constexpr double looks = 32;  // at a stretch without sines
+    press_ = here_.acceleration[0] / device_.contact_shape()[0];
+    here_.acceleration[0] = 0;
+    rest_step_ = (stop_ - here_.time) / looks;
+    for (const Signal& signal : drives_) rest_step_ = std::min(rest_step_, signal.resolving_step(here_.time));
+  }
+
+  // The plate rests until its drives stop pressing it on.
+  void lie_on() {
+    const Edge leaving{.level = plane_, .side = 1, .next = Branch::flight};
+    const bool stays = press_ >= 0;
+    double t = stays ? std::min(stop_, here_.time + rest_step_) : here_.time, next = press(t);
+    if (stays && next < 0) {
+      const double last = t;
+      t = bracketed_zero([&](double at) { return press(at); }, here_.time, last);
+      // On the side where it pulls: the plate must not be found resting at the moment it leaves.
+      for (double more = 1e-15 * last; (next = press(t)) >= 0; more *= 2) t = std::min(last, t + more);
+    }
+    ++out_.work.steps;
+    // Nothing moves, so the sources' work is exact.
+    for (std::size_t k = 0; k < drives_.size(); ++k) {
+      source_work_ += (device_.strength(k, volts_at(k, t)) - device_.strength(k, volts_at(k, here_.time))) *
+                      device_.law_potential(k, here_.state.data(), work_);
+    }
+    here_.time = t;
+    press_ = next;
+    record(here_);
+    if (next < 0) pass({.time = t, .edge = &leaving});
+    look_around(Switch::smallest_gap(work_));
   }
 
   void enter(Branch branch) {
@@ -362,6 +438,9 @@ class Run {
     law_.shift = dent_.shift;
     edge_count_ = 1;
     switch (branch) {
+      case Branch::rest:
+        edge_count_ = 0;
+        return;
       case Branch::flight:
         edges_[0] = {.level = plane_, .side = -1, .next = deepest_ > 0 ? Branch::dent : Branch::loading};
         return;
@@ -458,7 +537,7 @@ class Run {
     EnergyBalance& e = out_.energy;
     e = {.source_work = source_work_,
          .stored = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, false, work_) - rest_energy_,
-         .dissipated = dissipated_};
+         .dissipated = dissipated_ + impacts_};
     for (std::size_t k = 0; k < drives_.size(); ++k) {
       if (volts_[k] == 0 || !holds_charge(k)) continue;
       const double work = volts_[k] * charge(k, volts_[k], q);
@@ -504,6 +583,7 @@ class Run {
   const ClosingOptions& options_;
   std::size_t n_;
   Switch::Workspace work_;
+  const RigidContact* rigid_;  // null: the contact yields
   std::vector<double> volts_;
   std::vector<std::size_t> pieces_;  // the signal piece of each drive in the present stretch
   double plane_;
@@ -522,9 +602,13 @@ class Run {
   ContactState law_;
   std::array<Edge, 2> edges_;
   std::size_t edge_count_ = 0;
-  double deepest_ = 0;  // interference that the contact remembers [m]
-  Dent dent_;           // what it has left
-  double healed_ = 0;   // energy lost to dents that are forgotten [J]
+  double deepest_ = 0;        // interference that the contact remembers [m]
+  Dent dent_;                 // what it has left
+  double impacts_ = 0;        // energy lost in impacts on a rigid contact [J]
+  double press_ = 0;          // force on a rigid contact at rest [N]
+  double rest_step_ = 0;      // [s]
+  std::vector<double> free_;  // accelerations without contact
+  double healed_ = 0;         // energy lost to dents that are forgotten [J]
   bool ended_ = false;
   double stop_ = 0;
   double last_step_ = 0;

@@ -35,6 +35,8 @@ std::string_view to_string(ContactModel model) {
       return "hysteretic";
     case ContactModel::elastic_plastic:
       return "elastic-plastic";
+    case ContactModel::rigid:
+      return "rigid";
     case ContactModel::asperity_uniform:
       break;
   }
@@ -97,12 +99,17 @@ void validate(const Device& d) {
   }
   if (d.contact) {
     const Contact& c = *d.contact;
-    const bool no_pad = plate && c.model == ContactModel::linear && c.pad_length == 0;  // only its area would count
+    const bool rigid = c.model == ContactModel::rigid;
+    require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
+    const bool rough = c.model != ContactModel::linear && c.model != ContactModel::hysteretic && !rigid;
+    const bool no_pad = plate && !rough && c.pad_length == 0;  // only its area would count
     require(no_pad || (c.pad_length > 0 && c.pad_length < s.length),
             fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
                         engineering(c.pad_length, "m"), engineering(s.length, "m")));
     if (c.model == ContactModel::linear || c.model == ContactModel::hysteretic) {
       positive(c.stiffness, "N/m", "contact.stiffness");
+    } else if (rigid) {
+      require(c.restitution >= 0 && c.restitution < 1, fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution));
     } else {
       positive(c.asperity_radius, "m", "contact.asperity_radius");
       positive(c.asperity_density, "1/m^2", "contact.asperity_density");

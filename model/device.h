@@ -60,11 +60,12 @@ struct Gas {
   double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };
 
-enum class ContactModel { linear, asperity_uniform, asperity_gaussian, adhesive, hysteretic, elastic_plastic };
+enum class ContactModel { linear, asperity_uniform, asperity_gaussian, adhesive, hysteretic, elastic_plastic, rigid };
 
 inline constexpr std::array all_contact_models{
     ContactModel::linear,   ContactModel::asperity_uniform, ContactModel::asperity_gaussian,
-    ContactModel::adhesive, ContactModel::hysteretic,       ContactModel::elastic_plastic};
+    ContactModel::adhesive, ContactModel::hysteretic,       ContactModel::elastic_plastic,
+    ContactModel::rigid};
 [[nodiscard]] std::string_view to_string(ContactModel model);
 
 /// Law of one asperity of an elastic-plastic contact.
@@ -83,6 +84,7 @@ struct Contact {
   double asperity_deviation = 0;  ///< asperity_gaussian: standard deviation of the heights [m]
   double effective_modulus = 0;   ///< E* [Pa]
   double adhesion_energy = 0;     ///< adhesive: work of adhesion W [J/m^2]
+  double restitution = 0;         ///< rigid: e
   double damping = 0;             ///< of Hunt and Crossley [s/m]; linear, asperity_uniform, asperity_gaussian
 };
 

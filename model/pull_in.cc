@@ -234,6 +234,10 @@ double release_voltage(const Switch& device, std::size_t drive) {
   Branch branch(device, drive);
   const double plane = device.device().gap.contact;
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
+  if (device.rigid_contact() != nullptr) {
+    const double square = branch(plane);
+    return std::isfinite(square) ? std::sqrt(std::max(square, 0.0)) : nan;
+  }
   // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, device.penetration_scale() / 16);
   return lowest ? std::sqrt(std::max(lowest->value, 0.0)) : nan;
@@ -243,6 +247,13 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::s
   if (!device.has_contact()) return std::nullopt;
   Statics statics(device);
   const double plane = device.device().gap.contact, step = device.penetration_scale() / 16;
+  Switch::Workspace work = device.workspace();
+  if (device.rigid_contact() != nullptr) {
+    const auto held = statics.pinned(volts, plane);
+    if (!held || !(held->unknown > 0)) return std::nullopt;
+    return ClosedEquilibrium{
+        .q = held->q, .contact_force = held->unknown, .potential = device.potential(held->q.data(), volts, true, work)};
+  }
   // What the contact carries at a depth, less the force with which the beam presses there.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
@@ -256,7 +267,6 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::s
   const double depth = bracketed_zero(excess, over->last, over->next);
   const auto held = statics.pinned(volts, plane + depth);
   if (!held) return std::nullopt;
-  Switch::Workspace work = device.workspace();
   return ClosedEquilibrium{.q = held->q,
                            .contact_force = contact_force(device.contact(), depth),
                            .potential = device.potential(held->q.data(), volts, true, work)};

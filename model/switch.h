@@ -62,6 +62,8 @@ class Switch {
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
   [[nodiscard]] bool has_contact() const { return contact_.has_value(); }
   [[nodiscard]] const ContactLaw& contact() const { return *contact_; }
+  /// Null unless the contact is rigid.
+  [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
   [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& point_positions() const { return positions_; }  ///< [m]

@@ -20,13 +20,13 @@ struct TrajectoryPoint {
   double contact_force = 0;  ///< [N], positive pushes the beam away from the contact
 };
 
-/// One interval in which the contact law is active.
+/// One interval in which the contact law is active; an instant for an impact on a rigid contact from which the plate rebounds.
 struct Touch {
   double begin = 0;            ///< [s]
   double end = 0;              ///< [s]; NaN when contact still holds at the end of the window
   double impact_velocity = 0;  ///< [m/s] at begin
-  double peak_force = 0;       ///< [N]
-  double peak_energy = 0;      ///< largest energy stored in the contact law [J]
+  double peak_force = 0;       ///< [N]; NaN for a rigid contact, which has an impulse instead
+  double peak_energy = 0;      ///< largest energy stored in the contact law, of a rigid one the kinetic energy at impact [J]
 };
 
 struct Work {
@@ -55,7 +55,8 @@ struct Trajectory {
       std::numeric_limits<double>::quiet_NaN();  ///< of the closed equilibrium under the hold levels, if computed [N]
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();  ///< beam to electrode, anywhere, ever [m]
   /// Energy above that of the closed equilibrium once the switch has touched and the drives stand at their hold levels [J]: what
-  /// has to be dissipated, by bouncing or otherwise, before the switch rests.
+  /// has to be dissipated, by bouncing or otherwise, before the switch rests; what impacts on a rigid contact have taken by then
+  /// is part of it.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
   double deepest_penetration = 0;  ///< [m]
   EnergyBalance energy;            ///< at the end

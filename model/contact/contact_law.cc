@@ -39,6 +39,8 @@ ContactLaw contact_law(const Contact& c, double width) {
     case ContactModel::elastic_plastic:
       return c.plasticity == Plasticity::zmc ? plastic<ZmcAsperity>(c, summits, uniform)
                                              : plastic<KogutEtsionAsperity>(c, summits, uniform);
+    case ContactModel::rigid:
+      return RigidContact{.restitution = c.restitution};
     case ContactModel::asperity_uniform:
       break;
   }
@@ -49,6 +51,7 @@ double largest_interference(const Contact& c) {
   switch (c.model) {
     case ContactModel::linear:
     case ContactModel::hysteretic:
+    case ContactModel::rigid:
       return std::numeric_limits<double>::infinity();
     case ContactModel::asperity_gaussian:
       return GaussianAsperityContact::first_touch * c.asperity_deviation;

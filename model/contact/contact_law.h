@@ -13,14 +13,15 @@
 #include "model/contact/hunt_crossley.h"
 #include "model/contact/linear.h"
 #include "model/contact/memory.h"
+#include "model/contact/rigid.h"
 #include "model/device.h"
 
 namespace softland {
 
-using ContactLaw =
-    std::variant<LinearContact, UniformAsperityContact, GaussianAsperityContact, AdhesiveAsperityContact,
-                 HuntCrossley<LinearContact>, HuntCrossley<UniformAsperityContact>, HuntCrossley<GaussianAsperityContact>,
-                 HystereticContact, PlasticAsperityContact<ZmcAsperity>, PlasticAsperityContact<KogutEtsionAsperity>>;
+using ContactLaw = std::variant<LinearContact, UniformAsperityContact, GaussianAsperityContact, AdhesiveAsperityContact,
+                                HuntCrossley<LinearContact>, HuntCrossley<UniformAsperityContact>,
+                                HuntCrossley<GaussianAsperityContact>, HystereticContact, PlasticAsperityContact<ZmcAsperity>,
+                                PlasticAsperityContact<KogutEtsionAsperity>, RigidContact>;
 
 /// The law of a valid device's contact.
 [[nodiscard]] ContactLaw contact_law(const Contact& contact, double width);

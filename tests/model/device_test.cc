@@ -109,6 +109,8 @@ TEST(Device, NamesWhatIsWrongWithIt) {
         d.contact->unloading_stiffness = 50;
       },
       "contact.unloading_stiffness = 50 N/m: must not be below contact.stiffness = 100 N/m");
+  expect_message([](Device& d) { d.contact->model = ContactModel::rigid; },
+                 "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
   expect_message([](Device& d) { d.contact->damping = -1; }, "contact.damping = -1 s/m: must not be negative");
   expect_message(
       [](Device& d) {
@@ -131,7 +133,12 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
     damage(device);
     test::expect_refused([&] { validate(device); }, message);
   };
-  EXPECT_NO_THROW(validate(test::full_plate()));
+  const auto expect_valid = [](const std::function<void(Device&)>& change) {
+    Device device = test::full_plate();
+    change(device);
+    validate(device);
+  };
+  EXPECT_NO_THROW(expect_valid([](Device&) {}));
   expect([](Device& d) { d.structure.mass = 0; }, "structure.mass = 0 kg: must be positive");
   expect([](Device& d) { d.structure.stiffness = -1; }, "structure.stiffness = -1 N/m: must be positive");
   expect([](Device& d) { d.structure.thickness = 0; }, "structure.thickness = 0 m: must be positive");
@@ -139,6 +146,17 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
          "piezo: a rigid plate does not bend; a layer needs a beam");
   expect([](Device& d) { d.contact->model = ContactModel::asperity_uniform; },
          "contact.pad_length = 0 m: must be positive and below structure.length = 100 um");
+  EXPECT_NO_THROW(expect_valid(
+      [](Device& d) { d.contact = Contact{.model = ContactModel::hysteretic, .stiffness = 100, .unloading_stiffness = 200}; }));
+  EXPECT_NO_THROW(expect_valid([](Device& d) { d.contact = Contact{.model = ContactModel::rigid, .restitution = 0}; }));
+  for (const double e : {-0.1, 1.0, std::nan("")}) {
+    expect([e](Device& d) { d.contact = Contact{.model = ContactModel::rigid, .restitution = e}; },
+           "contact.restitution = " +
+               std::string(e < 0    ? "-0.1"
+                           : e == 1 ? "1"
+                                    : "nan") +
+               ": must be in [0, 1)");
+  }
 }
 
 TEST(Device, TakesItsFiguresAtTheCentreOfThePad) {

@@ -127,16 +127,20 @@ TEST(EnergyBalance, ClosesBetweenTwoClamps) {
 TEST(EnergyBalance, ClosesForThePlate) {
   for (const bool gas : {false, true}) {
     for (const double damping : {0.0, 0.02}) {
-      Device d = test::full_plate();
-      if (!gas) d.gas.reset();
-      d.structure.damping_ratio = damping;
-      const std::vector<Signal> drives{Signal::constant(110),
-                                       signal(Pulse{.levels = {50_V, 0_V}, .times = {10_us}, .edge = 2_us})};
-      const Trajectory t = simulate_closing(Switch(d), drives, {.duration = 150_us, .tolerance = 1e-9});
-      ASSERT_EQ(t.status, Status::done) << t.message;
-      EXPECT_GE(t.touches.size(), 2u) << gas << damping;
-      EXPECT_EQ(t.energy.dissipated > 0, gas || damping > 0);
-      EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << gas << damping;
+      for (const double restitution : {-1.0, 0.0, 0.4, 0.9}) {
+        Device d = test::full_plate();
+        if (!gas) d.gas.reset();
+        const bool rigid = restitution >= 0;
+        if (rigid) d.contact = Contact{.model = ContactModel::rigid, .restitution = restitution};
+        d.structure.damping_ratio = damping;
+        const std::vector<Signal> drives{Signal::constant(110),
+                                         signal(Pulse{.levels = {50_V, 0_V}, .times = {10_us}, .edge = 2_us})};
+        const Trajectory t = simulate_closing(Switch(d), drives, {.duration = 150_us, .tolerance = 1e-9});
+        ASSERT_EQ(t.status, Status::done) << t.message;
+        EXPECT_GE(t.touches.size(), restitution == 0 ? 1u : 2u) << gas << damping << restitution;
+        EXPECT_EQ(t.energy.dissipated > 0, gas || damping > 0 || rigid);
+        EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << gas << damping << restitution;
+      }
     }
   }
 }

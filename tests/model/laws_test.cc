@@ -555,6 +555,7 @@ TEST(ContactLaw, PushesEverMoreUnlessItIsAdhesive) {
 TEST(ContactLaw, KnowsHowFarItHolds) {
   EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::linear, 0))));
   EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::hysteretic, 0))));
+  EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::rigid, 0))));
   EXPECT_EQ(largest_interference(pad(ContactModel::elastic_plastic, 0)), 100_nm);
   EXPECT_EQ(largest_interference(pad(ContactModel::asperity_uniform, 0)), 100_nm);
   EXPECT_EQ(largest_interference(pad(ContactModel::adhesive, 0)), 100_nm);
