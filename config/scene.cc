@@ -222,6 +222,8 @@ Device read_device(const SceneFile::Impl& file) {
   }
   if (const SectionReader in(file, "contact"); in.is_present()) {
     device.contact = read_contact(file, in, structure, device.structure);
+    in.require(device.contact->model != ContactModel::rigid || !device.gas || !is_compressible(device.gas->model), "model",
+               "not with gas.model = \"reynolds\", whose film still flows under a plate that rests");
   }
   if (const SectionReader in(file, "dispersion"); in.is_present()) device.dispersion = read_dispersion(in, device.gap);
   if (const SectionReader in(file, "piezo"); in.is_present()) {

@@ -19,7 +19,8 @@ const std::vector<std::string_view> rough_contacts{"asperity-uniform", "asperity
 const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
 /// Gas models that describe a gas, not a damper.
-const std::vector<std::string_view> gas_films{"strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko"};
+const std::vector<std::string_view> gas_films{"strip",        "veijola",       "gallis-torczynski",
+                                              "near-contact", "guo-alexeenko", "reynolds"};
 
 /// Structures that bend.
 const std::vector<std::string_view> beams{"cantilever", "clamped-clamped"};
@@ -295,7 +296,7 @@ std::vector<Section> make_schema() {
        .selector = "model",
        .keys = {{.name = "model",
                  .type = choice,
-                 .choices = {"strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko", "linear"},
+                 .choices = {"strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko", "reynolds", "linear"},
                  .required = true,
                  .about = "law of the squeeze film"},
                 {.name = "viscosity",

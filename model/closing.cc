@@ -29,8 +29,8 @@ constexpr double worth_warning = 0.01, not_credible = 0.2;
 
 struct Knot {
   double time = 0;
-  std::vector<double> state;         // q then v
-  std::vector<double> acceleration;  // q''
+  std::vector<double> state;         // q, v, then the film where it is compressible
+  std::vector<double> acceleration;  // q'', then the rates of the film
 };
 
 // Where the contact point stands: above the plane, or in contact. A law without memory is `loading` all through a touch; one with
@@ -52,16 +52,22 @@ class Run {
         drives_(drives),
         options_(options),
         n_(static_cast<std::size_t>(device.modes())),
+        film_(device.film_states()),
+        size_(2 * n_ + film_),
         work_(device.workspace()),
         rigid_(device.rigid_contact()),
         volts_(drives.size(), 0.0),
         pieces_(drives.size(), 0),
         plane_(device.device().gap.contact) {
-    system_.size = 2 * n_;
+    system_.size = size_;
+    if (film_ > 0) {
+      system_.core = 2 * n_;
+      system_.block = ReynoldsFilm::nodes;
+    }
     system_.rhs = [this](double t, const double* y, double* dydt) { right_hand_side(t, y, dydt); };
     system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, j); };
     stepper_ = internal::make_stepper(options.integrator, system_);
-    here_ = {.time = 0, .state = std::vector<double>(2 * n_, 0.0), .acceleration = std::vector<double>(n_, 0.0)};
+    here_ = {.time = 0, .state = std::vector<double>(size_, 0.0), .acceleration = std::vector<double>(n_ + film_, 0.0)};
     if (device.rest()) std::copy_n(device.rest()->data(), n_, here_.state.begin());
     rest_energy_ = device.potential(here_.state.data(), volts_, false, work_);
     next_ = last_ = here_;
@@ -105,27 +111,27 @@ class Run {
 
   void accelerations(double t, const double* y, double* a) {
     set_volts(t);
-    device_.accelerations(y, y + n_, volts_, law_, work_, a);
+    device_.rates(y, volts_, law_, work_, a);
     ++out_.work.rhs_evaluations;
   }
 
   void right_hand_side(double t, const double* y, double* dydt) {
     std::copy_n(y + n_, n_, dydt);
     // The integrator begins a step where the last one ended, which has been evaluated already.
-    if (t == here_.time && std::equal(y, y + 2 * n_, here_.state.begin())) {
-      std::copy_n(here_.acceleration.begin(), n_, dydt + n_);
+    if (t == here_.time && std::equal(y, y + size_, here_.state.begin())) {
+      std::copy_n(here_.acceleration.begin(), n_ + film_, dydt + n_);
     } else {
       accelerations(t, y, dydt + n_);
       last_.time = t;
-      std::copy_n(y, 2 * n_, last_.state.begin());
-      std::copy_n(dydt + n_, n_, last_.acceleration.begin());
+      std::copy_n(y, size_, last_.state.begin());
+      std::copy_n(dydt + n_, n_ + film_, last_.acceleration.begin());
     }
   }
 
   // Takes the integrator's state as next_. The last stage of many methods is the right-hand side there.
   void take_state() {
     next_.time = stepper_->time();
-    std::copy_n(stepper_->state(), 2 * n_, next_.state.begin());
+    std::copy_n(stepper_->state(), size_, next_.state.begin());
     if (last_.time == next_.time && last_.state == next_.state) {
       next_.acceleration = last_.acceleration;
     } else {
@@ -136,10 +142,12 @@ class Run {
   void jacobian(double t, const double* y, double* j) {
     set_volts(t);
     const auto n = static_cast<Eigen::Index>(n_);
-    Eigen::Map<Eigen::MatrixXd> full(j, 2 * n, 2 * n);
-    full.topRows(n).setZero();
-    full.topRightCorner(n, n).setIdentity();
-    device_.jacobian(y, y + n_, volts_, law_, work_, full.bottomLeftCorner(n, n), full.bottomRightCorner(n, n));
+    const auto size = static_cast<Eigen::Index>(size_);
+    Eigen::Map<Eigen::MatrixXd> full(j, size, size);
+    full.setZero();
+    full.block(0, n, n, n).setIdentity();
+    device_.jacobian(y, y + n_, volts_, law_, work_, full.block(n, 0, n, n), full.block(n, n, n, n));
+    if (film_ > 0) device_.add_film_derivatives(y, work_, full);
   }
 
   // ---- stretches between breakpoints
@@ -183,7 +191,7 @@ class Run {
     const Eigen::VectorXd& shape = device_.contact_shape();
     const double largest = shape.cwiseAbs().maxCoeff();
     const auto fill = [&](std::vector<double>& absolute, double length) {
-      absolute.resize(2 * n_);
+      absolute.resize(size_, film_ > 0 ? options_.tolerance * device_.film_scale() : 0);
       for (std::size_t i = 0; i < n_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         // A mode that hardly moves the contact point still shakes the rest of the beam: count it as if it moved it by a tenth of
@@ -258,8 +266,8 @@ class Run {
     }
     set_volts(here_.time);
     const double* q = here_.state.data();
-    out_.landing_excess =
-        device_.kinetic_energy(q + n_) + device_.potential(q, volts_, law_, work_) + impacts_ - options_.closed_potential;
+    out_.landing_excess = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, law_, work_) + impacts_ +
+                          device_.film_energy(q, work_) - options_.closed_potential;
   }
 
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
@@ -482,10 +490,11 @@ class Run {
 
     if (device_.damped()) {
       const double* q = next_.state.data();
-      const double power = device_.dissipated_power(q + n_, work_) + contact_power(q);  // take_state() left the field there
+      // take_state() left the field there
+      const double power = device_.dissipated_power(q + n_, work_, film_of(q)) + contact_power(q);
       halve_step();
       const double* q_half = middle_.data();
-      const double halfway = device_.dissipated_power(q_half, q_half + n_, work_) + contact_power(q_half);
+      const double halfway = device_.dissipated_power(q_half, q_half + n_, work_, film_of(q_half)) + contact_power(q_half);
       dissipated_ += (t1 - t0) / 6 * (power_ + 4 * halfway + power);
       power_ = power;
     }
@@ -501,7 +510,9 @@ class Run {
     }
   }
 
-  // Dissipated by the contact law in state y = (q, v).
+  [[nodiscard]] const double* film_of(const double* y) const { return film_ > 0 ? y + 2 * n_ : nullptr; }
+
+  // Dissipated by the contact law in state y.
   [[nodiscard]] double contact_power(const double* y) const {
     return in_contact_ && device_.has_damped_contact() ? device_.contact_dissipation(y, y + n_) : 0;
   }
@@ -528,6 +539,10 @@ class Run {
       middle_[i] = (p0 + p1) / 2 + h * (5.0 / 32 * (v0 - v1) + h / 64 * (a0 + a1));
       middle_[n_ + i] = 15.0 / 8 * (p1 - p0) / h - 7.0 / 16 * (v0 + v1) + h / 32 * (a1 - a0);
     }
+    for (std::size_t i = 0; i < film_; ++i) {
+      middle_[2 * n_ + i] = (here_.state[2 * n_ + i] + next_.state[2 * n_ + i]) / 2 +
+                            h / 8 * (here_.acceleration[n_ + i] - next_.acceleration[n_ + i]);
+    }
   }
 
   // Closes the books at here_. What is stored is the potential and, where a source holds a charge at its voltage, V Q.
@@ -536,7 +551,8 @@ class Run {
     for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = volts_at(k, here_.time);
     EnergyBalance& e = out_.energy;
     e = {.source_work = source_work_,
-         .stored = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, false, work_) - rest_energy_,
+         .stored = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, false, work_) - rest_energy_ +
+                   device_.film_energy(q, work_),
          .dissipated = dissipated_ + impacts_};
     for (std::size_t k = 0; k < drives_.size(); ++k) {
       if (volts_[k] == 0 || !holds_charge(k)) continue;
@@ -581,7 +597,7 @@ class Run {
   const Switch& device_;
   std::span<const Signal> drives_;
   const ClosingOptions& options_;
-  std::size_t n_;
+  std::size_t n_, film_, size_;  // modes, states of the film, all states
   Switch::Workspace work_;
   const RigidContact* rigid_;  // null: the contact yields
   std::vector<double> volts_;

@@ -101,6 +101,8 @@ void validate(const Device& d) {
     const Contact& c = *d.contact;
     const bool rigid = c.model == ContactModel::rigid;
     require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
+    require(!rigid || !d.gas || !is_compressible(d.gas->model),
+            "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
     const bool rough = c.model != ContactModel::linear && c.model != ContactModel::hysteretic && !rigid;
     const bool no_pad = plate && !rough && c.pad_length == 0;  // only its area would count
     require(no_pad || (c.pad_length > 0 && c.pad_length < s.length),

@@ -47,7 +47,10 @@ struct Electrode {
   Fringing fringing = Fringing::meijs_fokkema;
 };
 
-enum class GasModel { strip, veijola, gallis_torczynski, near_contact, guo_alexeenko, linear };
+enum class GasModel { strip, veijola, gallis_torczynski, near_contact, guo_alexeenko, reynolds, linear };
+
+/// A film that can be compressed, with pressures as states of their own: see model/gas/reynolds_film.h.
+[[nodiscard]] constexpr bool is_compressible(GasModel model) { return model == GasModel::reynolds; }
 
 /// What is not a number is not given: see model/gas/air.h for what stands in.
 struct Gas {

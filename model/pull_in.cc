@@ -311,7 +311,7 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     options.observer = [&](double, const double* q, const double* v) {
       if (++step % 8 != 0) return false;  // looking more often costs more than it saves
       return device.contact_deflection(q) < barrier.deflection &&
-             device.kinetic_energy(v) + device.potential(q, all, false, work) < barrier.potential;
+             device.kinetic_energy(v) + device.potential(q, all, false, work) + device.film_energy(q, work) < barrier.potential;
     };
     return !simulate_closing(device, signals, options).touches.empty();
   };

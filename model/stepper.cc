@@ -13,10 +13,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/arrow.h"
 #include "model/dormand_prince.h"
 
 namespace softland::internal {
 namespace {
+
+// ArrowEquations as a direct solver of SUNDIALS.
+SUNLinearSolver arrow_solver(const OdeSystem& system, SUNContext context) {
+  SUNLinearSolver solver = SUNLinSolNewEmpty(context);
+  solver->content = new ArrowEquations(static_cast<Eigen::Index>(system.size), static_cast<Eigen::Index>(system.core),
+                                       static_cast<Eigen::Index>(system.block));
+  solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; };
+  solver->ops->setup = [](SUNLinearSolver s, SUNMatrix a) {
+    constexpr int try_a_shorter_step = 1;
+    return static_cast<ArrowEquations*>(s->content)->factor(SUNDenseMatrix_Data(a)) ? 0 : try_a_shorter_step;
+  };
+  solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+    N_VScale(1, b, x);
+    static_cast<ArrowEquations*>(s->content)->solve(N_VGetArrayPointer(x));
+    return 0;
+  };
+  solver->ops->free = [](SUNLinearSolver s) {
+    delete static_cast<ArrowEquations*>(s->content);
+    s->content = nullptr;
+    SUNLinSolFreeEmpty(s);
+    return 0;
+  };
+  return solver;
+}
 
 // What the SUNDIALS steppers share: context, vectors, tolerances, callbacks that never throw (ours cannot).
 class SundialsStepper : public Stepper {
@@ -53,7 +78,7 @@ class SundialsStepper : public Stepper {
   void make_dense_solver() {
     const auto n = static_cast<sunindextype>(system_.size);
     matrix_ = SUNDenseMatrix(n, n, context_);
-    solver_ = SUNLinSol_Dense(y_, matrix_, context_);
+    solver_ = system_.block > 0 ? arrow_solver(system_, context_) : SUNLinSol_Dense(y_, matrix_, context_);
   }
   bool report(const char* library, int flag) {
     if (flag >= 0) return true;
@@ -216,6 +241,9 @@ std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& sy
       return std::make_unique<CvodeStepper>(system, CV_ADAMS);
     case Integrator::arkode_erk:
       return std::make_unique<ErkStepper>(system);
+    case Integrator::automatic:
+      if (system.block > 0) return std::make_unique<DirkStepper>(system);
+      break;
     case Integrator::dormand_prince:
       break;
   }

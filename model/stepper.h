@@ -15,6 +15,8 @@ struct OdeSystem {
   std::size_t size = 0;
   std::function<void(double t, const double* y, double* dydt)> rhs;
   std::function<void(double t, const double* y, double* jacobian)> jacobian;
+  /// Above 0: beyond the first `core` unknowns the Jacobian has blocks of this size that couple with the core only.
+  std::size_t core = 0, block = 0;
 };
 
 class Stepper {

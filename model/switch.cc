@@ -123,7 +123,11 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   if (device_.gas) {
     const double first_mode = (weights_ * shapes_.col(0).head(n).array().square()).sum();
     gas_ = gas_law(*device_.gas, s, frequencies_[0] / first_mode);
-    passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, {0, n}, gap_floor()); }, *gas_));
+    if (is_compressible(device_.gas->model)) {
+      film_.emplace(*device_.gas, s.width, n, gap_floor());
+    } else {
+      passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, {0, n}, gap_floor()); }, *gas_));
+    }
   }
   // What bends the beam by the contact gap at x_c.
   const double compliance = contact_shape_.cwiseAbs2().cwiseQuotient(squares_).sum();
@@ -214,7 +218,7 @@ void Switch::project(const Workspace& work, double* result) const {
 }
 
 void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
-                           Workspace& work, double* result) const {
+                           Workspace& work, double* result, const double* film) const {
   const int n = modes();
   set_field(q, v, work);
   work.load.setZero();
@@ -222,6 +226,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
     if (const double drive = strength(k, volts[k]); drive != 0) driven_laws_[k]->add_load(work.field, drive, work.load.data());
   }
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
+  if (film != nullptr) film_->add_load(film, work.load.data());
   project(work, result);
   const double damping = 2 * device_.structure.damping_ratio;
   for (int i = 0; i < n; ++i) result[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
@@ -265,6 +270,30 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   if (stretching_) stretching_->add_derivative(q, by_q);
 }
 
+void Switch::add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const {
+  constexpr int nodes = ReynoldsFilm::nodes;
+  const Eigen::Index n = modes();
+  const double* film = state + 2 * n;
+  for (Eigen::Index s = 0; s < points(); ++s, film += nodes) {
+    const Eigen::Index at = 2 * n + nodes * s;
+    const ReynoldsFilm::Derivatives d = film_->derivatives(work.field.gap[s], work.field.velocity[s], film);
+    derivatives.block(n, at, n, nodes) += weighted_shapes_.row(s).transpose() * film_->load_by_film().transpose();
+    derivatives.block(at, 0, nodes, n) -= d.by_gap * shapes_.row(s);  // the gap shrinks as the beam deflects
+    derivatives.block(at, n, nodes, n) += d.by_velocity * shapes_.row(s);
+    derivatives.block(at, at, nodes, nodes) += d.by_film;
+  }
+}
+
+double Switch::film_scale() const {
+  return 2 * bending_energy_ / (device_.gap.contact * device_.structure.width * device_.structure.length * film_->ambient());
+}
+
+double Switch::film_energy(const double* state, Workspace& work) const {
+  if (!film_) return 0;
+  set_gap(state, work);
+  return film_->energy(work.field, weights_, state + 2 * modes());
+}
+
 double Switch::contact_deflection(const double* q) const {
   double sum = 0;
   for (int i = 0; i < modes(); ++i) sum += contact_shape_[i] * q[i];
@@ -302,17 +331,18 @@ double Switch::elastic_energy(const double* q) const {
   return stretching_ ? bending + stretching_->energy(q) : bending;
 }
 
-double Switch::dissipated_power(const double* q, const double* v, Workspace& work) const {
+double Switch::dissipated_power(const double* q, const double* v, Workspace& work, const double* film) const {
   set_field(q, v, work);
-  return dissipated_power(v, work);
+  return dissipated_power(v, work, film);
 }
 
-double Switch::dissipated_power(const double* v, Workspace& work) const {
+double Switch::dissipated_power(const double* v, Workspace& work, const double* film) const {
   work.load.setZero();
   for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
   const double modal =
       2 * device_.structure.damping_ratio * Eigen::Map<const Eigen::VectorXd>(v, modes()).cwiseAbs2().dot(frequencies_);
-  return modal - (weights_ * work.load.head(points()) * work.field.velocity.head(points())).sum();
+  const double squeezed = modal - (weights_ * work.load.head(points()) * work.field.velocity.head(points())).sum();
+  return film != nullptr ? squeezed + film_->dissipated_power(work.field, weights_, film) : squeezed;
 }
 
 double Switch::contact_dissipation(const double* q, const double* v) const {

@@ -24,6 +24,7 @@
 #include "model/device.h"
 #include "model/distributed_law.h"
 #include "model/gas/gas_law.h"
+#include "model/gas/reynolds_film.h"
 #include "model/stretching.h"
 
 namespace softland {
@@ -82,12 +83,28 @@ class Switch {
   };
   [[nodiscard]] Workspace workspace() const;
 
+  /// States that follow q and v where the gas film is compressible: its pressures (model/gas/reynolds_film.h). 0 at rest.
+  [[nodiscard]] std::size_t film_states() const { return film_ ? film_->states() : 0; }
+  /// What a uniform film pressure of the size that bends the beam by the contact gap is, over the ambient one: the scale of the
+  /// film's states.
+  [[nodiscard]] double film_scale() const;
+
   /// Modal accelerations [m kg^(1/2) / s^2] for coordinates q, velocities v and drive voltages [V]; arrays of modes() doubles.
+  /// `film` are the states of a compressible film; without them it is at rest.
   void accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
-                     Workspace& work, double* result) const;
+                     Workspace& work, double* result, const double* film = nullptr) const;
+  /// Everything but q' of a state (q, v, film): accelerations, then the rates of the film.
+  void rates(const double* state, std::span<const double> volts, const ContactState& contact, Workspace& work,
+             double* result) const {
+    const double* film = film_ ? state + 2 * modes() : nullptr;
+    accelerations(state, state + modes(), volts, contact, work, result, film);
+    if (film_) film_->rates(work.field, film, result + modes());
+  }
   /// Their derivatives with respect to q and v: modes x modes each.
   void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact, Workspace& work,
                 Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;
+  /// Adds the film's part to the derivatives of (v, rates) by the state (q, v, film) whose field `work` holds.
+  void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
 
   [[nodiscard]] double contact_deflection(const double* q) const;  ///< y(x_c) [m]; also the velocity when given v
   /// Smallest local gap in the last field computed with `work` [m].
@@ -110,13 +127,15 @@ class Switch {
   [[nodiscard]] double elastic_energy(const double* q) const;  ///< of the beam, without piezo coupling and contact [J]
   /// Whether anything takes energy out all the time: gas, modal damping, or a contact law that depends on the rate.
   [[nodiscard]] bool damped() const {
-    return !passive_laws_.empty() || device_.structure.damping_ratio > 0 || has_damped_contact();
+    return !passive_laws_.empty() || film_ || device_.structure.damping_ratio > 0 || has_damped_contact();
   }
   [[nodiscard]] bool has_damped_contact() const { return contact_ && is_rate_dependent(*contact_); }
-  /// Power taken out by gas and modal damping [W].
-  [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work) const;
+  /// Power taken out by gas and modal damping [W]; a compressible film is at rest without its states.
+  [[nodiscard]] double dissipated_power(const double* q, const double* v, Workspace& work, const double* film = nullptr) const;
   /// The same in the field last computed with `work`, whose velocities are `v`.
-  [[nodiscard]] double dissipated_power(const double* v, Workspace& work) const;
+  [[nodiscard]] double dissipated_power(const double* v, Workspace& work, const double* film = nullptr) const;
+  /// Stored in the film in a state (q, v, film) [J]; 0 where there is none.
+  [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
   /// Power taken out by the contact law while it is active [W].
   [[nodiscard]] double contact_dissipation(const double* q, const double* v) const;
   /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
@@ -149,6 +168,7 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::optional<ContactLaw> contact_;
   std::optional<GasLaw> gas_;
+  std::optional<ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
   double in_contact_period_ = 0;

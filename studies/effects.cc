@@ -65,6 +65,8 @@ Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop)
     Gas gas = own.value_or(Gas{});
     const bool in_scene = own && own->model == e.model;
     if (e.model == GasModel::linear && !in_scene) continue;
+    // A rigid contact takes no film with states of its own.
+    if (is_compressible(e.model) && prepared.device.rigid_contact() != nullptr) continue;
     gas.model = e.model;
     found.list.push_back(closing_with(prepared, gas, stop));
     found.list.back().in_scene = in_scene;
@@ -75,30 +77,29 @@ Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop)
 double right_hand_side_seconds(const Switch& device, const std::vector<Signal>& signals, double duration, int repeats) {
   using Clock = std::chrono::steady_clock;
   const auto n = static_cast<std::size_t>(device.modes());
-  std::vector<double> states;  // q then v, one after the other
+  const std::size_t size = 2 * n + device.film_states();
+  std::vector<double> states;  // q, v and what follows them, one after the other
   ClosingOptions options{.duration = duration, .tolerance = 1e-6};
-  options.observer = [&](double, const double* q, const double* v) {
-    states.insert(states.end(), q, q + n);
-    states.insert(states.end(), v, v + n);
+  options.observer = [&](double, const double* q, const double*) {
+    states.insert(states.end(), q, q + size);
     return false;
   };
   (void)simulate_closing(device, signals, options);
-  const std::size_t count = states.size() / (2 * n);
+  const std::size_t count = states.size() / size;
   if (count == 0) return Metrics::unset;
   std::vector<char> touching(count);
   for (std::size_t i = 0; i < count; ++i) {
-    touching[i] = device.has_contact() && device.contact_deflection(&states[2 * n * i]) > device.device().gap.contact;
+    touching[i] = device.has_contact() && device.contact_deflection(&states[size * i]) > device.device().gap.contact;
   }
   std::vector<double> volts;
   for (const Signal& signal : signals) volts.push_back(signal.hold_level());
   Switch::Workspace work = device.workspace();
-  std::vector<double> result(n), times;
+  std::vector<double> result(size), times;
   double sum = 0;
   for (int r = 0; r < repeats; ++r) {
     const auto start = Clock::now();
     for (std::size_t i = 0; i < count; ++i) {
-      const double* q = &states[2 * n * i];
-      device.accelerations(q, q + n, volts, touching[i] != 0, work, result.data());
+      device.rates(&states[size * i], volts, touching[i] != 0, work, result.data());
       sum += result[0];
     }
     times.push_back(std::chrono::duration<double>(Clock::now() - start).count() / static_cast<double>(count));

@@ -22,6 +22,8 @@ GasLaw gas_law(const Gas& gas, const Structure& s, double damping_of_unit_qualit
       return NearContactFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
     case GasModel::guo_alexeenko:
       return GuoAlexeenkoFilm{.mean_free_path = lambda, .width = s.width, .thickness = s.thickness};
+    case GasModel::reynolds:
+      return SlipFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
     case GasModel::linear:
       return LinearDamper{.damping = std::isnan(gas.damping) ? damping_of_unit_quality / gas.quality_factor : gas.damping};
     case GasModel::strip:
@@ -54,8 +56,9 @@ std::vector<std::string> gas_warnings(const Device& device, const Trajectory& tr
     if (h > 0) largest = std::max(largest, squeeze_number(gas, device.structure.width, h, std::abs(p.velocity) / h));
   }
   if (largest > law.most_squeeze) {
-    warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: the film is compressed, not squeezed out",
-                                   law.name, largest, law.most_squeeze));
+    warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: {}", law.name, largest, law.most_squeeze,
+                                   is_compressible(law.model) ? "its boundary layers are too thin to be resolved"
+                                                              : "the film is compressed, not squeezed out"));
   }
   return warnings;
 }

@@ -13,13 +13,15 @@
 #include "model/gas/guo_alexeenko.h"
 #include "model/gas/linear_damper.h"
 #include "model/gas/near_contact.h"
+#include "model/gas/slip.h"
 #include "model/gas/strip.h"
 #include "model/gas/veijola.h"
 #include "model/trajectory.h"
 
 namespace softland {
 
-using GasLaw = std::variant<StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm, GuoAlexeenkoFilm, LinearDamper>;
+using GasLaw =
+    std::variant<StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm, GuoAlexeenkoFilm, SlipFilm, LinearDamper>;
 
 /// Name in a scene, and where the law holds.
 struct GasModelEntry {
@@ -41,11 +43,13 @@ inline constexpr std::array gas_models{
                   .least_knudsen = 1 / NearContactFilm::rarefied,
                   .most_squeeze = incompressible},
     GasModelEntry{.model = GasModel::guo_alexeenko, .name = "guo-alexeenko"},
+    GasModelEntry{.model = GasModel::reynolds, .name = "reynolds", .most_knudsen = 0.1, .most_squeeze = 1000},
     GasModelEntry{.model = GasModel::linear, .name = "linear"}};
 
 [[nodiscard]] const GasModelEntry& entry(GasModel model);
 
-/// `damping_of_unit_quality` is the damping per length that gives the first mode a quality factor of one [N s/m^2].
+/// Of the compressible film its incompressible limit. `damping_of_unit_quality` is the damping per length that gives the first
+/// mode a quality factor of one [N s/m^2].
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double damping_of_unit_quality);
 
 /// c in f = -c v [N s/m^2] at this gap [m].

@@ -195,13 +195,14 @@ TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas) {
 
 TEST(Effects, PrintATableAndTheAgreedJson) {
   const Workplace here;
-  const Outcome table = here.run({"effects", "gold.toml"}), data = here.run({"effects", "gold.toml", "--json", "-"});
+  const Outcome table = here.run({"effects", "gold.toml", "--set", "simulate.duration=60 us"});
+  const Outcome data = here.run({"effects", "gold.toml", "--set", "simulate.duration=60 us", "--json", "-"});
   EXPECT_EQ(table.status, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("* strip"));
   EXPECT_THAT(table.out, HasSubstr("The gas laws differ on this scene"));
   const json j = json::parse(data.out);
   EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "effects", "relative_spread", "scene", "version", "command"}));
-  EXPECT_EQ(j["effects"].size(), 6U);
+  EXPECT_EQ(j["effects"].size(), 7U);
   EXPECT_EQ(keys(j["effects"][0]),
             (std::set<std::string>{"section", "choice", "in_scene", "status", "magnitude", "dimensionless_group", "metrics",
                                    "relative_change", "rhs_s", "warnings"}));

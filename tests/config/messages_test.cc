@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{R"(kind = "cantilever")", "kind = \"clamped-clamped\"\nstretching = 1", "x.toml:4: structure.stretching = 1: expected true or false"},
     structure_line(R"(modes = "auto")", R"(x.toml:9: structure.modes = "auto": not available yet)"),
     Edit{R"(model = "strip")", R"(model = "veijolla")", R"(x.toml:15: gas.model = "veijolla": unknown value (did you mean 'veijola'?))"},
-    Edit{R"(model = "strip")", R"(model = "linear")", R"(x.toml:16: gas.viscosity = "1.86e-5 Pa s": belongs to model = "strip" or "veijola" or "gallis-torczynski" or "near-contact" or "guo-alexeenko", not to "linear")"},
+    Edit{R"(model = "strip")", R"(model = "linear")", R"(x.toml:16: gas.viscosity = "1.86e-5 Pa s": belongs to model = "strip" or "veijola" or "gallis-torczynski" or "near-contact" or "guo-alexeenko" or "reynolds", not to "linear")"},
     Edit{R"(viscosity = "1.86e-5 Pa s")", R"(damping = "1 N s/m^2")", R"(x.toml:16: gas.damping = "1 N s/m^2": belongs to model = "linear", not to "strip")"},
     Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"", R"(model = "linear")", "x.toml:14: [gas]: missing key 'damping' or 'quality_factor'"},
     Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"", "model = \"linear\"\nquality_factor = 5\ndamping = \"1 N s/m^2\"", "x.toml:17: gas.damping = \"1 N s/m^2\": cannot stand beside gas.quality_factor = 5: give one of them"},
@@ -260,6 +260,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, BadPlate, testing::Values(
     Edit{"thickness = \"3 um\"\n", "", R"(x.toml:10: [electrode.main]: fringing = "meijs-fokkema" needs structure.width and structure.thickness on a plate; fringing = "none" does not)"},
     Edit{"width = \"100 um\"\nthickness = \"3 um\"\n[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]", "[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]\nfringing = \"none\"", R"(x.toml:13: gas.model = "strip": needs structure.width on a plate)"},
     Edit{"[gas]", "[piezo]\nspan = [\"0 um\", \"9 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n[gas]", "x.toml:13: [piezo]: a plate does not bend; a layer needs a beam"},
+    Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"\n[contact]\nmodel = \"linear\"\nstiffness = \"312 N/m\"", "model = \"reynolds\"\n[contact]\nmodel = \"rigid\"\nrestitution = 0.5", R"(x.toml:16: contact.model = "rigid": not with gas.model = "reynolds", whose film still flows under a plate that rests)"},
     Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\npad_length = \"1 mm\"", R"(x.toml:19: contact.pad_length = "1 mm": must be less than structure.area / structure.width)"}));
 // clang-format on
 

@@ -149,6 +149,12 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
   EXPECT_NO_THROW(expect_valid(
       [](Device& d) { d.contact = Contact{.model = ContactModel::hysteretic, .stiffness = 100, .unloading_stiffness = 200}; }));
   EXPECT_NO_THROW(expect_valid([](Device& d) { d.contact = Contact{.model = ContactModel::rigid, .restitution = 0}; }));
+  expect(
+      [](Device& d) {
+        d.contact = Contact{.model = ContactModel::rigid, .restitution = 0};
+        d.gas->model = GasModel::reynolds;
+      },
+      "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
   for (const double e : {-0.1, 1.0, std::nan("")}) {
     expect([e](Device& d) { d.contact = Contact{.model = ContactModel::rigid, .restitution = e}; },
            "contact.restitution = " +

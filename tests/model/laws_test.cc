@@ -337,8 +337,8 @@ Law gas_law_of_type(double width, double free_path, double viscosity = 1.86e-5_P
 
 template <class Law>
 class GasLawOfType : public testing::Test {};
-using GasLaws =
-    testing::Types<StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm, GuoAlexeenkoFilm, LinearDamper>;
+using GasLaws = testing::Types<StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm, GuoAlexeenkoFilm, SlipFilm,
+                               LinearDamper>;
 TYPED_TEST_SUITE(GasLawOfType, GasLaws);
 
 TYPED_TEST(GasLawOfType, OpposesTheMotionAndTakesItsEnergy) {
@@ -365,6 +365,14 @@ TYPED_TEST(GasLawOfType, DualSlopesAreTheComplexStepDerivatives) {
       EXPECT_NEAR(law.load(Dual(h, 1), Dual(0.2)).slope, by_gap, 1e-12 * std::abs(by_gap));
       EXPECT_NEAR(law.load(Dual(h), Dual(0.2, 1)).slope, by_velocity, 1e-13 * std::abs(by_velocity));
     }
+  }
+}
+
+TEST(SlipFilm, IsTheStripFilmThinnedBySlip) {
+  for (const double h : gaps) {
+    const double strip = StripSqueezeFilm{.viscosity = 1.86e-5, .width = 20_um}.load(h, 1.0);
+    const double slip = SlipFilm{.viscosity = 1.86e-5, .mean_free_path = 65_nm, .width = 20_um}.load(h, 1.0);
+    EXPECT_NEAR(slip * (1 + 6 * 65_nm / h), strip, 1e-12 * std::abs(strip));
   }
 }
 

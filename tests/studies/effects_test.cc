@@ -35,7 +35,8 @@ SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {})
 TEST(Effects, CompareEveryGasLawWithTheScenesOwn) {
   const Prepared p = prepare(gold_at_17_volts());
   const Effects effects = compare_effects(p);
-  EXPECT_THAT(choices(effects), ElementsAre("none", "strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko"));
+  EXPECT_THAT(choices(effects),
+              ElementsAre("none", "strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko", "reynolds"));
   const Effect& own = effects.own("gas");
   EXPECT_EQ(own.choice, "strip");
   const Metrics alone = simulate(p, false).metrics;

@@ -1,0 +1,26 @@
+// Squeezed gas film under a long strip: incompressible, with slip at the walls. The limit of the compressible film
+// (reynolds_film.h) for slow motion.
+//
+//   f = -mu (a / h)^3 v / (1 + 6 lambda / h)     [N/m], positive towards the electrode
+//
+// mu viscosity [Pa s], a width [m], h local gap [m], lambda mean free path [m], v velocity towards the electrode [m/s]. Valid for
+// lambda / h below about 0.1, squeeze numbers below about 10, strips much longer than wide. Singular at h = 0. Source: Burgdorfer
+// 1959, J. Basic Eng. 81, 94-99.
+#pragma once
+
+namespace softland {
+
+struct SlipFilm {
+  double viscosity = 0;       ///< [Pa s]
+  double mean_free_path = 0;  ///< [m]
+  double width = 0;           ///< [m]
+  static constexpr bool driven = false;
+
+  /// [N/m]
+  template <class S>
+  S load(S gap, S velocity) const {
+    return S(-viscosity * width * width * width) * velocity / (gap * gap * (gap + S(6 * mean_free_path)));
+  }
+};
+
+}  // namespace softland
