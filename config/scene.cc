@@ -66,7 +66,7 @@ Structure read_structure(const SectionReader& in) {
               .thickness = in.number("thickness"),
               .youngs_modulus = in.number("youngs_modulus"),
               .density = in.number("density"),
-              .modes = in.integer("modes"),
+              .modes = in.is_word("modes") ? Structure{}.modes : in.integer("modes"),
               .damping_ratio = in.number("damping_ratio"),
               .plate_strain = in.flag("plate_strain"),
               .poissons_ratio = in.number("poissons_ratio")};
@@ -323,6 +323,7 @@ Scene read_scene(const SceneFile& file) {
   Scene scene{.title = SectionReader(impl, "").text("title"),
               .device = read_device(impl),
               .simulate = read_simulate(SectionReader(impl, "simulate")),
+              .auto_modes = SectionReader(impl, "structure").is_word("modes"),
               .metrics = {.significant_rebound = SectionReader(impl, "metrics").number("significant_rebound")},
               .need_pull_in = {},
               .warnings = {},

@@ -74,6 +74,7 @@ struct Scene {
   std::string title;
   Device device;
   SimulateOptions simulate;
+  bool auto_modes = false;  ///< modes = "auto": device has the default number until someone chooses (studies/auto_modes.h)
   MetricsOptions metrics;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;

@@ -34,6 +34,7 @@ struct Key {
   std::size_t count = 0;  ///< quantities: how many; 0: any number
   std::vector<std::string_view> choices = {};
   std::vector<std::string_view> pending = {};  ///< choices of the design that do not exist yet
+  std::vector<std::string_view> words = {};    ///< integer: what may stand instead of a number
   std::string_view fallback = {};              ///< the default as TOML; empty: none
   bool required = false;
   std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty: all

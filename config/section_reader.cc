@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/require.h"
 
@@ -19,7 +20,8 @@ std::string wanted(const Key& key) {
     case KeyType::flag:
       return "true or false";
     case KeyType::integer:
-      return "a whole number";
+      return std::accumulate(key.words.begin(), key.words.end(), std::string("a whole number"),
+                             [](std::string all, std::string_view word) { return all + " or " + toml_string(word); });
     case KeyType::choice:
       return fmt::format("one of {}", fmt::join(key.choices, ", "));
     case KeyType::quantity:
@@ -168,9 +170,7 @@ SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node
         if (!key.range.contains(static_cast<double>(integer->get()))) throw InvalidInput(key.range.rule(""));
         return integer->get();
       }
-      if (text && std::find(key.pending.begin(), key.pending.end(), text->get()) != key.pending.end()) {
-        throw InvalidInput("not available yet");
-      }
+      if (text && std::find(key.words.begin(), key.words.end(), text->get()) != key.words.end()) return text->get();
       break;
     case KeyType::quantity:
       return std::vector{parse_number(key, node)};
@@ -209,6 +209,10 @@ std::vector<double> SectionReader::numbers(std::string_view key) const {
 }
 
 int SectionReader::integer(std::string_view key) const { return static_cast<int>(std::get<std::int64_t>(values_.at(key))); }
+bool SectionReader::is_word(std::string_view key) const {
+  const auto found = values_.find(key);
+  return found != values_.end() && std::holds_alternative<std::string>(found->second);
+}
 bool SectionReader::flag(std::string_view key) const { return std::get<bool>(values_.at(key)); }
 const std::string& SectionReader::text(std::string_view key) const { return std::get<std::string>(values_.at(key)); }
 

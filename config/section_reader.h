@@ -35,6 +35,8 @@ class SectionReader {
   [[nodiscard]] const std::vector<Quantity>& quantities(std::string_view key) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view key) const;
   [[nodiscard]] int integer(std::string_view key) const;
+  /// Whether a word stands where a number could.
+  [[nodiscard]] bool is_word(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key) const;
   /// Of a text or a choice.
   [[nodiscard]] const std::string& text(std::string_view key) const;

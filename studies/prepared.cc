@@ -6,6 +6,7 @@
 
 #include "base/require.h"
 #include "model/constants.h"
+#include "studies/auto_modes.h"
 
 namespace softland {
 
@@ -38,8 +39,15 @@ std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
 // tolerance.
 double tolerance_for(double accuracy) { return std::clamp(accuracy / 100, 1e-12, 1e-4); }
 
-Prepared prepare(const SceneFile& file, bool default_limits) {
+Prepared prepare(const SceneFile& given, bool default_limits) {
+  SceneFile file = given;
   Scene scene = read_scene(file);
+  if (scene.auto_modes) {
+    const AutoModes chosen = choose_modes(file);
+    file.set(fmt::format("structure.modes={}", chosen.modes));
+    scene = read_scene(file);
+    scene.warnings.push_back(chosen.note());
+  }
   Prepared p{.scene = scene, .device = Switch(scene.device)};
   for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) {
     const std::string& name = scene.device.electrodes[k].name;

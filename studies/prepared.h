@@ -43,9 +43,9 @@ struct Prepared {
 /// Integrator tolerance that delivers a relative `accuracy` of t_i, v_i and B_H.
 [[nodiscard]] double tolerance_for(double accuracy);
 
-/// Reads, composes and resolves a scene; pull-in voltages are computed for the electrodes that need them (and, with
-/// `default_limits`, for all that have no written limit). Throws InvalidInput for a bad scene, or one whose pull-in voltage is
-/// needed and does not exist.
+/// Reads, composes and resolves a scene; modes = "auto" is replaced by the number chosen, with a warning that says so; pull-in
+/// voltages are computed for the electrodes that need them (and, with `default_limits`, for all that have no written limit).
+/// Throws InvalidInput for a bad scene, or one whose pull-in voltage is needed and does not exist.
 [[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false);
 
 }  // namespace softland

@@ -133,6 +133,13 @@ contact = "2 um"
   EXPECT_EQ(film.poissons_ratio, 0.44);
 }
 
+TEST(Scene, ModesMayBeLeftToTheStudies) {
+  const Scene scene = read(edited(small_scene, "[gap]", "modes = \"auto\"\n[gap]"));
+  EXPECT_TRUE(scene.auto_modes);
+  EXPECT_EQ(scene.device.structure.modes, Structure{}.modes);
+  EXPECT_FALSE(read(std::string(small_scene)).auto_modes);
+}
+
 TEST(Scene, APlateIsAStripOfItsAreaAndWidth) {
   const Device d = read_file("purdue-nickel.toml").device;
   EXPECT_EQ(d.structure.kind, StructureKind::plate);

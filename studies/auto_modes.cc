@@ -1,0 +1,82 @@
+#include "studies/auto_modes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "model/closing.h"
+#include "model/constants.h"
+#include "objectives/metrics.h"
+#include "studies/prepared.h"
+
+namespace softland {
+namespace {
+
+constexpr int most_modes = 20;          // of a scene
+constexpr double run_tolerance = 1e-6;  // of the integrator: errors far below auto_modes_tolerance
+constexpr double least_share = 0.01;    // of what a closing is like, below which a figure is as good as zero
+
+struct Figure {
+  double value, scale;
+};
+
+std::vector<Figure> figures(const SceneFile& file, int modes) {
+  SceneFile with = file;
+  with.set(fmt::format("structure.modes={}", modes));
+  const Prepared p = prepare(with);
+  const double omega = p.device.angular_frequencies()[0], gap = p.scene.device.gap.contact;
+  const Trajectory t = simulate_closing(
+      p.device, p.signals(),
+      {.duration = p.duration, .tolerance = std::max(run_tolerance, p.tolerance), .after_contact = 2 * pi / omega});
+  const Metrics m = metrics(t, p.scene.metrics);
+  std::vector<Figure> list{{m.initial_contact_time, 1 / omega}, {m.impact_velocity, gap * omega}, {m.major_bounce_height, gap}};
+  for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
+    const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
+    const StaticPullIn statically = known == p.pull_in.end() ? static_pull_in(p.device, k) : known->second.statically;
+    list.push_back({statically.voltage, 0});
+    if (known != p.pull_in.end()) list.push_back({known->second.dynamically.voltage, 0});
+  }
+  return list;
+}
+
+// The largest relative change of any figure; one that comes or goes has changed entirely.
+double change(const std::vector<Figure>& from, const std::vector<Figure>& to) {
+  double most = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double a = from[i].value, b = to[i].value;
+    if (std::isnan(a) && std::isnan(b)) continue;
+    const double relative = std::abs(b - a) / std::max(std::abs(a), least_share * from[i].scale);
+    most = std::max(most, std::isfinite(relative) ? relative : a == b ? 0 : 1);
+  }
+  return most;
+}
+
+}  // namespace
+
+std::string AutoModes::note() const {
+  return settled() ? fmt::format(R"(structure.modes = "auto": {} modes; further ones move no figure by more than {:.2g} %)",
+                                 modes, 100 * moved)
+                   : fmt::format(R"(structure.modes = "auto": {} modes, but further ones still move a figure by {:.2g} %)", modes,
+                                 100 * moved);
+}
+
+AutoModes choose_modes(const SceneFile& file) {
+  const bool both_clamped = read_scene(file).device.structure.kind == StructureKind::clamped_clamped;
+  const int further = both_clamped ? 6 : 3;
+  std::vector<std::vector<Figure>> known;
+  AutoModes found;
+  for (int modes = 1; modes + further <= most_modes; ++modes) {
+    found = {.modes = modes};
+    for (int more = 1; more <= further && found.settled(); ++more) {
+      while (static_cast<int>(known.size()) < modes + more) known.push_back(figures(file, static_cast<int>(known.size()) + 1));
+      found.moved = std::max(
+          found.moved, change(known[static_cast<std::size_t>(modes - 1)], known[static_cast<std::size_t>(modes + more - 1)]));
+    }
+    if (found.settled()) break;
+  }
+  return found;
+}
+
+}  // namespace softland

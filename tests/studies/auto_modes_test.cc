@@ -1,0 +1,66 @@
+// modes = "auto".
+#include "studies/auto_modes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scenes.h"
+#include "studies/simulate.h"
+
+namespace softland {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+SceneFile gold_at_17_volts(const char* modes) {
+  SceneFile file = gold(
+      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
+  file.set(std::string("structure.modes=") + modes);
+  return file;
+}
+
+double rebound(const char* modes) { return simulate(prepare(gold_at_17_volts(modes)), false).metrics.major_bounce_height; }
+
+TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
+  // Three to five modes agree, and are wrong by a tenth.
+  const double converged = rebound("14");
+  EXPECT_NEAR(rebound("3"), rebound("4"), auto_modes_tolerance * rebound("4"));
+  EXPECT_NEAR(rebound("4"), rebound("5"), auto_modes_tolerance * rebound("5"));
+  EXPECT_GT(std::abs(rebound("4") - converged), 0.08 * converged);
+
+  const AutoModes found = choose_modes(gold_at_17_volts("auto"));
+  EXPECT_TRUE(found.settled());
+  EXPECT_GE(found.modes, 8);
+  EXPECT_LE(found.modes, 11);
+  EXPECT_NEAR(rebound(std::to_string(found.modes).c_str()), converged, 2 * auto_modes_tolerance * converged);
+}
+
+TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
+  const Prepared p = prepare(gold_at_17_volts("auto"));
+  const int modes = p.scene.device.structure.modes;
+  EXPECT_EQ(p.device.modes(), modes);
+  EXPECT_FALSE(p.scene.auto_modes);
+  const std::string note =
+      R"(structure.modes = "auto": )" + std::to_string(modes) + " modes; further ones move no figure by more than ";
+  EXPECT_THAT(p.scene.warnings, Contains(HasSubstr(note)));
+  EXPECT_THAT(resolved(p.scene, p.voltage_units()).text(), HasSubstr("modes = " + std::to_string(modes) + "\n"));
+}
+
+TEST(AutoModes, OfASwitchThatDoesNotCloseSettleItsPullInVoltage) {
+  SceneFile file = gold_at_17_volts("auto");
+  file.set("waveform.main.level=3 V");
+  const AutoModes found = choose_modes(file);
+  EXPECT_EQ(found.modes, 1) << "one mode gives Vsp within 0.1 %";
+  EXPECT_LT(found.moved, 0.002);
+}
+
+TEST(AutoModes, BetweenTwoClampsLookBeyondTheAntisymmetricModes) {
+  const AutoModes found =
+      choose_modes(scene("hung-senturia.toml", {"structure.modes=auto", "gas.model=veijola", "simulate.accuracy=1e-4"}));
+  EXPECT_TRUE(found.settled());
+  EXPECT_EQ(found.modes % 2, 1) << "an antisymmetric mode adds nothing";
+}
+
+}  // namespace
+}  // namespace softland
