@@ -10,6 +10,7 @@
 #include "config/section_reader.h"
 #include "model/beam.h"
 #include "model/gas/gas_law.h"
+#include "model/surface.h"
 
 namespace softland {
 namespace {
@@ -28,7 +29,7 @@ Conductor conductor(const std::string& name) { return name == "gold" ? Conductor
 void check_section_names(const SceneFile::Impl& file) {
   std::vector<std::string_view> known;
   for (const internal::Section& section : internal::schema()) {
-    if (!section.pending && !section.name.empty() && section.entry.empty()) known.push_back(section.name);
+    if (!section.name.empty() && section.entry.empty()) known.push_back(section.name);
   }
   for (const auto& [name, node] : file.root) {
     if (internal::find_section("")->find(name.str())) continue;
@@ -39,7 +40,6 @@ void check_section_names(const SceneFile::Impl& file) {
       known.push_back("title");
       file.fail(path, "unknown key" + internal::hint(name.str(), known));
     }
-    if (section->pending) file.fail_section(path, "not available yet");
   }
 }
 
@@ -80,8 +80,6 @@ Structure read_structure(const SectionReader& in) {
   s.residual_stress = in.number("residual_stress");
   s.biaxial = in.flag("biaxial");
   s.stretching = in.flag("stretching");
-  const std::string buckled = why_buckled(s);
-  in.require(buckled.empty(), "residual_stress", buckled);
   return s;
 }
 
@@ -89,6 +87,13 @@ Gap read_gap(const SectionReader& in) {
   const Gap gap{.electrode = in.number("electrode"), .contact = in.number("contact")};
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
   return gap;
+}
+
+Surface read_surface(const SectionReader& in) {
+  return {.elastic_modulus = in.number("elastic_modulus"),
+          .residual_stress = in.number("residual_stress"),
+          .faces = in.text("faces") == "wide" ? SurfaceFaces::wide : SurfaceFaces::all,
+          .cantilever_load = in.text("cantilever_load") == "compression" ? ResidualLoad::compression : ResidualLoad::none};
 }
 
 /// What a law per length needs to know of a plate, if this is one.
@@ -226,8 +231,16 @@ Device read_device(const SceneFile::Impl& file) {
                "not with gas.model = \"reynolds\", whose film still flows under a plate that rests");
   }
   if (const SectionReader in(file, "dispersion"); in.is_present()) device.dispersion = read_dispersion(in, device.gap);
+  if (const SectionReader in(file, "surface"); in.is_present()) {
+    device.surface = read_surface(in);
+    if (const std::string wrong = why_no_surface(device); !wrong.empty()) file.fail_section(in.path(), wrong);
+  } else if (device.structure.kind == StructureKind::clamped_clamped) {
+    const std::string buckled = why_buckled(device.structure);
+    structure.require(buckled.empty(), "residual_stress", buckled);
+  }
   if (const SectionReader in(file, "piezo"); in.is_present()) {
     if (is_plate(structure)) file.fail_section(in.path(), "a plate does not bend; a layer needs a beam");
+    if (device.surface) file.fail_section(in.path(), "covers a face of the beam; [surface] is for a bare beam");
     if (device.structure.kind == StructureKind::clamped_clamped) {
       file.fail_section(in.path(),
                         "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and "
@@ -298,6 +311,12 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   if (device.electrodes.empty() && !device.piezo && !file.find({"waveform", "dispersion"})) {
     warnings.push_back(file.name + ": neither an electrode nor a piezo layer: nothing drives this switch");
   }
+  if (const auto& surface = device.surface; surface && surface->residual_stress != 0 &&
+                                            device.structure.kind == StructureKind::cantilever &&
+                                            surface->cantilever_load == ResidualLoad::none) {
+    warnings.push_back(fmt::format(
+        "{}: surface.residual_stress does nothing to a cantilever unless surface.cantilever_load says so", file.name));
+  }
   constexpr double wide = 5;          // width over thickness from which the beam bends more like a plate
   constexpr double rounding = 1e-12;  // 20 um is not more than five times 4 um, whatever the last bit says
   const Structure& structure = device.structure;
@@ -356,7 +375,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   toml::table root;
   for (const internal::Section& section : internal::schema()) {
     const std::string name(section.name);
-    if (section.pending || name == "waveform" || name == "driver") continue;
+    if (name == "waveform" || name == "driver") continue;
     if (name.empty()) {
       root = SectionReader(impl, "").with_defaults();
     } else if (!section.is_named) {

@@ -33,9 +33,8 @@ struct Key {
   Range range = {};
   std::size_t count = 0;  ///< quantities: how many; 0: any number
   std::vector<std::string_view> choices = {};
-  std::vector<std::string_view> pending = {};  ///< choices of the design that do not exist yet
-  std::vector<std::string_view> words = {};    ///< integer: what may stand instead of a number
-  std::string_view fallback = {};              ///< the default as TOML; empty: none
+  std::vector<std::string_view> words = {};  ///< integer: what may stand instead of a number
+  std::string_view fallback = {};            ///< the default as TOML; empty: none
   bool required = false;
   std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty: all
   std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
@@ -53,7 +52,6 @@ struct Section {
   bool required = false;
   bool always_in_force = false;    ///< its defaults hold when the section is absent
   bool may_vary = false;           ///< [spread] may name its numbers
-  bool pending = false;            ///< part of the design that does not exist yet
   std::string_view selector = {};  ///< the key whose choice decides which other keys there are
   std::vector<Key> keys = {};
   std::string_view about = {};

@@ -12,6 +12,7 @@
 #include "base/require.h"
 #include "model/constants.h"
 #include "model/gauss.h"
+#include "model/surface.h"
 
 namespace softland {
 namespace {
@@ -64,8 +65,9 @@ double bending_modulus(const Structure& s) {
   return s.plate_strain ? s.youngs_modulus / (1 - s.poissons_ratio * s.poissons_ratio) : s.youngs_modulus;
 }
 
-CompositeSection plain_section(const Structure& s) {
-  return {.rigidity = bending_modulus(s) * s.width * std::pow(s.thickness, 3) / 12,
+CompositeSection plain_section(const Structure& s, const std::optional<Surface>& surface) {
+  const double skins = surface ? surface_rigidity(*surface, s) : 0;
+  return {.rigidity = bending_modulus(s) * s.width * std::pow(s.thickness, 3) / 12 + skins,
           .mass_per_length = s.density * s.width * s.thickness};
 }
 
@@ -84,25 +86,28 @@ double piezo_moment_per_volt(const Structure& s, const Piezo& p) {
 
 double axial_stress(const Structure& s) { return s.residual_stress * (s.biaxial ? 1 - s.poissons_ratio : 1); }
 
-double buckling_stress(const Structure& s) {
-  const double slenderness = 2 * pi / s.length;
-  return slenderness * slenderness * plain_section(s).rigidity / (s.width * s.thickness);
+BeamSupport beam_support(const Structure& s, const std::optional<Surface>& surface) {
+  const double pull = surface ? surface_pull(*surface, s) : 0;
+  if (s.kind == StructureKind::clamped_clamped) {
+    return {.far_clamp = true, .axial_force = axial_stress(s) * s.width * s.thickness + pull};
+  }
+  return {.axial_force = surface && surface->cantilever_load == ResidualLoad::compression ? -pull : 0};
 }
 
-std::string why_buckled(const Structure& s) {
-  const double stress = axial_stress(s), limit = -buckling_stress(s);
+double buckling_stress(const Structure& s, const std::optional<Surface>& surface) {
+  const double slenderness = (s.kind == StructureKind::clamped_clamped ? 2 * pi : pi / 2) / s.length;
+  return slenderness * slenderness * plain_section(s, surface).rigidity / (s.width * s.thickness);
+}
+
+std::string why_buckled(const Structure& s, const std::optional<Surface>& surface) {
+  const double stress = beam_support(s, surface).axial_force / (s.width * s.thickness), limit = -buckling_stress(s, surface);
   if (stress > limit) return {};
   return fmt::format("leaves {:.4g} MPa along the beam, which buckles at {:.4g} MPa", stress / 1e6, limit / 1e6);
 }
 
-BeamSupport beam_support(const Structure& s) {
-  if (s.kind != StructureKind::clamped_clamped) return {};
-  return {.far_clamp = true, .axial_force = axial_stress(s) * s.width * s.thickness};
-}
-
 std::vector<BeamSection> beam_sections(const Device& device) {
   const Structure& s = device.structure;
-  const CompositeSection plain = plain_section(s);
+  const CompositeSection plain = plain_section(s, device.surface);
   std::vector<BeamSection> sections;
   const auto add = [&](double begin, double end, const CompositeSection& c) {
     if (end > begin)
@@ -188,17 +193,17 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
 void BeamModes::support_by(const BeamSupport& support, const Eigen::MatrixXd& slopes) {
   const Eigen::Index total = mass_.rows();
   basis_ = Eigen::MatrixXd::Identity(total, total);
-  if (!support.far_clamp) {
-    require(support.axial_force == 0, "a free end carries no axial force");
+  if (support.far_clamp) {
+    Eigen::MatrixXd held(total, 2);  // what must vanish: value and slope at the far end
+    held << shape(1, 0).transpose(), shape(1, 1).transpose();
+    basis_ = complement(held);
+  } else if (support.axial_force == 0) {
     return;
   }
-  Eigen::MatrixXd held(total, 2);  // what must vanish: value and slope at the far end
-  held << shape(1, 0).transpose(), shape(1, 1).transpose();
-  basis_ = complement(held);
   const double force = support.axial_force * length_ * length_ / rigidity_;
   if (force != 0) {
     const Eigen::MatrixXd stiffness =
-        Eigen::MatrixXd::Identity(total - 2, total - 2) + force * basis_.transpose() * slopes * basis_;
+        Eigen::MatrixXd::Identity(basis_.cols(), basis_.cols()) + force * basis_.transpose() * slopes * basis_;
     const Eigen::LLT<Eigen::MatrixXd> root(stiffness);
     require(root.info() == Eigen::Success,
             fmt::format("axial force {}: beyond the buckling load of the beam", engineering(support.axial_force, "N")));

@@ -2,7 +2,7 @@
 // clamped, under an axial force.
 //
 //   (EI(x) phi'')'' - N phi'' = omega^2 mu(x) phi,   phi(0) = phi'(0) = 0
-//   free:     (EI phi'')(L) = (EI phi'')'(L) = 0, N = 0          clamped:  phi(L) = phi'(L) = 0
+//   free:     (EI phi'')(L) = (EI phi'')'(L) - N phi'(L) = 0          clamped:  phi(L) = phi'(L) = 0
 //
 // EI rigidity [N m^2], N axial force, positive in tension [N], mu mass per length [kg/m], omega [rad/s]. Modes are
 // mass-normalised, integral of mu phi_i phi_j = delta_ij, so phi has the unit kg^(-1/2), and positive at the free end; between
@@ -17,6 +17,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,8 +42,8 @@ struct CompositeSection {
 
 /// E of the beam [Pa], or E / (1 - nu^2) with plate_strain.
 [[nodiscard]] double bending_modulus(const Structure& structure);
-/// The bare beam's section.
-[[nodiscard]] CompositeSection plain_section(const Structure& structure);
+/// The bare beam's section, with the skins it may have.
+[[nodiscard]] CompositeSection plain_section(const Structure& structure, const std::optional<Surface>& surface = {});
 /// Beam with piezo layer (Zheng, Chen & Chen 2017, eqs. 5-6, equal widths).
 [[nodiscard]] CompositeSection layered_section(const Structure& structure, const Piezo& piezo);
 /// Bending moment of the layer per volt, e31 a (z_c - bp / 2) with e31 = d31 Ep [N m / V]: negative for d31 < 0.
@@ -52,22 +53,24 @@ struct CompositeSection {
 /// What residual_stress leaves in the released beam between two clamps [Pa]: all of a stress along the beam; of the equal biaxial
 /// stress of a film, sigma (1 - nu), since the beam's sides are free and its strain along the beam is held.
 [[nodiscard]] double axial_stress(const Structure& structure);
-/// Compressive stress at which the beam between two clamps buckles, 4 pi^2 E I / (A L^2) [Pa]: E as bending_modulus().
-[[nodiscard]] double buckling_stress(const Structure& structure);
+/// Compressive stress at which the beam buckles [Pa], E I as plain_section(): 4 pi^2 E I / (A L^2) between two clamps, a
+/// sixteenth of that with a free end.
+[[nodiscard]] double buckling_stress(const Structure& structure, const std::optional<Surface>& surface = {});
 
-/// Why the beam cannot rest straight between two clamps under its axial stress; empty when it can.
-[[nodiscard]] std::string why_buckled(const Structure& structure);
+/// Why the beam cannot rest straight under its axial stress; empty when it can.
+[[nodiscard]] std::string why_buckled(const Structure& structure, const std::optional<Surface>& surface = {});
 
 struct BeamSupport {
   bool far_clamp = false;  ///< the end at L is clamped as well
-  double axial_force = 0;  ///< N, positive in tension; only between two clamps [N]
+  double axial_force = 0;  ///< N, positive in tension [N]
 };
-[[nodiscard]] BeamSupport beam_support(const Structure& structure);
+/// Clamps, and the axial force that residual stresses of bulk and surfaces leave.
+[[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
 
 class BeamModes {
  public:
   /// The first `modes` modes. Throws InvalidInput unless sections join, are positive, modes is in [1, 40], and the axial force is
-  /// 0 on a free end and above the buckling load between two clamps.
+  /// above the buckling load.
   BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {});
 
   [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }

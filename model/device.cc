@@ -7,6 +7,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/beam.h"
+#include "model/surface.h"
 
 namespace softland {
 namespace {
@@ -64,7 +65,7 @@ void validate(const Device& d) {
   if (s.kind == StructureKind::clamped_clamped) {
     require(!s.biaxial || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
             fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio));
-    const std::string buckled = why_buckled(s);
+    const std::string buckled = d.surface ? std::string() : why_buckled(s);
     require(buckled.empty() && s.residual_stress < 1e30,
             fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"), buckled));
     require(
@@ -144,6 +145,10 @@ void validate(const Device& d) {
     positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");
     positive(p.density, "kg/m^3", "piezo.density");
     require(p.d31 > -1 && p.d31 < 1, fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")));
+  }
+  if (d.surface) {
+    const std::string wrong = why_no_surface(d);
+    require(wrong.empty(), "surface: " + wrong);
   }
   if (d.dispersion && d.dispersion->model != DispersionModel::casimir) {
     const Dispersion& v = *d.dispersion;

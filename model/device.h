@@ -112,6 +112,17 @@ struct Dispersion {
   double equilibrium_distance = 0;         ///< h0 [m], where attraction and repulsion balance; 0: no repulsion
 };
 
+enum class SurfaceFaces { all, wide };
+enum class ResidualLoad { none, compression };
+
+/// Skins of a thin beam: see model/surface.h.
+struct Surface {
+  double elastic_modulus = 0;  ///< E_s [N/m], of either sign
+  double residual_stress = 0;  ///< tau_0 [N/m], positive where the surface pulls
+  SurfaceFaces faces = SurfaceFaces::all;
+  ResidualLoad cantilever_load = ResidualLoad::none;  ///< what tau_0 does to a cantilever
+};
+
 struct Device {
   Structure structure = {};
   Gap gap = {};
@@ -120,6 +131,7 @@ struct Device {
   std::optional<Contact> contact = {};
   std::optional<Piezo> piezo = {};
   std::optional<Dispersion> dispersion = {};
+  std::optional<Surface> surface = {};
 
   /// x_c, the centre of the pad [m]: the contact force acts and all figures of merit are taken there. The pad ends at the free
   /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle.

@@ -105,7 +105,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   if (s.kind == StructureKind::plate) {
     move_in(RigidPlate(s), 0, 1);  // the gap is the same everywhere: one point each says it all
   } else {
-    const BeamModes beam(beam_sections(device_), s.modes, beam_support(s));
+    const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface));
     move_in(beam, options.points_per_length, 3);
     if (s.kind == StructureKind::clamped_clamped && s.stretching) {
       stretching_ = {.slopes = beam.slope_products(), .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};

@@ -79,8 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, residual_stress, biaxial, stretching, mass, stiffness, area))"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
-    Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, piezo, dispersion, waveform, driver, simulate, metrics, spread)"},
-    Edit{"[gap]", "[surface]", "x.toml:9: [surface]: not available yet"},
+    Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, piezo, dispersion, surface, waveform, driver, simulate, metrics, spread)"},
     Edit{R"(kind = "cantilever")", R"(kind = "cantilver")", R"(x.toml:3: structure.kind = "cantilver": unknown value (did you mean 'cantilever'?))"},
     Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever, clamped-clamped, plate"},
     Edit{R"(kind = "cantilever")", R"(kind = "clamped-clamped")", "x.toml:21: [piezo]: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its middle line; a layer needs a cantilever"},
@@ -148,6 +147,11 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
 
 const std::string casimir = "[dispersion]\nmodel = \"casimir\"\n";
 const std::string factor = "[waveform.dispersion]\nfamily = \"step\"\n";
+
+INSTANTIATE_TEST_SUITE_P(Surface, BadFile, testing::Values(
+    Edit{"[gas]", "[surface]\n[gas]", "x.toml:22: [piezo]: covers a face of the beam; [surface] is for a bare beam"},
+    Edit{"[gas]", "[surface]\nelastic_modulus = \"-1 MN/m\"\n[gas]", "x.toml:14: [surface]: leaves a bending rigidity of -1.623e-10 N m^2"},
+    Edit{"[gas]", "[surface]\nresidual_stress = \"10 N/m\"\ncantilever_load = \"compression\"\n[gas]", "x.toml:14: [surface]: leaves -5 MPa along the beam, which buckles at -4.106 MPa"}));
 
 INSTANTIATE_TEST_SUITE_P(Dispersion, BadFile, testing::Values(
     Edit{"[gas]", "[dispersion]\n[gas]", "x.toml:14: [dispersion]: missing key 'model' (one of casimir, van-der-waals, auto)"},
@@ -287,7 +291,9 @@ INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
     Options{{"=2 um"}, "--set =2 um: not a key path such as structure.length"},
     Options{{"structure..thickness=2 um"}, "--set structure..thickness=2 um: not a key path such as structure.length"},
     Options{{"structure.length.x=2 um"}, R"(--set structure.length.x=2 um: structure.length = "250 um" is not a section)"},
-    Options{{"surface.residual_stress=1 MPa"}, "--set surface.residual_stress=1 MPa: [surface]: not available yet"},
+    Options{{"surface.residual_stress=1 MPa"}, "--set surface.residual_stress=1 MPa: expected a stiffness [N/m], got a pressure [Pa]"},
+    Options{{"surface.faces=two"}, "--set surface.faces=two: unknown value (known: all, wide)"},
+    Options{{"surface.cantilever_load=tension"}, "--set surface.cantilever_load=tension: unknown value (known: none, compression)"},
     Options{{"gas=3"}, "--set gas=3: expected a section [gas]"},
     Options{{"gap={electrode=\"1 um\", contact=\"2 um\"}"}, R"(--set gap={electrode="1 um", contact="2 um"}: gap.contact = "2 um": must be less than gap.electrode = "1 um")"},
     Options{{"gap={electrode=\"1 um\"}"}, R"(--set gap={electrode="1 um"}: [gap]: missing key 'contact' (a length such as "2 um"))"},

@@ -239,6 +239,30 @@ TEST(Scene, DispersionForcesArrive) {
   EXPECT_EQ(both.equilibrium_distance, 0);
 }
 
+TEST(Scene, SurfacesArrive) {
+  const auto scene = [](const std::string& keys) {
+    const std::string layered(small_scene);
+    return read_scene(SceneFile::parse(layered.substr(0, layered.find("[piezo]")) + "[surface]\n" + keys, "x.toml"));
+  };
+  const Scene given = scene(
+      "elastic_modulus = \"-10.654 N/m\"\nresidual_stress = \"0.6 N/m\"\nfaces = \"wide\"\ncantilever_load = \"compression\"\n");
+  const Surface& surface = *given.device.surface;
+  EXPECT_EQ(surface.elastic_modulus, -10.654);
+  EXPECT_EQ(surface.residual_stress, 0.6);
+  EXPECT_EQ(surface.faces, SurfaceFaces::wide);
+  EXPECT_EQ(surface.cantilever_load, ResidualLoad::compression);
+  const auto told = [](const Scene& s) {
+    return std::count(s.warnings.begin(), s.warnings.end(),
+                      "x.toml: surface.residual_stress does nothing to a cantilever unless surface.cantilever_load says so");
+  };
+  EXPECT_EQ(told(given), 0);
+  const Scene bare = scene("residual_stress = \"0.6 N/m\"\n");
+  EXPECT_EQ(told(bare), 1);
+  EXPECT_EQ(bare.device.surface->elastic_modulus, 0);
+  EXPECT_EQ(bare.device.surface->faces, SurfaceFaces::all);
+  EXPECT_EQ(bare.device.surface->cantilever_load, ResidualLoad::none);
+}
+
 TEST(Scene, ElectrodesComeSortedByName) {
   const Scene scene = read(edited(small_scene, "[gas]", "[electrode.back]\nspan = [\"0 m\", \"50 um\"]\n[gas]"));
   ASSERT_EQ(scene.device.electrodes.size(), 2U);

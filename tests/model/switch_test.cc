@@ -75,6 +75,9 @@ std::vector<Combination> combinations() {
       all.push_back({fmt::format("plate, gas {}, damping {}", gas, damping), plate});
     }
   }
+  Device skinned = test::nano_cantilever();
+  skinned.surface = Surface{.elastic_modulus = -10, .residual_stress = 0.6, .cantilever_load = ResidualLoad::compression};
+  all.push_back({"surface", skinned});
   Device pulled = test::full_plate();
   pulled.dispersion =
       Dispersion{.model = DispersionModel::van_der_waals, .hamaker_constant = 1e-12};  // comparable with its springs
