@@ -24,6 +24,11 @@ CHANGES = [("mem-gold.toml", words, assignments) for words, assignments in (
     ("contact damping", ["contact.damping=1 s/m"]),
     ("2 modes", ["structure.modes=2"]),
     ("8 modes", ["structure.modes=8"]),
+    ("dispersion casimir", ["dispersion.model=casimir"]),
+    ("dispersion casimir, gold", ["dispersion.model=casimir", "dispersion.conductor=gold"]),
+    ("dispersion van-der-waals", ["dispersion.model=van-der-waals", "dispersion.hamaker_constant=4e-19 J"]),
+    ("dispersion auto", ["dispersion.model=auto", "dispersion.hamaker_constant=4e-19 J"]),
+    ("surface", ["surface.elastic_modulus=5 N/m"]),
     ("a second electrode", ['electrode.root.span=["10 um","50 um"]', "waveform.root.family=step", "waveform.root.level=5 V"]),
 )]
 

@@ -28,6 +28,8 @@ const char* role_name(Role role) {
     case Role::baseline:
       return "baseline";
     case Role::evaluations:
+    case Role::third:
+    case Role::fourth:
       break;
   }
   return "evaluations";

@@ -14,13 +14,14 @@ namespace softland::internal {
 using Table = std::map<std::string, std::vector<double>>;
 using Tables = std::map<std::string, Table>;
 
-enum class Role { best, baseline, evaluations };
+/// Whose data a curve shows, which gives it its pen; `third` and `fourth` are for pictures of other than results.
+enum class Role { best, baseline, evaluations, third, fourth };
 enum class Scale { linear, logarithmic };
 
 struct Series {
   std::string table;
   std::string column;
-  std::string label;
+  std::string label;  ///< empty: not in the legend
   Role role = Role::best;
 };
 

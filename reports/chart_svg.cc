@@ -34,6 +34,10 @@ Stroke stroke(Role role) {
       return {"#0072b2", 2.2, ""};
     case Role::baseline:
       return {"#d55e00", 1.3, "7 2.5"};
+    case Role::third:
+      return {"#009e73", 1.8, "2.5 2.5"};
+    case Role::fourth:
+      return {"#cc79a7", 1.8, "10 3 2 3"};
     case Role::evaluations:
       break;
   }
@@ -170,6 +174,7 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
   std::string out = label(0, top + 15, "start", ink, 15, chart.title, " font-weight=\"600\"");
   double legend_x = left;
   for (const Series& one : chart.series) {
+    if (one.label.empty()) continue;
     const Stroke pen = stroke(one.role);
     if (one.role == Role::evaluations) {
       out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.2\" fill=\"{}\"/>\n", legend_x + 13, top + 31, pen.colour);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "base/require.h"
@@ -28,9 +29,9 @@ std::vector<std::string> wrapped(const std::string& words, std::size_t columns) 
 
 }  // namespace
 
-std::string svg_gap_chart(const nlohmann::json& result) {
+std::string svg_page(const std::string& headline, const std::string& words, const internal::Picture& drawn,
+                     std::size_t charts_per_row) {
   using namespace internal;
-  require(result.is_object(), "svg_gap_chart: the result is not a JSON object");
   constexpr double width = 900;
   constexpr double margin = 24;
   constexpr double between = 14;
@@ -39,32 +40,49 @@ std::string svg_gap_chart(const nlohmann::json& result) {
 
   std::string body;
   double top = margin;
-  for (const std::string& line : wrapped(headline(result).whole(), columns)) {
+  for (const std::string& line : wrapped(headline, columns)) {
     body += fmt::format("<text x=\"0\" y=\"{:.1f}\" fill=\"#1b1f24\" font-size=\"17\" font-weight=\"600\">{}</text>\n", top,
                         escaped(line));
     top += line_height;
   }
-  if (const std::string title = text(result, {"title"}); !title.empty()) {
-    for (const std::string& line : wrapped(title, columns + 30)) {
+  if (!words.empty()) {
+    for (const std::string& line : wrapped(words, columns + 30)) {
       body += fmt::format("<text x=\"0\" y=\"{:.1f}\" fill=\"#5f6b76\" font-size=\"13\">{}</text>\n", top, escaped(line));
       top += line_height;
     }
   }
   top += between;
-  const Picture drawn = picture(result);
-  for (Chart chart : drawn.charts) {
-    const bool drive = chart.id.starts_with("drive");
-    if (chart.id != "gap" && chart.id != "landing" && !drive) continue;
-    chart.height = drive ? 120 : 220;
-    body += chart_svg(drawn.tables, chart, width - 2 * margin, top);
-    top += chart_svg_height(chart) + between;
+  const double cell =
+      (width - 2 * margin - between * static_cast<double>(charts_per_row - 1)) / static_cast<double>(charts_per_row);
+  double row_height = 0;
+  for (std::size_t i = 0; i < drawn.charts.size(); ++i) {
+    const std::size_t column = i % charts_per_row;
+    if (column == 0) {
+      top += row_height;
+      row_height = 0;
+    }
+    const std::string chart = chart_svg(drawn.tables, drawn.charts[i], cell, top);
+    row_height = std::max(row_height, chart_svg_height(drawn.charts[i]) + between);
+    body += column == 0 ? chart
+                        : fmt::format("<g transform=\"translate({:.1f} 0)\">\n{}</g>\n",
+                                      static_cast<double>(column) * (cell + between), chart);
   }
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" viewBox=\"0 0 {0} {1:.0f}\" role=\"img\" "
       "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n<rect width=\"100%\" "
       "height=\"100%\" fill=\"#fff\"/>\n"
       "<g transform=\"translate({3} {4})\">\n{5}</g>\n</svg>\n",
-      width, top + margin, escaped(headline(result).whole()), margin, 10, body);
+      width, top + row_height + margin, escaped(headline), margin, 10, body);
+}
+
+std::string svg_gap_chart(const nlohmann::json& result) {
+  using namespace internal;
+  require(result.is_object(), "svg_gap_chart: the result is not a JSON object");
+  Picture drawn = picture(result);
+  std::erase_if(drawn.charts,
+                [](const Chart& chart) { return chart.id != "gap" && chart.id != "landing" && !chart.id.starts_with("drive"); });
+  for (Chart& chart : drawn.charts) chart.height = chart.id.starts_with("drive") ? 120 : 220;
+  return svg_page(headline(result).whole(), text(result, {"title"}), drawn);
 }
 
 }  // namespace softland

@@ -1,0 +1,319 @@
+// What Bognash's 2019 thesis ("Bouncing of MEM/NEM switches", University of Western Ontario) says of its nano-switches, tried on
+// the shipped reconstructions: bench_claims nem-voltage|casimir-size FOLDER writes a picture and a table into FOLDER.
+//
+// The same program gives the same files: runs and searches depend on nothing else.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/require.h"
+#include "bench/figure.h"
+#include "model/constants.h"
+#include "model/pull_in.h"
+#include "reports/files.h"
+#include "studies/optimize.h"
+#include "studies/simulate.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using internal::Role;
+
+constexpr double missing = Metrics::unset;
+
+SceneFile shipped(const std::string& name) { return SceneFile::load(std::string(SOFTLAND_SCENES) + "/" + name); }
+
+SceneFile with(SceneFile file, const std::vector<std::string>& assignments) {
+  for (const std::string& assignment : assignments) file.set(assignment);
+  return file;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? missing : values[values.size() / 2];
+}
+
+std::string number(double value, int digits = 3) {
+  if (!std::isfinite(value)) return "-";
+  return std::abs(value) < 1000 ? fmt::format("{:.{}g}", value, digits) : fmt::format("{:.0f}", value);
+}
+
+/// "6.9" or, where runs that differ by nothing a generator could tell apart differ, "6.9 (6.4 to 7.5)".
+struct Cloud {
+  double middle = missing, least = missing, most = missing;
+  explicit Cloud(const std::vector<double>& values) : middle(median(values)) {
+    if (values.empty()) return;
+    least = *std::min_element(values.begin(), values.end());
+    most = *std::max_element(values.begin(), values.end());
+  }
+  [[nodiscard]] std::string text(double unit) const {
+    if (!(most - least > 0.02 * middle)) return number(middle / unit);
+    return fmt::format("{} ({} to {})", number(middle / unit), number(least / unit), number(most / unit));
+  }
+};
+
+/// Figures of a closing and of neighbours whose drive differs by parts in a million.
+struct Cloudy {
+  Cloud first, settled, count, height, speed;
+};
+
+Cloudy closings(const std::function<SceneFile(double)>& scaled) {
+  constexpr int neighbours = 4;  // on either side
+  std::vector<double> first, settled, count, height, speed;
+  for (int k = -neighbours; k <= neighbours; ++k) {
+    const Metrics m = simulate(prepare(scaled(1 + 1e-6 * k)), false).metrics;
+    if (!std::isfinite(m.initial_contact_time)) continue;
+    first.push_back(m.initial_contact_time);
+    count.push_back(m.bounce_count);
+    height.push_back(m.major_bounce_height);
+    speed.push_back(m.impact_velocity);
+    if (m.settled) settled.push_back(m.permanent_contact_time);
+  }
+  return {Cloud(first), Cloud(settled), Cloud(count), Cloud(height), Cloud(speed)};
+}
+
+void keep(const std::filesystem::path& folder, const std::string& name, const std::string& picture, const std::string& words) {
+  write_whole(folder / (name + ".svg"), picture);
+  write_whole(folder / (name + ".md"), words);
+  std::cout << fmt::format("{0}.svg and {0}.md written\n", (folder / name).string());
+}
+
+std::string made_by(const std::string& study) {
+  return fmt::format("- made by `build/bench/bench_claims {} results` (configured with `-DSOFTLAND_BENCH=ON`), softland {}\n",
+                     study, version);
+}
+
+// ---- switching time and bounce against voltage, and what a shaped waveform gains
+
+void nem_voltage(const std::filesystem::path& folder) {
+  const SceneFile scene = shipped("nem-tin.toml");
+  const double dynamic = prepare(scene, true).voltage_units().at("main").dynamic_pull_in;
+  constexpr double window = 40e-9;
+  constexpr double room = 1.2;  // peak of the shaped waveforms over their hold level, as the thesis' dither of 20 %
+  const auto at = [&](double level) {
+    return with(scene,
+                {fmt::format("waveform.main.level={:.17g} V", level),
+                 fmt::format("driver.main.max_voltage={:.17g} V", room * level), fmt::format("simulate.duration={} s", window)});
+  };
+
+  // Steps, in per cent of the dynamic pull-in voltage.
+  constexpr int lowest = 101, highest = 200, around = 3;
+  Points first, settled, count, height, speed;
+  std::map<int, Cloudy> steps;
+  for (int percent = lowest; percent <= highest; ++percent) {
+    const double r = percent / 100.0;
+    const Cloudy& c = steps.emplace(percent, closings([&](double part) { return at(part * r * dynamic); })).first->second;
+    first.push_back({r, c.first.middle});
+    settled.push_back({r, c.settled.middle});
+    count.push_back({r, c.count.middle});
+    height.push_back({r, c.height.middle});
+    speed.push_back({r, c.speed.middle});
+  }
+  // What a step of about this height takes: t_p of single heights jumps.
+  const auto usual = [&](int percent) {
+    std::vector<double> times;
+    for (int k = percent - around; k <= percent + around; ++k) {
+      if (steps.contains(k)) times.push_back(steps.at(k).settled.middle);
+    }
+    return median(times);
+  };
+
+  struct Shaped {
+    std::string family, label;
+    Role pen;
+    Points settled, gain, saved;
+  };
+  std::vector<Shaped> shaped{{"harmonic", "dither", Role::third, {}, {}, {}}, {"pulse", "pulse", Role::fourth, {}, {}, {}}};
+  std::vector<std::vector<std::string>> rows{{"V / V_dp", "t_i [ns]", "v_i [m/s]", "t_p [ns]", "t_p around [ns]", "N_B",
+                                              "B_H [nm]", "dither: t_p [ns]", "N_B", "gain", "pulse: t_p [ns]", "N_B", "gain"}};
+  std::string finding;
+  for (const int percent : {105, 110, 115, 120, 125, 130, 135, 140, 145, 150, 160, 170, 180, 190, 200}) {
+    const double r = percent / 100.0, reference = usual(percent);
+    const Cloudy& step = steps.at(percent);
+    rows.push_back({fmt::format("{:.2f}", r), step.first.text(1e-9), step.speed.text(1), step.settled.text(1e-9),
+                    number(reference / 1e-9), step.count.text(1), step.height.text(1e-9)});
+    for (Shaped& s : shaped) {
+      const OptimizeResult found = optimize(at(r * dynamic), {.target = Target::settling, .family = s.family});
+      const double own = found.best && found.best->metrics.settled ? found.best->metrics.permanent_contact_time : missing;
+      s.settled.push_back({r, own});
+      s.gain.push_back({r, 100 * (1 - own / reference)});
+      s.saved.push_back({r, reference - own});
+      rows.back().insert(rows.back().end(),
+                         {number(own / 1e-9), found.best ? std::to_string(found.best->metrics.bounce_count) : "-",
+                          std::isfinite(own) ? fmt::format("{:.0f} %", s.gain.back()[1]) : "-"});
+      std::cerr << fmt::format("{} at {:.2f} Vdp: t_p {} ns, gain {:.0f} %\n", s.family, r, number(own / 1e-9), s.gain.back()[1]);
+    }
+  }
+  for (const Shaped& s : shaped) {
+    const auto most = std::max_element(s.saved.begin(), s.saved.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
+    const auto gain = s.gain.begin() + (most - s.saved.begin());
+    finding += fmt::format("{} {} saves most time at {:.2f} Vdp: {:.1f} ns, {:.0f} %.", finding.empty() ? "A searched" : " A",
+                           s.label, (*most)[0], (*most)[1] / 1e-9, (*gain)[1]);
+  }
+  const std::string x = "Step height over dynamic pull-in voltage";
+  const std::vector<Panel> panels{
+      {.title = "Permanent contact (dots: first)",
+       .x_label = x,
+       .y_label = "Time",
+       .y_unit = "s",
+       .curves = {{"", first, Role::evaluations},
+                  {"step", settled, Role::baseline},
+                  {"dither", shaped[0].settled, Role::third},
+                  {"pulse", shaped[1].settled, Role::fourth}}},
+      {.title = "Settling time saved",
+       .x_label = x,
+       .y_label = "Time",
+       .y_unit = "s",
+       .curves = {{"dither", shaped[0].saved, Role::third}, {"pulse", shaped[1].saved, Role::fourth}}},
+      {.title = "Part of the settling time saved",
+       .x_label = x,
+       .y_label = "Gain in %",
+       .curves = {{"dither", shaped[0].gain, Role::third}, {"pulse", shaped[1].gain, Role::fourth}}},
+      {.title = "Impact speed of the step",
+       .x_label = x,
+       .y_label = "Speed",
+       .y_unit = "m/s",
+       .curves = {{"step", speed, Role::baseline}}},
+      {.title = "Rebounds of the step",
+       .x_label = x,
+       .y_label = "Rebounds above 0.01 nm",
+       .curves = {{"step", count, Role::baseline}}},
+      {.title = "Highest rebound of the step",
+       .x_label = x,
+       .y_label = "Height",
+       .y_unit = "m",
+       .curves = {{"step", height, Role::baseline}}}};
+  const std::string words =
+      "Titanium nitride nano-switch (scenes/nem-tin.toml, a reconstruction). Steps: medians of nine runs whose voltage differs "
+      "by parts "
+      "in a million. Dither and pulse: searched for early settling, at most 20 % above the level they hold; compared with the "
+      "median "
+      "of the steps within 0.03 Vdp.";
+  keep(folder, "nem-voltage", figure(finding, words, panels),
+       fmt::format("# The nano-switch against its voltage\n\n{}\n\n"
+                   "{}- scene `scenes/nem-tin.toml`, a reconstruction of the titanium nitride switch: V_dp = {:.4f} V\n"
+                   "- step: medians of nine runs whose voltage differs by parts in a million, with their range where it matters; "
+                   "\"t_p around\": "
+                   "median of the steps within 0.03 V_dp, since t_p of single heights jumps\n"
+                   "- dither (a sine that fades, on top of the step) and pulse: searched with `--target settling`, 2500 "
+                   "evaluations, seed 1, at "
+                   "most {:.0f} % above the level they hold; gain: part of \"t_p around\" that is saved\n\n"
+                   "![Times, gain, rebounds and their height against voltage](nem-voltage.svg)\n\n{}",
+                   finding, made_by("nem-voltage"), dynamic, 100 * (room - 1), markdown_table(rows)));
+}
+
+// ---- the switch closed by the Casimir force: size and bounce
+
+void casimir_size(const std::filesystem::path& folder) {
+  const SceneFile scene = shipped("nem-casimir.toml");
+  const double own_length = prepare(scene).scene.device.structure.length;
+  struct Kind {
+    double critical;  // times its strength at rest the force must grow to close the switch quasi-statically
+    std::string label;
+    Role pen;
+    Points height, relative, count, time;
+  };
+  std::vector<Kind> kinds{{1.06, "closes at 1.06", Role::fourth, {}, {}, {}, {}},
+                          {1.12, "at 1.12", Role::best, {}, {}, {}, {}},
+                          {1.18, "at 1.18", Role::third, {}, {}, {}, {}}};
+  std::vector<std::vector<std::string>> rows{{"gap [nm]", "contact gap [nm]", "critical factor", "length [um]", "t_i [ns]",
+                                              "v_i [mm/s]", "N_B", "B_H [nm]", "B_H / contact gap", "t_p - t_i [ns]"}};
+  for (const double gap : {25e-9, 30e-9, 35e-9, 40e-9, 45e-9, 50e-9, 55e-9, 60e-9, 65e-9, 70e-9, 75e-9, 80e-9}) {
+    const double contact = 0.6 * gap;
+    const auto sized = [&](double length) {
+      return with(scene, {fmt::format("gap.electrode={:.17g} m", gap), fmt::format("gap.contact={:.17g} m", contact),
+                          fmt::format("structure.length={:.17g} m", length)});
+    };
+    for (Kind& kind : kinds) {
+      // The force that a beam bears falls with the fourth power of its length.
+      double length = own_length;
+      for (int i = 0; i < 4; ++i) {
+        const double bears = 1 + static_pull_in(prepare(sized(length)).device, 0).voltage;
+        length *= std::pow(bears / kind.critical, 0.25);
+      }
+      const double period = 2 * pi / prepare(sized(length)).device.angular_frequencies()[0];
+      const auto scaled = [&](double part) {
+        return with(sized(length), {fmt::format("waveform.dispersion.level={:.17g}", 1 + 0.25 * part),
+                                    fmt::format("simulate.duration={:.17g} s", 20 * period)});
+      };
+      const Cloudy c = closings(scaled);
+      kind.height.push_back({gap, c.height.middle});
+      kind.relative.push_back({gap, 100 * c.height.middle / contact});
+      kind.count.push_back({gap, c.count.middle});
+      kind.time.push_back({gap, c.settled.middle - c.first.middle});
+      rows.push_back({number(gap / 1e-9), number(contact / 1e-9), number(kind.critical), number(length / 1e-6, 4),
+                      c.first.text(1e-9), c.speed.text(1e-3), c.count.text(1), c.height.text(1e-9),
+                      fmt::format("{} %", number(100 * c.height.middle / contact)),
+                      number((c.settled.middle - c.first.middle) / 1e-9)});
+    }
+  }
+  const auto panel = [&](const std::string& title, const std::string& label, const std::string& unit, Points Kind::*points) {
+    Panel p{.title = title, .x_label = "Gap at rest", .x_unit = "m", .y_label = label, .y_unit = unit};
+    for (const Kind& kind : kinds) p.curves.push_back({kind.label, kind.*points, kind.pen});
+    return p;
+  };
+  const auto& middle = kinds[1];
+  const bool less = middle.count.front()[1] < middle.count.back()[1] && middle.height.front()[1] < middle.height.back()[1];
+  const std::string finding = fmt::format(
+      "{}: from a gap of {:.0f} nm to one of {:.0f} nm {} rebounds become {}, and the highest goes from {} to {} nm.",
+      less ? "Shorter beams over smaller gaps bounce less" : "Shorter beams over smaller gaps do not bounce less",
+      middle.height.back()[0] / 1e-9, middle.height.front()[0] / 1e-9, number(middle.count.back()[1]),
+      number(middle.count.front()[1]), number(middle.height.back()[1] / 1e-9, 2), number(middle.height.front()[1] / 1e-9, 2));
+  const std::string words =
+      "Gold cantilevers closed by a Casimir force that grows from 1 to 1.25 (scenes/nem-casimir.toml scaled, a reconstruction). "
+      "The "
+      "beams of a curve lose their open state at the same factor, so that the smaller gaps have the shorter beams: 8.5 µm at 80 "
+      "nm, "
+      "2.5 µm at 25 nm.";
+  keep(folder, "casimir-size",
+       figure(finding, words,
+              {panel("Highest rebound", "Height", "m", &Kind::height),
+               panel("Highest rebound over contact gap", "Height in % of the gap", "", &Kind::relative),
+               panel("Rebounds above 0.1 nm", "Rebounds", "", &Kind::count),
+               panel("Bounce time", "First to permanent contact", "s", &Kind::time)}),
+       fmt::format("# The Casimir switch against its size\n\n{}\n\n{}"
+                   "- scene `scenes/nem-casimir.toml`, a reconstruction, with other gaps and lengths; contact at 60 % of the "
+                   "gap; the force "
+                   "grows from 1 to 1.25 at t = 0\n"
+                   "- critical factor: how far the force may grow slowly before the open state is lost; it fixes the length, "
+                   "since beam and "
+                   "gap cannot be chosen freely: too short a beam does not close, too long a one closes by itself\n"
+                   "- medians of nine runs whose factor differs by parts in a million, with their range where it matters\n\n"
+                   "![Height, number and duration of rebounds against the gap](casimir-size.svg)\n\n{}",
+                   finding, made_by("casimir-size"), markdown_table(rows)));
+}
+
+int run(const std::string& study, const std::filesystem::path& folder) {
+  if (study == "nem-voltage") {
+    nem_voltage(folder);
+  } else {
+    require(study == "casimir-size", fmt::format("{}: must be nem-voltage or casimir-size", study));
+    casimir_size(folder);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace softland
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::cerr << "usage: bench_claims nem-voltage|casimir-size FOLDER\n";
+    return 2;
+  }
+  try {
+    return softland::run(argv[1], argv[2]);
+  } catch (const std::exception& error) {
+    std::cerr << "bench_claims: " << error.what() << "\n";
+    return 2;
+  }
+}
