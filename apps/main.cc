@@ -167,7 +167,8 @@ int run(int argc, char** argv) {
       "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3");
 
   CLI::App* fresh = add_verb("new", "print a commented scene to start from");
-  positional(fresh, "KIND", kind, "cantilever (default), cantilever-pzt, clamped-clamped, plate, nem-cantilever or nem-casimir");
+  positional(fresh, "KIND", kind,
+             "cantilever (default), cantilever-pzt, clamped-clamped, plate, two-electrodes, nem-cantilever or nem-casimir");
   fresh->footer("Example:\n  softland new cantilever > my-switch.toml");
 
   CLI::App* exporting = add_verb("export", "print the waveforms of a result for a generator or a circuit simulator");

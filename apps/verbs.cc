@@ -271,6 +271,11 @@ int pull_in_verb(const Common& c) {
   for (std::size_t k = 0; k < electrodes.size(); ++k) {
     json one = pull_in_of(prepared, k);
     const json& p = one["pull_in"];
+    if (!pulls_in(prepared.scene.device, k)) {
+      text += fmt::format("electrode {}\n  on the far side: pulls away from the contact\n", electrodes[k].name);
+      if (electrodes.size() > 1) all[electrodes[k].name] = std::move(one);
+      continue;
+    }
     text += fmt::format("electrode {}\n  static pull-in   {} ({})\n  dynamic pull-in  {}\n  release          {}\n",
                         electrodes[k].name, volts(p["static_V"]),
                         p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
@@ -309,6 +314,10 @@ int check_verb(const Common& c) {
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   add("in-contact period", fmt::format("{:.4g} us", p.device.in_contact_period() * 1e6));
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
+    if (!pulls_in(p.scene.device, k)) {
+      add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
+      continue;
+    }
     const auto found = pull_in_of(p, k);
     const json& v = found["pull_in"];
     add("electrode " + p.scene.device.electrodes[k].name,
@@ -418,8 +427,10 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
 
 int new_verb(const std::string& kind) {
   const std::map<std::string, std::string> scenes{
-      {"cantilever", "mem-gold.toml"}, {"cantilever-pzt", "mem-gold-pzt.toml"}, {"clamped-clamped", "hung-senturia.toml"},
-      {"plate", "purdue-nickel.toml"}, {"nem-cantilever", "nem-tin.toml"},      {"nem-casimir", "nem-casimir.toml"}};
+      {"cantilever", "mem-gold.toml"},           {"cantilever-pzt", "mem-gold-pzt.toml"},
+      {"clamped-clamped", "hung-senturia.toml"}, {"plate", "purdue-nickel.toml"},
+      {"nem-cantilever", "nem-tin.toml"},        {"nem-casimir", "nem-casimir.toml"},
+      {"two-electrodes", "two-electrodes.toml"}};
   const auto found = scenes.find(kind);
   std::vector<std::string> kinds;
   for (const auto& [name, scene] : scenes) kinds.push_back(name);

@@ -41,10 +41,18 @@ void check_names(const SceneFile::Impl& file, const std::string& section, const 
   }
 }
 
-void refuse_pull_in_units(const SectionReader& in, std::string_view drive) {
-  if (drive != piezo_drive) return;
+bool on_far_side(const Device& device, std::string_view drive) {
+  return std::any_of(device.electrodes.begin(), device.electrodes.end(),
+                     [&](const Electrode& e) { return e.name == drive && e.side == Side::far; });
+}
+
+void refuse_pull_in_units(const SectionReader& in, const Device& device, std::string_view drive) {
+  const bool far = on_far_side(device, drive);
+  if (drive != piezo_drive && !far) return;
   for (const std::string_view key : in.keys_in_pull_in_units()) {
-    in.require(false, key, "pull-in voltages belong to electrodes; give the piezo volts [V]");
+    in.require(false, key,
+               far ? "an electrode on the far side has no pull-in voltage; give it volts [V]"
+                   : "pull-in voltages belong to electrodes; give the piezo volts [V]");
   }
 }
 
@@ -218,8 +226,8 @@ std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device&
   for (const std::string_view drive : drive_names(device)) {
     const SectionReader waveform(file, "waveform", drive);
     const SectionReader driver(file, "driver", drive);
-    refuse_pull_in_units(waveform, drive);
-    refuse_pull_in_units(driver, drive);
+    refuse_pull_in_units(waveform, device, drive);
+    refuse_pull_in_units(driver, device, drive);
     if (drive == piezo_drive && driver.is_present()) {
       for (const std::string_view key : {"min_voltage", "max_voltage"}) {
         if (!driver.is_given(key))

@@ -26,6 +26,11 @@ Fringing fringing(const std::string& name) {
 
 Conductor conductor(const std::string& name) { return name == "gold" ? Conductor::gold : Conductor::ideal; }
 
+Side side(const std::string& name) {
+  if (name == "far") return Side::far;
+  return name == "both" ? Side::both : Side::near;
+}
+
 void check_section_names(const SceneFile::Impl& file) {
   std::vector<std::string_view> known;
   for (const internal::Section& section : internal::schema()) {
@@ -182,6 +187,12 @@ Gas read_gas(const SectionReader& in) {
   gas.pressure = in.number("pressure");
   gas.temperature = in.number("temperature");
   gas.mean_free_path = in.number("mean_free_path");
+  gas.far_gap = in.number("far_gap");
+  if (in.has_value("film_length")) gas.film_length = in.number("film_length");
+  if (gas.model == GasModel::strip_slit) {
+    gas.slit_height = in.number("slit_height");
+    gas.slit_length = in.number("slit_length");
+  }
   return gas;
 }
 
@@ -218,7 +229,16 @@ Device read_device(const SceneFile::Impl& file) {
                                                  law == Fringing::linear ? "" : " and structure.thickness"));
       }
     }
-    device.electrodes.push_back({.name = name, .begin = begin, .end = end, .fringing = law});
+    const Side at = side(in.text("side"));
+    in.require(at != Side::near || !in.is_given("gap"), "gap",
+               "belongs to side = \"far\" or \"both\"; on the near side the distance is gap.electrode");
+    if (at != Side::near && !in.is_given("gap")) {
+      file.fail_section(in.path(),
+                        fmt::format("side = {} needs 'gap' (a length such as \"2 um\"): the rest distance on the far side",
+                                    internal::toml_string(in.text("side"))));
+    }
+    device.electrodes.push_back(
+        {.name = name, .begin = begin, .end = end, .fringing = law, .side = at, .gap = at == Side::near ? 0 : in.number("gap")});
   }
   if (const SectionReader in(file, "gas"); in.is_present()) {
     if (!in.is_given("quality_factor")) require_of_plate(in, "model", structure, "width");

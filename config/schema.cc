@@ -19,8 +19,12 @@ const std::vector<std::string_view> rough_contacts{"asperity-uniform", "asperity
 const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
 
 /// Gas models that describe a gas, not a damper.
-const std::vector<std::string_view> gas_films{"strip",        "veijola",       "gallis-torczynski",
+const std::vector<std::string_view> gas_films{"strip",        "strip-slit",    "veijola", "gallis-torczynski",
                                               "near-contact", "guo-alexeenko", "reynolds"};
+
+/// Those that a second film on the far side may have.
+const std::vector<std::string_view> incompressible_films{"strip",        "strip-slit",   "veijola", "gallis-torczynski",
+                                                         "near-contact", "guo-alexeenko"};
 
 /// Structures that bend.
 const std::vector<std::string_view> beams{"cantilever", "clamped-clamped"};
@@ -285,6 +289,15 @@ std::vector<Section> make_schema() {
                  .dimensions = {dimension::area},
                  .range = positive,
                  .about = "plates only; absent: that of the plate"},
+                {.name = "side",
+                 .type = choice,
+                 .choices = {"near", "far", "both"},
+                 .fallback = "'near'",
+                 .about = "of the beam: near is that of the contact; far pulls away from it"},
+                {.name = "gap",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .about = "far, both: rest distance of the face on the far side to the beam; required there"},
                 {.name = "fringing",
                  .type = choice,
                  .choices = {"none", "bao-2001", "meijs-fokkema", "linear"},
@@ -296,7 +309,8 @@ std::vector<Section> make_schema() {
        .selector = "model",
        .keys = {{.name = "model",
                  .type = choice,
-                 .choices = {"strip", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko", "reynolds", "linear"},
+                 .choices = {"strip", "strip-slit", "veijola", "gallis-torczynski", "near-contact", "guo-alexeenko", "reynolds",
+                             "linear"},
                  .required = true,
                  .about = "law of the squeeze film"},
                 {.name = "viscosity",
@@ -321,6 +335,28 @@ std::vector<Section> make_schema() {
                  .range = positive,
                  .only_for = gas_films,
                  .about = "absent: from viscosity, pressure and temperature"},
+                {.name = "film_length",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .only_for = {"strip", "strip-slit", "veijola"},
+                 .about = "of one film whose ends are open; absent: much longer than wide"},
+                {.name = "slit_height",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .required = true,
+                 .only_for = {"strip-slit"},
+                 .about = "of the slit through which the gas leaves at one edge"},
+                {.name = "slit_length",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .required = true,
+                 .only_for = {"strip-slit"},
+                 .about = "of that slit, up to ambient pressure"},
+                {.name = "far_gap",
+                 .dimensions = {dimension::length},
+                 .range = positive,
+                 .only_for = incompressible_films,
+                 .about = "rest thickness of a second film on the far side; absent: none"},
                 {.name = "damping",
                  .dimensions = {dimension::viscosity},
                  .range = positive,

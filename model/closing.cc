@@ -249,6 +249,7 @@ class Run {
     if (gap < device_.gap_floor()) {
       return fail(fmt::format("the beam came within {} of the electrode", engineering(device_.gap_floor(), "m")));
     }
+    if (device_.at_far_side(work_)) return fail("the beam came within a hundredth of the gap on its far side");
     if (out_.work.steps >= options_.max_steps) return fail(fmt::format("more than {} steps needed", options_.max_steps));
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);
     if (options_.observer && options_.observer(here_.time, here_.state.data(), here_.state.data() + n_)) return end(Status::done);

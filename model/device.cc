@@ -79,6 +79,7 @@ void validate(const Device& d) {
                       engineering(d.gap.electrode, "m")));
   for (const Electrode& e : d.electrodes) {
     span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
+    if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
     if (e.fringing == Fringing::meijs_fokkema || e.fringing == Fringing::bao_2001) {
       positive(s.thickness, "m", "structure.thickness");
     }
@@ -93,6 +94,13 @@ void validate(const Device& d) {
     if (g.model == GasModel::guo_alexeenko) positive(s.thickness, "m", "structure.thickness");
     positive_if_given(g.viscosity, "Pa s", "gas.viscosity");
     positive_if_given(g.mean_free_path, "m", "gas.mean_free_path");
+    positive_if_given(g.film_length, "m", "gas.film_length");
+    positive_if_given(g.far_gap, "m", "gas.far_gap");
+    require(std::isnan(g.far_gap) || !is_compressible(g.model), "gas.far_gap: not with gas.model = reynolds");
+    if (g.model == GasModel::strip_slit) {
+      positive(g.slit_height, "m", "gas.slit_height");
+      positive(g.slit_length, "m", "gas.slit_length");
+    }
     positive_if_given(g.damping, "N s/m^2", "gas.damping");
     positive_if_given(g.quality_factor, "", "gas.quality_factor");
     require(g.model != GasModel::linear || std::isnan(g.damping) != std::isnan(g.quality_factor),

@@ -40,14 +40,19 @@ struct Gap {
 
 enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
+/// The contact's side of the moving part, towards which deflections are positive, the other one, or both.
+enum class Side { near, far, both };
+
 struct Electrode {
   std::string name = {};
   double begin = 0;  ///< [m] from the clamped end; of a plate only the length counts: the electrode's area over the plate's width
   double end = 0;    ///< [m]
   Fringing fringing = Fringing::meijs_fokkema;
+  Side side = Side::near;
+  double gap = 0;  ///< far, both: rest distance of the face on the far side to the moving part [m]
 };
 
-enum class GasModel { strip, veijola, gallis_torczynski, near_contact, guo_alexeenko, reynolds, linear };
+enum class GasModel { strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, reynolds, linear };
 
 /// A film that can be compressed, with pressures as states of their own: see model/gas/reynolds_film.h.
 [[nodiscard]] constexpr bool is_compressible(GasModel model) { return model == GasModel::reynolds; }
@@ -59,6 +64,10 @@ struct Gas {
   double pressure = 101325;                                          ///< p, ambient [Pa]
   double temperature = 300;                                          ///< T [K]
   double mean_free_path = std::numeric_limits<double>::quiet_NaN();  ///< lambda [m]
+  double film_length = std::numeric_limits<double>::quiet_NaN();     ///< strip, strip_slit, veijola: of one film [m]
+  double slit_height = std::numeric_limits<double>::quiet_NaN();     ///< strip_slit [m]
+  double slit_length = std::numeric_limits<double>::quiet_NaN();     ///< strip_slit [m]
+  double far_gap = std::numeric_limits<double>::quiet_NaN();         ///< of a second film, on the far side, at rest [m]
   double damping = std::numeric_limits<double>::quiet_NaN();         ///< linear: c [N s/m^2]
   double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };

@@ -198,9 +198,14 @@ std::optional<Minimum> first_minimum(F&& f, double step) {
 
 }  // namespace
 
+bool pulls_in(const Device& device, std::size_t drive) {
+  return drive >= device.electrodes.size() || device.electrodes[drive].side != Side::far;
+}
+
 std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? "fold" : "contact"; }
 
 StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
+  if (!pulls_in(device.device(), drive)) return {.status = Status::no_contact};
   // The branch of the dispersion force begins at the straight beam and factor 0, that of an electrode where the switch rests at 0
   // V.
   const bool from_straight = device.drive_kind(drive) == DriveKind::dispersion;
@@ -230,7 +235,7 @@ StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
 }
 
 double release_voltage(const Switch& device, std::size_t drive) {
-  if (!device.has_contact()) return nan;
+  if (!device.has_contact() || !pulls_in(device.device(), drive)) return nan;
   Branch branch(device, drive);
   const double plane = device.device().gap.contact;
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);

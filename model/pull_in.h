@@ -19,6 +19,9 @@ namespace softland {
 enum class StaticKind { fold, contact };
 [[nodiscard]] std::string_view to_string(StaticKind kind);
 
+/// Whether this drive pulls towards the contact: an electrode on the far side has no pull-in voltage.
+[[nodiscard]] bool pulls_in(const Device& device, std::size_t drive);
+
 struct StaticPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();     ///< Vsp [V]; of the dispersion force its factor less one
@@ -27,8 +30,9 @@ struct StaticPullIn {
 };
 
 /// Fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that comes first.
-/// The branch of an electrode begins at the switch's rest, status collapsed_at_rest where there is none; that of the dispersion
-/// force at factor 0, so that a negative answer says how much too strong the nominal force is.
+/// The branch of an electrode begins at the switch's rest, status collapsed_at_rest where there is none, no_contact for one on
+/// the far side; that of the dispersion force at factor 0, so that a negative answer says how much too strong the nominal force
+/// is.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& device, std::size_t drive);
 
 /// Release voltage [V]: the smallest voltage with a closed equilibrium, 0 where the dispersion force keeps the switch closed by

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "model/far_side.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
@@ -29,18 +30,20 @@ std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double f
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
 
-std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, PointRange range, double floor) {
+// Calls `make` with the law of an electrode.
+template <class Make>
+std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, Make&& make) {
   switch (fringing) {
     case Fringing::none:
-      return erased(ElectrostaticForce<NoFringing>{{.width = s.width}}, range, floor);
+      return make(ElectrostaticForce<NoFringing>{{.width = s.width}});
     case Fringing::linear:
-      return erased(ElectrostaticForce<LinearFringing>{{.width = s.width}}, range, floor);
+      return make(ElectrostaticForce<LinearFringing>{{.width = s.width}});
     case Fringing::bao_2001:
-      return erased(ElectrostaticForce<Bao2001Fringing>{{.width = s.width, .thickness = s.thickness}}, range, floor);
+      return make(ElectrostaticForce<Bao2001Fringing>{{.width = s.width, .thickness = s.thickness}});
     case Fringing::meijs_fokkema:
       break;
   }
-  return erased(ElectrostaticForce<MeijsFokkemaFringing>{{.width = s.width, .thickness = s.thickness}}, range, floor);
+  return make(ElectrostaticForce<MeijsFokkemaFringing>{{.width = s.width, .thickness = s.thickness}});
 }
 
 std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, double width, PointRange range, double floor) {
@@ -113,9 +116,21 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   }
   const Eigen::Index n = points();
 
+  // A law on the far side, where the rest gap is `gap`.
+  const auto on_far_side = [&](const auto& law, double gap) {
+    const double both_gaps = device_.gap.electrode + gap, floor = gap / 100;
+    most_gap_ = std::min(most_gap_, both_gaps - floor);
+    return FarSide<std::decay_t<decltype(law)>>{.law = law, .both_gaps = both_gaps, .floor = floor};
+  };
   electrodes_ = device_.electrodes.size();
   for (const Electrode& e : device_.electrodes) {
-    driven_laws_.push_back(electrostatic(e.fringing, s, points_in(positions_, e.begin, e.end), gap_floor()));
+    const PointRange range = points_in(positions_, e.begin, e.end);
+    driven_laws_.push_back(electrostatic(e.fringing, s, [&](const auto& law) {
+      if (e.side == Side::near) return erased(law, range, gap_floor());
+      const auto far = on_far_side(law, e.gap);
+      return e.side == Side::far ? erased(far, range, gap_floor())
+                                 : erased(BothSides<std::decay_t<decltype(law)>>{.near = law, .far = far}, range, gap_floor());
+    }));
   }
   if (device_.dispersion) {
     driven_laws_.push_back(dispersion_force(*device_.dispersion, s.width, {0, n}, gap_floor()));
@@ -127,6 +142,13 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
       film_.emplace(*device_.gas, s.width, n, gap_floor());
     } else {
       passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, {0, n}, gap_floor()); }, *gas_));
+    }
+    if (const double gap = device_.gas->far_gap; !std::isnan(gap)) {
+      passive_laws_.push_back(std::visit(
+          [&](const auto& law) {
+            return erased(on_far_side(law, gap), {0, n}, gap_floor());
+          },
+          *gas_));
     }
   }
   // What bends the beam by the contact gap at x_c.

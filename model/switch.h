@@ -13,6 +13,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -109,6 +110,10 @@ class Switch {
   [[nodiscard]] double contact_deflection(const double* q) const;  ///< y(x_c) [m]; also the velocity when given v
   /// Smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
+  /// Whether the beam comes within a hundredth of the rest gap of an electrode or a film's wall on its far side in that field.
+  [[nodiscard]] bool at_far_side(const Workspace& work) const {
+    return std::isfinite(most_gap_) && work.field.gap.head(points()).maxCoeff() > most_gap_;
+  }
 
   /// The stable static equilibrium under drives of 0, which every run starts from; none when the beam collapses by itself or
   /// rests on the contact plane.
@@ -171,6 +176,7 @@ class Switch {
   std::optional<ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;
   std::optional<Eigen::VectorXd> rest_;
+  double most_gap_ = std::numeric_limits<double>::infinity();  // to the near electrode, where something is on the far side [m]
   double in_contact_period_ = 0;
   double penetration_scale_ = 0;
   double bending_energy_ = 0;

@@ -64,9 +64,10 @@ Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop)
   for (const GasModelEntry& e : gas_models) {
     Gas gas = own.value_or(Gas{});
     const bool in_scene = own && own->model == e.model;
-    if (e.model == GasModel::linear && !in_scene) continue;
-    // A rigid contact takes no film with states of its own.
-    if (is_compressible(e.model) && prepared.device.rigid_contact() != nullptr) continue;
+    // A damper and a slit are not there for the taking: only where the scene describes them.
+    if ((e.model == GasModel::linear || e.model == GasModel::strip_slit) && !in_scene) continue;
+    // A rigid contact takes no film with states of its own; that film has none on the far side.
+    if (is_compressible(e.model) && (prepared.device.rigid_contact() != nullptr || !std::isnan(gas.far_gap))) continue;
     gas.model = e.model;
     found.list.push_back(closing_with(prepared, gas, stop));
     found.list.back().in_scene = in_scene;

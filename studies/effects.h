@@ -44,7 +44,7 @@ struct Effects {
 [[nodiscard]] double relative_change(const Effect& effect, const Effect& own, double Metrics::*figure);
 
 /// Repeats the closing with no gas and with every gas law, in the state of gas that the scene describes (air at 101325 Pa and 300
-/// K where it describes none). The linear damper only where the scene gives its damping.
+/// K where it describes none). The linear damper and the film over a slit only where the scene describes them.
 [[nodiscard]] Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop = nullptr);
 
 /// Seconds per Switch::accelerations over the very states that a closing goes through, in flight and in contact in their true

@@ -107,6 +107,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
     const auto limits = given.drives.limits.find(electrode);
     const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
     plain[electrode] = Step{.level = hold(electrode), .rise_time = std::abs(hold(electrode)) / slew};
+    for (const std::string& name : braking_electrodes(given)) plain[name] = Step{.level = 0};
   }
   if (given.device.has_piezo()) plain[std::string(piezo_drive)] = Step{.level = 0};
   Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml", given);

@@ -38,6 +38,10 @@ void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
       s.starts.push_back(
           {inside(lifting_voltage(p, 0.1 * gap)), inside(lifting_voltage(p, brake * gap)), 0.9 * t0, 0.7 * t0, 0.05 * period});
     }
+  } else if (s.brakes) {
+    // Wait, pull back in the second half of the flight, let go at touch.
+    for (const double brake : {0.5, 0.8})
+      s.starts.push_back({0, inside(brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
   } else {
     // Throw, coast on less than the hold level, catch.
     for (const double throwing : {1.0, 1.1}) {
@@ -67,9 +71,21 @@ std::string searched_electrode(const Device& device) {
           fmt::format("optimize --actuator electrostatic|both needs an electrode, and the scene has none{}",
                       device.dispersion ? "; the factor of a dispersion force is not searched" : ""));
   for (const Electrode& e : device.electrodes) {
-    if (e.name == "main") return e.name;
+    if (e.name == "main" && e.side != Side::far) return e.name;
   }
-  return device.electrodes.front().name;
+  const auto pulling =
+      std::find_if(device.electrodes.begin(), device.electrodes.end(), [](const Electrode& e) { return e.side != Side::far; });
+  require(pulling != device.electrodes.end(),
+          "optimize needs an electrode that pulls in, and all of the scene's are on the far side");
+  return pulling->name;
+}
+
+std::vector<std::string> braking_electrodes(const Prepared& prepared) {
+  std::vector<std::string> names;
+  for (const Electrode& e : prepared.scene.device.electrodes) {
+    if (e.side == Side::far && prepared.drives.limits.contains(e.name)) names.push_back(e.name);
+  }
+  return names;
 }
 
 Waveform DriveSearch::waveform(std::span<const double> x) const {
@@ -98,7 +114,7 @@ Waveform DriveSearch::waveform(std::span<const double> x) const {
 }
 
 SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch) {
-  const auto add = [&](const std::string& drive) {
+  const auto add = [&](const std::string& drive, bool brakes) {
     const auto limits = prepared.drives.limits.find(drive);
     require(
         limits != prepared.drives.limits.end(),
@@ -106,6 +122,7 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
     DriveSearch s{.drive = drive,
                   .family = family,
                   .hold = hold_level(prepared, drive),
+                  .brakes = brakes,
                   .limits = limits->second,
                   .variables = {},
                   .starts = {}};
@@ -122,10 +139,13 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
     }
     drives_.push_back(std::move(s));
   };
-  if (actuator != Actuator::pzt) add(searched_electrode(prepared.scene.device));
+  if (actuator != Actuator::pzt) {
+    add(searched_electrode(prepared.scene.device), false);
+    for (const std::string& name : braking_electrodes(prepared)) add(name, true);
+  }
   if (actuator != Actuator::electrostatic) {
     require(prepared.device.has_piezo(), "optimize --actuator pzt|both needs a [piezo] section, and the scene has none");
-    add(std::string(piezo_drive));
+    add(std::string(piezo_drive), false);
   }
 }
 

@@ -29,8 +29,9 @@ enum class Actuator { electrostatic, pzt, both };
 /// The waveform parameters of one drive.
 struct DriveSearch {
   std::string drive;
-  std::string family;  ///< step | pulse | harmonic
-  double hold = 0;     ///< [V]
+  std::string family;   ///< step | pulse | harmonic
+  double hold = 0;      ///< [V]
+  bool brakes = false;  ///< an electrode on the far side
   DriverLimits limits;
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
@@ -52,7 +53,10 @@ class SearchSpace {
   std::vector<DriveSearch> drives_;
 };
 
-/// The electrode that a search drives: `main` if there is one, else the first. Throws InvalidInput when there is none.
+/// The electrode that a search closes the switch with: `main` if there is one, else the first that pulls in. Throws InvalidInput
+/// when there is none.
 [[nodiscard]] std::string searched_electrode(const Device& device);
+/// Electrodes on the far side whose driver has limits: a search brakes with them. The others keep the scene's waveform.
+[[nodiscard]] std::vector<std::string> braking_electrodes(const Prepared& prepared);
 
 }  // namespace softland

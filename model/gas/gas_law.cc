@@ -11,9 +11,18 @@ const GasModelEntry& entry(GasModel model) {
   return *std::find_if(gas_models.begin(), gas_models.end(), [&](const GasModelEntry& e) { return e.model == model; });
 }
 
+double end_flow(double ratio) {
+  double sum = 0;
+  for (int n = 39; n > 0; n -= 2) sum += std::tanh(n * pi / (2 * ratio)) / std::pow(n, 5);
+  return 1 - 192 / std::pow(pi, 5) * ratio * sum;
+}
+
 GasLaw gas_law(const Gas& gas, const Structure& s, double damping_of_unit_quality) {
-  const double mu = viscosity(gas), lambda = mean_free_path(gas);
+  const double mu = viscosity(gas) * (std::isnan(gas.film_length) ? 1 : end_flow(s.width / gas.film_length));
+  const double lambda = mean_free_path(gas);
   switch (gas.model) {
+    case GasModel::strip_slit:
+      return StripOverSlit{.viscosity = mu, .width = s.width, .slit_height = gas.slit_height, .slit_length = gas.slit_length};
     case GasModel::veijola:
       return VeijolaFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
     case GasModel::gallis_torczynski:

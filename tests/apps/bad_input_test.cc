@@ -195,7 +195,8 @@ TEST_F(BadInput, Results) {
       {{"report", "gold.toml"}, "gold.toml: is not a result.json of softland"},
       {{"report", "odd.json"}, "odd.json: is not a result.json of softland"},
       {{"new", "magnet"},
-       "new magnet: must be one of cantilever, cantilever-pzt, clamped-clamped, nem-cantilever, nem-casimir, plate"},
+       "new magnet: must be one of cantilever, cantilever-pzt, clamped-clamped, nem-cantilever, nem-casimir, plate, "
+       "two-electrodes"},
   });
 }
 

@@ -172,7 +172,8 @@ TEST(Modes, PrintsTheAgreedJson) {
 
 TEST(New, WritesScenesThatCheckAccepts) {
   const Workplace here;
-  for (const char* kind : {"cantilever", "cantilever-pzt", "clamped-clamped", "plate", "nem-cantilever", "nem-casimir"}) {
+  for (const char* kind :
+       {"cantilever", "cantilever-pzt", "clamped-clamped", "plate", "two-electrodes", "nem-cantilever", "nem-casimir"}) {
     const Outcome fresh = here.run({"new", kind});
     EXPECT_EQ(fresh.status, 0);
     EXPECT_EQ(fresh.err, "");

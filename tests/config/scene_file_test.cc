@@ -193,6 +193,7 @@ contact = "2 um"
 
 [electrode.main]
 span = ["60 um", "240 um"]
+side = "near"
 fringing = "meijs-fokkema"
 
 [gas]

@@ -9,6 +9,7 @@
 #include "base/literals.h"
 #include "model/gas/gas_law.h"
 #include "tests/config/small_scene.h"
+#include "tests/support/measured_actuators.h"
 
 namespace softland {
 namespace {
@@ -58,7 +59,8 @@ TEST(Scene, EverySectionOfTheSmallSceneArrives) {
 TEST(Scene, GasModelsAreThoseOfTheScene) {
   const std::string section = "model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"";
   for (const GasModelEntry& e : gas_models) {
-    const std::string keys = e.model == GasModel::linear ? "\nquality_factor = 7" : "\npressure = \"1 kPa\"";
+    std::string keys = e.model == GasModel::linear ? "\nquality_factor = 7" : "\npressure = \"1 kPa\"";
+    if (e.model == GasModel::strip_slit) keys += "\nslit_height = \"2 um\"\nslit_length = \"3 um\"";
     const Gas gas = *read(edited(small_scene, section, fmt::format("model = \"{}\"{}", e.name, keys))).device.gas;
     EXPECT_EQ(gas.model, e.model);
     EXPECT_EQ(gas.pressure, e.model == GasModel::linear ? Gas{}.pressure : 1000);
@@ -73,8 +75,32 @@ mean_free_path = "70 nm")"))
   EXPECT_EQ(gas.pressure, 101325);
   EXPECT_EQ(gas.temperature, 350);
   EXPECT_EQ(gas.mean_free_path, 70e-9);
+  const Gas slit = *read(edited(small_scene, section, R"(model = "strip-slit"
+film_length = "76 um"
+slit_height = "2 um"
+slit_length = "2.1 um"
+far_gap = "8.5 um")"))
+                        .device.gas;
+  EXPECT_EQ(slit.film_length, 76e-6);
+  EXPECT_EQ(slit.slit_height, 2e-6);
+  EXPECT_EQ(slit.slit_length, 2.1e-6);
+  EXPECT_EQ(slit.far_gap, 8.5e-6);
   EXPECT_EQ(read(edited(small_scene, section, "model = \"linear\"\ndamping = \"0.5 N s/m^2\"")).device.gas->damping, 0.5);
   EXPECT_EQ(read(edited(small_scene, section, "model = \"linear\"\nquality_factor = 7")).device.gas->quality_factor, 7);
+}
+
+TEST(Scene, ElectrodesStandOnTheirSide) {
+  const auto electrode = [](const std::string& lines) {
+    return read(edited(small_scene, "[gas]", lines + "[gas]")).device.electrodes[0];
+  };
+  EXPECT_EQ(electrode("").side, Side::near);
+  const Electrode both = electrode("side = \"both\"\ngap = \"8.55 um\"\n");
+  EXPECT_EQ(both.side, Side::both);
+  EXPECT_EQ(both.gap, 8.55e-6);
+  const Scene far = read(edited(edited(small_scene, "1.25 Vdp", "20 V"), "[gas]", "side = \"far\"\ngap = \"3 um\"\n[gas]"));
+  EXPECT_EQ(far.device.electrodes[0].side, Side::far);
+  EXPECT_TRUE(far.need_pull_in.empty());
+  EXPECT_FALSE(far.drives({}).limits.contains("main")) << "no pull-in voltage, no default limit";
 }
 
 TEST(Scene, WhatIsNotGivenTakesTheDefaultsOfTheStructs) {
@@ -102,6 +128,21 @@ TEST(Scene, OptionalKeysArrive) {
   EXPECT_EQ(scene.simulate.duration, 600e-6);
   EXPECT_EQ(scene.simulate.tolerance, 1e-9);
   EXPECT_EQ(scene.metrics.significant_rebound, 2e-9);
+}
+
+TEST(Scene, OfTheGapClosingActuatorIsThatOfTheComparison) {
+  constexpr double written = 2e-4;  // relative: digits of the scene
+  const Device scene = read_file("gap-closing-actuator.toml").device, d = test::gap_closing_actuator(76.5e-6);
+  EXPECT_NEAR(scene.structure.mass, d.structure.mass, written * d.structure.mass);
+  EXPECT_NEAR(scene.structure.stiffness, d.structure.stiffness, written * d.structure.stiffness);
+  EXPECT_NEAR(scene.structure.length, d.structure.length, written * d.structure.length);
+  EXPECT_NEAR(scene.structure.thickness, d.structure.thickness, written * d.structure.thickness);
+  EXPECT_NEAR(scene.gap.contact, d.gap.contact, 1e-12);
+  EXPECT_NEAR(scene.electrodes[0].gap, d.electrodes[0].gap, 1e-12);
+  EXPECT_EQ(scene.electrodes[0].side, Side::both);
+  EXPECT_NEAR(scene.gas->film_length, d.gas->film_length, 1e-12);
+  EXPECT_NEAR(scene.gas->slit_length, d.gas->slit_length, 3e-3 * d.gas->slit_length);
+  EXPECT_NEAR(scene.gas->far_gap, d.gas->far_gap, 1e-12);
 }
 
 TEST(Scene, ABeamBetweenTwoClampsHasItsStress) {

@@ -1,6 +1,7 @@
 // Events, endings and bad arguments of a closing.
 #include "model/closing.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -241,6 +242,14 @@ TEST(Closing, FailsWhenTheBeamReachesTheElectrode) {
       EXPECT_EQ(metrics(t).status, Status::numerical_failure);
     }
   }
+}
+
+TEST(Closing, FailsWhenTheBeamReachesTheFarSide) {
+  const std::vector<Signal> drives{Signal(), Signal::constant(200)};
+  const Trajectory t = simulate_closing(Switch(test::plate_between_electrodes()), drives, {.duration = 200_us});
+  EXPECT_EQ(t.status, Status::numerical_failure);
+  EXPECT_THAT(t.message, testing::HasSubstr("the beam came within a hundredth of the gap on its far side"));
+  EXPECT_LT(t.points.back().position, -3.7_um);
 }
 
 TEST(Closing, FailsWhenItNeedsMoreStepsThanAllowed) {

@@ -97,6 +97,7 @@ TEST(EnergyBalance, ClosesForEveryGasModel) {
     Device d = test::gold_cantilever();
     d.gas->model = e.model;
     if (e.model == GasModel::linear) d.gas->quality_factor = 5;
+    if (e.model == GasModel::strip_slit) d.gas->slit_height = d.gas->slit_length = 2_um;
     const std::vector<Signal> drives = waveforms(1, step_level, false);
     const Trajectory t = simulate_closing(Switch(d), drives, {.duration = 100_us, .tolerance = 1e-9});
     ASSERT_EQ(t.status, Status::done) << e.name;
@@ -215,6 +216,22 @@ TEST(Rest, OfASwitchWithoutDispersionForceIsTheStraightBeam) {
   const Switch device(test::gold_cantilever());
   ASSERT_TRUE(device.rest().has_value());
   EXPECT_TRUE(device.rest()->isZero(0));
+}
+
+TEST(EnergyBalance, ClosesBetweenElectrodes) {
+  const Signal braking = signal(Pulse{.levels = {0_V, 60_V, 0_V}, .times = {10_us, 25_us}, .edge = 2_us});
+  const Trajectory plate =
+      simulate_closing(Switch(test::plate_between_electrodes()), std::vector<Signal>{Signal::constant(110), braking},
+                       {.duration = 150_us, .tolerance = 1e-9});
+  const Trajectory beam = simulate_closing(Switch(test::cantilever_between_electrodes()),
+                                           std::vector<Signal>{Signal::constant(20), braking, Signal::constant(10)},
+                                           {.duration = 150_us, .tolerance = 1e-9});
+  for (const Trajectory& t : {plate, beam}) {
+    ASSERT_EQ(t.status, Status::done) << t.message;
+    EXPECT_GE(t.touches.size(), 2u);
+    EXPECT_GT(t.energy.dissipated, 0);
+    EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work);
+  }
 }
 
 TEST(EnergyBalance, ResidualFallsWithTheTolerance) {

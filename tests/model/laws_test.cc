@@ -18,6 +18,7 @@
 #include "model/contact/contact_law.h"
 #include "model/distributed_law.h"
 #include "model/dual.h"
+#include "model/far_side.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
@@ -96,6 +97,38 @@ TEST(ParallelPlate, IsEps0AreaOverTwoGapSquared) {
   const ElectrostaticForce<NoFringing> law{{.width = 20_um}};
   EXPECT_NEAR(law.load(2_um, 0.0), 8.8541878128e-12 * 20e-6 / (2 * 4e-12), 1e-18);
   EXPECT_NEAR(law.capacitance(2_um), 8.8541878128e-12 * 10, 1e-24);
+}
+
+// An electrode above the beam, 5 um away at rest, and one with a face on either side. Rest gap below: 3.5 um.
+template <class Law>
+FarSide<ElectrostaticForce<Law>> above() {
+  return {.law = {fringing<Law>(20_um, 2_um)}, .both_gaps = 8.5_um, .floor = 0.05_um};
+}
+
+TYPED_TEST(FringingLaw, OnTheFarSideIsTheMirrorImage) {
+  const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
+  const auto far = above<TypeParam>();
+  const BothSides<ElectrostaticForce<TypeParam>> both{.near = law, .far = far};
+  for (const double h : {0.03_um, 0.2_um, 1_um, 3.5_um, 8.4_um}) {
+    EXPECT_EQ(far.load(h, 0.1), -law.load(8.5_um - h, -0.1));
+    EXPECT_EQ(far.potential(h), law.potential(8.5_um - h));
+    EXPECT_EQ(both.load(h, 0.1), law.load(h, 0.1) + far.load(h, 0.1));
+    EXPECT_EQ(both.potential(h), law.potential(h) + far.potential(h));
+  }
+}
+
+TYPED_TEST(FringingLaw, OnTheFarSideHasItsPotentialAndGoesOnAsATangent) {
+  constexpr double differences = 1e-8, little = 1e-10;
+  const auto far = above<TypeParam>();
+  const double floor = far.both_gaps - far.floor;  // in terms of the near gap
+  for (const double h : {3.5_um, 8.3_um, 8.44_um, 8.48_um, 8.6_um}) {
+    const double expected = derivative([&](double x) { return far.potential(x); }, h, 0.5_nm);
+    EXPECT_NEAR(far.load(h, 0.0), expected, differences * std::abs(expected)) << "gap " << h;
+    const double slope = derivative([&](double x) { return far.load(x, 0.0); }, h, 0.5_nm);
+    EXPECT_NEAR(far.load(Dual(h, 1), Dual()).slope, slope, differences * std::abs(slope)) << "gap " << h;
+  }
+  EXPECT_NEAR(far.load(floor * (1 - little), 0.0) / far.load(floor * (1 + little), 0.0), 1, 1e-6);
+  EXPECT_TRUE(std::isfinite(far.load(8.5_um, 0.0))) << "where the mirrored gap vanishes";
 }
 
 TEST(FringingFactor, IsTheTabulatedOne) {
@@ -329,6 +362,7 @@ Law gas_law_of_type(double width, double free_path, double viscosity = 1.86e-5_P
   for (const GasModelEntry& e : gas_models) {
     Gas gas{.model = e.model, .viscosity = viscosity, .mean_free_path = free_path};
     if (e.model == GasModel::linear) gas.damping = viscosity * 1000;
+    if (e.model == GasModel::strip_slit) gas.slit_height = gas.slit_length = width / 8;
     const GasLaw law = gas_law(gas, {.width = width, .thickness = 4_um}, 1);
     if (const Law* found = std::get_if<Law>(&law)) return *found;
   }
@@ -337,8 +371,8 @@ Law gas_law_of_type(double width, double free_path, double viscosity = 1.86e-5_P
 
 template <class Law>
 class GasLawOfType : public testing::Test {};
-using GasLaws = testing::Types<StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm, GuoAlexeenkoFilm, SlipFilm,
-                               LinearDamper>;
+using GasLaws = testing::Types<StripSqueezeFilm, StripOverSlit, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm,
+                               GuoAlexeenkoFilm, SlipFilm, LinearDamper>;
 TYPED_TEST_SUITE(GasLawOfType, GasLaws);
 
 TYPED_TEST(GasLawOfType, OpposesTheMotionAndTakesItsEnergy) {
@@ -381,6 +415,70 @@ TEST(StripSqueezeFilm, IsTheTextbookOne) {
   for (const double h : gaps) {
     const double expected = -1.86e-5 * std::pow(20_um / h, 3) * 0.3;
     EXPECT_NEAR(film.load(h, 0.3), expected, 1e-14 * std::abs(expected));
+  }
+}
+
+TYPED_TEST(GasLawOfType, OnTheFarSideOpposesTheMotionToo) {
+  const auto law = gas_law_of_type<TypeParam>(20_um, 65_nm);
+  const FarSide<TypeParam> far{.law = law, .both_gaps = 8.5_um, .floor = 0.05_um};
+  for (const double h : {0.03_um, 3.5_um, 8.4_um, 8.48_um, 8.6_um}) {
+    EXPECT_LT(far.load(h, 0.2), 0) << "gap " << h;
+    EXPECT_NEAR(far.load(h, 0.2), -far.load(h, -0.2), 1e-15);
+    const double slope = derivative([&](double x) { return far.load(x, 0.2); }, h, 0.5_nm);
+    EXPECT_NEAR(far.load(Dual(h, 1), Dual(0.2)).slope, slope, 1e-8 * std::abs(slope) + 1e-9) << "gap " << h;
+  }
+  EXPECT_EQ(far.load(3.5_um, 0.2), law.load(8.5_um - 3.5_um, 0.2));
+}
+
+TEST(StripOverSlit, IsTheStripWhereTheSlitIsWideAndTwiceAsWideWhereItIsClosed) {
+  const StripSqueezeFilm open{.viscosity = 1.86e-5_Pa_s, .width = 20_um}, twice{.viscosity = 1.86e-5_Pa_s, .width = 40_um};
+  const auto slit = [](double height) {
+    return StripOverSlit{.viscosity = 1.86e-5_Pa_s, .width = 20_um, .slit_height = height, .slit_length = 2_um};
+  };
+  for (const double h : gaps) {
+    EXPECT_NEAR(slit(100 * h).load(h, 1.0), open.load(h, 1.0), 1e-6 * std::abs(open.load(h, 1.0))) << h;
+    // The closed edge is the middle of a strip of twice the width, of which this is one half.
+    EXPECT_NEAR(slit(h / 1000).load(h, 1.0), twice.load(h, 1.0) / 2, 1e-6 * std::abs(twice.load(h, 1.0))) << h;
+  }
+}
+
+TEST(StripOverSlit, SolvesReynoldsEquationWithItsEdges) {
+  // p'' = -12 mu v / h^3 by a shooting sum on a fine grid: p(0) = 0 and -p'(a) h^3 = p(a) s^3 / l. Linear in p'(0), so two shots
+  // do.
+  constexpr double mu = 1.86e-5, a = 20_um, s = 2_um, l = 2.1_um, h = 3_um;
+  constexpr double source = 12 * mu / (h * h * h);
+  const auto shoot = [&](double slope) {  // the parabola of constant source, exactly
+    const double pressure = slope * a - source * a * a / 2, end = slope - source * a;
+    return std::pair{-end * h * h * h - pressure * s * s * s / l, slope * a * a / 2 - source * a * a * a / 6};
+  };
+  const auto [miss_0, force_0] = shoot(0);
+  const auto [miss_1, force_1] = shoot(1e9);
+  const double force = force_0 + (force_1 - force_0) * miss_0 / (miss_0 - miss_1);
+  const StripOverSlit film{.viscosity = mu, .width = a, .slit_height = s, .slit_length = l};
+  EXPECT_NEAR(-film.load(h, 1.0), force, 1e-12 * force);
+}
+
+TEST(EndFlow, IsThatOfARectangularFilm) {
+  // The double Fourier series of Poisson's equation on a rectangle converges slowly and says the same.
+  for (const double ratio : {0.05, 0.3, 0.5256, 1.0, 2.5}) {
+    double sum = 0;
+    for (int m = 1; m < 2000; m += 2) {
+      for (int n = 1; n < 2000; n += 2) sum += 1 / (1.0 * m * m * n * n * (m * m + ratio * ratio * n * n));
+    }
+    const double expected = 12 * 64 / std::pow(pi, 6) * sum;
+    EXPECT_NEAR(end_flow(ratio), expected, 1e-6) << ratio;
+  }
+  EXPECT_NEAR(end_flow(1), 0.42173, 5e-6) << "the square film of the textbooks";
+  EXPECT_NEAR(end_flow(1e-3), 1 - 0.63025e-3, 1e-8) << "a long film loses 0.63 widths of its length";
+}
+
+TEST(EndFlow, WeakensTheFilmsThatTakeALength) {
+  for (const GasModel model : {GasModel::strip, GasModel::strip_slit, GasModel::veijola}) {
+    Gas gas{.model = model, .slit_height = 2_um, .slit_length = 2_um};
+    const Structure strip{.width = 20_um};
+    const double whole = damping_per_length(gas_law(gas, strip, 1), 1_um);
+    gas.film_length = 40_um;
+    EXPECT_NEAR(damping_per_length(gas_law(gas, strip, 1), 1_um), end_flow(0.5) * whole, 1e-12 * whole);
   }
 }
 

@@ -134,6 +134,34 @@ TEST(DynamicPullIn, PassesOnWhatStaticPullInSaid) {
   EXPECT_TRUE(std::isnan(found.voltage));
 }
 
+TEST(PullIn, IsNotForAnElectrodeOnTheFarSide) {
+  const Switch device(test::plate_between_electrodes());
+  EXPECT_TRUE(pulls_in(device.device(), 0));
+  EXPECT_FALSE(pulls_in(device.device(), 1));
+  const StaticPullIn none = static_pull_in(device, 1);
+  EXPECT_EQ(none.status, Status::no_contact);
+  EXPECT_EQ(dynamic_pull_in(device, 1, none).status, Status::no_contact);
+  EXPECT_TRUE(std::isnan(release_voltage(device, 1)));
+  EXPECT_EQ(static_pull_in(device, 0).status, Status::done);
+}
+
+TEST(StaticPullIn, OfFacesOnBothSidesIsTheMaximumOfTheBalance) {
+  // k x = eps0 A V^2 / 2 [1/(g - x)^2 - 1/(G + x)^2]: the largest V^2 over x, by a fine scan.
+  Device d = test::full_plate();
+  d.gas.reset();
+  d.electrodes = {{.name = "main", .begin = 0, .end = 70_um, .fringing = Fringing::none, .side = Side::both, .gap = 5_um}};
+  const double g = d.gap.electrode, G = 5_um, factor = vacuum_permittivity * 7e-9 / (2 * d.structure.stiffness);
+  double most = 0;
+  for (int i = 1; i < 100000; ++i) {
+    const double x = 0.6 * g * i / 100000;
+    most = std::max(most, x / factor / (1 / ((g - x) * (g - x)) - 1 / ((G + x) * (G + x))));
+  }
+  EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, std::sqrt(most), 1e-8 * std::sqrt(most));
+  d.electrodes[0].gap = 1;  // far enough not to matter
+  const double alone = std::sqrt(8 * std::pow(g, 3) / (27 * 2 * factor));
+  EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, alone, 1e-9 * alone);
+}
+
 TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishes) {
   constexpr double margin = 1e-5;
   Device spring = test::gold_cantilever();

@@ -50,6 +50,7 @@ std::vector<Combination> combinations() {
       Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
       d.gas->model = e.model;
       if (e.model == GasModel::linear) d.gas->quality_factor = 5;
+      if (e.model == GasModel::strip_slit) d.gas->slit_height = d.gas->slit_length = 2_um;
       all.push_back({fmt::format("gas {}, piezo {}", e.name, layer), d});
     }
   }
@@ -102,6 +103,8 @@ std::vector<Combination> combinations() {
       }
     }
   }
+  all.push_back({"plate between electrodes", test::plate_between_electrodes()});
+  all.push_back({"cantilever between electrodes", test::cantilever_between_electrodes()});
   return all;
 }
 
@@ -401,6 +404,31 @@ TEST(Switch, OfAPlateIsOneOscillator) {
   EXPECT_NEAR(force * plain.contact_shape()[0] * 2.4e-9, expected, 1e-12 * 42 * x);
   const double power = 1e-6 * 1e-8 * area / (h * h * h) * 0.01;
   EXPECT_NEAR(plain.dissipated_power(&q, &v, work), power, 1e-12 * power);
+}
+
+TEST(Switch, ElectrodeOnTheFarSideLiftsTheBeam) {
+  // A small voltage on two plates: eps0 A V^2 / (2 d^2) each, one towards the contact and one away from it.
+  Device d = test::plate_between_electrodes();
+  for (Electrode& e : d.electrodes) {
+    e.fringing = Fringing::none;
+    e.end = 50_um;
+  }
+  d.electrodes[1].gap = 2 * 3.8_um;
+  const Switch device(d);
+  Switch::Workspace work = device.workspace();
+  const double rest = 0, v = 0.1 / device.contact_shape()[0], force = vacuum_permittivity * 5e-9 / (2 * std::pow(3.8_um, 2));
+  double a = 0;
+  const auto newtons = [&](std::vector<double> volts) {
+    device.accelerations(&rest, &rest, volts, false, work, &a);
+    return a * 2.4e-9 * device.contact_shape()[0];
+  };
+  EXPECT_NEAR(newtons({1, 0}), force, 1e-12 * force);
+  EXPECT_NEAR(newtons({0, 1}), -force / 4, 1e-12 * force);
+  EXPECT_NEAR(newtons({1, 2}), 0, 1e-12 * force);
+  EXPECT_NEAR(device.capacitance(1, &rest, work), vacuum_permittivity * 5e-9 / (2 * 3.8_um), 1e-27);
+  // Both films together.
+  const double one = 1e-6 * 1e-8 * 1e-8 / std::pow(3.8_um, 3) * 0.01;
+  EXPECT_NEAR(device.dissipated_power(&rest, &v, work), 2 * one, 1e-12 * one);
 }
 
 TEST(Switch, GapFloorIsAHundredthOfTheElectrodeGap) {

@@ -69,6 +69,15 @@ TEST(SearchSpace, OfBothDrivesListsTheElectrodeFirst) {
   EXPECT_EQ(std::get<Step>(waveforms.at("piezo")).rise_time, 2e-6);
 }
 
+TEST(SearchSpace, BrakesWithTheElectrodeOnTheFarSide) {
+  const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  const SearchSpace space(p, Actuator::electrostatic, "step", first_touch);
+  EXPECT_THAT(names(space), ElementsAre("main.rise_time_s", "upper.rise_time_s"));
+  EXPECT_EQ(SearchSpace(p, Actuator::electrostatic, "pulse", first_touch).variables().size(), 10u);
+  const Prepared unlimited = prepare(without(scene("two-electrodes.toml"), "driver.upper"), true);
+  EXPECT_THAT(names(SearchSpace(unlimited, Actuator::electrostatic, "step", first_touch)), ElementsAre("main.rise_time_s"));
+}
+
 TEST(SearchSpace, NeverTouchesTheHoldLevel) {
   const double hold = signal(plain().drives.waveforms.at("main")).hold_level();
   for (const char* family : {"step", "pulse", "harmonic"}) {
@@ -153,6 +162,11 @@ TEST(SearchedElectrode, IsMainElseTheFirst) {
   EXPECT_EQ(searched_electrode(device), "left");
   device.electrodes.push_back({.name = "main"});
   EXPECT_EQ(searched_electrode(device), "main");
+  for (Electrode& e : device.electrodes) e.side = Side::far;
+  EXPECT_EQ(refusal([&] { (void)searched_electrode(device); }),
+            "optimize needs an electrode that pulls in, and all of the scene's are on the far side");
+  device.electrodes[1].side = Side::near;
+  EXPECT_EQ(searched_electrode(device), "right");
 }
 
 }  // namespace

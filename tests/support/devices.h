@@ -159,4 +159,24 @@ namespace softland::test {
   };
 }
 
+/// The full plate with the second electrode above the plate and a film there as well; see scenes/two-electrodes.toml.
+[[nodiscard]] inline Device plate_between_electrodes() {
+  using namespace literals;
+  Device d = full_plate();
+  d.electrodes[1].side = Side::far;
+  d.electrodes[1].gap = 3.8_um;
+  d.gas->far_gap = 3.8_um;
+  return d;
+}
+
+/// The gold cantilever with an electrode above it, under a film, and one whose faces stand on both sides.
+[[nodiscard]] inline Device cantilever_between_electrodes() {
+  using namespace literals;
+  Device d = gold_cantilever();
+  d.electrodes.push_back({.name = "upper", .begin = 100_um, .end = 200_um, .side = Side::far, .gap = 3_um});
+  d.electrodes.push_back({.name = "around", .begin = 20_um, .end = 60_um, .side = Side::both, .gap = 4_um});
+  d.gas->far_gap = 3_um;
+  return d;
+}
+
 }  // namespace softland::test

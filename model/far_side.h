@@ -1,0 +1,51 @@
+// A force law on the far side of the moving part, where the gap opens as the other one closes.
+//
+//   f(h, v) = -law(H - h, -v)       H = d0 + d_far
+//
+// h local gap on the near side [m], v velocity towards the near side [m/s], d0 and d_far rest gaps of both sides [m]. Below
+// `floor` the law is continued by its tangent: the switch ends a run that gets there. Laws of the velocity are linear in it.
+#pragma once
+
+#include "model/dual.h"
+
+namespace softland {
+
+template <class Law>
+struct FarSide {
+  Law law = {};
+  double both_gaps = 0;                               ///< H [m]
+  double floor = 0;                                   ///< [m]
+  Dual at_floor = law.load(Dual(floor, 1), Dual(1));  ///< the law's tangent there, for v = 1 m/s
+  static constexpr bool driven = Law::driven;
+
+  /// [N/m], per unit of the drive for a driven law
+  template <class S>
+  S load(S gap, S velocity) const {
+    const S far = S(both_gaps) - gap;
+    if (!(far < floor)) return -law.load(far, -velocity);
+    const S tangent = S(at_floor.value) + S(at_floor.slope) * (far - S(floor));
+    return driven ? -tangent : tangent * velocity;
+  }
+  /// [J/m] per unit of the drive; below the floor the parabola that belongs to the tangent.
+  [[nodiscard]] double potential(double gap) const requires(Law::driven) {
+    const double far = both_gaps - gap, below = far - floor;
+    if (below >= 0) return law.potential(far);
+    return law.potential(floor) + (at_floor.value + at_floor.slope * below / 2) * below;
+  }
+};
+
+/// The faces of one electrode on both sides of the moving part.
+template <class Law>
+struct BothSides {
+  Law near = {};
+  FarSide<Law> far = {};
+  static constexpr bool driven = Law::driven;
+
+  template <class S>
+  S load(S gap, S velocity) const {
+    return near.load(gap, velocity) + far.load(gap, velocity);
+  }
+  [[nodiscard]] double potential(double gap) const { return near.potential(gap) + far.potential(gap); }
+};
+
+}  // namespace softland

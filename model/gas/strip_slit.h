@@ -1,0 +1,34 @@
+// Squeezed gas film between two walls that stand on a substrate: one long edge is open, from the other the gas can only leave
+// through a slit under the moving wall. Fingers of gap-closing actuators etched from the device layer of a silicon-on-insulator
+// wafer move so.
+//
+//   f = -mu (a / h)^3 v (4 + r) / (1 + r),   r = a s^3 / (l h^3)     [N/m], positive towards the electrode
+//
+// mu viscosity [Pa s], a width of the film (height of the wall) [m], h local gap [m], s height of the slit [m], l its length up
+// to where the pressure is ambient [m] (half the wall's width when a film on the other side of the wall is sucked as this one is
+// squeezed), v velocity towards the electrode [m/s]. r compares what slit and film let pass: a wide slit, r -> infinity, gives
+// the strip open at both edges, a closed one four times its damping, the strip of twice the width. Derived from Reynolds'
+// equation with p = 0 at the open edge and -dp/dx h^3 = p s^3 / l at the other; the same factor as Li, Rouf & Horsley,
+// Transducers 2013, for lateral oscillators. Continuum, incompressible, Poiseuille flow in the slit. Singular at h = 0.
+#pragma once
+
+namespace softland {
+
+struct StripOverSlit {
+  double viscosity = 0;    ///< [Pa s]
+  double width = 0;        ///< [m]
+  double slit_height = 0;  ///< [m]
+  double slit_length = 0;  ///< [m]
+  double mu_a3 = viscosity * width * width * width;
+  double passing = width * slit_height * slit_height * slit_height / slit_length;  ///< r h^3 [m^3]
+  static constexpr bool driven = false;
+
+  /// [N/m]
+  template <class S>
+  S load(S gap, S velocity) const {
+    const S cube = gap * gap * gap;
+    return S(-mu_a3) * velocity * (S(4) * cube + S(passing)) / (cube * (cube + S(passing)));
+  }
+};
+
+}  // namespace softland
