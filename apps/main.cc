@@ -140,7 +140,7 @@ int run(int argc, char** argv) {
   with_scene(check, true);
   check->footer("Example:\n  softland check my-switch.toml");
 
-  CLI::App* effects = add_verb("effects", "which laws matter in a scene, by how much, and what they cost (so far: the gas)");
+  CLI::App* effects = add_verb("effects", "which effects matter in a scene, by how much, and what each costs");
   with_scene(effects, true);
   with_json(effects);
   effects->footer("Example:\n  softland effects scenes/mem-gold.toml --set gas.pressure=\"1 kPa\"");

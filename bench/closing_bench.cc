@@ -20,8 +20,8 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "objectives/metrics.h"
-#include "studies/effects.h"
 #include "studies/prepared.h"
+#include "studies/timing.h"
 
 namespace softland {
 namespace {

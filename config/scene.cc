@@ -285,6 +285,8 @@ SimulateOptions read_simulate(const SectionReader& in) {
   } else {
     options.accuracy = in.number("accuracy");
   }
+  options.automatic_effects = in.text("effects") == "auto";
+  options.effects_tolerance = in.number("effects_tolerance");
   return options;
 }
 

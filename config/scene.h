@@ -30,6 +30,8 @@ class SceneFile {
   /// such a key name the option ("--set gap.contact=...") instead of file and line. Throws InvalidInput for an assignment that is
   /// none.
   void set(std::string_view assignment);
+  /// Takes a section or a key out, if it is there.
+  void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a
   /// Table stand in the scene itself. Throws InvalidInput for a waveform outside its family's rules.
   void set_waveform(const std::string& drive, const Waveform& waveform);
@@ -65,9 +67,11 @@ struct Drives {
 };
 
 struct SimulateOptions {
-  double duration = 0;     ///< [s]; 0: choose (six periods of the first mode)
-  double accuracy = 1e-6;  ///< target relative error of t_i, v_i and B_H
-  double tolerance = 0;    ///< relative tolerance of the integrator; 0: derived from accuracy
+  double duration = 0;              ///< [s]; 0: choose (six periods of the first mode)
+  double accuracy = 1e-6;           ///< target relative error of t_i, v_i and B_H
+  double tolerance = 0;             ///< relative tolerance of the integrator; 0: derived from accuracy
+  bool automatic_effects = false;   ///< leave out what changes no figure by more than effects_tolerance
+  double effects_tolerance = 1e-3;  ///< relative, of t_i, v_i and B_H
 };
 
 struct Scene {

@@ -447,6 +447,13 @@ void SceneFile::set(std::string_view assignment) {
   impl_->origins[path_text] = {option, true};
 }
 
+void SceneFile::erase(const std::string& path) {
+  const std::vector<std::string> parts = internal::split_path(path);
+  toml::table* table = &impl_->root;
+  for (std::size_t i = 0; i + 1 < parts.size() && table; ++i) table = (*table)[parts[i]].as_table();
+  if (table && table->erase(parts.back()) > 0) impl_->forget(path);
+}
+
 void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   static_cast<void>(signal(given));  // a waveform that breaks its family's rules would write a scene that cannot be read
   const bool is_factor = drive == internal::dispersion_drive;

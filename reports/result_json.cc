@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/quintic.h"
+#include "studies/omissions.h"
 #include "version.h"
 #include "waveforms/export.h"
 
@@ -100,6 +101,12 @@ json errors_json(const Closing& c) {
 json work_json(const Work& w) { return {{"steps", w.steps}, {"rhs_evaluations", w.rhs_evaluations}, {"wall_s", w.wall}}; }
 
 void add_scene(json& j, const Prepared& p) {
+  if (p.effects) {
+    json left_out = json::array();
+    for (const Omission& o : p.effects->choice.left_out)
+      left_out.push_back({{"effect", o.what.effect}, {"influence", number(o.influence)}});
+    j["effects"] = {{"left_out", left_out}, {"influence", number(p.effects->choice.influence)}};
+  }
   const SceneFile file = resolved(p.scene, p.voltage_units());
   j["title"] = p.scene.title;
   j["scene"] = file.json();

@@ -1,5 +1,6 @@
 // Which laws matter in a scene, by how much, and what they cost: the closing of the scene repeated with each of them in turn.
-// First version: the gas. Drives keep their volts, so that only the law differs.
+// Every effect is left out in turn, and every gas law takes the place of the scene's own. Drives keep their volts, so that only
+// the law differs.
 #pragma once
 
 #include <atomic>
@@ -7,16 +8,10 @@
 #include <vector>
 
 #include "objectives/metrics.h"
+#include "studies/omissions.h"
 #include "studies/prepared.h"
 
 namespace softland {
-
-/// A number that people compare: "damping per length, closed", "N s/m^2".
-struct NamedNumber {
-  std::string name;
-  std::string unit;  ///< empty: dimensionless
-  double value = Metrics::unset;
-};
 
 /// The scene with one law in the place of its own.
 struct Effect {
@@ -31,7 +26,8 @@ struct Effect {
 };
 
 struct Effects {
-  std::vector<Effect> list;
+  std::vector<Effect> list;  ///< the laws of the gas
+  std::vector<Omission> omissions;
 
   /// What the scene itself says in this section.
   [[nodiscard]] const Effect& own(const std::string& section) const;
@@ -43,13 +39,9 @@ struct Effects {
 /// (value - own) / own; NaN where either is missing.
 [[nodiscard]] double relative_change(const Effect& effect, const Effect& own, double Metrics::*figure);
 
-/// Repeats the closing with no gas and with every gas law, in the state of gas that the scene describes (air at 101325 Pa and 300
-/// K where it describes none). The linear damper and the film over a slit only where the scene describes them.
+/// Repeats the closing without each effect, and with no gas and with every gas law, in the state of gas that the scene describes
+/// (air at 101325 Pa and 300 K where it describes none). The linear damper and the film over a slit only where the scene
+/// describes them.
 [[nodiscard]] Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop = nullptr);
-
-/// Seconds per Switch::accelerations over the very states that a closing goes through, in flight and in contact in their true
-/// proportion: the median of `repeats` passes.
-[[nodiscard]] double right_hand_side_seconds(const Switch& device, const std::vector<Signal>& signals, double duration,
-                                             int repeats);
 
 }  // namespace softland

@@ -7,6 +7,7 @@
 #include "base/require.h"
 #include "model/constants.h"
 #include "studies/auto_modes.h"
+#include "studies/omissions.h"
 
 namespace softland {
 
@@ -39,7 +40,9 @@ std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
 // tolerance.
 double tolerance_for(double accuracy) { return std::clamp(accuracy / 100, 1e-12, 1e-4); }
 
-Prepared prepare(const SceneFile& given, bool default_limits) {
+namespace {
+
+Prepared as_described(const SceneFile& given, bool default_limits) {
   SceneFile file = given;
   Scene scene = read_scene(file);
   if (scene.auto_modes) {
@@ -65,6 +68,31 @@ Prepared prepare(const SceneFile& given, bool default_limits) {
   p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.device.angular_frequencies()[0];
   p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance : tolerance_for(scene.simulate.accuracy);
   return p;
+}
+
+std::string left_out_note(const EffectsChoice& choice, double tolerance) {
+  if (choice.left_out.empty())
+    return fmt::format("effects = \"auto\": nothing is left out, every effect changes a figure by more than {:g}", tolerance);
+  std::vector<std::string> names;
+  for (const Omission& o : choice.left_out) names.push_back(fmt::format("{} ({:.1g})", o.what.effect, o.influence));
+  return fmt::format("effects = \"auto\" leaves out {}: t_i, v_i and B_H change by {:.1g} together", fmt::join(names, ", "),
+                     choice.influence);
+}
+
+}  // namespace
+
+Prepared prepare(const SceneFile& file, bool default_limits) {
+  Prepared p = as_described(file, default_limits);
+  const SimulateOptions& options = p.scene.simulate;
+  if (!options.automatic_effects) return p;
+  EffectsChoice choice = negligible_effects(p, options.effects_tolerance);
+  std::vector<Omissible> effects;
+  for (const Omission& o : choice.left_out) effects.push_back(o.what);
+  Prepared chosen = without(p, effects);
+  chosen.scene.warnings.push_back(left_out_note(choice, options.effects_tolerance));
+  chosen.effects =
+      std::make_shared<const DescribedEffects>(DescribedEffects{.described = p.scene.device, .choice = std::move(choice)});
+  return chosen;
 }
 
 }  // namespace softland

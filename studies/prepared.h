@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ inline constexpr std::string_view piezo_drive = "piezo";
 /// The name of the dispersion force's factor among the drives. Its signal is the factor less one.
 inline constexpr std::string_view dispersion_drive = "dispersion";
 
+struct DescribedEffects;
+
 struct Prepared {
   Scene scene;
   Switch device;
@@ -31,6 +34,8 @@ struct Prepared {
   Drives drives;                                   ///< in volts
   double duration = 0;                             ///< window [s]
   double tolerance = 0;                            ///< of the integrator
+  /// Where the scene says effects = "auto": what it describes and what was left out. The scene above is the one without.
+  std::shared_ptr<const DescribedEffects> effects = {};
 
   /// Names of the drives in the order of Switch::drives().
   [[nodiscard]] std::vector<std::string> drive_names() const;

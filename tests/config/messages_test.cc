@@ -150,6 +150,8 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     Edit{R"(pad_length = "5 um")", R"(pad_length = "250 um")", R"(x.toml:19: contact.pad_length = "250 um": must be less than structure.length = "250 um")"},
     Edit{R"(title = "small")", R"(title = 3)", "x.toml:1: title = 3: expected a text in quotes"},
     Edit{R"(accuracy = 1e-5)", "accuracy = 0.2", "x.toml:39: simulate.accuracy = 0.2: must be in (0, 0.1]"},
+    Edit{R"(accuracy = 1e-5)", "effects = \"some\"", R"(x.toml:39: simulate.effects = "some": unknown value (known: all, auto))"},
+    Edit{R"(accuracy = 1e-5)", "effects_tolerance = 0", "x.toml:39: simulate.effects_tolerance = 0: must be in (0, 0.1]"},
     Edit{R"(accuracy = 1e-5)", "accuracy = 1e-5\ntolerance = 1e-9", "x.toml:39: simulate.accuracy = 1e-05: cannot stand beside simulate.tolerance = 1e-09: give one of them"},
     Edit{R"(accuracy = 1e-5)", "[metrics]\nsignificant_rebound = \"0 nm\"", R"(x.toml:40: metrics.significant_rebound = "0 nm": must be greater than 0 m)"}));
 

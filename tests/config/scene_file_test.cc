@@ -235,6 +235,8 @@ max_voltage = "1 V"
 
 [simulate]
 accuracy = 1e-05
+effects = "all"
+effects_tolerance = 0.001
 
 [metrics]
 significant_rebound = "1 nm"
@@ -266,7 +268,7 @@ TEST(Resolved, KeepsToleranceWithoutAddingAccuracy) {
   SceneFile file = small_file();
   file.set("simulate.tolerance=1e-8");
   const SceneFile full = resolved(read_scene(file), pull_in);
-  EXPECT_EQ(full.json()["simulate"], (nlohmann::json{{"tolerance", 1e-8}}));
+  EXPECT_EQ(full.json()["simulate"], (nlohmann::json{{"tolerance", 1e-8}, {"effects", "all"}, {"effects_tolerance", 1e-3}}));
 }
 
 TEST(Resolved, MessagesDoNotCiteTheLinesOfTheOriginal) {

@@ -1,0 +1,212 @@
+#include "studies/omissions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/closing.h"
+#include "model/gas/gas_law.h"
+#include "studies/timing.h"
+
+namespace softland {
+namespace {
+
+std::string_view name_of(Fringing fringing) {
+  switch (fringing) {
+    case Fringing::none:
+      return "none";
+    case Fringing::linear:
+      return "linear";
+    case Fringing::bao_2001:
+      return "bao-2001";
+    case Fringing::meijs_fokkema:
+      break;
+  }
+  return "meijs-fokkema";
+}
+
+// Force on the first mode at rest under 1 V on one electrode.
+double force_at_rest(const Device& described, std::size_t electrode) {
+  const Switch device(described);
+  Switch::Workspace work = device.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  Eigen::VectorXd with(device.modes()), without(device.modes());
+  std::vector<double> volts(device.drives(), 0.0);
+  device.accelerations(rest.data(), rest.data(), volts, false, work, without.data());
+  volts[electrode] = 1;
+  device.accelerations(rest.data(), rest.data(), volts, false, work, with.data());
+  return with[0] - without[0];
+}
+
+double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
+
+Metrics figures(const Prepared& p, const std::atomic<bool>* stop) {
+  return metrics(simulate_closing(p.device, p.signals(), {.duration = p.duration, .tolerance = p.tolerance, .stop = stop}),
+                 p.scene.metrics);
+}
+
+}  // namespace
+
+std::vector<Omissible> omissible_effects(const Prepared& prepared) {
+  const Device& d = prepared.scene.device;
+  const Structure& s = d.structure;
+  const double closed = d.gap.electrode - d.gap.contact;
+  std::vector<Omissible> list;
+  if (s.kind != StructureKind::plate && s.modes > 1) {
+    list.push_back(
+        {.effect = "structure.modes",
+         .choice = std::to_string(s.modes),
+         .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.device.angular_frequencies()[s.modes - 1]},
+         .group = {.name = "over the first",
+                   .value = prepared.device.angular_frequencies()[s.modes - 1] / prepared.device.angular_frequencies()[0]},
+         .instead = "1",
+         .automatic = false});
+  }
+  if (s.damping_ratio > 0) {
+    list.push_back({.effect = "structure.damping_ratio",
+                    .choice = fmt::format("{:g}", s.damping_ratio),
+                    .magnitude = {.name = "quality factor", .value = 1 / (2 * s.damping_ratio)},
+                    .group = {.name = "damping ratio", .value = s.damping_ratio},
+                    .instead = "0.0"});
+  }
+  if (s.kind == StructureKind::clamped_clamped && s.stretching) {
+    list.push_back({.effect = "structure.stretching",
+                    .choice = "on",
+                    .magnitude = {.name = "contact gap", .unit = "m", .value = d.gap.contact},
+                    .group = {.name = "(gap / thickness)^2", .value = std::pow(d.gap.contact / s.thickness, 2)},
+                    .instead = "false"});
+  }
+  if (s.kind == StructureKind::clamped_clamped && s.residual_stress != 0) {
+    Device without = d;
+    without.structure.residual_stress = 0;
+    list.push_back({.effect = "structure.residual_stress",
+                    .choice = fmt::format("{:g} MPa", s.residual_stress / 1e6),
+                    .magnitude = {.name = "stress", .unit = "Pa", .value = s.residual_stress},
+                    .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
+                    .instead = "'0 Pa'"});
+  }
+  for (std::size_t k = 0; k < d.electrodes.size(); ++k) {
+    const Electrode& e = d.electrodes[k];
+    if (e.fringing == Fringing::none) continue;
+    Device without = d;
+    without.electrodes[k].fringing = Fringing::none;
+    list.push_back({.effect = "electrode." + e.name + ".fringing",
+                    .choice = std::string(name_of(e.fringing)),
+                    .magnitude = {.name = "force added, at rest", .value = force_at_rest(d, k) / force_at_rest(without, k) - 1},
+                    .group = {.name = "gap / width", .value = d.gap.electrode / s.width},
+                    .instead = "'none'"});
+  }
+  if (d.gas) {
+    const double omega = prepared.device.angular_frequencies()[0];
+    list.push_back(
+        {.effect = "gas",
+         .choice = std::string(entry(d.gas->model).name),
+         .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.device.gas(), closed)},
+         .group = {.name = "squeeze number, closed"},
+         .instead = {}});
+    if (d.gas->model != GasModel::linear) list.back().group.value = squeeze_number(*d.gas, s.width, closed, omega);
+    if (!std::isnan(d.gas->far_gap)) {
+      list.push_back({.effect = "gas.far_gap",
+                      .choice = fmt::format("{:g} um", d.gas->far_gap * 1e6),
+                      .magnitude = {.name = "damping, at rest",
+                                    .unit = "N s/m^2",
+                                    .value = damping_per_length(*prepared.device.gas(), d.gas->far_gap)},
+                      .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / d.gas->far_gap, 3)},
+                      .instead = {}});
+    }
+    if (!std::isnan(d.gas->film_length)) {
+      list.push_back({.effect = "gas.film_length",
+                      .choice = fmt::format("{:g} um", d.gas->film_length * 1e6),
+                      .magnitude = {.name = "damping kept", .value = end_flow(s.width / d.gas->film_length)},
+                      .group = {.name = "width / length", .value = s.width / d.gas->film_length},
+                      .instead = {}});
+    }
+  }
+  if (d.contact && d.contact->damping > 0) {
+    list.push_back({.effect = "contact.damping",
+                    .choice = fmt::format("{:g} s/m", d.contact->damping),
+                    .magnitude = {.name = "damping", .unit = "s/m", .value = d.contact->damping},
+                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * d.contact->damping},
+                    .instead = {}});
+  }
+  if (d.dispersion && !prepared.drives.waveforms.contains(std::string(dispersion_drive))) {
+    const double bent =
+        prepared.device.rest() ? prepared.device.contact_deflection(prepared.device.rest()->data()) : d.gap.contact;
+    list.push_back({.effect = "dispersion",
+                    .choice = prepared.scene.file.json()["dispersion"]["model"].get<std::string>(),
+                    .magnitude = {.name = "deflection at rest", .unit = "m", .value = bent},
+                    .group = {.name = "over the contact gap", .value = bent / d.gap.contact},
+                    .instead = {}});
+  }
+  return list;
+}
+
+Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects) {
+  const SceneFile frozen = resolved(prepared.scene, prepared.voltage_units());
+  SceneFile file = SceneFile::parse(frozen.text(), prepared.scene.file.name());
+  file.set("simulate.effects=all");
+  for (const Omissible& e : effects) {
+    // A key of a section that goes goes with it.
+    const bool inside = std::any_of(effects.begin(), effects.end(),
+                                    [&](const Omissible& other) { return e.effect.starts_with(other.effect + "."); });
+    if (inside) continue;
+    if (e.instead.empty()) {
+      file.erase(e.effect);
+    } else {
+      file.set(e.effect + "=" + e.instead);
+    }
+  }
+  Prepared p = prepare(file);
+  p.scene.warnings = prepared.scene.warnings;
+  p.pull_in = prepared.pull_in;
+  p.drives = prepared.drives;
+  p.duration = prepared.duration;
+  p.tolerance = prepared.tolerance;
+  return p;
+}
+
+double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(own.initial_contact_time) || !std::isfinite(other.initial_contact_time)) return infinity;
+  double most = std::max(std::abs(other.initial_contact_time / own.initial_contact_time - 1),
+                         std::abs(other.impact_velocity / own.impact_velocity - 1));
+  if (std::isfinite(own.major_bounce_height) != std::isfinite(other.major_bounce_height)) return infinity;
+  if (std::isfinite(own.major_bounce_height)) {
+    const double least = options.significant_rebound;
+    most = std::max(most, std::abs(std::max(other.major_bounce_height, least) / std::max(own.major_bounce_height, least) - 1));
+  }
+  return std::isfinite(most) ? most : infinity;
+}
+
+std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed, const std::atomic<bool>* stop) {
+  std::vector<Omission> list;
+  for (Omissible& effect : omissible_effects(prepared)) {
+    const Prepared p = without(prepared, {effect});
+    Omission o{.what = std::move(effect), .metrics = figures(p, stop), .influence = 0, .rhs_seconds = Metrics::unset};
+    o.influence = influence(own, o.metrics, prepared.scene.metrics);
+    if (timed) o.rhs_seconds = right_hand_side_seconds(p.device, p.signals(), p.duration);
+    list.push_back(std::move(o));
+  }
+  return list;
+}
+
+EffectsChoice negligible_effects(const Prepared& prepared, double tolerance) {
+  EffectsChoice choice;
+  const Metrics own = figures(prepared, nullptr);
+  for (Omission& o : compare_omissions(prepared, own, false)) {
+    if (o.what.automatic && o.influence <= tolerance) choice.left_out.push_back(std::move(o));
+  }
+  std::sort(choice.left_out.begin(), choice.left_out.end(),
+            [](const Omission& a, const Omission& b) { return a.influence < b.influence; });
+  for (; !choice.left_out.empty(); choice.left_out.pop_back()) {
+    std::vector<Omissible> effects;
+    for (const Omission& o : choice.left_out) effects.push_back(o.what);
+    choice.influence = influence(own, figures(without(prepared, effects), nullptr), prepared.scene.metrics);
+    if (choice.influence <= tolerance) return choice;
+  }
+  choice.influence = 0;
+  return choice;
+}
+
+}  // namespace softland

@@ -1,0 +1,70 @@
+// What a scene could do without: each effect that it describes is left out in turn, and the closing is run again under the same
+// voltages. `effects = "auto"` in [simulate] leaves out what does not matter.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "objectives/metrics.h"
+#include "studies/prepared.h"
+
+namespace softland {
+
+/// A number that people compare: "damping per length, closed", "N s/m^2".
+struct NamedNumber {
+  std::string name;
+  std::string unit;  ///< empty: dimensionless
+  double value = Metrics::unset;
+};
+
+/// A part of a scene that can be left out.
+struct Omissible {
+  std::string effect;  ///< key path: "gas", "electrode.main.fringing"
+  std::string choice;  ///< what the scene says there: "strip", "meijs-fokkema"
+  NamedNumber magnitude;
+  NamedNumber group;  ///< the dimensionless group that says how large it is
+  /// What the key becomes in a scene without the effect, as TOML; empty: key or section disappears.
+  std::string instead;
+  bool automatic = true;  ///< whether effects = "auto" may leave it out
+};
+
+/// The scene without one effect.
+struct Omission {
+  Omissible what;
+  Metrics metrics;
+  double influence = 0;    ///< largest relative change of t_i, v_i and B_H
+  double rhs_seconds = 0;  ///< per right-hand side [s]; NaN where not asked for
+};
+
+/// Everything the scene describes that it could do without, in the order of its sections. Drives are not effects: what a waveform
+/// drives stays.
+[[nodiscard]] std::vector<Omissible> omissible_effects(const Prepared& prepared);
+
+/// The scene without these effects, its waveforms in volts.
+[[nodiscard]] Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects);
+
+/// Largest relative change of t_i, v_i and B_H. A rebound too low to count is compared with one that just counts. Infinite where
+/// a figure appears, disappears, or is missing in both but B_H.
+[[nodiscard]] double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options);
+
+/// Leaves out one effect after the other. `timed`: also measures the right-hand side.
+[[nodiscard]] std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed,
+                                                      const std::atomic<bool>* stop = nullptr);
+
+/// What effects = "auto" decided.
+struct EffectsChoice {
+  std::vector<Omission> left_out;
+  double influence = 0;  ///< of all of them together
+};
+
+struct DescribedEffects {
+  Device described;
+  EffectsChoice choice;
+};
+
+/// Effects whose influence is at most `tolerance`, alone and together: while together they exceed it the most influential one is
+/// put back. Nothing is left out of a scene whose closing does not touch.
+[[nodiscard]] EffectsChoice negligible_effects(const Prepared& prepared, double tolerance);
+
+}  // namespace softland
