@@ -14,8 +14,9 @@ namespace softland::internal {
 using Table = std::map<std::string, std::vector<double>>;
 using Tables = std::map<std::string, Table>;
 
-/// Whose data a curve shows, which gives it its pen; `third` and `fourth` are for pictures of other than results.
-enum class Role { best, baseline, evaluations, third, fourth };
+/// Whose data a curve shows, which gives it its pen; `third`, `fourth` and `measured` (dots) are for pictures of
+/// other than results.
+enum class Role { best, baseline, evaluations, third, fourth, measured };
 enum class Scale { linear, logarithmic };
 
 struct Series {

@@ -38,11 +38,16 @@ Stroke stroke(Role role) {
       return {"#009e73", 1.8, "2.5 2.5"};
     case Role::fourth:
       return {"#cc79a7", 1.8, "10 3 2 3"};
+    case Role::measured:
+      return {ink, 5, ""};
     case Role::evaluations:
       break;
   }
-  return {"#8a949e", 1, ""};
+  return {"#8a949e", 3, ""};
 }
+
+/// Whether a role's points are not joined.
+bool dots(Role role) { return role == Role::evaluations || role == Role::measured; }
 
 /// Data to pixels along one axis.
 struct Axis {
@@ -176,7 +181,7 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
   for (const Series& one : chart.series) {
     if (one.label.empty()) continue;
     const Stroke pen = stroke(one.role);
-    if (one.role == Role::evaluations) {
+    if (dots(one.role)) {
       out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.2\" fill=\"{}\"/>\n", legend_x + 13, top + 31, pen.colour);
     } else {
       out += line(legend_x, top + 31, legend_x + 26, top + 31, pen.colour,
@@ -220,11 +225,11 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
     const auto points = visible(x, y, table.at(chart.x_column), table.at(one.column));
     if (points.empty()) continue;
     std::string path;
-    if (one.role == Role::evaluations) {
+    if (dots(one.role)) {
       for (const auto& [px, py] : points) path += fmt::format("M{:.1f} {:.1f}h0", px, py);
       out += fmt::format(
-          "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"3\" stroke-linecap=\"round\" stroke-opacity=\"0.55\"/>\n",
-          path, pen.colour);
+          "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-opacity=\"{}\"/>\n",
+          path, pen.colour, pen.width, one.role == Role::measured ? 1 : 0.55);
       continue;
     }
     for (const auto& [px, py] : points)

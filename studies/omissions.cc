@@ -86,6 +86,15 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
                     .instead = "'0 Pa'"});
   }
+  if (d.surface) {
+    Device without = d;
+    without.surface.reset();
+    list.push_back({.effect = "surface",
+                    .choice = "",
+                    .magnitude = {.name = "elastic modulus", .unit = "N/m", .value = d.surface->elastic_modulus},
+                    .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
+                    .instead = {}});
+  }
   for (std::size_t k = 0; k < d.electrodes.size(); ++k) {
     const Electrode& e = d.electrodes[k];
     if (e.fringing == Fringing::none) continue;

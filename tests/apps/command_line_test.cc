@@ -202,13 +202,31 @@ TEST(Effects, PrintATableAndTheAgreedJson) {
   EXPECT_THAT(table.out, HasSubstr("* strip"));
   EXPECT_THAT(table.out, HasSubstr("The gas laws differ on this scene"));
   const json j = json::parse(data.out);
-  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "effects", "relative_spread", "scene", "version", "command"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "left_out", "effects", "relative_spread", "scene", "version", "command"}));
   EXPECT_EQ(j["effects"].size(), 7U);
   EXPECT_EQ(keys(j["effects"][0]),
             (std::set<std::string>{"section", "choice", "in_scene", "status", "magnitude", "dimensionless_group", "metrics",
                                    "relative_change", "rhs_s", "warnings"}));
   EXPECT_GT(j["relative_spread"]["gas"]["impact_velocity"], 0);
   EXPECT_GT(j["effects"][1]["rhs_s"], 0);
+  ASSERT_EQ(j["left_out"].size(), 3U);
+  EXPECT_EQ(keys(j["left_out"][2]), (std::set<std::string>{"effect", "choice", "magnitude", "dimensionless_group", "metrics",
+                                                           "relative_change", "influence", "rhs_s"}));
+  EXPECT_EQ(j["left_out"][2]["effect"], "gas");
+  EXPECT_THAT(table.out, HasSubstr("left out"));
+}
+
+TEST(Effects, AreChosenByTheSceneAndSaidInTheResult) {
+  const Workplace here;
+  const Outcome o = here.run({"simulate", "gold.toml", "--set", "simulate.duration=60 us", "--set",
+                              "structure.damping_ratio=1e-9", "--set", "simulate.effects=auto", "--json", "-"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("a right-hand side takes "));
+  const json j = json::parse(o.out);
+  ASSERT_EQ(j["effects"]["left_out"].size(), 1U);
+  EXPECT_EQ(j["effects"]["left_out"][0]["effect"], "structure.damping_ratio");
+  EXPECT_LT(j["effects"]["left_out"][0]["influence"], 1e-3);
+  EXPECT_EQ(j["scene"]["simulate"]["effects"], "all") << "the scene written is the one that ran";
 }
 
 TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {

@@ -49,6 +49,7 @@ TEST(Omissible, IsWhatTheSceneDescribes) {
                           "gas.film_length", "dispersion"));
   EXPECT_THAT(names(omissible_effects(prepare(scene("two-electrodes.toml")))),
               ElementsAre("structure.damping_ratio", "contact.damping"));
+  EXPECT_THAT(names(omissible_effects(prepare(gold({"surface.elastic_modulus=5 N/m"})))), testing::Contains("surface"));
   EXPECT_THAT(names(omissible_effects(prepare(scene("nem-casimir.toml")))), testing::Not(testing::Contains("dispersion")))
       << "what a waveform drives is no effect to leave out";
 }

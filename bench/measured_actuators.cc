@@ -1,0 +1,149 @@
+// Simulated against measured: bench_measured FOLDER writes measured-actuators.svg and measured-actuators.md into FOLDER.
+//
+// Gap-closing actuators of Rauf, Contreras, Shih, Schindler & Pister, J. MEMS 31(1) (2022) 29-36, in air; nothing is fitted.
+#include "tests/support/measured_actuators.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "bench/figure.h"
+#include "model/closing.h"
+#include "model/pull_in.h"
+#include "reports/files.h"
+
+namespace softland {
+namespace {
+
+using internal::Role;
+
+double pull_in(const Device& d) { return static_pull_in(Switch(d), 0).voltage; }
+double pull_out(const Device& d) { return release_voltage(Switch(d), 0); }
+
+double closing_time(const Device& d, double volts) {
+  const Trajectory t =
+      simulate_closing(Switch(d), std::vector<Signal>{Signal::constant(volts)}, {.duration = 1e-3, .after_contact = 0});
+  return t.touches.empty() ? std::numeric_limits<double>::quiet_NaN() : t.touches.front().begin;
+}
+
+std::string deviation(double simulated, double measured) { return fmt::format("{:+.1f} %", 100 * (simulated / measured - 1)); }
+
+double mean(const std::array<double, 3>& chips) { return std::accumulate(chips.begin(), chips.end(), 0.0) / 3; }
+
+void write(const std::filesystem::path& folder, const std::string& command) {
+  std::vector<std::vector<std::string>> lengths{
+      {"overlap [um]", "pull-in, three chips [V]", "simulated [V]", "against their mean", "pull-out [V]", "simulated [V]", ""}};
+  Panel voltages{.title = "Pull-in and pull-out voltage against overlap",
+                 .x_label = "overlap as drawn",
+                 .x_unit = "m",
+                 .y_label = "voltage",
+                 .y_unit = "V"};
+  Curve in{.label = "pull-in", .points = {}}, out{.label = "pull-out", .points = {}, .pen = Role::baseline};
+  Curve measured{.label = "measured", .points = {}, .pen = Role::measured};
+  for (const test::MeasuredPullIn& m : test::measured_pull_in) {
+    const Device d = test::gap_closing_actuator(m.overlap);
+    const double v = pull_in(d), o = pull_out(d);
+    in.points.push_back({m.overlap, v});
+    out.points.push_back({m.overlap, o});
+    for (const double chip : m.pull_in) measured.points.push_back({m.overlap, chip});
+    measured.points.push_back({m.overlap, m.pull_out});
+    lengths.push_back({fmt::format("{:g}", m.overlap * 1e6), fmt::format("{}", fmt::join(m.pull_in, ", ")),
+                       fmt::format("{:.2f}", v), deviation(v, mean(m.pull_in)), fmt::format("{}", m.pull_out),
+                       fmt::format("{:.2f}", o), deviation(o, m.pull_out)});
+  }
+  voltages.curves = {in, out, measured};
+
+  std::vector<std::vector<std::string>> springs{
+      {"spring width [um]", "pull-in [V]", "simulated [V]", "", "pull-out [V]", "simulated [V]", ""}};
+  Panel stiffness{.title = "The same against the width of the springs",
+                  .x_label = "spring width as drawn",
+                  .x_unit = "m",
+                  .y_label = "voltage",
+                  .y_unit = "V"};
+  in.points.clear();
+  out.points.clear();
+  measured.points.clear();
+  for (const test::MeasuredSprings& m : test::measured_springs) {
+    const Device d = test::gap_closing_actuator(76.5e-6, m.width);
+    const double v = pull_in(d), o = pull_out(d);
+    in.points.push_back({m.width, v});
+    out.points.push_back({m.width, o});
+    measured.points.push_back({m.width, m.pull_in});
+    measured.points.push_back({m.width, m.pull_out});
+    springs.push_back({fmt::format("{:g}", m.width * 1e6), fmt::format("{}", m.pull_in), fmt::format("{:.2f}", v),
+                       deviation(v, m.pull_in), fmt::format("{}", m.pull_out), fmt::format("{:.2f}", o),
+                       deviation(o, m.pull_out)});
+  }
+  stiffness.curves = {in, out, measured};
+
+  std::vector<Panel> panels{voltages, stiffness};
+  std::string tables;
+  for (const test::MeasuredTimes& m : test::measured_times) {
+    const Device d = test::gap_closing_actuator(m.overlap);
+    const double threshold = pull_in(d);
+    Panel times{.title = fmt::format("Closing time against voltage, overlap {:g} um", m.overlap * 1e6),
+                .x_label = "voltage",
+                .x_unit = "V",
+                .y_label = "time to the stop",
+                .y_unit = "s",
+                .curves = {}};
+    Curve line{.label = "simulated", .points = {}};
+    Curve dots{.label = "measured", .points = {}, .pen = Role::measured};
+    const double last = m.times.back().volts;
+    for (double v = 1.03 * threshold; v <= last; v *= 1.01) line.points.push_back({v, closing_time(d, v)});
+    std::vector<std::vector<std::string>> rows{{"voltage [V]", "over pull-in", "measured [us]", "simulated [us]", ""}};
+    for (const test::MeasuredTime& t : m.times) {
+      const double simulated = closing_time(d, t.volts);
+      dots.points.push_back({t.volts, t.time});
+      rows.push_back({fmt::format("{:g}", t.volts), fmt::format("{:.2f}", t.volts / threshold), fmt::format("{:g}", t.time * 1e6),
+                      fmt::format("{:.2f}", simulated * 1e6), deviation(simulated, t.time)});
+    }
+    times.curves = {line, dots};
+    panels.push_back(times);
+    tables += fmt::format("\n## Closing times, overlap {:g} um\n\n{}", m.overlap * 1e6, markdown_table(rows));
+  }
+  write_whole(
+      folder / "measured-actuators.svg",
+      figure("Gap-closing actuators: measured by Rauf et al. (2022), simulated with nothing fitted",
+             "Rigid fingers on springs, electrodes on both sides, film over a slit, etch of 0.4 um per edge as published.",
+             panels));
+  write_whole(folder / "measured-actuators.md",
+              fmt::format("# Gap-closing actuators: simulated against measured\n\n"
+                          "Made with `{}`.\n\n![pull-in voltages and closing times](measured-actuators.svg)\n\n"
+                          "Measured by Rauf, Contreras, Shih, Schindler & Pister, J. MEMS 31(1) (2022) 29-36, in air at one "
+                          "atmosphere; voltages are good to\n"
+                          "1 V, times are means of three or four closings that differ by 1 to 9 %. The device is "
+                          "`scenes/gap-closing-actuator.toml` with the\n"
+                          "overlap and the springs varied: rigid fingers, the published dimensions and the published etch of 0.4 "
+                          "um per edge. Nothing is fitted.\n"
+                          "Not modelled: bending of the fingers, which lowers the voltages of the long ones, and the field at "
+                          "the fingers' ends and roots,\n"
+                          "which lowers those of the short ones. Near the threshold a closing creeps past the fold, and its time "
+                          "depends on the voltage's\n"
+                          "distance to it: 6 % of pull-in voltage is then 20 % of time.\n\n"
+                          "## Pull-in and pull-out voltages\n\n{}\n## Springs of other widths, overlap 76.5 um\n\n{}{}",
+                          command, markdown_table(lengths), markdown_table(springs), tables));
+}
+
+}  // namespace
+}  // namespace softland
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: bench_measured FOLDER\n";
+    return 2;
+  }
+  try {
+    softland::write(argv[1], "bench_measured results");
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+}
