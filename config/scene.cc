@@ -131,7 +131,7 @@ std::pair<double, double> read_extent(const SceneFile::Impl& file, const Section
 
 double read_pad_length(const SceneFile::Impl& file, const SectionReader& in, const SectionReader& structure, const Structure& s) {
   const std::string model = in.text("model");
-  const bool is_rough = model != "linear" && model != "hysteretic" && model != "rigid";
+  const bool is_rough = model != "linear" && model != "hysteretic" && model != "rigid";  // or has an area
   if (!in.is_given("pad_length")) {
     if (is_plate(structure) && !is_rough) return 0;  // only the area of a plate's pad would count
     file.fail_section(in.path(), R"(missing key 'pad_length' (a length such as "2 um"))");
@@ -162,6 +162,15 @@ Contact read_contact(const SceneFile::Impl& file, const SectionReader& in, const
   read("unloading_stiffness", contact.unloading_stiffness);
   read("hardness", contact.hardness);
   read("restitution", contact.restitution);
+  read("asperity_pressure", contact.pressure.asperity_pressure);
+  read("asperity_distance", contact.pressure.asperity_distance);
+  read("wall_pressure", contact.pressure.wall_pressure);
+  read("wall_range", contact.pressure.wall_range);
+  read("adhesion_pressure", contact.pressure.adhesion_pressure);
+  read("adhesion_range", contact.pressure.adhesion_range);
+  read("hamaker_constant", contact.pressure.hamaker_constant);
+  read("smoothing_distance", contact.pressure.smoothing_distance);
+  read("reach", contact.pressure.reach);
   in.require(contact.model != ContactModel::rigid || is_plate(structure), "model",
              "needs a plate: a beam has modes that take part in an impact");
   if (contact.model == ContactModel::hysteretic) {

@@ -36,7 +36,8 @@ struct Knot {
 // Where the contact point stands: above the plane, or in contact. A law without memory is `loading` all through a touch; one with
 // memory turns from loading to unloading at its deepest point, and carries nothing in the dent it has left. See contact/memory.h.
 // On a rigid contact the plate rests. See contact/rigid.h.
-enum class Branch { flight, loading, unloading, dent, rest };
+// A law that reaches beyond the plane is `near` before touch. See contact/adhesive_repulsive.h.
+enum class Branch { flight, near, loading, unloading, dent, rest };
 
 // An end of a branch: side * (position - level) is positive inside.
 struct Edge {
@@ -75,6 +76,7 @@ class Run {
     free_ = here_.acceleration;
     last_.time = -1;
     set_tolerances();
+    reach_ = device.contact_reach();
     remembers_ = device.has_contact() && has_memory(device.contact());
     enter(Branch::flight);
     out_.contact_gap = plane_;
@@ -205,13 +207,18 @@ class Run {
     fill(touching_, std::min(flight_fraction * plane_, penetrations_in_contact * device_.penetration_scale()));
   }
 
+  // A law that acts beyond the plane changes over lengths like those of penetration.
+  [[nodiscard]] const std::vector<double>& tolerances() const {
+    return in_contact_ || branch_ == Branch::near ? touching_ : in_flight_;
+  }
+
   void restart() {
     accelerations(here_.time, here_.state.data(), here_.acceleration.data());
     if (branch_ == Branch::rest) return lie_down();
     double max_step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : drives_) max_step = std::min(max_step, signal.resolving_step(here_.time));
     const double first = last_step_ > 0 ? std::min(last_step_, max_step) : 0.01 / device_.angular_frequencies().maxCoeff();
-    if (!stepper_->restart(here_.time, here_.state.data(), in_contact_ ? touching_ : in_flight_, first, max_step)) {
+    if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), first, max_step)) {
       fail(stepper_->message());
     }
   }
@@ -333,7 +340,7 @@ class Run {
       next_ = here_;
       return true;
     }
-    if (!stepper_->restart(here_.time, here_.state.data(), in_contact_ ? touching_ : in_flight_, event - here_.time,
+    if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), event - here_.time,
                            std::numeric_limits<double>::infinity())) {
       return fail(stepper_->message()), false;
     }
@@ -350,7 +357,7 @@ class Run {
     if (event.edge != nullptr) p.position = event.edge->level;  // to rounding
     if (p.position == plane_) p.contact_force = 0;
     balance();
-    if (branch_ == Branch::flight) {
+    if (!in_contact_ && event.edge->level == plane_) {
       out_.touches.push_back(
           {.begin = p.time, .end = std::numeric_limits<double>::quiet_NaN(), .impact_velocity = std::abs(p.velocity)});
       if (!device_.has_contact()) {
@@ -358,7 +365,7 @@ class Run {
         return end(Status::done);
       }
       if (rigid_ != nullptr) return strike();
-    } else if (event.edge != nullptr && event.edge->next == Branch::flight) {
+    } else if (in_contact_ && event.edge != nullptr && event.edge->next == above()) {
       out_.touches.back().end = p.time;
     }
     if (event.edge == nullptr) {
@@ -434,15 +441,18 @@ class Run {
     look_around(Switch::smallest_gap(work_));
   }
 
+  // Where the contact point goes when it leaves the plane.
+  [[nodiscard]] Branch above() const { return reach_ > 0 ? Branch::near : Branch::flight; }
+
   void enter(Branch branch) {
     branch_ = branch;
-    in_contact_ = branch != Branch::flight;
+    in_contact_ = branch != Branch::flight && branch != Branch::near;
     if (!in_contact_ && dent_.heals) {
       healed_ += dent_.lost;
       dent_ = {};
       deepest_ = 0;
     }
-    law_ = branch == Branch::loading || branch == Branch::unloading;
+    law_ = branch == Branch::near || branch == Branch::loading || branch == Branch::unloading;
     law_.unloading = branch == Branch::unloading;
     law_.shift = dent_.shift;
     edge_count_ = 1;
@@ -450,11 +460,19 @@ class Run {
       case Branch::rest:
         edge_count_ = 0;
         return;
+      case Branch::near:
+        edges_ = {Edge{.level = plane_ - reach_, .side = 1, .next = Branch::flight},
+                  Edge{.level = plane_, .side = -1, .next = Branch::loading}};
+        break;
       case Branch::flight:
+        if (reach_ > 0) {
+          edges_[0] = {.level = plane_ - reach_, .side = -1, .next = Branch::near};
+          return;
+        }
         edges_[0] = {.level = plane_, .side = -1, .next = deepest_ > 0 ? Branch::dent : Branch::loading};
         return;
       case Branch::loading:
-        edges_[0] = {.level = plane_, .side = 1, .next = Branch::flight};
+        edges_[0] = {.level = plane_, .side = 1, .next = above()};
         return;
       case Branch::unloading:
         edges_ = {Edge{.level = plane_ + dent_.shift, .side = 1, .next = Branch::dent},
@@ -613,6 +631,7 @@ class Run {
   double source_work_ = 0;      // without the charges that stand on the drives now [J]
   double dissipated_ = 0;       // [J]
   double power_ = 0;            // dissipated at here_ [W]
+  double reach_ = 0;            // how far above the plane the contact acts [m]
   bool remembers_ = false;      // the contact law has memory
   Branch branch_ = Branch::flight;
   bool in_contact_ = false;  // not in flight

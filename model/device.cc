@@ -7,6 +7,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/beam.h"
+#include "model/contact/adhesive_repulsive.h"
 #include "model/surface.h"
 
 namespace softland {
@@ -20,6 +21,25 @@ void span(double begin, double end, double length, const std::string& name) {
   require(begin >= 0 && end > begin && end <= length * (1 + 1e-12),
           fmt::format("{} = [{}, {}]: must increase and lie on the beam, from 0 m to {}", name, engineering(begin, "m"),
                       engineering(end, "m"), engineering(length, "m")));
+}
+
+void validate(const SurfacePressure& p, double contact_gap) {
+  positive(p.asperity_pressure, "Pa", "contact.asperity_pressure");
+  positive(p.asperity_distance, "m", "contact.asperity_distance");
+  positive(p.wall_pressure, "Pa", "contact.wall_pressure");
+  positive(p.wall_range, "m", "contact.wall_range");
+  positive(p.adhesion_pressure, "Pa", "contact.adhesion_pressure");
+  positive(p.adhesion_range, "m", "contact.adhesion_range");
+  positive(p.hamaker_constant, "J", "contact.hamaker_constant");
+  positive(p.smoothing_distance, "m", "contact.smoothing_distance");
+  const double meet = p.asperity_distance + p.adhesion_range;
+  require(p.reach > meet && p.reach < 1, fmt::format("contact.reach = {}: must exceed asperity_distance + adhesion_range = {}",
+                                                     engineering(p.reach, "m"), engineering(meet, "m")));
+  const AdhesiveRepulsiveContact law(p, 1);
+  require(law.touch_distance() > 0, "contact: these pressures never turn from attraction to repulsion");
+  require(law.reach() < contact_gap,
+          fmt::format("contact.reach = {}: acts {} above the plane of first touch, which must be less than gap.contact = {}",
+                      engineering(p.reach, "m"), engineering(law.reach(), "m"), engineering(contact_gap, "m")));
 }
 
 }  // namespace
@@ -38,6 +58,8 @@ std::string_view to_string(ContactModel model) {
       return "elastic-plastic";
     case ContactModel::rigid:
       return "rigid";
+    case ContactModel::adhesive_repulsive:
+      return "adhesive-repulsive";
     case ContactModel::asperity_uniform:
       break;
   }
@@ -121,6 +143,8 @@ void validate(const Device& d) {
       positive(c.stiffness, "N/m", "contact.stiffness");
     } else if (rigid) {
       require(c.restitution >= 0 && c.restitution < 1, fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution));
+    } else if (c.model == ContactModel::adhesive_repulsive) {
+      validate(c.pressure, d.gap.contact);
     } else {
       positive(c.asperity_radius, "m", "contact.asperity_radius");
       positive(c.asperity_density, "1/m^2", "contact.asperity_density");

@@ -72,16 +72,39 @@ struct Gas {
   double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };
 
-enum class ContactModel { linear, asperity_uniform, asperity_gaussian, adhesive, hysteretic, elastic_plastic, rigid };
+enum class ContactModel {
+  linear,
+  asperity_uniform,
+  asperity_gaussian,
+  adhesive,
+  hysteretic,
+  elastic_plastic,
+  rigid,
+  adhesive_repulsive
+};
 
 inline constexpr std::array all_contact_models{
-    ContactModel::linear,   ContactModel::asperity_uniform, ContactModel::asperity_gaussian,
-    ContactModel::adhesive, ContactModel::hysteretic,       ContactModel::elastic_plastic,
-    ContactModel::rigid};
+    ContactModel::linear,   ContactModel::asperity_uniform,  ContactModel::asperity_gaussian,
+    ContactModel::adhesive, ContactModel::hysteretic,        ContactModel::elastic_plastic,
+    ContactModel::rigid,    ContactModel::adhesive_repulsive};
 [[nodiscard]] std::string_view to_string(ContactModel model);
 
 /// Law of one asperity of an elastic-plastic contact.
 enum class Plasticity { zmc, kogut_etsion };
+
+/// Pressure between the surfaces of an adhesive-repulsive contact: see model/contact/adhesive_repulsive.h. Pressures of
+/// asperities and adhesion at a nanometre of approach.
+struct SurfacePressure {
+  double asperity_pressure = 1.2e3;     ///< c1 [Pa]
+  double asperity_distance = 110e-9;    ///< dc [m]
+  double wall_pressure = 0.5e9;         ///< c2 [Pa]
+  double wall_range = 8.5e-9;           ///< tR [m]
+  double adhesion_pressure = 1e3;       ///< c3 [Pa]
+  double adhesion_range = 2e-9;         ///< ta [m]
+  double hamaker_constant = 0.215e-18;  ///< A [J]
+  double smoothing_distance = 30e-9;    ///< ds [m]
+  double reach = 1e-6;                  ///< xr [m]
+};
 
 struct Contact {
   ContactModel model = ContactModel::asperity_uniform;
@@ -98,6 +121,7 @@ struct Contact {
   double adhesion_energy = 0;     ///< adhesive: work of adhesion W [J/m^2]
   double restitution = 0;         ///< rigid: e
   double damping = 0;             ///< of Hunt and Crossley [s/m]; linear, asperity_uniform, asperity_gaussian
+  SurfacePressure pressure = {};  ///< adhesive_repulsive
 };
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.

@@ -28,6 +28,11 @@ struct DualOf {
     // At 0 the laws use roots only in products that vanish faster than the slope grows: their limit is 0.
     return {root, root > 0 ? a.slope / (2 * root) : T(0)};
   }
+  friend DualOf exp(DualOf a) {
+    using std::exp;
+    const T value = exp(a.value);
+    return {value, a.slope * value};
+  }
   friend DualOf log(DualOf a) {
     using std::log;
     return {log(a.value), a.slope / a.value};

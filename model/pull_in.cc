@@ -46,7 +46,7 @@ class Statics {
     none[drive] = device_.value_of_strength(drive, 0);
     const Eigen::VectorXd& shape = device_.contact_shape();
     const double d = s - device_.device().gap.contact;
-    const double push = d > 0 && device_.has_contact() ? contact_force(device_.contact(), d) : 0;
+    const double push = device_.has_contact() && d > -device_.contact_reach() ? contact_force(device_.contact(), d) : 0;
     Eigen::VectorXd others;
     Eigen::MatrixXd others_by_q;
     return newton(s, std::move(start),
@@ -78,7 +78,7 @@ class Statics {
   }
 
   double potential(const Eigen::VectorXd& q, std::span<const double> volts) {
-    return device_.potential(q.data(), volts, false, work_);
+    return device_.potential(q.data(), volts, device_.untouched(q.data()), work_);
   }
 
  private:
@@ -243,6 +243,22 @@ double release_voltage(const Switch& device, std::size_t drive) {
     const double square = branch(plane);
     return std::isfinite(square) ? std::sqrt(std::max(square, 0.0)) : nan;
   }
+  if (device.contact_reach() > 0) {
+    // Adhesion inside may make a deeper well than the first.
+    constexpr int looks = 256;
+    const double step = largest_interference(*device.device().contact) / looks;
+    double best = branch(plane), at = 0;
+    for (int k = 1; k < looks; ++k) {
+      const double value = branch(plane + k * step);
+      if (value < best) best = value, at = k * step;
+    }
+    // In units of the step: Brent's tolerance is partly absolute.
+    const double low = std::max(0.0, at / step - 1);
+    best = std::min(
+        best,
+        boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30).second);
+    return std::isfinite(best) ? std::sqrt(std::max(best, 0.0)) : nan;
+  }
   // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, device.penetration_scale() / 16);
   return lowest ? std::sqrt(std::max(lowest->value, 0.0)) : nan;
@@ -316,7 +332,8 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     options.observer = [&](double, const double* q, const double* v) {
       if (++step % 8 != 0) return false;  // looking more often costs more than it saves
       return device.contact_deflection(q) < barrier.deflection &&
-             device.kinetic_energy(v) + device.potential(q, all, false, work) + device.film_energy(q, work) < barrier.potential;
+             device.kinetic_energy(v) + device.potential(q, all, device.untouched(q), work) + device.film_energy(q, work) <
+                 barrier.potential;
     };
     return !simulate_closing(device, signals, options).touches.empty();
   };

@@ -64,6 +64,13 @@ class Switch {
   [[nodiscard]] bool has_piezo() const { return device_.piezo.has_value(); }
   [[nodiscard]] bool has_contact() const { return contact_.has_value(); }
   [[nodiscard]] const ContactLaw& contact() const { return *contact_; }
+  /// How far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
+  [[nodiscard]] double contact_reach() const { return contact_ ? softland::contact_reach(*contact_) : 0; }
+  /// State of a contact that has not been touched yet: it acts only within its reach.
+  [[nodiscard]] ContactState untouched(const double* q) const {
+    const double reach = contact_reach();
+    return reach > 0 && contact_deflection(q) > device_.gap.contact - reach;
+  }
   /// Null unless the contact is rigid.
   [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
   [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }

@@ -41,6 +41,8 @@ ContactLaw contact_law(const Contact& c, double width) {
                                              : plastic<KogutEtsionAsperity>(c, summits, uniform);
     case ContactModel::rigid:
       return RigidContact{.restitution = c.restitution};
+    case ContactModel::adhesive_repulsive:
+      return AdhesiveRepulsiveContact(c.pressure, width * c.pad_length);
     case ContactModel::asperity_uniform:
       break;
   }
@@ -53,6 +55,8 @@ double largest_interference(const Contact& c) {
     case ContactModel::hysteretic:
     case ContactModel::rigid:
       return std::numeric_limits<double>::infinity();
+    case ContactModel::adhesive_repulsive:
+      return AdhesiveRepulsiveContact(c.pressure, 1).touch_distance();
     case ContactModel::asperity_gaussian:
       return GaussianAsperityContact::first_touch * c.asperity_deviation;
     case ContactModel::asperity_uniform:

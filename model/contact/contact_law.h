@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "model/contact/adhesive.h"
+#include "model/contact/adhesive_repulsive.h"
 #include "model/contact/asperity_gaussian.h"
 #include "model/contact/asperity_uniform.h"
 #include "model/contact/hunt_crossley.h"
@@ -21,7 +22,7 @@ namespace softland {
 using ContactLaw = std::variant<LinearContact, UniformAsperityContact, GaussianAsperityContact, AdhesiveAsperityContact,
                                 HuntCrossley<LinearContact>, HuntCrossley<UniformAsperityContact>,
                                 HuntCrossley<GaussianAsperityContact>, HystereticContact, PlasticAsperityContact<ZmcAsperity>,
-                                PlasticAsperityContact<KogutEtsionAsperity>, RigidContact>;
+                                PlasticAsperityContact<KogutEtsionAsperity>, RigidContact, AdhesiveRepulsiveContact>;
 
 /// The law of a valid device's contact.
 [[nodiscard]] ContactLaw contact_law(const Contact& contact, double width);
@@ -103,6 +104,11 @@ struct Dent {
         }
       },
       law);
+}
+/// How far above the plane of first touch a law acts [m]; 0 for most.
+[[nodiscard]] inline double contact_reach(const ContactLaw& law) {
+  const auto* far = std::get_if<AdhesiveRepulsiveContact>(&law);
+  return far != nullptr ? far->reach() : 0;
 }
 [[nodiscard]] inline bool is_rate_dependent(const ContactLaw& law) {
   return std::visit(

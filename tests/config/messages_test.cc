@@ -110,6 +110,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", "model = \"rigid\"\npad_length = \"5 um\"\nrestitution = 0.5", R"(x.toml:18: contact.model = "rigid": needs a plate: a beam has modes that take part in an impact)"},
     Edit{"model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", "model = \"rigid\"\npad_length = \"5 um\"\nrestitution = 1", R"(x.toml:20: contact.restitution = 1: must be in [0, 1))"},
     Edit{"model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", "model = \"rigid\"\npad_length = \"5 um\"", R"(x.toml:17: [contact]: missing key 'restitution' (a plain number such as 0.02))"},
+    Edit{R"(stiffness = "100 N/m")", "stiffness = \"100 N/m\"\nwall_range = \"9 nm\"", R"(x.toml:21: contact.wall_range = "9 nm": belongs to model = "adhesive-repulsive", not to "linear")"},
     Edit{R"(model = "linear")", R"(model = "asperity-uniform")", R"(x.toml:20: contact.stiffness = "100 N/m": belongs to model = "linear" or "hysteretic", not to "asperity-uniform")"},
     Edit{R"([electrode.main])", R"([electrode.piezo])", "x.toml:12: [electrode.piezo]: the name 'piezo' is reserved for the piezo layer"},
     Edit{R"([electrode.main])", R"([electrode."a b"])", R"(x.toml:12: [electrode."a b"]: a name may hold letters, digits, '_' and '-')"},

@@ -304,6 +304,25 @@ TEST(Scene, SurfacesArrive) {
   EXPECT_EQ(bare.device.surface->cantilever_load, ResidualLoad::none);
 }
 
+TEST(Scene, AdhesiveRepulsiveContactHasThePublishedNumbersUnlessTold) {
+  const auto pressure = [](const std::string& keys) {
+    return read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"",
+                       "model = \"adhesive-repulsive\"\npad_length = \"5 um\"" + keys))
+        .device.contact->pressure;
+  };
+  const SurfacePressure published, read_back = pressure("");
+  EXPECT_DOUBLE_EQ(read_back.asperity_pressure, published.asperity_pressure);
+  EXPECT_DOUBLE_EQ(read_back.asperity_distance, published.asperity_distance);
+  EXPECT_DOUBLE_EQ(read_back.wall_pressure, published.wall_pressure);
+  EXPECT_DOUBLE_EQ(read_back.wall_range, published.wall_range);
+  EXPECT_DOUBLE_EQ(read_back.adhesion_pressure, published.adhesion_pressure);
+  EXPECT_DOUBLE_EQ(read_back.adhesion_range, published.adhesion_range);
+  EXPECT_DOUBLE_EQ(read_back.hamaker_constant, published.hamaker_constant);
+  EXPECT_DOUBLE_EQ(read_back.smoothing_distance, published.smoothing_distance);
+  EXPECT_DOUBLE_EQ(read_back.reach, published.reach);
+  EXPECT_DOUBLE_EQ(pressure("\nwall_range = \"9 nm\"").wall_range, 9e-9);
+}
+
 TEST(Scene, ElectrodesComeSortedByName) {
   const Scene scene = read(edited(small_scene, "[gas]", "[electrode.back]\nspan = [\"0 m\", \"50 um\"]\n[gas]"));
   ASSERT_EQ(scene.device.electrodes.size(), 2U);

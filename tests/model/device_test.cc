@@ -111,6 +111,24 @@ TEST(Device, NamesWhatIsWrongWithIt) {
       "contact.unloading_stiffness = 50 N/m: must not be below contact.stiffness = 100 N/m");
   expect_message([](Device& d) { d.contact->model = ContactModel::rigid; },
                  "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
+  expect_message(
+      [](Device& d) {
+        d.contact->model = ContactModel::adhesive_repulsive;
+        d.contact->pressure.wall_range = 0;
+      },
+      "contact.wall_range = 0 m: must be positive");
+  expect_message(
+      [](Device& d) {
+        d.contact->model = ContactModel::adhesive_repulsive;
+        d.contact->pressure.reach = 100_nm;
+      },
+      "contact.reach = 100 nm: must exceed asperity_distance + adhesion_range = 112 nm");
+  expect_message(
+      [](Device& d) {
+        d.contact->model = ContactModel::adhesive_repulsive;
+        d.gap.contact = 0.5_um;
+      },
+      "contact.reach = 1 um: acts 837.940355224 nm above the plane of first touch, which must be less than gap.contact = 500 nm");
   expect_message([](Device& d) { d.contact->damping = -1; }, "contact.damping = -1 s/m: must not be negative");
   expect_message(
       [](Device& d) {

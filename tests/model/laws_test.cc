@@ -1009,6 +1009,76 @@ TEST(UniformAsperities, InterferenceBelongsToItsForce) {
   EXPECT_EQ(law.interference(0), 0);
 }
 
+/// The published pressure of the adhesive-repulsive law, less the line that ends it at its reach [Pa].
+double surface_pressure(double x) {
+  constexpr double nm = 1e-9, reach = 1000 * nm, asperities = 110, adhesion = 112;
+  const auto far = [](double at) {
+    return 0.5e9 * std::exp(-at / (8.5 * nm)) - 0.215e-18 / (6 * pi * (std::pow(at, 3) + std::pow(30 * nm, 3)));
+  };
+  const double slope = 0.215e-18 / (6 * pi) * 3 * reach * reach / std::pow(std::pow(reach, 3) + std::pow(30 * nm, 3), 2);
+  return far(x) - far(reach) - slope * (x - reach) + 1.2e3 * std::pow(std::max(0.0, asperities - x / nm), 1.5) -
+         1e3 * std::max(0.0, adhesion - x / nm);
+}
+
+// Above the plane, in the soft wall, around the onsets of adhesion and asperities (at 50.06 and 52.06 nm), deep inside.
+constexpr std::array near_and_far{-830_nm, -300_nm, -40_nm, -1_nm, 10_nm, 49_nm, 51_nm, 53_nm, 60_nm, 100_nm, 150_nm};
+
+TEST(AdhesiveRepulsive, IsThePublishedPressureLessALine) {
+  const AdhesiveRepulsiveContact law(SurfacePressure{}, beam_width * 5_um);
+  EXPECT_NEAR(law.touch_distance(), 162.0596_nm, 1e-4 * 1_nm);
+  constexpr double digits = 1e-12;  // of the pressure itself and of its parts at the reach
+  for (const double d : near_and_far) {
+    const double expected = beam_width * 5_um * surface_pressure(law.touch_distance() - d);
+    EXPECT_NEAR(law.force(d), expected, digits * (std::abs(expected) + beam_width * 5_um)) << "d = " << d;
+  }
+  // What the line takes of the attraction where that is felt.
+  for (const double x : {150_nm, 112_nm}) {
+    const double attraction = 0.215e-18 / (6 * pi * (std::pow(x, 3) + std::pow(30_nm, 3)));
+    const double line = surface_pressure(x) + attraction - 0.5e9 * std::exp(-x / 8.5_nm);
+    EXPECT_LT(std::abs(line), 0.0125 * attraction);
+  }
+}
+
+TEST(AdhesiveRepulsive, StoresTheIntegralOfItsForce) {
+  constexpr double digits = 1e-10;    // relative
+  constexpr double rounding = 1e-30;  // [J] of the attraction's antiderivative, 1e-15 J
+  const AdhesiveRepulsiveContact law(SurfacePressure{}, beam_width * 5_um);
+  boost::math::quadrature::tanh_sinh<double> integrator;
+  EXPECT_NEAR(law.energy(-law.reach()), 0, rounding);
+  const double adhesion = law.touch_distance() - 112_nm, asperities = law.touch_distance() - 110_nm;
+  for (const double d : near_and_far) {
+    std::vector<double> corners{-law.reach(), d};
+    for (const double corner : {-0.5 * law.reach(), 0.0, adhesion, asperities}) {
+      if (corner < d) corners.push_back(corner);
+    }
+    std::sort(corners.begin(), corners.end());
+    double sum = 0, size = 0;
+    for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+      const double begin = corners[i], length = corners[i + 1] - begin;
+      const double part = length * integrator.integrate([&](double u) { return law.force(begin + u * length); }, 0.0, 1.0);
+      sum += part;
+      size += std::abs(part);
+    }
+    EXPECT_NEAR(law.energy(d), sum, digits * size + rounding) << "d = " << d;
+    const double slope = derivative([&](double x) { return law.energy(x); }, d, 0.05_nm);
+    EXPECT_NEAR(slope, law.force(d), 1e-8 * (std::abs(law.force(d)) + 10 * beam_width * 5_um)) << "d = " << d;
+    const double stiffness = derivative([&](double x) { return law.force(x); }, d, 0.05_nm);
+    EXPECT_NEAR(law.force(Dual(d, 1)).slope, stiffness, 1e-8 * (std::abs(stiffness) + beam_width * 5_um / 1_nm)) << "d = " << d;
+  }
+}
+
+TEST(AdhesiveRepulsive, BeginsSmoothlyAtItsReachAndTouchesWhereItsAttractionEnds) {
+  const AdhesiveRepulsiveContact law(SurfacePressure{}, beam_width * 5_um);
+  const double area = beam_width * 5_um;
+  EXPECT_NEAR(law.force(-law.reach()), 0, 1e-12 * area);
+  EXPECT_NEAR(law.force(Dual(-law.reach(), 1)).slope, 0, 1e-12 * area / 1_nm);
+  EXPECT_NEAR(law.force(0.0), 0, 1e-9 * area);
+  for (double d = -law.reach() + 1_nm; d < -0.1_nm; d += 1_nm) EXPECT_LT(law.force(d), 0) << d;
+  EXPECT_GT(law.force(1_nm), 0);
+  EXPECT_EQ(contact_reach(contact_law(pad(ContactModel::adhesive_repulsive, 0), beam_width)), law.reach());
+  EXPECT_EQ(contact_reach(contact_law(gold_pad, beam_width)), 0);
+}
+
 // ---- dual numbers
 
 TEST(Dual, FollowsTheRulesOfDifferentiation) {
@@ -1023,6 +1093,7 @@ TEST(Dual, FollowsTheRulesOfDifferentiation) {
   expect(x * y, 2.1, 0.7 - 6);
   expect(x / y, 3 / 0.7, (0.7 + 6) / 0.49);
   expect(sqrt(x), std::sqrt(3.0), 1 / (2 * std::sqrt(3.0)));
+  expect(exp(y), std::exp(0.7), -2 * std::exp(0.7));
   expect(log(y), std::log(0.7), -2 / 0.7);
   expect(abs(Dual(-3, 5)), 3, -5);
   expect(abs(Dual(3, 5)), 3, 5);

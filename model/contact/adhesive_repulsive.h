@@ -1,0 +1,79 @@
+// Contact of rough surfaces as a pressure between them that reaches beyond touch: attraction from afar, a soft wall, and, once
+// asperities meet, adhesion and a stiff wall.
+//
+//   p(x) = l(x) - l(xr) - l'(xr) (x - xr) + c1 [max(0, dc - x) / 1 nm]^1.5 - c3 max(0, dc + ta - x) / 1 nm
+//   l(x) = c2 exp(-x / tR) - A / (6 pi (x^3 + ds^3))                        for x < xr, p = 0 beyond
+//   P = An p(x0 - d),   U = An integral of p from x0 - d to xr
+//
+// p pressure, positive when it pushes the surfaces apart [Pa]; x distance between their mean planes [m]; P force on the beam,
+// away from the contact [N]; U stored energy, 0 beyond reach [J]; An = width x pad length [m^2]; d interference [m]. c1, c2, c3
+// pressures of asperities, soft wall and adhesion [Pa]; dc distance at which asperities meet [m]; ta how much further adhesion
+// reaches [m]; tR range of the soft wall [m]; A Hamaker constant [J]; ds distance that keeps the attraction finite [m]; xr reach
+// [m]. The plane of first touch, d = 0, is the outermost distance x0 at which p vanishes: above it the law only attracts.
+//
+// The published law has no reach; the straight line that is subtracted makes force and slope end continuously at xr (with the
+// default, 1 um, it is 1.2 % of the attraction at 150 nm). Lossless: jumping into contact and off it takes energy through
+// the motion that follows. Force continuous; its slope jumps at x = dc + ta, its second derivative at dc. Validity: x > 0, and
+// the pair of surfaces it was fitted to; the defaults are nickel on a dielectric. Source: the contact model of MEMOSA, Purdue's
+// PRISM centre (public code of its force models); attraction: Hamaker 1937.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/constants.h"
+#include "model/device.h"
+#include "model/dual.h"
+
+namespace softland {
+
+class AdhesiveRepulsiveContact {
+ public:
+  AdhesiveRepulsiveContact() = default;
+  /// `area` An [m^2]
+  AdhesiveRepulsiveContact(const SurfacePressure& law, double area);
+
+  /// Pressure at distance x within reach [Pa]
+  template <class S>
+  S pressure(S x) const {
+    using std::sqrt;
+    S p = far(x) - S(end_.value) - S(end_.slope) * (x - S(law_.reach));
+    if (x < law_.asperity_distance) {
+      const S depth = (S(law_.asperity_distance) - x) / S(unit);
+      p = p + S(law_.asperity_pressure) * depth * sqrt(depth);
+    }
+    if (const double onset = law_.asperity_distance + law_.adhesion_range; x < onset) {
+      p = p - S(law_.adhesion_pressure / unit) * (S(onset) - x);
+    }
+    return p;
+  }
+  /// Within reach
+  template <class S>
+  S force(S d) const {
+    return S(area_) * pressure(S(touch_) - d);
+  }
+  [[nodiscard]] double energy(double d) const;
+
+  /// x0 [m]
+  [[nodiscard]] double touch_distance() const { return touch_; }
+  /// How far above the plane of first touch the law acts [m]
+  [[nodiscard]] double reach() const { return law_.reach - touch_; }
+
+ private:
+  static constexpr double unit = 1e-9;  // of length, in which the pressures are given [m]
+
+  template <class S>
+  S far(S x) const {
+    using std::exp;
+    const double s = law_.smoothing_distance;
+    return S(law_.wall_pressure) * exp(-x / S(law_.wall_range)) -
+           S(law_.hamaker_constant / (6 * pi)) / (x * x * x + S(s * s * s));
+  }
+
+  SurfacePressure law_ = {};
+  double area_ = 0;
+  Dual end_ = 0;      // of far() at the reach [Pa], [Pa/m]
+  double touch_ = 0;  // [m]
+};
+
+}  // namespace softland
