@@ -16,12 +16,26 @@ import sys
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 FEW, MANY = 1000, 3000
-# The gas film is a part of the scene, so a change of law is what the laws differ by.
-# A scene, what is changed in words, and the assignments that change it.
+PAD = 'pad_length = "5 um"'
+ROUGH = f'{PAD}, asperity_radius = "100 nm", asperity_density = "1e11 1/m^2", effective_modulus = "48 GPa"'
+UNIFORM = f'{ROUGH}, asperity_height = "100 nm"'
+CONTACTS = {
+    "linear": f'{PAD}, stiffness = "1e4 N/m"',
+    "hysteretic": f'{PAD}, stiffness = "1e4 N/m", unloading_stiffness = "2e4 N/m"',
+    "asperity-gaussian": f'{ROUGH}, asperity_deviation = "30 nm"',
+    "adhesive": f'{UNIFORM}, adhesion_energy = "0.05 J/m^2"',
+    "elastic-plastic": f'{UNIFORM}, hardness = "1 GPa"',
+    "adhesive-repulsive": PAD,
+}
+# A scene, what is changed in words, and how: key=value, or -SECTION to take one out.
 CHANGES = [("mem-gold.toml", words, assignments) for words, assignments in (
+    ("no gas", ["-gas"]),
     *((f"gas {model}", [f"gas.model={model}"]) for model in ("veijola", "gallis-torczynski", "near-contact", "guo-alexeenko")),
+    ("a second film on the far side", ["gas.far_gap=3 um"]),
     *((f"fringing {law}", [f"electrode.main.fringing={law}"]) for law in ("none", "linear", "bao-2001")),
+    *((f"contact {model}", [f'contact={{ model = "{model}", {keys} }}']) for model, keys in CONTACTS.items()),
     ("contact damping", ["contact.damping=1 s/m"]),
+    ("no contact", ["-contact"]),
     ("2 modes", ["structure.modes=2"]),
     ("8 modes", ["structure.modes=8"]),
     ("dispersion casimir", ["dispersion.model=casimir"]),
@@ -30,12 +44,21 @@ CHANGES = [("mem-gold.toml", words, assignments) for words, assignments in (
     ("dispersion auto", ["dispersion.model=auto", "dispersion.hamaker_constant=4e-19 J"]),
     ("surface", ["surface.elastic_modulus=5 N/m"]),
     ("a second electrode", ['electrode.root.span=["10 um","50 um"]', "waveform.root.family=step", "waveform.root.level=5 V"]),
-)]
+    ("a second electrode, on the far side", ['electrode.root.span=["10 um","50 um"]', "electrode.root.side=far", "electrode.root.gap=3 um",
+                                             "waveform.root.family=step", "waveform.root.level=5 V"]),
+)] + [
+    ("mem-gold-pzt.toml", "no piezo layer", ["-piezo", "-waveform.piezo", "-driver.piezo"]),
+    ("nem-tin.toml", "no dispersion", ["-dispersion"]),
+    ("mem-gold.toml", "gas reynolds", ["gas.model=reynolds"]),
+    ("hung-senturia.toml", "no gas", ["-gas"]),
+    ("hung-senturia.toml", "stretching", ["structure.stretching=true"]),
+]
 
 
 def collected(program, calls, scene, assignments):
     run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null",
-                          "--toggle-collect=softland::Switch::accelerations*", program, str(calls), scene, *assignments],
+                          "--toggle-collect=softland::Switch::accelerations*",
+                          "--toggle-collect=softland::ReynoldsFilm::rates*", program, str(calls), scene, *assignments],
                          capture_output=True, text=True)
     found = re.search(r"Collected : (\d+)", run.stderr)
     if run.returncode != 0 or not found:

@@ -1,4 +1,4 @@
-// Right-hand sides of a scene and nothing else, to count instructions by: bench_rhs CALLS SCENE [key=value ...]
+// Right-hand sides of a scene and nothing else, to count instructions by: bench_rhs CALLS SCENE [key=value | -SECTION ...]
 //
 // The contact is closed and every drive stands at its peak, so that every law of the scene takes part.
 // bench/count_instructions.py runs it under callgrind with two numbers of CALLS and takes the difference.
@@ -15,7 +15,13 @@ namespace softland {
 namespace {
 
 int run(long calls, SceneFile file, const std::vector<std::string>& assignments) {
-  for (const std::string& assignment : assignments) file.set(assignment);
+  for (const std::string& assignment : assignments) {
+    if (assignment.starts_with('-')) {
+      file.erase(assignment.substr(1));
+    } else {
+      file.set(assignment);
+    }
+  }
   const Prepared prepared = prepare(file);
   const Switch& device = prepared.device;
   std::vector<double> volts;
@@ -23,14 +29,14 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
 
   // The contact point a nanometre beyond the plane, by the first mode, and on its way.
   const auto n = static_cast<std::size_t>(device.modes());
-  std::vector<double> q(n), v(n), a(n);
-  q[0] = (device.device().gap.contact + 1e-9) / device.contact_shape()[0];
-  v[0] = device.angular_frequencies()[0] * q[0];
+  std::vector<double> state(2 * n + device.film_states()), rates(n + device.film_states());
+  state[0] = (device.device().gap.contact + 1e-9) / device.contact_shape()[0];
+  state[n] = device.angular_frequencies()[0] * state[0];
   Switch::Workspace work = device.workspace();
   double sum = 0;
   for (long i = 0; i < calls; ++i) {
-    device.accelerations(q.data(), v.data(), volts, device.has_contact(), work, a.data());
-    sum += a[0];
+    device.rates(state.data(), volts, device.has_contact(), work, rates.data());
+    sum += rates[0];
   }
   return std::isfinite(sum) ? 0 : 3;  // also keeps the loop alive
 }
@@ -40,7 +46,7 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::cerr << "usage: bench_rhs CALLS SCENE [key=value ...]\n";
+    std::cerr << "usage: bench_rhs CALLS SCENE [key=value | -SECTION ...]\n";
     return 2;
   }
   try {

@@ -67,5 +67,14 @@ TEST(PurdueNickel, ThePublishedTimeAndSpeedAreThoseAtTheEndOfTheStepThatPasses) 
   EXPECT_NEAR(x - v * late + acceleration(d.gap.contact) * late * late / 2, d.gap.contact, 1e-3 * d.gap.contact);
 }
 
+TEST(PurdueNickel, UnderItsFamilysGasIsThePublishedRun) {
+  // The example as published: the compact fit of Guo & Alexeenko, forward Euler steps of 1 ns: 6.155 us, 1.243 m/s as printed.
+  Device d = test::nickel_plate();
+  d.gas = Gas{.model = GasModel::guo_alexeenko, .mean_free_path = 65.45_nm};
+  const Touch touch = closing(d).touches.at(0);
+  EXPECT_NEAR(touch.begin, 6.155_us, 0.001_us);
+  EXPECT_NEAR(touch.impact_velocity, 1.243, 0.0005);
+}
+
 }  // namespace
 }  // namespace softland
