@@ -260,7 +260,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   if (contact.active) {
     const double d = contact_deflection(q) - device_.gap.contact;
     const auto rate = [&] { return contact_deflection(v); };
-    const double force = std::visit([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
+    const double force = visit_inline([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
     for (int i = 0; i < n; ++i) result[i] -= force * contact_shape_[i];
   }
   if (stretching_) stretching_->add_force(q, result);

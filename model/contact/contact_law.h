@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "model/contact/adhesive.h"
@@ -19,7 +20,7 @@
 
 namespace softland {
 
-using ContactLaw = std::variant<LinearContact, UniformAsperityContact, GaussianAsperityContact, AdhesiveAsperityContact,
+using ContactLaw = std::variant<UniformAsperityContact, LinearContact, GaussianAsperityContact, AdhesiveAsperityContact,
                                 HuntCrossley<LinearContact>, HuntCrossley<UniformAsperityContact>,
                                 HuntCrossley<GaussianAsperityContact>, HystereticContact, PlasticAsperityContact<ZmcAsperity>,
                                 PlasticAsperityContact<KogutEtsionAsperity>, RigidContact, AdhesiveRepulsiveContact>;
@@ -30,6 +31,15 @@ using ContactLaw = std::variant<LinearContact, UniformAsperityContact, GaussianA
 /// Interference at which all asperities of a law touch, or four standard deviations of Gaussian ones [m]: beyond, the law is no
 /// longer physics. Infinite for a spring.
 [[nodiscard]] double largest_interference(const Contact& contact);
+
+/// std::visit for the hot path: with more than eleven laws that one calls through a table, which the compiler cannot see through.
+template <std::size_t I = 0, class F>
+decltype(auto) visit_inline(F&& f, const ContactLaw& law) {
+  if constexpr (I + 1 < std::variant_size_v<ContactLaw>) {
+    if (law.index() != I) return visit_inline<I + 1>(std::forward<F>(f), law);
+  }
+  return f(*std::get_if<I>(&law));
+}
 
 template <class Law>
 concept HasMemory = requires(const Law& law) {
