@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "reports/text.h"
 #include "version.h"
@@ -131,9 +134,19 @@ std::string effects_text(const Effects& effects) {
                          std::isfinite(spread) ? fmt::format("{:.1f} %", 100 * spread) : "unknown");
   }
   text += wrapped("The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".") + "\n";
+  // One line per warning, with the laws it is about.
+  std::vector<std::pair<std::string, std::string>> warnings;  // laws, what
   for (const Effect& e : effects.list) {
-    for (const std::string& w : e.warnings) text += "\n" + wrapped(e.choice + ": " + w) + "\n";
+    for (const std::string& w : e.warnings) {
+      const auto same = std::find_if(warnings.begin(), warnings.end(), [&](const auto& known) { return known.second == w; });
+      if (same == warnings.end()) {
+        warnings.emplace_back(e.choice, w);
+      } else {
+        same->first += ", " + e.choice;
+      }
+    }
   }
+  for (const auto& [laws, what] : warnings) text += "\n" + wrapped(laws + ": " + what) + "\n";
   return text;
 }
 
