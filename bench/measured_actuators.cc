@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -35,55 +35,47 @@ double closing_time(const Device& d, double volts) {
 
 std::string deviation(double simulated, double measured) { return fmt::format("{:+.1f} %", 100 * (simulated / measured - 1)); }
 
-double mean(const std::array<double, 3>& chips) { return std::accumulate(chips.begin(), chips.end(), 0.0) / 3; }
+// Pull-in and pull-out voltages of a series of devices.
+struct Voltages {
+  Panel panel;
+  std::vector<std::vector<std::string>> rows;
+  std::array<Curve, 3> curves{{{.label = "pull-in", .points = {}},
+                               {.label = "pull-out", .points = {}, .pen = Role::baseline},
+                               {.label = "measured", .points = {}, .pen = Role::measured}}};
+
+  Voltages(const std::string& title, const std::string& varied)
+      : panel{.title = title, .x_label = varied + " as drawn", .x_unit = "m", .y_label = "voltage", .y_unit = "V"},
+        rows{{varied + " [um]", "pull-in [V]", "simulated [V]", "deviation", "pull-out [V]", "simulated [V]", "deviation"}} {}
+
+  void add(double x, const Device& d, const std::vector<double>& measured_in, double measured_out) {
+    const double in = pull_in(d), out = pull_out(d);
+    const double mean = std::accumulate(measured_in.begin(), measured_in.end(), 0.0) / static_cast<double>(measured_in.size());
+    curves[0].points.push_back({x, in});
+    curves[1].points.push_back({x, out});
+    for (const double chip : measured_in) curves[2].points.push_back({x, chip});
+    curves[2].points.push_back({x, measured_out});
+    rows.push_back({fmt::format("{:g}", x * 1e6), fmt::format("{}", fmt::join(measured_in, ", ")), fmt::format("{:.2f}", in),
+                    deviation(in, mean), fmt::format("{}", measured_out), fmt::format("{:.2f}", out),
+                    deviation(out, measured_out)});
+  }
+  [[nodiscard]] Panel drawn() const {
+    Panel p = panel;
+    p.curves.assign(curves.begin(), curves.end());
+    return p;
+  }
+};
 
 void write(const std::filesystem::path& folder, const std::string& command) {
-  std::vector<std::vector<std::string>> lengths{
-      {"overlap [um]", "pull-in, three chips [V]", "simulated [V]", "against their mean", "pull-out [V]", "simulated [V]", ""}};
-  Panel voltages{.title = "Pull-in and pull-out voltage against overlap",
-                 .x_label = "overlap as drawn",
-                 .x_unit = "m",
-                 .y_label = "voltage",
-                 .y_unit = "V"};
-  Curve in{.label = "pull-in", .points = {}}, out{.label = "pull-out", .points = {}, .pen = Role::baseline};
-  Curve measured{.label = "measured", .points = {}, .pen = Role::measured};
+  Voltages lengths("Pull-in and pull-out voltage against overlap", "overlap");
   for (const test::MeasuredPullIn& m : test::measured_pull_in) {
-    const Device d = test::gap_closing_actuator(m.overlap);
-    const double v = pull_in(d), o = pull_out(d);
-    in.points.push_back({m.overlap, v});
-    out.points.push_back({m.overlap, o});
-    for (const double chip : m.pull_in) measured.points.push_back({m.overlap, chip});
-    measured.points.push_back({m.overlap, m.pull_out});
-    lengths.push_back({fmt::format("{:g}", m.overlap * 1e6), fmt::format("{}", fmt::join(m.pull_in, ", ")),
-                       fmt::format("{:.2f}", v), deviation(v, mean(m.pull_in)), fmt::format("{}", m.pull_out),
-                       fmt::format("{:.2f}", o), deviation(o, m.pull_out)});
+    lengths.add(m.overlap, test::gap_closing_actuator(m.overlap), {m.pull_in.begin(), m.pull_in.end()}, m.pull_out);
   }
-  voltages.curves = {in, out, measured};
-
-  std::vector<std::vector<std::string>> springs{
-      {"spring width [um]", "pull-in [V]", "simulated [V]", "", "pull-out [V]", "simulated [V]", ""}};
-  Panel stiffness{.title = "The same against the width of the springs",
-                  .x_label = "spring width as drawn",
-                  .x_unit = "m",
-                  .y_label = "voltage",
-                  .y_unit = "V"};
-  in.points.clear();
-  out.points.clear();
-  measured.points.clear();
+  Voltages springs("The same against the width of the springs", "spring width");
   for (const test::MeasuredSprings& m : test::measured_springs) {
-    const Device d = test::gap_closing_actuator(76.5e-6, m.width);
-    const double v = pull_in(d), o = pull_out(d);
-    in.points.push_back({m.width, v});
-    out.points.push_back({m.width, o});
-    measured.points.push_back({m.width, m.pull_in});
-    measured.points.push_back({m.width, m.pull_out});
-    springs.push_back({fmt::format("{:g}", m.width * 1e6), fmt::format("{}", m.pull_in), fmt::format("{:.2f}", v),
-                       deviation(v, m.pull_in), fmt::format("{}", m.pull_out), fmt::format("{:.2f}", o),
-                       deviation(o, m.pull_out)});
+    springs.add(m.width, test::gap_closing_actuator(76.5e-6, m.width), {m.pull_in}, m.pull_out);
   }
-  stiffness.curves = {in, out, measured};
 
-  std::vector<Panel> panels{voltages, stiffness};
+  std::vector<Panel> panels{lengths.drawn(), springs.drawn()};
   std::string tables;
   for (const test::MeasuredTimes& m : test::measured_times) {
     const Device d = test::gap_closing_actuator(m.overlap);
@@ -116,7 +108,8 @@ void write(const std::filesystem::path& folder, const std::string& command) {
              panels));
   write_whole(folder / "measured-actuators.md",
               fmt::format("# Gap-closing actuators: simulated against measured\n\n"
-                          "Made with `{}`.\n\n![pull-in voltages and closing times](measured-actuators.svg)\n\n"
+                          "Made by `{}` (configured with `-DSOFTLAND_BENCH=ON`).\n\n![pull-in voltages and closing "
+                          "times](measured-actuators.svg)\n\n"
                           "Measured by Rauf, Contreras, Shih, Schindler & Pister, J. MEMS 31(1) (2022) 29-36, in air at one "
                           "atmosphere; voltages are good to\n"
                           "1 V, times are means of three or four closings that differ by 1 to 9 %. The device is "
@@ -128,8 +121,9 @@ void write(const std::filesystem::path& folder, const std::string& command) {
                           "which lowers those of the short ones. Near the threshold a closing creeps past the fold, and its time "
                           "depends on the voltage's\n"
                           "distance to it: 6 % of pull-in voltage is then 20 % of time.\n\n"
-                          "## Pull-in and pull-out voltages\n\n{}\n## Springs of other widths, overlap 76.5 um\n\n{}{}",
-                          command, markdown_table(lengths), markdown_table(springs), tables));
+                          "## Pull-in and pull-out voltages\n\nThree chips; the deviation is from their mean.\n\n{}\n## Springs "
+                          "of other widths, overlap 76.5 um\n\n{}{}",
+                          command, markdown_table(lengths.rows), markdown_table(springs.rows), tables));
 }
 
 }  // namespace
@@ -141,7 +135,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    softland::write(argv[1], "bench_measured results");
+    softland::write(argv[1], "build/bench/bench_measured results");
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;

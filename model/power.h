@@ -14,7 +14,8 @@
 
 namespace softland {
 
-[[nodiscard]] inline double power(double x, double y) {
+// Inlined whatever the size of the caller: a call would keep its loop from becoming vector instructions.
+[[nodiscard, gnu::always_inline]] inline double power(double x, double y) {
   constexpr double ln2 = 0.69314718055994530942;
   // Bits of 2^52 + 2^51: adding it puts a rounded number, negative or not, into the low bits.
   constexpr double shift = 6755399441055744.0;

@@ -12,18 +12,16 @@
 namespace softland {
 namespace {
 
-std::string_view name_of(Fringing fringing) {
-  switch (fringing) {
-    case Fringing::none:
-      return "none";
-    case Fringing::linear:
-      return "linear";
-    case Fringing::bao_2001:
-      return "bao-2001";
-    case Fringing::meijs_fokkema:
-      break;
+// What the scene says at a key path: a value, or the model of a section that has one.
+std::string as_written(const nlohmann::json& scene, const std::string& path) {
+  const nlohmann::json* at = &scene;
+  for (std::size_t begin = 0; begin < path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    at = &at->at(path.substr(begin, end - begin));
+    begin = end + 1;
   }
-  return "meijs-fokkema";
+  if (at->is_object()) return at->value("model", "");
+  return at->is_string() ? at->get<std::string>() : at->dump();
 }
 
 // Force on the first mode at rest under 1 V on one electrode.
@@ -56,7 +54,6 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
   if (s.kind != StructureKind::plate && s.modes > 1) {
     list.push_back(
         {.effect = "structure.modes",
-         .choice = std::to_string(s.modes),
          .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.device.angular_frequencies()[s.modes - 1]},
          .group = {.name = "over the first",
                    .value = prepared.device.angular_frequencies()[s.modes - 1] / prepared.device.angular_frequencies()[0]},
@@ -65,14 +62,12 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
   }
   if (s.damping_ratio > 0) {
     list.push_back({.effect = "structure.damping_ratio",
-                    .choice = fmt::format("{:g}", s.damping_ratio),
                     .magnitude = {.name = "quality factor", .value = 1 / (2 * s.damping_ratio)},
                     .group = {.name = "damping ratio", .value = s.damping_ratio},
                     .instead = "0.0"});
   }
   if (s.kind == StructureKind::clamped_clamped && s.stretching) {
     list.push_back({.effect = "structure.stretching",
-                    .choice = "on",
                     .magnitude = {.name = "contact gap", .unit = "m", .value = d.gap.contact},
                     .group = {.name = "(gap / thickness)^2", .value = std::pow(d.gap.contact / s.thickness, 2)},
                     .instead = "false"});
@@ -81,7 +76,6 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     Device without = d;
     without.structure.residual_stress = 0;
     list.push_back({.effect = "structure.residual_stress",
-                    .choice = fmt::format("{:g} MPa", s.residual_stress / 1e6),
                     .magnitude = {.name = "stress", .unit = "Pa", .value = s.residual_stress},
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
                     .instead = "'0 Pa'"});
@@ -90,7 +84,6 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     Device without = d;
     without.surface.reset();
     list.push_back({.effect = "surface",
-                    .choice = "",
                     .magnitude = {.name = "elastic modulus", .unit = "N/m", .value = d.surface->elastic_modulus},
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
                     .instead = {}});
@@ -101,7 +94,6 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     Device without = d;
     without.electrodes[k].fringing = Fringing::none;
     list.push_back({.effect = "electrode." + e.name + ".fringing",
-                    .choice = std::string(name_of(e.fringing)),
                     .magnitude = {.name = "force added, at rest", .value = force_at_rest(d, k) / force_at_rest(without, k) - 1},
                     .group = {.name = "gap / width", .value = d.gap.electrode / s.width},
                     .instead = "'none'"});
@@ -110,14 +102,12 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     const double omega = prepared.device.angular_frequencies()[0];
     list.push_back(
         {.effect = "gas",
-         .choice = std::string(entry(d.gas->model).name),
          .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.device.gas(), closed)},
          .group = {.name = "squeeze number, closed"},
          .instead = {}});
     if (d.gas->model != GasModel::linear) list.back().group.value = squeeze_number(*d.gas, s.width, closed, omega);
     if (!std::isnan(d.gas->far_gap)) {
       list.push_back({.effect = "gas.far_gap",
-                      .choice = fmt::format("{:g} um", d.gas->far_gap * 1e6),
                       .magnitude = {.name = "damping, at rest",
                                     .unit = "N s/m^2",
                                     .value = damping_per_length(*prepared.device.gas(), d.gas->far_gap)},
@@ -126,7 +116,6 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     }
     if (!std::isnan(d.gas->film_length)) {
       list.push_back({.effect = "gas.film_length",
-                      .choice = fmt::format("{:g} um", d.gas->film_length * 1e6),
                       .magnitude = {.name = "damping kept", .value = end_flow(s.width / d.gas->film_length)},
                       .group = {.name = "width / length", .value = s.width / d.gas->film_length},
                       .instead = {}});
@@ -134,7 +123,6 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
   }
   if (d.contact && d.contact->damping > 0) {
     list.push_back({.effect = "contact.damping",
-                    .choice = fmt::format("{:g} s/m", d.contact->damping),
                     .magnitude = {.name = "damping", .unit = "s/m", .value = d.contact->damping},
                     .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * d.contact->damping},
                     .instead = {}});
@@ -143,11 +131,12 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     const double bent =
         prepared.device.rest() ? prepared.device.contact_deflection(prepared.device.rest()->data()) : d.gap.contact;
     list.push_back({.effect = "dispersion",
-                    .choice = prepared.scene.file.json()["dispersion"]["model"].get<std::string>(),
                     .magnitude = {.name = "deflection at rest", .unit = "m", .value = bent},
                     .group = {.name = "over the contact gap", .value = bent / d.gap.contact},
                     .instead = {}});
   }
+  const nlohmann::json scene = resolved(prepared.scene, prepared.voltage_units()).json();
+  for (Omissible& effect : list) effect.choice = as_written(scene, effect.effect);
   return list;
 }
 

@@ -20,8 +20,8 @@ struct NamedNumber {
 
 /// A part of a scene that can be left out.
 struct Omissible {
-  std::string effect;  ///< key path: "gas", "electrode.main.fringing"
-  std::string choice;  ///< what the scene says there: "strip", "meijs-fokkema"
+  std::string effect;       ///< key path: "gas", "electrode.main.fringing"
+  std::string choice = {};  ///< what the scene says there: "strip", "meijs-fokkema"
   NamedNumber magnitude;
   NamedNumber group;  ///< the dimensionless group that says how large it is
   /// What the key becomes in a scene without the effect, as TOML; empty: key or section disappears.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes.h"
+#include "studies/omissions.h"
 #include "studies/simulate.h"
 
 namespace softland {
@@ -45,6 +46,18 @@ TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
       R"(structure.modes = "auto": )" + std::to_string(modes) + " modes; further ones move no figure by more than ";
   EXPECT_THAT(p.scene.warnings, Contains(HasSubstr(note)));
   EXPECT_THAT(resolved(p.scene, p.voltage_units()).text(), HasSubstr("modes = " + std::to_string(modes) + "\n"));
+}
+
+TEST(AutoModes, AreChosenBeforeTheEffects) {
+  SceneFile file = gold_at_17_volts("auto");
+  file.set("structure.damping_ratio=1e-9");
+  file.set("simulate.effects=auto");
+  const Prepared p = prepare(file);
+  EXPECT_EQ(p.scene.device.structure.modes, choose_modes(gold_at_17_volts("auto")).modes);
+  ASSERT_TRUE(p.effects);
+  ASSERT_EQ(p.effects->choice.left_out.size(), 1u);
+  EXPECT_EQ(p.effects->choice.left_out[0].what.effect, "structure.damping_ratio");
+  EXPECT_THAT(p.scene.warnings, Contains(HasSubstr("structure.modes = \"auto\"")));
 }
 
 TEST(AutoModes, OfASwitchThatDoesNotCloseSettleItsPullInVoltage) {

@@ -56,6 +56,10 @@ TEST(Omissible, IsWhatTheSceneDescribes) {
 
 TEST(Omissible, KnowsItsSize) {
   const std::vector<Omissible> all = omissible_effects(prepare(gold()));
+  EXPECT_EQ(all[0].choice, "4");
+  EXPECT_EQ(all[1].choice, "meijs-fokkema") << "the default, too";
+  EXPECT_EQ(all[2].choice, "strip");
+  EXPECT_EQ(omissible_effects(prepare(gold({"gas.far_gap=3 um"}))).back().choice, "3 um");
   EXPECT_EQ(all[0].instead, "1");
   EXPECT_FALSE(all[0].automatic);
   // van der Meijs & Fokkema at h = 3.5 um, a = 20 um, b = 2 um.
