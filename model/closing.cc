@@ -239,7 +239,7 @@ class Run {
                       to.acceleration);
     const double gap = Switch::smallest_gap(work_);
     const Event event = next_event(tip, from, to);
-    if (event.time > 0 && !step_again(event.time)) return;
+    if (event.time > 0 && !step_again(event)) return;
     account(tip);
     here_.state.swap(next_.state);
     here_.acceleration.swap(next_.acceleration);
@@ -257,7 +257,7 @@ class Run {
       return fail(fmt::format("the beam came within {} of the electrode", engineering(device_.gap_floor(), "m")));
     }
     if (device_.at_far_side(work_)) return fail("the beam came within a hundredth of the gap on its far side");
-    if (out_.work.steps >= options_.max_steps) return fail(fmt::format("more than {} steps needed", options_.max_steps));
+    if (out_.work.steps >= options_.max_steps) return fail(too_many_steps());
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);
     if (options_.observer && options_.observer(here_.time, here_.state.data(), here_.state.data() + n_)) return end(Status::done);
     measure_landing();
@@ -315,41 +315,57 @@ class Run {
     return bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
   }
 
-  // Time in (from, to] at which the contact point crosses an edge outwards; 0 if it does not.
+  // Time in [from, to] at which the contact point first crosses an edge outwards; 0 if it does not. Between its turns the motion
+  // is monotone, so that no crossing hides between two others.
   [[nodiscard]] static double crossing(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
                                        const Edge& edge) {
     const double side = edge.side;
+    const Quintic::Bounds reached = tip.bounds();
+    if (side > 0 ? reached.least >= edge.level : reached.most <= edge.level) return 0;
     const auto depth = [&](double t) { return side * (tip.position(t) - edge.level); };
-    const double far = side * (to.position - edge.level);
-    double outside = far < 0 ? to.time : 0;
     double inside = from.time;
-    // Just after an event the motion starts on the edge: the point deepest inside separates that zero from the next one.
-    if (side * from.velocity > 0 && side * to.velocity < 0) inside = velocity_zero(tip, from, to);
-    if (outside == 0 && side * from.velocity < 0 && side * to.velocity > 0) {  // dipped and came back: a grazing crossing
-      const double lowest = velocity_zero(tip, from, to);
-      if (depth(lowest) < 0) outside = lowest;
+    const auto leaves = [&](double t, double at) {
+      if (at >= 0) inside = t;
+      return at < 0;
+    };
+    const auto found = [&](double outside) {
+      // A touch without depth is over before it began. Just after an event the motion starts on the edge.
+      return depth(inside) > 0 ? bracketed_zero(depth, inside, outside) : inside;
+    };
+    for (const double turn : tip.turns()) {
+      if (leaves(turn, depth(turn))) return found(turn);
     }
-    if (outside == 0) return 0;
-    if (!(depth(inside) > 0)) return inside;  // a touch without depth: over before it began
-    return bracketed_zero(depth, inside, outside);
+    return leaves(to.time, side * (to.position - edge.level)) ? found(to.time) : 0;
   }
 
   // Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch.
-  bool step_again(double event) {
-    if (event <= here_.time) {
-      next_ = here_;
-      return true;
+  // After a long step the interpolant's place is off by more than a stiff contact yields, which would then begin or end with
+  // energy from nowhere: Newton's method.
+  bool step_again(const Event& event) {
+    constexpr int most_corrections = 8;
+    const double latest = next_.time;
+    double time = event.time;
+    for (int i = 0; time > here_.time && time <= latest; ++i) {
+      if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), time - here_.time,
+                             std::numeric_limits<double>::infinity())) {
+        return fail(stepper_->message()), false;
+      }
+      do {
+        if (!stepper_->step(time)) return fail(stepper_->message()), false;
+        if (++out_.work.steps >= options_.max_steps) return fail(too_many_steps()), false;
+      } while (stepper_->time() < time);
+      take_state();
+      if (event.edge == nullptr || !device_.has_contact() || i == most_corrections) return true;
+      const double off = device_.contact_deflection(next_.state.data()) - event.edge->level;
+      if (std::abs(contact_energy(device_.contact(), std::abs(off))) <= options_.tolerance * device_.bending_energy())
+        return true;
+      time -= off / device_.contact_deflection(next_.state.data() + n_);
     }
-    if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), event - here_.time,
-                           std::numeric_limits<double>::infinity())) {
-      return fail(stepper_->message()), false;
-    }
-    do {
-      if (!stepper_->step(event)) return fail(stepper_->message()), false;
-    } while (stepper_->time() < event);
-    take_state();
+    if (!(time > here_.time)) next_ = here_;
     return true;
   }
+
+  [[nodiscard]] std::string too_many_steps() const { return fmt::format("more than {} steps needed", options_.max_steps); }
 
   // At here_: closes the books, records what the event is, and goes on to the next branch.
   void pass(const Event& event) {

@@ -268,16 +268,24 @@ TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
   EXPECT_NE(wild.message.find("came from nowhere: the tolerance 0.01 is too loose"), std::string::npos) << wild.message;
 }
 
-TEST(EnergyBalance, ShowsAContactThatLooseStepsBreak) {
+TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   Device d = test::gold_cantilever();
   d.contact->model = ContactModel::linear;
   d.contact->stiffness = 1e9_N_m;
   const Switch device(d);
   const std::vector<Signal> drives{Signal::constant(step_level)};
+  const auto run = [&](Integrator integrator, double tolerance) {
+    return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = integrator});
+  };
+  const Trajectory loose = run(Integrator::dormand_prince, 1e-2);
+  EXPECT_EQ(loose.status, Status::numerical_failure);
+  EXPECT_NE(loose.message.find("came from nowhere"), std::string::npos) << loose.message;
+  EXPECT_GT(loose.energy_error, 0.5 * device.bending_energy());
+  // Long steps alone do no harm: so stiff a contact begins where it is, not where the interpolant of the flight ends.
   for (const Integrator integrator : {Integrator::esdirk, Integrator::bdf}) {
-    const Trajectory t = simulate_closing(device, drives, {.duration = 100_us, .tolerance = 1e-3, .integrator = integrator});
-    EXPECT_EQ(t.status, Status::numerical_failure);
-    EXPECT_GT(t.energy_error, device.bending_energy());
+    const Trajectory t = run(integrator, 1e-3);
+    EXPECT_EQ(t.status, Status::done) << t.message;
+    EXPECT_LT(t.energy_error, 0.1 * device.bending_energy());
   }
 }
 
