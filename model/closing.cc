@@ -239,7 +239,7 @@ class Run {
                       to.acceleration);
     const double gap = Switch::smallest_gap(work_);
     const Event event = next_event(tip, from, to);
-    if (event.time > 0 && !step_again(event.time)) return;
+    if (event.time > 0 && !step_again(event)) return;
     account(tip);
     here_.state.swap(next_.state);
     here_.acceleration.swap(next_.acceleration);
@@ -257,7 +257,7 @@ class Run {
       return fail(fmt::format("the beam came within {} of the electrode", engineering(device_.gap_floor(), "m")));
     }
     if (device_.at_far_side(work_)) return fail("the beam came within a hundredth of the gap on its far side");
-    if (out_.work.steps >= options_.max_steps) return fail(fmt::format("more than {} steps needed", options_.max_steps));
+    if (out_.work.steps >= options_.max_steps) return fail(too_many_steps());
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);
     if (options_.observer && options_.observer(here_.time, here_.state.data(), here_.state.data() + n_)) return end(Status::done);
     measure_landing();
@@ -279,12 +279,13 @@ class Run {
   }
 
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
-    const double *q = knot.state.data(), *v = q + n_;
+    const double y = device_.contact_deflection(knot.state.data());
+    const double velocity = device_.contact_deflection(knot.state.data() + n_);
     return {.time = knot.time,
-            .position = device_.contact_deflection(q),
-            .velocity = device_.contact_deflection(v),
+            .position = y,
+            .velocity = velocity,
             .acceleration = device_.contact_deflection(knot.acceleration.data()),
-            .contact_force = law_.active               ? device_.contact_push(q, v, law_)
+            .contact_force = law_.active               ? contact_force(device_.contact(), y - plane_, law_, velocity)
                              : branch_ == Branch::rest ? std::max(0.0, press_)
                                                        : 0};
   }
@@ -314,47 +315,63 @@ class Run {
     return bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
   }
 
-  // Time in (from, to] at which the contact point crosses an edge outwards; 0 if it does not.
+  // Time in [from, to] at which the contact point first crosses an edge outwards; 0 if it does not. Between its turns the motion
+  // is monotone, so that no crossing hides between two others.
   [[nodiscard]] static double crossing(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
                                        const Edge& edge) {
     const double side = edge.side;
+    const Quintic::Bounds reached = tip.bounds();
+    if (side > 0 ? reached.least >= edge.level : reached.most <= edge.level) return 0;
     const auto depth = [&](double t) { return side * (tip.position(t) - edge.level); };
-    const double far = side * (to.position - edge.level);
-    double outside = far < 0 ? to.time : 0;
     double inside = from.time;
-    // Just after an event the motion starts on the edge: the point deepest inside separates that zero from the next one.
-    if (side * from.velocity > 0 && side * to.velocity < 0) inside = velocity_zero(tip, from, to);
-    if (outside == 0 && side * from.velocity < 0 && side * to.velocity > 0) {  // dipped and came back: a grazing crossing
-      const double lowest = velocity_zero(tip, from, to);
-      if (depth(lowest) < 0) outside = lowest;
+    const auto leaves = [&](double t, double at) {
+      if (at >= 0) inside = t;
+      return at < 0;
+    };
+    const auto found = [&](double outside) {
+      // A touch without depth is over before it began. Just after an event the motion starts on the edge.
+      return depth(inside) > 0 ? bracketed_zero(depth, inside, outside) : inside;
+    };
+    for (const double turn : tip.turns()) {
+      if (leaves(turn, depth(turn))) return found(turn);
     }
-    if (outside == 0) return 0;
-    if (!(depth(inside) > 0)) return inside;  // a touch without depth: over before it began
-    return bracketed_zero(depth, inside, outside);
+    return leaves(to.time, side * (to.position - edge.level)) ? found(to.time) : 0;
   }
 
   // Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch.
-  bool step_again(double event) {
-    if (event <= here_.time) {
-      next_ = here_;
-      return true;
+  // After a long step the interpolant's place is off by more than a stiff contact yields, which would then begin or end with
+  // energy from nowhere: Newton's method.
+  bool step_again(const Event& event) {
+    constexpr int most_corrections = 8;
+    const double latest = next_.time;
+    double time = event.time;
+    for (int i = 0; time > here_.time && time <= latest; ++i) {
+      if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), time - here_.time,
+                             std::numeric_limits<double>::infinity())) {
+        return fail(stepper_->message()), false;
+      }
+      do {
+        if (!stepper_->step(time)) return fail(stepper_->message()), false;
+        if (++out_.work.steps >= options_.max_steps) return fail(too_many_steps()), false;
+      } while (stepper_->time() < time);
+      take_state();
+      if (event.edge == nullptr || !device_.has_contact() || i == most_corrections) return true;
+      const double off = device_.contact_deflection(next_.state.data()) - event.edge->level;
+      if (std::abs(contact_energy(device_.contact(), std::abs(off))) <= options_.tolerance * device_.bending_energy())
+        return true;
+      time -= off / device_.contact_deflection(next_.state.data() + n_);
     }
-    if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), event - here_.time,
-                           std::numeric_limits<double>::infinity())) {
-      return fail(stepper_->message()), false;
-    }
-    do {
-      if (!stepper_->step(event)) return fail(stepper_->message()), false;
-    } while (stepper_->time() < event);
-    take_state();
+    if (!(time > here_.time)) next_ = here_;
     return true;
   }
+
+  [[nodiscard]] std::string too_many_steps() const { return fmt::format("more than {} steps needed", options_.max_steps); }
 
   // At here_: closes the books, records what the event is, and goes on to the next branch.
   void pass(const Event& event) {
     TrajectoryPoint& p = out_.points.back();
     if (event.edge != nullptr) p.position = event.edge->level;  // to rounding
-    if (p.position == plane_ && !device_.has_pad_contact()) p.contact_force = 0;
+    if (p.position == plane_) p.contact_force = 0;
     balance();
     if (!in_contact_ && event.edge->level == plane_) {
       out_.touches.push_back(
@@ -451,7 +468,7 @@ class Run {
       dent_ = {};
       deepest_ = 0;
     }
-    law_ = branch == Branch::near || branch == Branch::loading || branch == Branch::unloading || device_.has_pad_contact();
+    law_ = branch == Branch::near || branch == Branch::loading || branch == Branch::unloading;
     law_.unloading = branch == Branch::unloading;
     law_.shift = dent_.shift;
     edge_count_ = 1;
@@ -496,24 +513,12 @@ class Run {
       }
       const double d = deepest - plane_;
       Touch& touch = out_.touches.back();
-      if (law_.active && !device_.has_pad_contact()) {
+      if (law_.active) {
         touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d, law_, 0));
         touch.peak_energy = std::max(touch.peak_energy, stored_energy(device_.contact(), d, law_));
       }
-      // The peak of a damped contact comes before the deepest point, that along a pad anywhere about it.
-      if (device_.has_damped_contact() || device_.has_pad_contact()) {
-        halve_step();
-        const auto peak = [&](double begin, double middle, double end) {
-          const double bend = 2 * middle - begin - end;  // of the parabola through the three
-          const bool inside = std::abs(end - begin) < 2 * bend;
-          return inside ? middle + (end - begin) * (end - begin) / (8 * bend) : std::max({begin, middle, end});
-        };
-        const auto push = [&](const std::vector<double>& y) { return device_.contact_push(y.data(), y.data() + n_, law_); };
-        const auto stored = [&](const std::vector<double>& y) { return device_.contact_stored(y.data(), law_); };
-        touch.peak_force = std::max(touch.peak_force, peak(push(here_.state), push(middle_), push(next_.state)));
-        if (device_.has_pad_contact()) {
-          touch.peak_energy = std::max(touch.peak_energy, peak(stored(here_.state), stored(middle_), stored(next_.state)));
-        }
+      if (device_.has_damped_contact()) {  // then the peak comes before the deepest point
+        touch.peak_force = std::max(touch.peak_force, point(next_).contact_force);
       }
       out_.deepest_penetration = std::max(out_.deepest_penetration, d);
     }
@@ -544,7 +549,7 @@ class Run {
 
   // Dissipated by the contact law in state y.
   [[nodiscard]] double contact_power(const double* y) const {
-    return law_.active && device_.has_damped_contact() ? device_.contact_dissipation(y, y + n_) : 0;
+    return in_contact_ && device_.has_damped_contact() ? device_.contact_dissipation(y, y + n_) : 0;
   }
 
   // Work of the sources over a stretch: integral of V dQ = [V Q] - integral of Q dV, of which this adds the bracket. Who changes
@@ -590,11 +595,9 @@ class Run {
       e.source_work += work;
       e.stored += work;
     }
-    if (law_.active) e.stored += device_.contact_stored(q, law_);
-    if (remembers_) {
-      const double d = device_.contact_deflection(q) - plane_;
-      e.dissipated += healed_ + (branch_ == Branch::loading ? dent(device_.contact(), d) : dent_).lost;
-    }
+    const double d = device_.contact_deflection(q) - plane_;
+    if (law_.active) e.stored += stored_energy(device_.contact(), d, law_);
+    if (remembers_) e.dissipated += healed_ + (branch_ == Branch::loading ? dent(device_.contact(), d) : dent_).lost;
     out_.energy_error = std::max(out_.energy_error, std::abs(e.residual()));
   }
 

@@ -101,6 +101,25 @@ class Quintic {
     for (double& t : turns.at) t = begin_ + t * length_;
     return turns;
   }
+  /// Bounds of the position on [begin, end]: the curve stays among the control points of its Bernstein form.
+  struct Bounds {
+    double least = 0, most = 0;  ///< [m]
+  };
+  [[nodiscard]] Bounds bounds() const {
+    constexpr std::array<std::array<double, 6>, 6> points{{{1, 0, 0, 0, 0, 0},
+                                                           {1, 0.2, 0, 0, 0, 0},
+                                                           {1, 0.4, 0.1, 0, 0, 0},
+                                                           {1, 0.6, 0.3, 0.1, 0, 0},
+                                                           {1, 0.8, 0.6, 0.4, 0.2, 0},
+                                                           {1, 1, 1, 1, 1, 1}}};
+    Bounds bounds{.least = c_[0], .most = c_[0]};
+    for (const auto& row : points) {
+      const double place = std::inner_product(c_.begin(), c_.end(), row.begin(), 0.0);
+      bounds.least = std::min(bounds.least, place);
+      bounds.most = std::max(bounds.most, place);
+    }
+    return bounds;
+  }
   [[nodiscard]] double begin() const { return begin_; }
   [[nodiscard]] double end() const { return begin_ + length_; }
 

@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 
 #include "model/arrow.h"
 #include "model/dormand_prince.h"
@@ -80,9 +82,11 @@ class SundialsStepper : public Stepper {
     matrix_ = SUNDenseMatrix(n, n, context_);
     solver_ = system_.block > 0 ? arrow_solver(system_, context_) : SUNLinSol_Dense(y_, matrix_, context_);
   }
-  bool report(const char* library, int flag) {
+  bool report(const char* library, int flag, char* (*name)(long)) {
     if (flag >= 0) return true;
-    message_ = fmt::format("{} stopped with code {} at t = {:.9g} s", library, flag, t_);
+    char* why = name(flag);
+    message_ = fmt::format("{} stopped with {} ({}) at t = {:.9g} s", library, why, flag, t_);
+    std::free(why);  // NOLINT: the library's own malloc
     return false;
   }
 
@@ -100,8 +104,14 @@ class SundialsStepper : public Stepper {
     static_cast<SundialsStepper*>(self)->system_.jacobian(t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(j));
     return 0;
   }
-  static int error_weights(N_Vector, N_Vector ewt, void* self) {
-    N_VScale(1, static_cast<SundialsStepper*>(self)->weights_, ewt);
+  // SUNDIALS refuses tolerances below the rounding of what they are about, which those in a stiff contact are.
+  static int error_weights(N_Vector y, N_Vector ewt, void* self) {
+    constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+    const auto* me = static_cast<SundialsStepper*>(self);
+    const double* state = N_VGetArrayPointer(y);
+    const double* weights = N_VGetArrayPointer(me->weights_);
+    double* out = N_VGetArrayPointer(ewt);
+    for (std::size_t i = 0; i < me->system_.size; ++i) out[i] = 1 / std::max(1 / weights[i], rounding * std::abs(state[i]));
     return 0;
   }
   static void silent(int, const char*, const char*, char*, void*) {}
@@ -137,16 +147,16 @@ class ErkStepper final : public SundialsStepper {
       ERKStepSetMaxNumSteps(memory_, unbounded_steps);
       ERKStepSetInterpolantType(memory_, ARK_INTERP_LAGRANGE);  // never asked for: the closing interpolates on its own
       ERKStepSetInterpolantDegree(memory_, 0);
-    } else if (!report("ERKStep", ERKStepReInit(memory_, &SundialsStepper::rhs, t, y_))) {
+    } else if (!report("ERKStep", ERKStepReInit(memory_, &SundialsStepper::rhs, t, y_), ERKStepGetReturnFlagName)) {
       return false;
     }
     ERKStepSetInitStep(memory_, first_step);
-    return report("ERKStep", ERKStepSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0));
+    return report("ERKStep", ERKStepSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0), ERKStepGetReturnFlagName);
   }
 
   bool step(double t_stop) override {
     ERKStepSetStopTime(memory_, t_stop);
-    return report("ERKStep", ERKStepEvolve(memory_, t_stop, y_, &t_, ARK_ONE_STEP));
+    return report("ERKStep", ERKStepEvolve(memory_, t_stop, y_, &t_, ARK_ONE_STEP), ERKStepGetReturnFlagName);
   }
 
  private:
@@ -172,16 +182,16 @@ class DirkStepper final : public SundialsStepper {
       ARKStepSetLinearSolver(memory_, solver_, matrix_);
       ARKStepSetJacFn(memory_, &SundialsStepper::jacobian);
       ARKStepSetMaxNumSteps(memory_, unbounded_steps);
-    } else if (!report("ARKStep", ARKStepReInit(memory_, nullptr, &SundialsStepper::rhs, t, y_))) {
+    } else if (!report("ARKStep", ARKStepReInit(memory_, nullptr, &SundialsStepper::rhs, t, y_), ARKStepGetReturnFlagName)) {
       return false;
     }
     ARKStepSetInitStep(memory_, first_step);
-    return report("ARKStep", ARKStepSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0));
+    return report("ARKStep", ARKStepSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0), ARKStepGetReturnFlagName);
   }
 
   bool step(double t_stop) override {
     ARKStepSetStopTime(memory_, t_stop);
-    return report("ARKStep", ARKStepEvolve(memory_, t_stop, y_, &t_, ARK_ONE_STEP));
+    return report("ARKStep", ARKStepEvolve(memory_, t_stop, y_, &t_, ARK_ONE_STEP), ARKStepGetReturnFlagName);
   }
 
  private:
@@ -199,7 +209,7 @@ class CvodeStepper final : public SundialsStepper {
     load(t, y, absolute);
     if (memory_ == nullptr) {
       memory_ = CVodeCreate(method_, context_);
-      if (!report("CVODE", CVodeInit(memory_, &SundialsStepper::rhs, t, y_))) return false;
+      if (!report("CVODE", CVodeInit(memory_, &SundialsStepper::rhs, t, y_), CVodeGetReturnFlagName)) return false;
       CVodeSetErrHandlerFn(memory_, &SundialsStepper::silent, nullptr);
       CVodeSetUserData(memory_, static_cast<SundialsStepper*>(this));
       CVodeWFtolerances(memory_, &SundialsStepper::error_weights);
@@ -212,16 +222,16 @@ class CvodeStepper final : public SundialsStepper {
         CVodeSetNonlinearSolver(memory_, fixed_point_);
       }
       CVodeSetMaxNumSteps(memory_, unbounded_steps);
-    } else if (!report("CVODE", CVodeReInit(memory_, t, y_))) {
+    } else if (!report("CVODE", CVodeReInit(memory_, t, y_), CVodeGetReturnFlagName)) {
       return false;
     }
     CVodeSetInitStep(memory_, first_step / 100);  // a restart begins at order 1
-    return report("CVODE", CVodeSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0));
+    return report("CVODE", CVodeSetMaxStep(memory_, std::isfinite(max_step) ? max_step : 0), CVodeGetReturnFlagName);
   }
 
   bool step(double t_stop) override {
     CVodeSetStopTime(memory_, t_stop);
-    return report("CVODE", CVode(memory_, t_stop, y_, &t_, CV_ONE_STEP));
+    return report("CVODE", CVode(memory_, t_stop, y_, &t_, CV_ONE_STEP), CVodeGetReturnFlagName);
   }
 
  private:

@@ -81,22 +81,6 @@ TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryCombination) {
   }
 }
 
-TEST(EnergyBalance, ClosesForEveryContactAlongThePad) {
-  for (const bool gas : {false, true}) {
-    for (const Contact& contact : test::pad_contacts()) {
-      Device d = test::gold_cantilever();
-      if (!gas) d.gas.reset();
-      d.contact = contact;
-      const Trajectory t = simulate_closing(Switch(d), waveforms(1, step_level, false), {.duration = 100_us, .tolerance = 1e-9});
-      const std::string name = fmt::format("gas {}, contact {} {}", gas, to_string(contact.model), contact.damping);
-      ASSERT_EQ(t.status, Status::done) << name;
-      EXPECT_GE(t.touches.size(), 2u) << name;
-      EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << name;
-      EXPECT_EQ(t.energy.dissipated > 1e-4 * t.energy.source_work, gas || contact.damping > 0) << name;
-    }
-  }
-}
-
 TEST(EnergyBalance, ClosesForEveryFringingFactor) {
   for (const Fringing fringing : {Fringing::none, Fringing::linear, Fringing::meijs_fokkema, Fringing::bao_2001}) {
     Device d = test::gold_cantilever();
@@ -284,16 +268,24 @@ TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
   EXPECT_NE(wild.message.find("came from nowhere: the tolerance 0.01 is too loose"), std::string::npos) << wild.message;
 }
 
-TEST(EnergyBalance, ShowsAContactThatLooseStepsBreak) {
+TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   Device d = test::gold_cantilever();
   d.contact->model = ContactModel::linear;
   d.contact->stiffness = 1e9_N_m;
   const Switch device(d);
   const std::vector<Signal> drives{Signal::constant(step_level)};
+  const auto run = [&](Integrator integrator, double tolerance) {
+    return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = integrator});
+  };
+  const Trajectory loose = run(Integrator::dormand_prince, 1e-2);
+  EXPECT_EQ(loose.status, Status::numerical_failure);
+  EXPECT_NE(loose.message.find("came from nowhere"), std::string::npos) << loose.message;
+  EXPECT_GT(loose.energy_error, 0.5 * device.bending_energy());
+  // Long steps alone do no harm: so stiff a contact begins where it is, not where the interpolant of the flight ends.
   for (const Integrator integrator : {Integrator::esdirk, Integrator::bdf}) {
-    const Trajectory t = simulate_closing(device, drives, {.duration = 100_us, .tolerance = 1e-3, .integrator = integrator});
-    EXPECT_EQ(t.status, Status::numerical_failure);
-    EXPECT_GT(t.energy_error, device.bending_energy());
+    const Trajectory t = run(integrator, 1e-3);
+    EXPECT_EQ(t.status, Status::done) << t.message;
+    EXPECT_LT(t.energy_error, 0.1 * device.bending_energy());
   }
 }
 

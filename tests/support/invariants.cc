@@ -1,0 +1,220 @@
+#include "tests/support/invariants.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/quintic.h"
+
+namespace softland::test {
+namespace {
+
+// Follows a run from its observer: energy that is there against energy that the drives have brought.
+class Energy {
+ public:
+  Energy(const Switch& device, std::span<const Signal> drives)
+      : device_(device), drives_(drives), work_(device.workspace()), volts_(drives.size(), 0.0), potentials_(drives.size()) {
+    if (!device.rest()) return;
+    q_.assign(device.rest()->begin(), device.rest()->end());
+    look(q_.data(), potentials_);
+    at_rest_ = device.potential(q_.data(), volts_, false, work_);
+  }
+
+  void step(double t, const double* q, const double* v) {
+    if (t > time_) {
+      // Jumps at the beginning of the step, at the deflection there; then along the step.
+      change([&](std::size_t k) { return drives_[k].voltage(time_); }, potentials_);
+      std::vector<double> after(drives_.size());
+      look(q, after);
+      change([&](std::size_t k) { return drives_[k].voltage_before(t); }, after);
+      potentials_ = after;
+      time_ = t;
+    }
+    const double gap = device_.device().gap.contact, d = device_.contact_deflection(q) - gap;
+    const double open = device_.potential(q, volts_, false, work_), kinetic = device_.kinetic_energy(v);
+    double contact = 0;
+    const bool touches = device_.has_contact() && (d > 0 || d > -device_.contact_reach());
+    // What a contact with memory stores is positive, and the least that it can be is enough.
+    if (touches && !has_memory(device_.contact())) contact = contact_energy(device_.contact(), d);
+    const double brought = at_rest_ + supplied_ + uncertain_;
+    surplus_ = std::max(surplus_, kinetic + open + contact - brought);
+    if (d <= 0) available_ = std::max(available_, brought - open + device_.elastic_energy(q));
+  }
+
+  [[nodiscard]] double surplus() const { return surplus_; }      // [J]
+  [[nodiscard]] double available() const { return available_; }  // for a contact, with the beam straight [J]
+  [[nodiscard]] double moved() const { return moved_; }          // by the drives, to and fro [J]
+
+ private:
+  // Derivative of the potential by each drive's strength; by the voltage of a piezo.
+  void look(const double* q, std::vector<double>& potentials) {
+    for (std::size_t k = 0; k < drives_.size(); ++k) {
+      potentials[k] = device_.drive_kind(k) == DriveKind::piezo ? -device_.piezo_charge(q) : device_.law_potential(k, q, work_);
+    }
+  }
+  [[nodiscard]] double strength(std::size_t k, double value) const {
+    return device_.drive_kind(k) == DriveKind::piezo ? value : device_.strength(k, value);
+  }
+
+  // Drives go to new values while their potentials go to `after`: trapezoidal rule, and what it can be off for monotone changes.
+  template <class Values>
+  void change(Values&& values, const std::vector<double>& after) {
+    for (std::size_t k = 0; k < drives_.size(); ++k) {
+      const double value = values(k), by = strength(k, value) - strength(k, volts_[k]);
+      const double work = by * (potentials_[k] + after[k]) / 2;
+      supplied_ += work;
+      moved_ += std::abs(work);
+      uncertain_ += std::abs(by * (after[k] - potentials_[k])) / 2;
+      volts_[k] = value;
+    }
+  }
+
+  const Switch& device_;
+  std::span<const Signal> drives_;
+  Switch::Workspace work_;
+  std::vector<double> volts_, q_, potentials_;
+  double time_ = 0, at_rest_ = 0, supplied_ = 0, uncertain_ = 0, moved_ = 0, surplus_ = 0, available_ = 0;
+};
+
+/// The deepest interference at which first loading has taken up no more than this energy; infinite when it never takes it up.
+double takes_up(const ContactLaw& law, double energy, double gap) {
+  double high = 1e-18 * gap;
+  while (contact_energy(law, high) <= energy && high < 1e6 * gap) high *= 2;
+  // Beyond the last place where the law pulls energy only grows.
+  for (double d = high; d < 1e3 * gap; d *= 1.1) {
+    if (contact_energy(law, d) <= energy) high = 1.1 * d;
+  }
+  return high;
+}
+
+class Findings {
+ public:
+  template <class... Args>
+  void expect(bool holds, fmt::format_string<Args...> what, Args&&... args) {
+    constexpr std::size_t enough = 5;
+    if (!holds && list.size() < enough) list.push_back(fmt::format(what, std::forward<Args>(args)...));
+  }
+  std::vector<std::string> list;
+};
+
+void check_knots(const Trajectory& t, bool rigid, double off, Findings& found) {
+  std::size_t touch = 0;  // the one under way or next
+  for (std::size_t i = 0; i < t.points.size(); ++i) {
+    const TrajectoryPoint& p = t.points[i];
+    found.expect(std::isfinite(p.time + p.position + p.velocity + p.acceleration + p.contact_force), "knot {} is not finite", i);
+    if (i == 0) continue;
+    const TrajectoryPoint& before = t.points[i - 1];
+    found.expect(p.time >= before.time, "knot {} goes back in time", i);
+    if (!(p.time > before.time)) continue;
+    while (touch < t.touches.size() && t.touches[touch].end <= before.time) ++touch;
+    const bool in_contact = touch < t.touches.size() && t.touches[touch].begin <= before.time;
+    const Quintic tip(before.time, before.position, before.velocity, before.acceleration, p.time, p.position, p.velocity,
+                      p.acceleration);
+    constexpr int samples = 8;
+    for (int s = 0; s <= samples; ++s) {
+      const double d = tip.position(before.time + (p.time - before.time) * s / samples) - t.contact_gap;
+      found.expect(in_contact ? d >= -off : d <= off,
+                   "between knots {} and {}, at {:.9g} s, the contact point is {:.3g} m {} the plane {}", i - 1, i, before.time,
+                   std::abs(d), d > 0 ? "beyond" : "before", in_contact ? "in contact" : "in flight");
+    }
+  }
+  for (std::size_t i = 0; i < t.touches.size(); ++i) {
+    const Touch& one = t.touches[i];
+    const bool last = i + 1 == t.touches.size();
+    found.expect(std::isfinite(one.begin) && (one.end >= one.begin || (last && std::isnan(one.end))), "touch {} has no time", i);
+    found.expect(last || one.end <= t.touches[i + 1].begin, "touch {} ends after the next begins", i);
+    found.expect(one.impact_velocity >= 0 && std::isfinite(one.impact_velocity), "touch {} has no impact velocity", i);
+    found.expect(rigid ? std::isnan(one.peak_force) : one.peak_force >= 0 && std::isfinite(one.peak_force),
+                 "touch {} has peak force {}", i, one.peak_force);
+    found.expect(std::isfinite(one.peak_energy), "touch {} has peak energy {}", i, one.peak_energy);
+  }
+}
+
+void check_figures(const Metrics& m, const std::string& message, bool rigid, Findings& found) {
+  const auto are = [&](bool finite, std::initializer_list<std::pair<const char*, double>> figures) {
+    for (const auto& [name, value] : figures) {
+      found.expect(std::isfinite(value) == finite, "{} = {} with status {}", name, value, to_string(m.status));
+    }
+  };
+  switch (m.status) {
+    case Status::done:
+      are(true, {{"t_p", m.permanent_contact_time}, {"t_b", m.bounce_time}});
+      [[fallthrough]];
+    case Status::not_settled:
+      are(true, {{"t_i", m.initial_contact_time},
+                 {"v_i", m.impact_velocity},
+                 {"B_H", m.major_bounce_height},
+                 {"impact energy", m.impact_energy},
+                 {"drive energy", m.drive_energy}});
+      are(!rigid, {{"peak force", m.peak_contact_force}});
+      return;
+    case Status::no_contact:
+      are(true, {{"drive energy", m.drive_energy}});
+      are(false, {{"t_i", m.initial_contact_time}, {"v_i", m.impact_velocity}, {"B_H", m.major_bounce_height}});
+      return;
+    case Status::numerical_failure:
+      found.expect(message.starts_with("at t = "), "failed without saying where: '{}'", message);
+      return;
+    case Status::collapsed_at_rest:
+      found.expect(!message.empty(), "collapsed without saying so");
+      return;
+    case Status::not_run:
+    case Status::interrupted:
+      found.expect(false, "status {}", to_string(m.status));
+  }
+}
+
+}  // namespace
+
+CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options, double energy,
+                       const MetricsOptions& metrics_options) {
+  Energy books(device, drives);
+  ClosingOptions observed = options;
+  observed.observer = [&](double t, const double* q, const double* v) {
+    books.step(t, q, v);
+    return false;
+  };
+  CheckedRun run{.trajectory = simulate_closing(device, drives, observed)};
+  const Trajectory& t = run.trajectory;
+  run.metrics = metrics(t, metrics_options);
+  run.surplus = books.surplus() / device.bending_energy();
+  Findings found;
+  const bool rigid = device.rigid_contact() != nullptr, completed = t.status == Status::done;
+  const double off = options.tolerance * t.contact_gap;
+  check_knots(t, rigid, off, found);
+  found.expect(rebounds(t).size() <= t.touches.size(), "{} rebounds after {} touches", rebounds(t).size(), t.touches.size());
+  check_figures(run.metrics, t.message, rigid, found);
+  if (completed) {
+    found.expect(books.surplus() <= energy * std::max(device.bending_energy(), books.moved()),
+                 "{:.3g} of the bending energy came from nowhere", run.surplus);
+    found.expect(t.smallest_gap > 0, "smallest gap {} m", t.smallest_gap);
+    if (device.has_contact()) {
+      run.largest_penetration = rigid ? off : takes_up(device.contact(), 2 * books.available(), t.contact_gap);
+      found.expect(t.deepest_penetration <= run.largest_penetration,
+                   "interference {:.3g} m, and no more than {:.3g} m is possible", t.deepest_penetration,
+                   run.largest_penetration);
+    }
+  }
+  constexpr long evaluations_per_step = 200;
+  found.expect(t.work.steps <= options.max_steps, "{} steps of {}", t.work.steps, options.max_steps);
+  found.expect(t.work.rhs_evaluations <= evaluations_per_step * (t.work.steps + 10), "{} evaluations in {} steps",
+               t.work.rhs_evaluations, t.work.steps);
+  run.violations = std::move(found.list);
+  return run;
+}
+
+Landing landing(const Trajectory& trajectory) {
+  constexpr double low = 0.01, least = 1e-6;  // of the contact gap
+  if (trajectory.touches.empty()) return {};
+  Landing l{.time = trajectory.touches.front().begin, .velocity = trajectory.touches.front().impact_velocity, .touches = 1};
+  for (const Rebound& r : rebounds(trajectory)) {
+    if (r.height > least * trajectory.contact_gap) ++l.touches;
+    if (r.height < low * trajectory.contact_gap) continue;
+    l.rebound = r.height;
+    break;
+  }
+  return l;
+}
+
+}  // namespace softland::test

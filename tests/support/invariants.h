@@ -1,0 +1,48 @@
+// What every run must keep, however hard the case: checked from outside, with an energy balance of its own.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/closing.h"
+#include "objectives/metrics.h"
+
+namespace softland::test {
+
+struct CheckedRun {
+  Trajectory trajectory;
+  Metrics metrics;
+  double surplus = 0;  ///< largest energy that came from nowhere, over the energy that bends the beam by the contact gap
+  double largest_penetration = 0;  ///< bound of it: where first loading alone takes up twice the energy there was [m]
+  std::vector<std::string> violations;
+};
+
+/// Runs a closing and looks for violations of:
+/// - no energy from nowhere: after every step kinetic energy and potential are at most those at rest and what changing drives
+/// have
+///   added, to `energy` times the energy that bends the beam by the contact gap or that the drives have moved (where the run says
+///   done);
+/// - no falling through: the deepest interference is one at which the contact law has taken up no more than twice the energy
+/// there
+///   was before touch;
+/// - no event missed: in flight the motion between two knots is nowhere beyond the contact plane, in contact nowhere before it;
+///   touches are in order; there are no more rebounds than touches;
+/// - no number that is not one: knots, touches and every figure that the status promises;
+/// - bounded work: no more steps than allowed, no more evaluations than the steps explain;
+/// - a run that is not done says where and why.
+/// The observer of the options must be free.
+[[nodiscard]] CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options,
+                                     double energy = 1e-3, const MetricsOptions& metrics = {});
+
+/// The well-conditioned figures of a closing: its landing and its first rebound higher than a hundredth of the contact gap, 0
+/// where there is none.
+struct Landing {
+  double time = 0;      ///< t_i [s]
+  double velocity = 0;  ///< v_i [m/s]
+  double rebound = 0;   ///< [m]
+  int touches = 0;      ///< up to the end of that rebound, or of the run; those after rebounds below 1e-6 of the gap do not count
+};
+[[nodiscard]] Landing landing(const Trajectory& trajectory);
+
+}  // namespace softland::test
