@@ -37,6 +37,7 @@ CHANGES = [("mem-gold.toml", words, assignments) for words, assignments in (
     *((f"fringing {law}", [f"electrode.main.fringing={law}"]) for law in ("none", "linear", "bao-2001")),
     *((f"contact {model}", [f'contact={{ model = "{model}", {keys} }}']) for model, keys in CONTACTS.items()),
     ("contact damping", ["contact.damping=1 s/m"]),
+    ("contact along the pad", ["contact.distribution=pad"]),
     ("no contact", ["-contact"]),
     ("2 modes", ["structure.modes=2"]),
     ("8 modes", ["structure.modes=8"]),

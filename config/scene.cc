@@ -181,6 +181,11 @@ Contact read_contact(const SceneFile::Impl& file, const SectionReader& in, const
              "the force of Chang, Etsion and Bogy as published jumps by about half at the critical interference, which no "
              "integrator of motion can use; take \"zmc\" or \"ke\"");
   if (in.has_value("plasticity") && in.text("plasticity") == "ke") contact.plasticity = Plasticity::kogut_etsion;
+  if (in.text("distribution") == "pad") {
+    contact.distribution = ContactDistribution::pad;
+    const std::string wrong = why_not_along_pad(s, contact);
+    in.require(wrong.empty(), "distribution", wrong);
+  }
   return contact;
 }
 

@@ -279,13 +279,12 @@ class Run {
   }
 
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const {
-    const double y = device_.contact_deflection(knot.state.data());
-    const double velocity = device_.contact_deflection(knot.state.data() + n_);
+    const double *q = knot.state.data(), *v = q + n_;
     return {.time = knot.time,
-            .position = y,
-            .velocity = velocity,
+            .position = device_.contact_deflection(q),
+            .velocity = device_.contact_deflection(v),
             .acceleration = device_.contact_deflection(knot.acceleration.data()),
-            .contact_force = law_.active               ? contact_force(device_.contact(), y - plane_, law_, velocity)
+            .contact_force = law_.active               ? device_.contact_push(q, v, law_)
                              : branch_ == Branch::rest ? std::max(0.0, press_)
                                                        : 0};
   }
@@ -371,7 +370,7 @@ class Run {
   void pass(const Event& event) {
     TrajectoryPoint& p = out_.points.back();
     if (event.edge != nullptr) p.position = event.edge->level;  // to rounding
-    if (p.position == plane_) p.contact_force = 0;
+    if (p.position == plane_ && !device_.has_pad_contact()) p.contact_force = 0;
     balance();
     if (!in_contact_ && event.edge->level == plane_) {
       out_.touches.push_back(
@@ -468,7 +467,7 @@ class Run {
       dent_ = {};
       deepest_ = 0;
     }
-    law_ = branch == Branch::near || branch == Branch::loading || branch == Branch::unloading;
+    law_ = branch == Branch::near || branch == Branch::loading || branch == Branch::unloading || device_.has_pad_contact();
     law_.unloading = branch == Branch::unloading;
     law_.shift = dent_.shift;
     edge_count_ = 1;
@@ -513,12 +512,24 @@ class Run {
       }
       const double d = deepest - plane_;
       Touch& touch = out_.touches.back();
-      if (law_.active) {
+      if (law_.active && !device_.has_pad_contact()) {
         touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d, law_, 0));
         touch.peak_energy = std::max(touch.peak_energy, stored_energy(device_.contact(), d, law_));
       }
-      if (device_.has_damped_contact()) {  // then the peak comes before the deepest point
-        touch.peak_force = std::max(touch.peak_force, point(next_).contact_force);
+      // The peak of a damped contact comes before the deepest point, that along a pad anywhere about it.
+      if (device_.has_damped_contact() || device_.has_pad_contact()) {
+        halve_step();
+        const auto peak = [&](double begin, double middle, double end) {
+          const double bend = 2 * middle - begin - end;  // of the parabola through the three
+          const bool inside = std::abs(end - begin) < 2 * bend;
+          return inside ? middle + (end - begin) * (end - begin) / (8 * bend) : std::max({begin, middle, end});
+        };
+        const auto push = [&](const std::vector<double>& y) { return device_.contact_push(y.data(), y.data() + n_, law_); };
+        const auto stored = [&](const std::vector<double>& y) { return device_.contact_stored(y.data(), law_); };
+        touch.peak_force = std::max(touch.peak_force, peak(push(here_.state), push(middle_), push(next_.state)));
+        if (device_.has_pad_contact()) {
+          touch.peak_energy = std::max(touch.peak_energy, peak(stored(here_.state), stored(middle_), stored(next_.state)));
+        }
       }
       out_.deepest_penetration = std::max(out_.deepest_penetration, d);
     }
@@ -549,7 +560,7 @@ class Run {
 
   // Dissipated by the contact law in state y.
   [[nodiscard]] double contact_power(const double* y) const {
-    return in_contact_ && device_.has_damped_contact() ? device_.contact_dissipation(y, y + n_) : 0;
+    return law_.active && device_.has_damped_contact() ? device_.contact_dissipation(y, y + n_) : 0;
   }
 
   // Work of the sources over a stretch: integral of V dQ = [V Q] - integral of Q dV, of which this adds the bracket. Who changes
@@ -595,9 +606,11 @@ class Run {
       e.source_work += work;
       e.stored += work;
     }
-    const double d = device_.contact_deflection(q) - plane_;
-    if (law_.active) e.stored += stored_energy(device_.contact(), d, law_);
-    if (remembers_) e.dissipated += healed_ + (branch_ == Branch::loading ? dent(device_.contact(), d) : dent_).lost;
+    if (law_.active) e.stored += device_.contact_stored(q, law_);
+    if (remembers_) {
+      const double d = device_.contact_deflection(q) - plane_;
+      e.dissipated += healed_ + (branch_ == Branch::loading ? dent(device_.contact(), d) : dent_).lost;
+    }
     out_.energy_error = std::max(out_.energy_error, std::abs(e.residual()));
   }
 

@@ -66,6 +66,35 @@ std::string_view to_string(ContactModel model) {
   return "asperity-uniform";
 }
 
+std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
+  constexpr double longest = 0.1;  // of the beam: the first mode is then straight along the pad to 5e-5
+  if (structure.kind == StructureKind::plate) return "a plate touches with all of its pad at once, as at the centre";
+  if (structure.kind == StructureKind::clamped_clamped) {
+    return "needs a cantilever, whose tilted pad is straight and touches first with its free end; between two clamps the pad "
+           "lies flat about the middle";
+  }
+  const std::string not_with = fmt::format("not with model = \"{}\"", to_string(contact.model));
+  switch (contact.model) {
+    case ContactModel::linear:
+    case ContactModel::asperity_uniform:
+    case ContactModel::asperity_gaussian:
+    case ContactModel::adhesive:
+      break;
+    case ContactModel::hysteretic:
+    case ContactModel::elastic_plastic:
+      return not_with + ": every point of the pad would keep a dent of its own";
+    case ContactModel::adhesive_repulsive:
+      return not_with + ", which acts before the free end touches";
+    case ContactModel::rigid:
+      return not_with + ", whose impacts have no force";
+  }
+  if (contact.pad_length > longest * structure.length * (1 + 1e-12)) {
+    return fmt::format("the pad counts as straight, so pad_length must not exceed a tenth of the beam's length, {}",
+                       engineering(longest * structure.length, "m"));
+  }
+  return {};
+}
+
 void validate(const Device& d) {
   const Structure& s = d.structure;
   const bool plate = s.kind == StructureKind::plate;
@@ -162,6 +191,10 @@ void validate(const Device& d) {
     }
     if (c.model == ContactModel::elastic_plastic) positive(c.hardness, "Pa", "contact.hardness");
     if (c.model == ContactModel::adhesive) positive(c.adhesion_energy, "J/m^2", "contact.adhesion_energy");
+    if (c.distribution == ContactDistribution::pad) {
+      const std::string wrong = why_not_along_pad(s, c);
+      require(wrong.empty(), "contact.distribution = pad: " + wrong);
+    }
     require(c.damping >= 0 && c.damping < 1e6,
             fmt::format("contact.damping = {}: must not be negative", engineering(c.damping, "s/m")));
     require(

@@ -106,8 +106,12 @@ struct SurfacePressure {
   double reach = 1e-6;                  ///< xr [m]
 };
 
+/// Where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
+enum class ContactDistribution { centre, pad };
+
 struct Contact {
   ContactModel model = ContactModel::asperity_uniform;
+  ContactDistribution distribution = ContactDistribution::centre;
   double pad_length = 0;           ///< lt [m]: see Device::contact_position()
   double stiffness = 0;            ///< linear; hysteretic: of loading [N/m]
   double unloading_stiffness = 0;  ///< hysteretic [N/m]
@@ -167,10 +171,11 @@ struct Device {
   std::optional<Surface> surface = {};
 
   /// x_c, the centre of the pad [m]: the contact force acts and all figures of merit are taken there. The pad ends at the free
-  /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle.
+  /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle. Of a contact along
+  /// the pad: the free end, which touches first.
   [[nodiscard]] double contact_position() const {
     if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;
-    return structure.length - (contact ? contact->pad_length / 2 : 0);
+    return structure.length - (contact && contact->distribution == ContactDistribution::centre ? contact->pad_length / 2 : 0);
   }
   /// Where the pad begins and ends [m]; of a device with a contact.
   [[nodiscard]] std::pair<double, double> pad() const {
@@ -179,6 +184,9 @@ struct Device {
     return {end - contact->pad_length, end};
   }
 };
+
+/// Why this contact cannot act along the pad of this structure; empty when it can.
+[[nodiscard]] std::string why_not_along_pad(const Structure& structure, const Contact& contact);
 
 /// Throws InvalidInput naming the quantity, its value and the rule when a number is outside what the model can mean.
 void validate(const Device& device);

@@ -46,7 +46,8 @@ class Statics {
     none[drive] = device_.value_of_strength(drive, 0);
     const Eigen::VectorXd& shape = device_.contact_shape();
     const double d = s - device_.device().gap.contact;
-    const double push = device_.has_contact() && d > -device_.contact_reach() ? contact_force(device_.contact(), d) : 0;
+    const bool acts = device_.has_contact() && !device_.has_pad_contact() && d > -device_.contact_reach();
+    const double push = acts ? contact_force(device_.contact(), d) : 0;
     Eigen::VectorXd others;
     Eigen::MatrixXd others_by_q;
     return newton(s, std::move(start),
@@ -59,7 +60,8 @@ class Statics {
                   });
   }
 
-  // A holder keeps the contact point at s under constant voltages; unknown is the force with which the beam presses on it.
+  // A holder keeps the contact point at s under constant voltages; unknown is the force with which the beam presses on it, beyond
+  // what a contact along the pad carries.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
     Held h{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
@@ -82,14 +84,15 @@ class Statics {
   }
 
  private:
-  // Static modal forces without contact, and their derivative.
+  // Static modal forces and their derivative, without a contact that acts at the point that is held.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
     const auto n = device_.modes();
     force.resize(n);
     by_q.resize(n, n);
     Eigen::MatrixXd by_v(n, n);
-    device_.accelerations(q.data(), rest_.data(), volts, false, work_, force.data());
-    device_.jacobian(q.data(), rest_.data(), volts, false, work_, by_q, by_v);
+    const ContactState contact = device_.has_pad_contact();
+    device_.accelerations(q.data(), rest_.data(), volts, contact, work_, force.data());
+    device_.jacobian(q.data(), rest_.data(), volts, contact, work_, by_q, by_v);
   }
 
   template <class Equations>
@@ -278,7 +281,8 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::s
   // What the contact carries at a depth, less the force with which the beam presses there.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
-    return held ? contact_force(device.contact(), depth) - held->unknown : nan;
+    if (!held) return nan;
+    return (device.has_pad_contact() ? 0 : contact_force(device.contact(), depth)) - held->unknown;
   };
   // Where the beam presses hardest it must overcome the contact; the equilibrium is where, deeper, the contact takes over.
   const auto hardest = first_minimum(excess, step);
@@ -288,8 +292,9 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::s
   const double depth = bracketed_zero(excess, over->last, over->next);
   const auto held = statics.pinned(volts, plane + depth);
   if (!held) return std::nullopt;
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(device.modes());
   return ClosedEquilibrium{.q = held->q,
-                           .contact_force = contact_force(device.contact(), depth),
+                           .contact_force = device.contact_push(held->q.data(), still.data(), true),
                            .potential = device.potential(held->q.data(), volts, true, work)};
 }
 

@@ -65,6 +65,11 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
   frequencies_ = structure.angular_frequencies();
   squares_ = frequencies_.cwiseAbs2();
   contact_shape_ = structure.value(x_c);
+  pad_slope_ = Eigen::VectorXd::Zero(modes());
+  if (device_.contact && device_.contact->distribution == ContactDistribution::pad) {
+    pad_.emplace(device_.contact->pad_length);
+    pad_slope_ = structure.slope(x_c);
+  }
   in_contact_period_ = 2 * pi / structure.pinned_frequency(x_c);
   piezo_shape_ = Eigen::VectorXd::Zero(modes());
 
@@ -157,15 +162,26 @@ Switch::Switch(const Device& device, const SwitchOptions& options) : device_(dev
   bending_energy_ = force * device_.gap.contact / 2;
   if (device_.contact) {
     contact_ = contact_law(*device_.contact, s.width);
-    // The interference that carries this force, by bisection: laws grow.
-    double low = 0, high = device_.gap.contact;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = (low + high) / 2;
-      (contact_force(*contact_, middle) < force ? low : high) = middle;
-    }
-    penetration_scale_ = high;
+    penetration_scale_ = penetration_under(force);
   }
   rest_ = find_rest();
+}
+
+// The interference that carries a force, by bisection: laws grow. A pad is tilted as by that force at the contact point.
+double Switch::penetration_under(double force) const {
+  const double plane = device_.gap.contact;
+  const Eigen::VectorXd pushed = contact_shape_.cwiseQuotient(squares_), still = Eigen::VectorXd::Zero(modes());
+  const auto carried = [&](double depth) {
+    if (!pad_) return contact_force(*contact_, depth);
+    const Eigen::VectorXd q = pushed * ((plane + depth) / contact_shape_.dot(pushed));
+    return contact_push(q.data(), still.data(), true);
+  };
+  double low = 0, high = plane;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (carried(middle) < force ? low : high) = middle;
+  }
+  return high;
 }
 
 // Newton's method from the straight beam. The load grows ever faster as the gap closes, so the iterates stay on the near side of
@@ -257,7 +273,9 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
     const double volt = volts.back();
     for (int i = 0; i < n; ++i) result[i] += volt * piezo_shape_[i];
   }
-  if (contact.active) {
+  if (contact.active && pad_) {
+    add_pad_force(q, v, result);
+  } else if (contact.active) {
     const double d = contact_deflection(q) - device_.gap.contact;
     const auto rate = [&] { return contact_deflection(v); };
     const double force = visit_inline([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
@@ -280,14 +298,17 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   by_q.diagonal() -= squares_;
   by_v.diagonal() -= 2 * device_.structure.damping_ratio * frequencies_;
   if (contact.active) {
-    const double d = contact_deflection(q) - device_.gap.contact, rate = contact_deflection(v);
-    const auto slope = [&](double by_d, double by_rate) {
-      return std::visit(
-          [&](const auto& law) { return force_of(law, Dual(d, by_d), contact, [&] { return Dual(rate, by_rate); }).slope; },
-          *contact_);
-    };
-    by_q -= slope(1, 0) * contact_shape_ * contact_shape_.transpose();
-    by_v -= slope(0, 1) * contact_shape_ * contact_shape_.transpose();
+    for_contact_points(q, [&](double xi, double share, double d) {
+      const Eigen::VectorXd shape = contact_shape_ - xi * pad_slope_;
+      const double rate = contact_rate(v, xi);
+      const auto slope = [&](double by_d, double by_rate) {
+        return std::visit(
+            [&](const auto& law) { return force_of(law, Dual(d, by_d), contact, [&] { return Dual(rate, by_rate); }).slope; },
+            *contact_);
+      };
+      by_q -= share * slope(1, 0) * shape * shape.transpose();
+      by_v -= share * slope(0, 1) * shape * shape.transpose();
+    });
   }
   if (stretching_) stretching_->add_derivative(q, by_q);
 }
@@ -367,8 +388,47 @@ double Switch::dissipated_power(const double* v, Workspace& work, const double* 
   return film != nullptr ? squeezed + film_->dissipated_power(work.field, weights_, film) : squeezed;
 }
 
+template <class F>
+void Switch::for_contact_points(const double* q, F&& f) const {
+  const double d = contact_deflection(q) - device_.gap.contact;
+  if (!pad_) return f(0.0, 1.0, d);
+  pad_->over_contact(d, Eigen::Map<const Eigen::VectorXd>(q, modes()).dot(pad_slope_), f);
+}
+
+double Switch::contact_rate(const double* v, double xi) const {
+  return contact_deflection(v) - xi * Eigen::Map<const Eigen::VectorXd>(v, modes()).dot(pad_slope_);
+}
+
+void Switch::add_pad_force(const double* q, const double* v, double* result) const {
+  double force = 0, moment = 0;
+  for_contact_points(q, [&](double xi, double share, double d) {
+    const auto rate = [&] { return contact_rate(v, xi); };
+    const double push = share * visit_inline([&](const auto& law) { return force_of(law, d, true, rate); }, *contact_);
+    force += push;
+    moment += push * xi;
+  });
+  for (int i = 0; i < modes(); ++i) result[i] -= force * contact_shape_[i] - moment * pad_slope_[i];
+}
+
+double Switch::contact_push(const double* q, const double* v, const ContactState& contact) const {
+  double sum = 0;
+  for_contact_points(
+      q, [&](double xi, double share, double d) { sum += share * contact_force(*contact_, d, contact, contact_rate(v, xi)); });
+  return sum;
+}
+
+double Switch::contact_stored(const double* q, const ContactState& contact) const {
+  double sum = 0;
+  for_contact_points(q, [&](double, double share, double d) { sum += share * stored_energy(*contact_, d, contact); });
+  return sum;
+}
+
 double Switch::contact_dissipation(const double* q, const double* v) const {
-  return softland::contact_dissipation(*contact_, contact_deflection(q) - device_.gap.contact, contact_deflection(v));
+  double sum = 0;
+  for_contact_points(q, [&](double xi, double share, double d) {
+    sum += share * softland::contact_dissipation(*contact_, d, contact_rate(v, xi));
+  });
+  return sum;
 }
 
 double Switch::potential(const double* q, std::span<const double> volts, const ContactState& contact, Workspace& work) const {
@@ -378,8 +438,9 @@ double Switch::potential(const double* q, std::span<const double> volts, const C
   }
   if (device_.piezo) energy -= volts.back() * piezo_charge(q);
   if (contact.active) {
-    const double d = contact_deflection(q) - device_.gap.contact;
-    energy += contact.unloading ? stored_energy(*contact_, d, contact) : contact_energy(*contact_, d);
+    for_contact_points(q, [&](double, double share, double d) {
+      energy += share * (contact.unloading ? stored_energy(*contact_, d, contact) : contact_energy(*contact_, d));
+    });
   }
   return energy;
 }

@@ -22,6 +22,7 @@
 
 #include "model/beam.h"
 #include "model/contact/contact_law.h"
+#include "model/contact/pad.h"
 #include "model/device.h"
 #include "model/distributed_law.h"
 #include "model/gas/gas_law.h"
@@ -66,10 +67,12 @@ class Switch {
   [[nodiscard]] const ContactLaw& contact() const { return *contact_; }
   /// How far above the plane of first touch the contact acts [m]; 0 for most laws, and without contact.
   [[nodiscard]] double contact_reach() const { return contact_ ? softland::contact_reach(*contact_) : 0; }
+  /// Whether the contact acts along the pad. It is active then at all times, and acts wherever the pad is beyond the plane.
+  [[nodiscard]] bool has_pad_contact() const { return pad_.has_value(); }
   /// State of a contact that has not been touched yet: it acts only within its reach.
   [[nodiscard]] ContactState untouched(const double* q) const {
     const double reach = contact_reach();
-    return reach > 0 && contact_deflection(q) > device_.gap.contact - reach;
+    return has_pad_contact() || (reach > 0 && contact_deflection(q) > device_.gap.contact - reach);
   }
   /// Null unless the contact is rigid.
   [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
@@ -148,7 +151,9 @@ class Switch {
   [[nodiscard]] double dissipated_power(const double* v, Workspace& work, const double* film = nullptr) const;
   /// Stored in the film in a state (q, v, film) [J]; 0 where there is none.
   [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
-  /// Power taken out by the contact law while it is active [W].
+  /// Of a contact in a state in which it is active: force on the beam [N], what it stores [J], and the power it takes out [W].
+  [[nodiscard]] double contact_push(const double* q, const double* v, const ContactState& contact) const;
+  [[nodiscard]] double contact_stored(const double* q, const ContactState& contact) const;
   [[nodiscard]] double contact_dissipation(const double* q, const double* v) const;
   /// Energy that bends the beam by the contact gap at the contact point [J]: the scale of a closing's energies.
   [[nodiscard]] double bending_energy() const { return bending_energy_; }
@@ -164,6 +169,13 @@ class Switch {
   /// Takes frequencies, shapes and quadrature from what moves, a beam or a plate.
   template <class Modes>
   void move_in(const Modes& structure, double points_per_length, int fewest_points);
+  /// Calls f(xi, share, interference) for every point at which an active contact acts, xi from x_c towards the clamp [m].
+  template <class F>
+  void for_contact_points(const double* q, F&& f) const;
+  /// Of the pad at xi [m/s].
+  [[nodiscard]] double contact_rate(const double* v, double xi) const;
+  void add_pad_force(const double* q, const double* v, double* result) const;
+  [[nodiscard]] double penetration_under(double force) const;
   void set_gap(const double* q, Workspace& work) const;
   void set_field(const double* q, const double* v, Workspace& work) const;
   /// Modal forces of the load in `work`: the sum over points of w_p phi_i(x_p) f(x_p).
@@ -179,6 +191,8 @@ class Switch {
   std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::optional<ContactLaw> contact_;
+  std::optional<PadQuadrature> pad_;  // of a contact along the pad
+  Eigen::VectorXd pad_slope_;         // phi_i'(x_c) of such a contact, else 0
   std::optional<GasLaw> gas_;
   std::optional<ReynoldsFilm> film_;
   std::optional<MidPlaneStretching> stretching_;

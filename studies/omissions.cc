@@ -121,6 +121,14 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
                       .instead = {}});
     }
   }
+  if (d.contact && d.contact->distribution == ContactDistribution::pad) {
+    const double rise = 1.5 * d.gap.contact / s.length * d.contact->pad_length;  // of a uniform beam bent by its end
+    list.push_back({.effect = "contact.distribution",
+                    .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
+                    .group = {.name = "over the interference", .value = rise / prepared.device.penetration_scale()},
+                    .instead = "'centre'",
+                    .automatic = false});
+  }
   if (d.contact && d.contact->damping > 0) {
     list.push_back({.effect = "contact.damping",
                     .magnitude = {.name = "damping", .unit = "s/m", .value = d.contact->damping},

@@ -24,8 +24,9 @@ double right_hand_side_seconds(const Switch& device, const std::vector<Signal>& 
   if (count == 0) return Metrics::unset;
   std::vector<char> touching(count);
   for (std::size_t i = 0; i < count; ++i) {
-    touching[i] = device.has_contact() &&
-                  device.contact_deflection(&states[size * i]) > device.device().gap.contact - device.contact_reach();
+    const double* q = &states[size * i];
+    touching[i] =
+        device.has_contact() && (device.contact_deflection(q) > device.device().gap.contact || device.untouched(q).active);
   }
   std::vector<double> volts;
   for (const Signal& signal : signals) volts.push_back(signal.hold_level());

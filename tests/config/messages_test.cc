@@ -111,6 +111,9 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", "model = \"rigid\"\npad_length = \"5 um\"\nrestitution = 1", R"(x.toml:20: contact.restitution = 1: must be in [0, 1))"},
     Edit{"model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", "model = \"rigid\"\npad_length = \"5 um\"", R"(x.toml:17: [contact]: missing key 'restitution' (a plain number such as 0.02))"},
     Edit{R"(stiffness = "100 N/m")", "stiffness = \"100 N/m\"\nwall_range = \"9 nm\"", R"(x.toml:21: contact.wall_range = "9 nm": belongs to model = "adhesive-repulsive", not to "linear")"},
+    Edit{R"(stiffness = "100 N/m")", "stiffness = \"100 N/m\"\ndistribution = \"tip\"", R"(x.toml:21: contact.distribution = "tip": unknown value (known: centre, pad))"},
+    Edit{"model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", "model = \"linear\"\npad_length = \"30 um\"\nstiffness = \"100 N/m\"\ndistribution = \"pad\"", R"(x.toml:21: contact.distribution = "pad": the pad counts as straight, so pad_length must not exceed a tenth of the beam's length, 25 um)"},
+    Edit{"model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"", "model = \"hysteretic\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\nunloading_stiffness = \"200 N/m\"\ndistribution = \"pad\"", R"(x.toml:22: contact.distribution = "pad": not with model = "hysteretic": every point of the pad would keep a dent of its own)"},
     Edit{R"(model = "linear")", R"(model = "asperity-uniform")", R"(x.toml:20: contact.stiffness = "100 N/m": belongs to model = "linear" or "hysteretic", not to "asperity-uniform")"},
     Edit{R"([electrode.main])", R"([electrode.piezo])", "x.toml:12: [electrode.piezo]: the name 'piezo' is reserved for the piezo layer"},
     Edit{R"([electrode.main])", R"([electrode."a b"])", R"(x.toml:12: [electrode."a b"]: a name may hold letters, digits, '_' and '-')"},
@@ -276,6 +279,7 @@ INSTANTIATE_TEST_SUITE_P(Plates, BadPlate, testing::Values(
     Edit{"width = \"100 um\"\nthickness = \"3 um\"\n[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]", "[gap]\nelectrode = \"3.8 um\"\ncontact = \"2.6 um\"\n[electrode.main]\nfringing = \"none\"", R"(x.toml:13: gas.model = "strip": needs structure.width on a plate)"},
     Edit{"[gas]", "[piezo]\nspan = [\"0 um\", \"9 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n[gas]", "x.toml:13: [piezo]: a plate does not bend; a layer needs a beam"},
     Edit{"model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"\n[contact]\nmodel = \"linear\"\nstiffness = \"312 N/m\"", "model = \"reynolds\"\n[contact]\nmodel = \"rigid\"\nrestitution = 0.5", R"(x.toml:16: contact.model = "rigid": not with gas.model = "reynolds", whose film still flows under a plate that rests)"},
+    Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\ndistribution = \"pad\"", R"(x.toml:19: contact.distribution = "pad": a plate touches with all of its pad at once, as at the centre)"},
     Edit{"stiffness = \"312 N/m\"", "stiffness = \"312 N/m\"\npad_length = \"1 mm\"", R"(x.toml:19: contact.pad_length = "1 mm": must be less than structure.area / structure.width)"}));
 // clang-format on
 

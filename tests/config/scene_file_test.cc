@@ -205,6 +205,7 @@ temperature = "300 K"
 [contact]
 model = "linear"
 pad_length = "5 um"
+distribution = "centre"
 stiffness = "100 N/m"
 
 [piezo]

@@ -240,6 +240,9 @@ TEST(Scene, EveryContactLawArrives) {
   EXPECT_EQ(gaussian.asperity_deviation, 30e-9);
   EXPECT_EQ(gaussian.effective_modulus, 48e9);
   EXPECT_EQ(gaussian.damping, 0.2);
+  EXPECT_EQ(gaussian.distribution, ContactDistribution::centre);
+  EXPECT_EQ(contact("model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\ndistribution = \"pad\"").distribution,
+            ContactDistribution::pad);
   const Contact adhesive =
       contact(summits + "model = \"adhesive\"\nasperity_height = \"100 nm\"\nadhesion_energy = \"0.05 J/m^2\"");
   EXPECT_EQ(adhesive.model, ContactModel::adhesive);

@@ -129,6 +129,30 @@ TEST(Device, NamesWhatIsWrongWithIt) {
         d.gap.contact = 0.5_um;
       },
       "contact.reach = 1 um: acts 837.940355224 nm above the plane of first touch, which must be less than gap.contact = 500 nm");
+  const auto along_pad = [](auto&& change) {
+    return [change](Device& d) {
+      d.contact->distribution = ContactDistribution::pad;
+      change(d);
+    };
+  };
+  expect_message(
+      along_pad([](Device& d) {
+        d.contact->model = ContactModel::elastic_plastic;
+        d.contact->hardness = 1_GPa;
+      }),
+      "contact.distribution = pad: not with model = \"elastic-plastic\": every point of the pad would keep a dent of its own");
+  expect_message(along_pad([](Device& d) { d.contact->model = ContactModel::adhesive_repulsive; }),
+                 "contact.distribution = pad: not with model = \"adhesive-repulsive\", which acts before the free end touches");
+  expect_message(
+      along_pad([](Device& d) {
+        d.structure.kind = StructureKind::clamped_clamped;
+        d.piezo.reset();
+      }),
+      "contact.distribution = pad: needs a cantilever, whose tilted pad is straight and touches first with its free end; "
+      "between two clamps the pad lies flat about the middle");
+  expect_message(along_pad([](Device& d) { d.contact->pad_length = 26_um; }),
+                 "contact.distribution = pad: the pad counts as straight, so pad_length must not exceed a tenth of the beam's "
+                 "length, 25 um");
   expect_message([](Device& d) { d.contact->damping = -1; }, "contact.damping = -1 s/m: must not be negative");
   expect_message(
       [](Device& d) {

@@ -81,6 +81,22 @@ TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryCombination) {
   }
 }
 
+TEST(EnergyBalance, ClosesForEveryContactAlongThePad) {
+  for (const bool gas : {false, true}) {
+    for (const Contact& contact : test::pad_contacts()) {
+      Device d = test::gold_cantilever();
+      if (!gas) d.gas.reset();
+      d.contact = contact;
+      const Trajectory t = simulate_closing(Switch(d), waveforms(1, step_level, false), {.duration = 100_us, .tolerance = 1e-9});
+      const std::string name = fmt::format("gas {}, contact {} {}", gas, to_string(contact.model), contact.damping);
+      ASSERT_EQ(t.status, Status::done) << name;
+      EXPECT_GE(t.touches.size(), 2u) << name;
+      EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << name;
+      EXPECT_EQ(t.energy.dissipated > 1e-4 * t.energy.source_work, gas || contact.damping > 0) << name;
+    }
+  }
+}
+
 TEST(EnergyBalance, ClosesForEveryFringingFactor) {
   for (const Fringing fringing : {Fringing::none, Fringing::linear, Fringing::meijs_fokkema, Fringing::bao_2001}) {
     Device d = test::gold_cantilever();

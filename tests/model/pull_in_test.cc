@@ -298,12 +298,15 @@ TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
 TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.3;
-  const Switch device(d);
-  const auto closed = closed_equilibrium(device, std::vector<double>{17.771});
-  ASSERT_TRUE(closed.has_value());
-  const std::vector<Signal> drives{Signal::constant(17.771)};
-  const Trajectory t = simulate_closing(device, drives, {.duration = 1000_us, .tolerance = 1e-8});
-  EXPECT_NEAR(t.points.back().contact_force, closed->contact_force, 1e-3 * closed->contact_force);
+  for (const ContactDistribution distribution : {ContactDistribution::centre, ContactDistribution::pad}) {
+    d.contact->distribution = distribution;
+    const Switch device(d);
+    const auto closed = closed_equilibrium(device, std::vector<double>{17.771});
+    ASSERT_TRUE(closed.has_value());
+    const std::vector<Signal> drives{Signal::constant(17.771)};
+    const Trajectory t = simulate_closing(device, drives, {.duration = 1000_us, .tolerance = 1e-8});
+    EXPECT_NEAR(t.points.back().contact_force, closed->contact_force, 1e-3 * closed->contact_force);
+  }
 }
 
 TEST(ClosedEquilibrium, IsPressedHarderByAPiezoThatPullsDown) {
@@ -317,7 +320,9 @@ TEST(ClosedEquilibrium, IsPressedHarderByAPiezoThatPullsDown) {
 
 TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
   const std::vector<double> volts{17.771};
-  for (const Contact& contact : test::contacts()) {
+  std::vector<Contact> contacts = test::contacts();
+  for (const Contact& along_pad : test::pad_contacts()) contacts.push_back(along_pad);
+  for (const Contact& contact : contacts) {
     Device d = test::gold_cantilever();
     d.contact = contact;
     const Switch device(d);

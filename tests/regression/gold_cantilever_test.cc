@@ -75,6 +75,18 @@ TEST(GoldCantilever, ClosesUnderAStepAsTheReferenceDoes) {
   EXPECT_NEAR(m.major_bounce_height, 495.9_nm, impact_digits * 495.9_nm);
 }
 
+TEST(GoldCantilever, LandsOnItsFreeEndWhenContactActsAlongThePad) {
+  // Reference: Runge-Kutta of fixed steps of 2 ns, the law at 1000 midpoints of the bent pad; figures at the free end.
+  constexpr double t_i = 33.9426_us, v_i = 86.5422e-3, b_h = 560.756_nm, peak = 8.89426e-6;
+  Device d = test::gold_cantilever();
+  d.contact->distribution = ContactDistribution::pad;
+  const Metrics m = metrics(step_closing(Switch(d), 100_us, fine));
+  EXPECT_NEAR(m.initial_contact_time, t_i, time_digits * t_i);
+  EXPECT_NEAR(m.impact_velocity, v_i, impact_digits * v_i);
+  EXPECT_NEAR(m.major_bounce_height, b_h, impact_digits * b_h);
+  EXPECT_NEAR(m.peak_contact_force, peak, impact_digits * peak);
+}
+
 TEST(GoldCantilever, FourDigitsHoldAtTheOrdinaryTolerance) {
   const Switch device(test::gold_cantilever());
   const Metrics ordinary = metrics(step_closing(device, 60_us, promised)),

@@ -49,6 +49,7 @@ TEST(Omissible, IsWhatTheSceneDescribes) {
                           "gas.film_length", "dispersion"));
   EXPECT_THAT(names(omissible_effects(prepare(scene("two-electrodes.toml")))),
               ElementsAre("structure.damping_ratio", "contact.damping"));
+  EXPECT_THAT(names(omissible_effects(prepare(gold({"contact.distribution=pad"})))), testing::Contains("contact.distribution"));
   EXPECT_THAT(names(omissible_effects(prepare(gold({"surface.elastic_modulus=5 N/m"})))), testing::Contains("surface"));
   EXPECT_THAT(names(omissible_effects(prepare(scene("nem-casimir.toml")))), testing::Not(testing::Contains("dispersion")))
       << "what a waveform drives is no effect to leave out";
@@ -66,6 +67,17 @@ TEST(Omissible, KnowsItsSize) {
   EXPECT_NEAR(all[1].magnitude.value, 0.265 * std::pow(3.5 / 20, 0.75) + 0.53 * 3.5 / 20 * std::sqrt(2 / 3.5), 1e-9);
   EXPECT_NEAR(all[1].group.value, 0.175, 1e-12);
   EXPECT_NEAR(all[2].magnitude.value, 1.86e-5 * std::pow(20 / 1.5, 3), 1e-12);
+}
+
+TEST(Omissible, ContactAlongThePadGoesBackToItsCentreWhenTold) {
+  const Prepared p = prepare(gold_at_17_volts({"contact.distribution=pad"}));
+  const Omissible along = omissible_effects(p).back();
+  ASSERT_EQ(along.effect, "contact.distribution");
+  EXPECT_EQ(along.choice, "pad");
+  EXPECT_FALSE(along.automatic);
+  // The free end leads the inner one by the tilt of 1.5 dt / L over 5 um.
+  EXPECT_NEAR(along.magnitude.value, 60e-9, 1e-12);
+  EXPECT_EQ(own(without(p, {along})).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
 }
 
 TEST(Without, IsTheSceneWithoutTheSectionUnderTheSameVolts) {

@@ -53,6 +53,18 @@ namespace softland::test {
   return all;
 }
 
+/// Those of them that can act along the pad, doing so, between surfaces so rough that a tilted pad does not crush them.
+[[nodiscard]] inline std::vector<Contact> pad_contacts() {
+  using namespace literals;
+  std::vector<Contact> all;
+  for (Contact c : contacts()) {
+    c.distribution = ContactDistribution::pad;
+    c.asperity_height = 400_nm;
+    if (why_not_along_pad(gold_cantilever().structure, c).empty()) all.push_back(c);
+  }
+  return all;
+}
+
 /// The same with a PZT-5A layer: the device of scenes/mem-gold-pzt.toml.
 [[nodiscard]] inline Device gold_pzt_cantilever() {
   using namespace literals;
