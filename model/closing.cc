@@ -227,6 +227,7 @@ class Run {
   // ----------------------------------------------------------------------------------------------------------
 
   void advance() {
+    if (out_.work.steps >= options_.max_steps) return fail(too_many_steps());
     if (branch_ == Branch::rest) return lie_on();
     if (!stepper_->step(stop_)) return fail(stepper_->message());
     ++out_.work.steps;
@@ -257,7 +258,6 @@ class Run {
       return fail(fmt::format("the beam came within {} of the electrode", engineering(device_.gap_floor(), "m")));
     }
     if (device_.at_far_side(work_)) return fail("the beam came within a hundredth of the gap on its far side");
-    if (out_.work.steps >= options_.max_steps) return fail(too_many_steps());
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);
     if (options_.observer && options_.observer(here_.time, here_.state.data(), here_.state.data() + n_)) return end(Status::done);
     measure_landing();
@@ -350,8 +350,9 @@ class Run {
         return fail(stepper_->message()), false;
       }
       do {
+        if (out_.work.steps >= options_.max_steps) return fail(too_many_steps()), false;
         if (!stepper_->step(time)) return fail(stepper_->message()), false;
-        if (++out_.work.steps >= options_.max_steps) return fail(too_many_steps()), false;
+        ++out_.work.steps;
       } while (stepper_->time() < time);
       take_state();
       if (event.edge == nullptr || !device_.has_contact() || i == most_corrections) return true;

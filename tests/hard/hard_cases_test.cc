@@ -157,6 +157,14 @@ std::vector<Case> cases() {
     const Pulse plates{.levels = {110, 0, 110, 0}, .times = {90_us, 120_us, 200_us}, .edge = 1_us};
     all.push_back({"a plate released from a rigid contact and closed again", plate, {signal(plates), Signal()}, 250_us});
   }
+  for (const double restitution : {0.0, 0.99}) {  // more than 600 impacts, after which the plate rests
+    Device plate = test::full_plate();
+    plate.contact = Contact{.model = ContactModel::rigid, .restitution = restitution};
+    all.push_back({fmt::format("a plate on a rigid contact with restitution {:g}", restitution),
+                   plate,
+                   {Signal::constant(150), Signal()},
+                   2e-3});
+  }
   for (const double viscosity : {1e-4, 1e-3, 1e-2}) {
     Device d = test::gold_cantilever();
     d.gas->viscosity = viscosity;
@@ -196,6 +204,29 @@ TEST(HardCases, KeepTheInvariantsAndTheirLandingFromEveryIntegrator) {
         EXPECT_EQ(l.touches, expected.touches) << "an event was missed";
       }
     }
+  }
+}
+
+TEST(HardCases, AHairAboveOrBelowDynamicPullInABeamTouchesOrDoesNot) {
+  const Switch device(test::gold_cantilever());  // its gas: without it a beam may also touch after many periods
+  const double pull_in = dynamic_pull_in(device, 0, static_pull_in(device, 0)).voltage;  // to 1e-7
+  const auto run = [&](double volts, Integrator integrator) {
+    const CheckedRun c = checked_run(device, std::vector<Signal>{Signal::constant(volts)},
+                                     {.duration = 200_us, .tolerance = 1e-11, .integrator = integrator, .after_contact = 1_us});
+    EXPECT_EQ(c.violations, std::vector<std::string>{});
+    return test::landing(c.trajectory);
+  };
+  double before = 0;
+  for (const double hair : {1e-3, 1e-4, 1e-5, 1e-6}) {
+    SCOPED_TRACE(hair);
+    EXPECT_EQ(run(pull_in * (1 - hair), Integrator::dormand_prince).touches, 0);
+    const Landing one = run(pull_in * (1 + hair), Integrator::dormand_prince);
+    EXPECT_GE(one.touches, 1);
+    EXPECT_GT(one.time, before) << "the nearer, the slower";
+    before = one.time;
+    const Landing other = run(pull_in * (1 + hair), Integrator::esdirk);
+    EXPECT_NEAR(other.time, one.time, close * one.time);
+    EXPECT_NEAR(other.velocity, one.velocity, close * one.velocity);
   }
 }
 

@@ -25,7 +25,7 @@ struct CheckedRun {
 ///   done);
 /// - no falling through: the deepest interference is one at which the contact law has taken up no more than twice the energy
 /// there
-///   was before touch;
+///   was before touch (of a contact along the pad, whose tilt also counts, the energy above is all that is checked);
 /// - no event missed: in flight the motion between two knots is nowhere beyond the contact plane, in contact nowhere before it;
 ///   touches are in order; there are no more rebounds than touches;
 /// - no number that is not one: knots, touches and every figure that the status promises;
