@@ -46,7 +46,7 @@ struct Named {
   Integrator integrator;
   std::string_view name;
 };
-constexpr Named integrators[] = {{Integrator::dormand_prince, "dormand-prince"},
+constexpr Named integrators[] = {{Integrator::lawson, "lawson"},
                                  {Integrator::arkode_erk, "arkode-erk"},
                                  {Integrator::esdirk, "esdirk"},
                                  {Integrator::bdf, "bdf"},
@@ -126,7 +126,7 @@ Options parse(int argc, char** argv) {
       options.runs = std::max(1, std::stoi(value()));
     } else {
       throw std::invalid_argument(
-          fmt::format("unknown option {}: bench_closing [--scene FILE] [--integrator dormand-prince|arkode-erk|esdirk|bdf|adams] "
+          fmt::format("unknown option {}: bench_closing [--scene FILE] [--integrator lawson|arkode-erk|esdirk|bdf|adams] "
                       "[--tolerance X] "
                       "[--runs N] [--json]",
                       key));

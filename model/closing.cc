@@ -11,6 +11,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/gas/gas_law.h"
+#include "model/modal_motion.h"
 #include "model/quintic.h"
 #include "model/stepper.h"
 
@@ -29,8 +30,8 @@ constexpr double worth_warning = 0.01, not_credible = 0.2;
 
 struct Knot {
   double time = 0;
-  std::vector<double> state;         // q, v, then the film where it is compressible
-  std::vector<double> acceleration;  // q'', then the rates of the film
+  std::vector<double> state;  // q, v, then the film where it is compressible
+  std::vector<double> rates;  // of all but q: q'', then those of the film
 };
 
 // Where the contact point stands: above the plane, or in contact. A law without memory is `loading` all through a touch; one with
@@ -46,6 +47,8 @@ struct Edge {
   Branch next = Branch::flight;
 };
 
+std::vector<double> as_vector(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
+
 class Run {
  public:
   Run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options)
@@ -59,22 +62,26 @@ class Run {
         rigid_(device.rigid_contact()),
         volts_(drives.size(), 0.0),
         pieces_(drives.size(), 0),
-        plane_(device.device().gap.contact) {
+        plane_(device.device().gap.contact),
+        fastest_(device.angular_frequencies().maxCoeff()),
+        // The quintic between two knots errs by a tenth of the tolerance times the mode's amplitude, and by 1e-6 at the most.
+        knot_phase_(std::pow(46080 * std::min(options.tolerance / 10, 1e-6), 1.0 / 6)),
+        motion_(as_vector(device.angular_frequencies()), as_vector(device.contact_shape())) {
     system_.size = size_;
+    system_.frequencies = as_vector(device.angular_frequencies());
     if (film_ > 0) {
       system_.core = 2 * n_;
       system_.block = ReynoldsFilm::nodes;
     }
-    system_.rhs = [this](double t, const double* y, double* dydt) { right_hand_side(t, y, dydt); };
+    system_.rates = [this](double t, const double* y, double* result) { rates(t, y, result); };
     system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, j); };
     stepper_ = internal::make_stepper(options.integrator, system_);
-    here_ = {.time = 0, .state = std::vector<double>(size_, 0.0), .acceleration = std::vector<double>(n_ + film_, 0.0)};
+    here_ = {.time = 0, .state = std::vector<double>(size_, 0.0), .rates = std::vector<double>(n_ + film_, 0.0)};
     if (device.rest()) std::copy_n(device.rest()->data(), n_, here_.state.begin());
     rest_energy_ = device.potential(here_.state.data(), volts_, false, work_);
-    next_ = last_ = here_;
+    next_ = here_;
     middle_ = here_.state;
-    free_ = here_.acceleration;
-    last_.time = -1;
+    free_ = here_.rates;
     set_tolerances();
     reach_ = device.contact_reach();
     remembers_ = device.has_contact() && has_memory(device.contact());
@@ -111,34 +118,17 @@ class Run {
     for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = drives_[k].pieces()[pieces_[k]].voltage(t);
   }
 
-  void accelerations(double t, const double* y, double* a) {
+  void rates(double t, const double* y, double* result) {
     set_volts(t);
-    device_.rates(y, volts_, law_, work_, a);
+    device_.rates(y, volts_, law_, work_, result);
     ++out_.work.rhs_evaluations;
   }
 
-  void right_hand_side(double t, const double* y, double* dydt) {
-    std::copy_n(y + n_, n_, dydt);
-    // The integrator begins a step where the last one ended, which has been evaluated already.
-    if (t == here_.time && std::equal(y, y + size_, here_.state.begin())) {
-      std::copy_n(here_.acceleration.begin(), n_ + film_, dydt + n_);
-    } else {
-      accelerations(t, y, dydt + n_);
-      last_.time = t;
-      std::copy_n(y, size_, last_.state.begin());
-      std::copy_n(dydt + n_, n_ + film_, last_.acceleration.begin());
-    }
-  }
-
-  // Takes the integrator's state as next_. The last stage of many methods is the right-hand side there.
+  // Takes the integrator's state as next_.
   void take_state() {
     next_.time = stepper_->time();
     std::copy_n(stepper_->state(), size_, next_.state.begin());
-    if (last_.time == next_.time && last_.state == next_.state) {
-      next_.acceleration = last_.acceleration;
-    } else {
-      accelerations(next_.time, next_.state.data(), next_.acceleration.data());
-    }
+    std::copy_n(stepper_->rates(), n_ + film_, next_.rates.begin());
   }
 
   void jacobian(double t, const double* y, double* j) {
@@ -213,12 +203,12 @@ class Run {
   }
 
   void restart() {
-    accelerations(here_.time, here_.state.data(), here_.acceleration.data());
+    rates(here_.time, here_.state.data(), here_.rates.data());
     if (branch_ == Branch::rest) return lie_down();
     double max_step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : drives_) max_step = std::min(max_step, signal.resolving_step(here_.time));
     const double first = last_step_ > 0 ? std::min(last_step_, max_step) : 0.01 / device_.angular_frequencies().maxCoeff();
-    if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), first, max_step)) {
+    if (!stepper_->restart(here_.time, here_.state.data(), here_.rates.data(), tolerances(), first, max_step)) {
       fail(stepper_->message());
     }
   }
@@ -232,18 +222,15 @@ class Run {
     if (!stepper_->step(stop_)) return fail(stepper_->message());
     ++out_.work.steps;
     take_state();
-    if (!std::isfinite(next_.acceleration[0])) return fail("the motion is no longer finite");
+    if (!std::isfinite(next_.rates[0])) return fail("the motion is no longer finite");
     if (next_.time < stop_) last_step_ = next_.time - here_.time;
 
-    const TrajectoryPoint from = out_.points.back(), to = point(next_);
-    const Quintic tip(from.time, from.position, from.velocity, from.acceleration, to.time, to.position, to.velocity,
-                      to.acceleration);
-    const double gap = Switch::smallest_gap(work_);
-    const Event event = next_event(tip, from, to);
+    const Event event = follow();
     if (event.time > 0 && !step_again(event)) return;
-    account(tip);
+    const double gap = Switch::smallest_gap(work_);
+    account();
     here_.state.swap(next_.state);
-    here_.acceleration.swap(next_.acceleration);
+    here_.rates.swap(next_.rates);
     here_.time = next_.time;
     record(here_);
     if (event.time > 0) pass(event);
@@ -283,11 +270,63 @@ class Run {
     return {.time = knot.time,
             .position = device_.contact_deflection(q),
             .velocity = device_.contact_deflection(v),
-            .acceleration = device_.contact_deflection(knot.acceleration.data()),
+            .acceleration = device_.contact_deflection(knot.rates.data()),
             .contact_force = law_.active               ? device_.contact_push(q, v, law_)
                              : branch_ == Branch::rest ? std::max(0.0, press_)
                                                        : 0};
   }
+
+  // The contact point in the step from here_ to next_, where it is `end`.
+  const ModalMotion& motion(const TrajectoryPoint& end) {
+    if (!motion_known_) {
+      const double* q = here_.state.data();
+      motion_.set(next_.time - here_.time, q, q + n_, here_.rates.data(), {end.position, end.velocity, end.acceleration});
+      motion_known_ = true;
+    }
+    return motion_;
+  }
+
+  // Whether motion() is of use in the step from here_ to next_: not in the long ones of an implicit method.
+  [[nodiscard]] bool moves_by_modes() const {
+    constexpr double rounding = 1e-9;
+    return fastest_ * (next_.time - here_.time) <= (1 + rounding) * largest_phase;
+  }
+
+  // A knot within the step; the force along a pad, which more than the contact point decides, is drawn on a line.
+  [[nodiscard]] TrajectoryPoint halfway(double after, const TrajectoryPoint& end) {
+    const ModalMotion::Sample s = motion(end).at(after);
+    const TrajectoryPoint& from = out_.points.back();
+    const double time = here_.time + after;
+    const double force = !law_.active ? 0
+                         : device_.has_pad_contact()
+                             ? std::lerp(from.contact_force, end.contact_force, (time - from.time) / (end.time - from.time))
+                             : contact_force(device_.contact(), s.position - plane_, law_, s.velocity);
+    return {.time = time, .position = s.position, .velocity = s.velocity, .acceleration = s.acceleration, .contact_force = force};
+  }
+
+  // The same in a piece of the step, worked out when something happens in it.
+  class Tip : public Quintic {
+   public:
+    Tip(Run& run, const TrajectoryPoint& from, const TrajectoryPoint& to, const TrajectoryPoint& end)
+        : Quintic(from.time, from.position, from.velocity, from.acceleration, to.time, to.position, to.velocity, to.acceleration),
+          run_(run),
+          end_(end),
+          modal_(run.moves_by_modes()) {}
+    [[nodiscard]] double position(double t) const {
+      return modal_ ? run_.motion(end_).at(t - run_.here_.time).position : Quintic::position(t);
+    }
+    [[nodiscard]] double velocity(double t) const {
+      return modal_ ? run_.motion(end_).at(t - run_.here_.time).velocity : Quintic::velocity(t);
+    }
+    [[nodiscard]] double velocity_zero() const {
+      return bracketed_zero([&](double t) { return velocity(t); }, begin(), Quintic::end());
+    }
+
+   private:
+    Run& run_;
+    const TrajectoryPoint& end_;
+    bool modal_;
+  };
 
   void record(const Knot& knot) { out_.points.push_back(point(knot)); }
 
@@ -297,27 +336,42 @@ class Run {
     const Edge* edge = nullptr;
   };
 
-  [[nodiscard]] Event next_event(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) const {
+  [[nodiscard]] Event next_event(const Tip& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) const {
     Event first;
     for (std::size_t i = 0; i < edge_count_; ++i) {
       const double time = crossing(tip, from, to, edges_[i]);
       if (time > 0 && !(first.time > 0 && first.time <= time)) first = {.time = time, .edge = &edges_[i]};
     }
     if (remembers_ && branch_ == Branch::loading && to.velocity < 0) {
-      const double time = from.velocity > 0 ? velocity_zero(tip, from, to) : from.time;
+      const double time = from.velocity > 0 ? tip.velocity_zero() : from.time;
       if (!(first.time > 0 && first.time < time)) first = {.time = time};
     }
     return first;
   }
 
-  static double velocity_zero(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) {
-    return bracketed_zero([&](double t) { return tip.velocity(t); }, from.time, to.time);
+  // Follows the contact point through the step from here_ to next_: knots where the interpolant needs them, up to the first
+  // event.
+  Event follow() {
+    const double h = next_.time - here_.time;
+    const int pieces = moves_by_modes() ? static_cast<int>(std::ceil(fastest_ * h / knot_phase_)) : 1;
+    const TrajectoryPoint end = point(next_);
+    motion_known_ = false;
+    for (int k = 1; k <= pieces; ++k) {
+      const TrajectoryPoint from = out_.points.back(), to = k < pieces ? halfway(h * k / pieces, end) : end;
+      const Tip tip(*this, from, to, end);
+      const Event event = next_event(tip, from, to);
+      if (event.time > 0) return event;
+      if (k < pieces) {
+        deepen(tip, from, to);
+        out_.points.push_back(to);
+      }
+    }
+    return {};
   }
 
   // Time in [from, to] at which the contact point first crosses an edge outwards; 0 if it does not. Between its turns the motion
   // is monotone, so that no crossing hides between two others.
-  [[nodiscard]] static double crossing(const Quintic& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
-                                       const Edge& edge) {
+  [[nodiscard]] static double crossing(const Tip& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const Edge& edge) {
     const double side = edge.side;
     const Quintic::Bounds reached = tip.bounds();
     if (side > 0 ? reached.least >= edge.level : reached.most <= edge.level) return 0;
@@ -338,14 +392,14 @@ class Run {
   }
 
   // Repeats the last step so that it ends at the event: interpolated velocities would cost an order of accuracy at every touch.
-  // After a long step the interpolant's place is off by more than a stiff contact yields, which would then begin or end with
-  // energy from nowhere: Newton's method.
+  // The interpolant's place is off by more than a stiff contact yields, which would then begin or end with energy from nowhere:
+  // Taylor's series makes up for it, or where it is off by much Newton's method.
   bool step_again(const Event& event) {
     constexpr int most_corrections = 8;
     const double latest = next_.time;
     double time = event.time;
     for (int i = 0; time > here_.time && time <= latest; ++i) {
-      if (!stepper_->restart(here_.time, here_.state.data(), tolerances(), time - here_.time,
+      if (!stepper_->restart(here_.time, here_.state.data(), here_.rates.data(), tolerances(), time - here_.time,
                              std::numeric_limits<double>::infinity())) {
         return fail(stepper_->message()), false;
       }
@@ -355,13 +409,27 @@ class Run {
         ++out_.work.steps;
       } while (stepper_->time() < time);
       take_state();
-      if (event.edge == nullptr || !device_.has_contact() || i == most_corrections) return true;
+      if (event.edge == nullptr || i == most_corrections || meet(*event.edge)) return true;
       const double off = device_.contact_deflection(next_.state.data()) - event.edge->level;
-      if (std::abs(contact_energy(device_.contact(), std::abs(off))) <= options_.tolerance * device_.bending_energy())
+      if (device_.has_contact() && rigid_ == nullptr &&
+          std::abs(contact_energy(device_.contact(), std::abs(off))) <= options_.tolerance * device_.bending_energy())
         return true;
       time -= off / device_.contact_deflection(next_.state.data() + n_);
     }
     if (!(time > here_.time)) next_ = here_;
+    rates(next_.time, next_.state.data(), next_.rates.data());  // leaves the field there
+    return true;
+  }
+
+  // Moves next_ onto an edge that is less than a thousandth of a radian away.
+  bool meet(const Edge& edge) {
+    constexpr double short_of_a_radian = 1e-3;
+    const double* v = next_.state.data() + n_;
+    const double later = (edge.level - device_.contact_deflection(next_.state.data())) / device_.contact_deflection(v);
+    if (!(std::abs(later) * fastest_ < short_of_a_radian)) return false;
+    for (std::size_t i = 0; i < n_; ++i) next_.state[i] += later * (v[i] + later / 2 * next_.rates[i]);
+    for (std::size_t i = n_; i < size_; ++i) next_.state[i] += later * next_.rates[i - n_];
+    next_.time += later;
     return true;
   }
 
@@ -421,14 +489,14 @@ class Run {
 
   // Force with which the plate would press on a rigid contact at here_ under the voltages of another time [N]; negative: pull.
   double press(double t) {
-    accelerations(t, here_.state.data(), free_.data());
+    rates(t, here_.state.data(), free_.data());
     return free_[0] / device_.contact_shape()[0];
   }
 
   void lie_down() {
     constexpr double looks = 32;  // at a stretch without sines
-    press_ = here_.acceleration[0] / device_.contact_shape()[0];
-    here_.acceleration[0] = 0;
+    press_ = here_.rates[0] / device_.contact_shape()[0];
+    here_.rates[0] = 0;
     rest_step_ = (stop_ - here_.time) / looks;
     for (const Signal& signal : drives_) rest_step_ = std::min(rest_step_, signal.resolving_step(here_.time));
   }
@@ -502,37 +570,42 @@ class Run {
     edge_count_ = 2;
   }
 
-  // Peaks and energies over the step that ends at next_.
-  void account(const Quintic& tip) {
+  // Peaks over a piece of a step.
+  void deepen(const Tip& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) {
+    if (!in_contact_) return;
+    const double deepest =
+        from.velocity > 0 && to.velocity < 0 ? tip.position(tip.velocity_zero()) : std::max(from.position, to.position);
+    const double d = deepest - plane_;
+    Touch& touch = out_.touches.back();
+    if (law_.active && !device_.has_pad_contact()) {
+      touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d, law_, 0));
+      touch.peak_energy = std::max(touch.peak_energy, stored_energy(device_.contact(), d, law_));
+    }
+    out_.deepest_penetration = std::max(out_.deepest_penetration, d);
+  }
+
+  // Energies over the step that ends at next_.
+  void account() {
     const double t0 = here_.time, t1 = next_.time;
     if (t0 == t1) return;
-    if (in_contact_) {
-      double deepest = std::max(tip.position(t0), tip.position(t1));
-      if (tip.velocity(t0) > 0 && tip.velocity(t1) < 0) {
-        deepest = tip.position(bracketed_zero([&](double t) { return tip.velocity(t); }, t0, t1));
-      }
-      const double d = deepest - plane_;
+    const TrajectoryPoint from = out_.points.back(), to = point(next_);
+    motion_known_ = false;
+    if (to.time > from.time) deepen(Tip(*this, from, to, to), from, to);
+    // The peak of a damped contact comes before the deepest point, that along a pad anywhere about it.
+    if (in_contact_ && (device_.has_damped_contact() || device_.has_pad_contact())) {
+      halve_step();
+      const auto peak = [&](double begin, double middle, double end) {
+        const double bend = 2 * middle - begin - end;  // of the parabola through the three
+        const bool inside = std::abs(end - begin) < 2 * bend;
+        return inside ? middle + (end - begin) * (end - begin) / (8 * bend) : std::max({begin, middle, end});
+      };
+      const auto push = [&](const std::vector<double>& y) { return device_.contact_push(y.data(), y.data() + n_, law_); };
+      const auto stored = [&](const std::vector<double>& y) { return device_.contact_stored(y.data(), law_); };
       Touch& touch = out_.touches.back();
-      if (law_.active && !device_.has_pad_contact()) {
-        touch.peak_force = std::max(touch.peak_force, contact_force(device_.contact(), d, law_, 0));
-        touch.peak_energy = std::max(touch.peak_energy, stored_energy(device_.contact(), d, law_));
+      touch.peak_force = std::max(touch.peak_force, peak(push(here_.state), push(middle_), push(next_.state)));
+      if (device_.has_pad_contact()) {
+        touch.peak_energy = std::max(touch.peak_energy, peak(stored(here_.state), stored(middle_), stored(next_.state)));
       }
-      // The peak of a damped contact comes before the deepest point, that along a pad anywhere about it.
-      if (device_.has_damped_contact() || device_.has_pad_contact()) {
-        halve_step();
-        const auto peak = [&](double begin, double middle, double end) {
-          const double bend = 2 * middle - begin - end;  // of the parabola through the three
-          const bool inside = std::abs(end - begin) < 2 * bend;
-          return inside ? middle + (end - begin) * (end - begin) / (8 * bend) : std::max({begin, middle, end});
-        };
-        const auto push = [&](const std::vector<double>& y) { return device_.contact_push(y.data(), y.data() + n_, law_); };
-        const auto stored = [&](const std::vector<double>& y) { return device_.contact_stored(y.data(), law_); };
-        touch.peak_force = std::max(touch.peak_force, peak(push(here_.state), push(middle_), push(next_.state)));
-        if (device_.has_pad_contact()) {
-          touch.peak_energy = std::max(touch.peak_energy, peak(stored(here_.state), stored(middle_), stored(next_.state)));
-        }
-      }
-      out_.deepest_penetration = std::max(out_.deepest_penetration, d);
     }
 
     if (device_.damped()) {
@@ -582,13 +655,13 @@ class Run {
     const double h = next_.time - here_.time;
     for (std::size_t i = 0; i < n_; ++i) {
       const double p0 = here_.state[i], p1 = next_.state[i], v0 = here_.state[n_ + i], v1 = next_.state[n_ + i];
-      const double a0 = here_.acceleration[i], a1 = next_.acceleration[i];
+      const double a0 = here_.rates[i], a1 = next_.rates[i];
       middle_[i] = (p0 + p1) / 2 + h * (5.0 / 32 * (v0 - v1) + h / 64 * (a0 + a1));
       middle_[n_ + i] = 15.0 / 8 * (p1 - p0) / h - 7.0 / 16 * (v0 + v1) + h / 32 * (a1 - a0);
     }
     for (std::size_t i = 0; i < film_; ++i) {
-      middle_[2 * n_ + i] = (here_.state[2 * n_ + i] + next_.state[2 * n_ + i]) / 2 +
-                            h / 8 * (here_.acceleration[n_ + i] - next_.acceleration[n_ + i]);
+      middle_[2 * n_ + i] =
+          (here_.state[2 * n_ + i] + next_.state[2 * n_ + i]) / 2 + h / 8 * (here_.rates[n_ + i] - next_.rates[n_ + i]);
     }
   }
 
@@ -655,7 +728,11 @@ class Run {
   internal::OdeSystem system_;
   std::unique_ptr<internal::Stepper> stepper_;
   std::vector<double> in_flight_, touching_;  // absolute tolerances
-  Knot here_, next_, last_;
+  double fastest_;                            // angular frequency of the last mode [rad/s]
+  double knot_phase_;                         // of the fastest mode between two knots of the trajectory, at the most
+  ModalMotion motion_;
+  bool motion_known_ = false;
+  Knot here_, next_;
   std::vector<double> middle_;  // state halfway through a step
   double rest_energy_ = 0;      // potential at the start [J]
   double source_work_ = 0;      // without the charges that stand on the drives now [J]

@@ -3,10 +3,12 @@
 // The integrator restarts at waveform breakpoints, at make and break of contact, and, where the contact law has memory, where it
 // passes from one of its curves to another (turning points while loading among them), so it only ever sees smooth right-hand
 // sides. At a rigid contact the velocity is reversed, or the plate rests and nothing is integrated until it is pulled off.
-// Between its steps the motion is a quintic Hermite interpolant; contact events are its zeros between its extrema (grazing
-// touches do not hide between steps), and a step with an event is repeated until it ends there. Error weights: a mode's
-// coordinate counts as the deflection it causes at the contact point, its velocity as that times its frequency. In flight the
-// tolerance is relative to the contact gap, in contact to the penetration, which is a thousand times smaller.
+// Within a step the contact point moves as the free modes do, plus a quintic (model/modal_motion.h); contact events are the zeros
+// between the extrema of that motion, looked for in pieces of a fraction of a radian of the fastest mode (grazing touches do not
+// hide between steps), and a step with an event is repeated until it ends there. The trajectory has a knot at the end of every
+// piece. Error weights: a mode's coordinate counts as the deflection it causes at the contact point, its velocity as that times
+// its frequency. In flight the tolerance is relative to the contact gap, in contact to the penetration, which is a thousand times
+// smaller.
 //
 // Every run keeps the books of its energy, dissipation by Simpson's rule over each step: an integrator that loses the contact
 // between two steps, or a tolerance too loose for a stiff one, shows as energy that came from nowhere. A residual above 1 % of
@@ -28,12 +30,12 @@
 namespace softland {
 
 enum class Integrator {
-  automatic,       ///< dormand_prince; esdirk where a compressible film makes the equations stiff
-  dormand_prince,  ///< explicit Runge-Kutta 5(4) for short vectors, ours
-  arkode_erk,      ///< the same pair, ARKODE
-  esdirk,          ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
-  bdf,             ///< CVODE, exact Jacobian
-  adams,           ///< CVODE, functional iteration
+  automatic,   ///< lawson; esdirk where a compressible film makes the equations stiff
+  lawson,      ///< explicit Runge-Kutta 5(4) on top of the free motion of the modes, ours
+  arkode_erk,  ///< the same pair on the motion itself, ARKODE
+  esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
+  bdf,         ///< CVODE, exact Jacobian
+  adams,       ///< CVODE, functional iteration
 };
 
 struct ClosingOptions {

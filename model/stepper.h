@@ -10,10 +10,13 @@
 
 namespace softland::internal {
 
-/// y' = f(t, y) of dimension n; the Jacobian is needed by the implicit methods only (column-major n x n).
+/// y = (q, v, z) of dimension n: modes with q' = v, v' = -frequency^2 q + ..., and what follows them. The Jacobian of y' is
+/// needed by the implicit methods only (column-major n x n).
 struct OdeSystem {
   std::size_t size = 0;
-  std::function<void(double t, const double* y, double* dydt)> rhs;
+  std::vector<double> frequencies = {};  ///< of the modes [rad/s]
+  /// (v', z').
+  std::function<void(double t, const double* y, double* rates)> rates;
   std::function<void(double t, const double* y, double* jacobian)> jacobian;
   /// Above 0: beyond the first `core` unknowns the Jacobian has blocks of this size that couple with the core only.
   std::size_t core = 0, block = 0;
@@ -22,13 +25,16 @@ struct OdeSystem {
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  /// Starts a smooth stretch. `absolute` are the absolute tolerances per unknown, `first_step` a suggestion [s] (0: let the
-  /// method choose).
-  virtual bool restart(double t, const double* y, const std::vector<double>& absolute, double first_step, double max_step) = 0;
+  /// Starts a smooth stretch at (t, y), where (v', z') is `rates`. `absolute` are the absolute tolerances per unknown,
+  /// `first_step` a suggestion [s].
+  virtual bool restart(double t, const double* y, const double* rates, const std::vector<double>& absolute, double first_step,
+                       double max_step) = 0;
   /// One step, never beyond t_stop. False: failed, see message().
   virtual bool step(double t_stop) = 0;
   [[nodiscard]] virtual double time() const = 0;
   [[nodiscard]] virtual const double* state() const = 0;
+  /// (v', z') at time(); the last evaluation of the right-hand side was there.
+  [[nodiscard]] virtual const double* rates() = 0;
   [[nodiscard]] virtual std::string message() const = 0;
 };
 

@@ -266,9 +266,9 @@ TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
   const Switch device(test::gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto run = [&](double tolerance) {
-    return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance});
+    return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = Integrator::arkode_erk});
   };
-  // Measured: 3.2e-5 of the bending energy at 1e-6, 3 % at 1e-3, twice the bending energy at 1e-2.
+  // Measured: 3.2e-5 of the bending energy at 1e-6, 4 % at 1e-3, almost five times the bending energy at 1e-2.
   const Trajectory good = run(1e-6);
   EXPECT_LT(good.energy_error, 1e-4 * device.bending_energy());
   EXPECT_GE(good.energy_error, std::abs(good.energy.residual()));
@@ -293,7 +293,7 @@ TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   const auto run = [&](Integrator integrator, double tolerance) {
     return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = integrator});
   };
-  const Trajectory loose = run(Integrator::dormand_prince, 1e-2);
+  const Trajectory loose = run(Integrator::arkode_erk, 1e-2);
   EXPECT_EQ(loose.status, Status::numerical_failure);
   EXPECT_NE(loose.message.find("came from nowhere"), std::string::npos) << loose.message;
   EXPECT_GT(loose.energy_error, 0.5 * device.bending_energy());
@@ -381,7 +381,7 @@ TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
     const double at_rest = device.capacitance(0, rest.data(), work);
     const std::vector<Signal> drives{Signal::constant(step_level)};
     for (const Integrator integrator :
-         {Integrator::dormand_prince, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
+         {Integrator::lawson, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
       for (const double tolerance : {1e-4, 1e-6}) {
         double given = 0;
         const Trajectory t =

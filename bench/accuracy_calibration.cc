@@ -1,0 +1,198 @@
+// Whether the accuracy that a scene asks for is the accuracy of its figures, on random scenes: bench_accuracy [COUNT [SEED]]
+//
+// Every scene is run as `simulate` runs it at accuracies from 1e-2 to 1e-5, and against a reference at an integrator tolerance of
+// 1e-12 with twice the quadrature points of the finest setting. A figure counts where it is well-conditioned: where a change of the contact gap by a
+// billionth, which nobody could see, moves it by less than a tenth of the accuracy asked for. Prints Markdown.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/figure.h"
+#include "studies/prepared.h"
+#include "studies/simulate.h"
+#include "tests/support/random_scenes.h"
+
+namespace softland {
+namespace {
+
+constexpr std::array accuracies{1e-2, 1e-3, 1e-4, 1e-5};
+constexpr std::array names{"t_i", "v_i", "B_H", "peak force"};
+constexpr double reference_tolerance = 1e-12, imperceptible = 1e-9;
+constexpr SwitchOptions reference_quadrature{.points_per_length = 48};
+
+using Figures = std::array<double, 4>;
+
+struct Outcome {
+  Status status = Status::not_run;
+  Figures figures{};
+};
+
+Figures figures(const Metrics& m) {
+  return {m.initial_contact_time, m.impact_velocity, m.major_bounce_height, m.peak_contact_force};
+}
+
+Outcome reference(const Prepared& p, double perturbation) {
+  Device device = p.scene.device;
+  device.gap.contact *= 1 + perturbation;
+  const Trajectory t = simulate_closing(Switch(device, reference_quadrature), p.signals(),
+                                        {.duration = p.duration, .tolerance = reference_tolerance, .max_steps = 300'000});
+  return {t.status, figures(metrics(t, p.scene.metrics))};
+}
+
+struct Miss {
+  std::uint64_t index = 0;
+  double accuracy = 0;
+  std::string figure;
+  double error = 0;
+};
+
+struct Tally {
+  long figures = 0, within = 0, ill = 0;
+  std::vector<double> share;  // error over accuracy
+  double seconds = 0;
+};
+
+struct Result {
+  std::array<std::array<Tally, names.size()>, accuracies.size()> tallies;
+  std::vector<Miss> misses;
+  std::map<std::string, long> scenes;
+};
+
+double relative(double value, double truth, double least) {
+  if (std::isnan(value) && std::isnan(truth)) return 0;
+  const double e = std::abs(value - truth) / std::max(std::abs(truth), least);
+  return std::isnan(e) ? std::numeric_limits<double>::infinity() : e;
+}
+
+void judge(std::uint64_t seed, std::uint64_t index, Result& result) {
+  const SceneFile file = test::random_scene(seed, index);
+  const Prepared p = prepare(file);
+  const Outcome truth = reference(p, 0);
+  if (truth.status != Status::done && truth.status != Status::no_contact) {
+    ++result.scenes[std::string(to_string(truth.status))];
+    return;
+  }
+  ++result.scenes[std::isnan(truth.figures[0]) ? "no touch" : "touches"];
+  if (std::isnan(truth.figures[0])) return;
+  const Outcome up = reference(p, imperceptible), down = reference(p, -imperceptible);
+  const Figures least{0, 0, p.scene.metrics.significant_rebound, least_peak_force(p)};
+  for (std::size_t a = 0; a < accuracies.size(); ++a) {
+    SceneFile asked = file;
+    asked.erase("simulate.tolerance");
+    asked.set(fmt::format("simulate.accuracy={}", accuracies[a]));
+    const Prepared with = prepare(asked);
+    const auto start = std::chrono::steady_clock::now();
+    const Closing closing = simulate(with, true);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const Figures found = figures(closing.metrics);
+    for (std::size_t f = 0; f < names.size(); ++f) {
+      Tally& tally = result.tallies[a][f];
+      const double spread =
+          std::max(relative(up.figures[f], truth.figures[f], least[f]), relative(down.figures[f], truth.figures[f], least[f]));
+      if (std::isnan(truth.figures[f])) continue;
+      if (!(spread < accuracies[a] / 10)) {
+        ++tally.ill;
+        continue;
+      }
+      const double error = relative(found[f], truth.figures[f], least[f]);
+      ++tally.figures;
+      tally.seconds += seconds;
+      tally.share.push_back(error / accuracies[a]);
+      if (error <= accuracies[a]) {
+        ++tally.within;
+      } else {
+        result.misses.push_back({index, accuracies[a], names[f], error});
+      }
+    }
+  }
+}
+
+void run(std::uint64_t count, std::uint64_t seed) {
+  const auto workers = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<Result> parts(workers);
+  std::atomic<std::uint64_t> next{0};
+  std::vector<std::thread> threads;
+  for (Result& part : parts) {
+    threads.emplace_back([&] {
+      for (std::uint64_t i = next++; i < count; i = next++) judge(seed, i, part);
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  Result all;
+  for (Result& part : parts) {
+    for (std::size_t a = 0; a < accuracies.size(); ++a) {
+      for (std::size_t f = 0; f < names.size(); ++f) {
+        Tally &to = all.tallies[a][f], &from = part.tallies[a][f];
+        to.figures += from.figures;
+        to.within += from.within;
+        to.ill += from.ill;
+        to.seconds += from.seconds;
+        to.share.insert(to.share.end(), from.share.begin(), from.share.end());
+      }
+    }
+    all.misses.insert(all.misses.end(), part.misses.begin(), part.misses.end());
+    for (const auto& [what, n] : part.scenes) all.scenes[what] += n;
+  }
+  std::sort(all.misses.begin(), all.misses.end(),
+            [](const Miss& a, const Miss& b) { return std::pair(a.index, -a.accuracy) < std::pair(b.index, -b.accuracy); });
+
+  std::vector<std::vector<std::string>> rows{{"accuracy", "figure", "well-conditioned", "within", "share", "median error / accuracy",
+                                              "99 % error / accuracy", "ill-conditioned"}};
+  long figures = 0, within = 0;
+  for (std::size_t a = 0; a < accuracies.size(); ++a) {
+    for (std::size_t f = 0; f < names.size(); ++f) {
+      Tally& t = all.tallies[a][f];
+      std::sort(t.share.begin(), t.share.end());
+      const auto quantile = [&](double q) {
+        return t.share.empty() ? std::string("-") : fmt::format("{:.2g}", t.share[static_cast<std::size_t>(q * static_cast<double>(t.share.size() - 1))]);
+      };
+      rows.push_back({fmt::format("{:g}", accuracies[a]), names[f], std::to_string(t.figures), std::to_string(t.within),
+                      fmt::format("{:.2f} %", 100.0 * static_cast<double>(t.within) / static_cast<double>(std::max(1L, t.figures))),
+                      quantile(0.5), quantile(0.99), std::to_string(t.ill)});
+      figures += t.figures;
+      within += t.within;
+    }
+  }
+  fmt::print("# Accuracy asked for and delivered\n\n");
+  std::vector<std::string> kinds;
+  for (const auto& [what, n] : all.scenes) kinds.push_back(fmt::format("{} {}", n, what));
+  fmt::print("{} random scenes of seed {} ({}). A figure is well-conditioned where a billionth of the contact gap moves it by less\n"
+             "than a tenth of the accuracy. Reference: integrator tolerance {:g}, {:g} quadrature points per length.\n\n",
+             count, seed, fmt::join(kinds, ", "), reference_tolerance, reference_quadrature.points_per_length);
+  fmt::print("Within the accuracy asked for: **{} of {} figures, {:.2f} %**.\n\n{}\n", within, figures,
+             100.0 * static_cast<double>(within) / static_cast<double>(std::max(1L, figures)), markdown_table(rows));
+  fmt::print("Misses:\n\n");
+  for (const Miss& m : all.misses) {
+    fmt::print("- scene {} ({}), accuracy {:g}, {}: {:.2g}\n", m.index, test::scene_families[m.index % test::scene_families.size()],
+               m.accuracy, m.figure, m.error);
+  }
+  if (all.misses.empty()) fmt::print("- none\n");
+  fmt::print("\nMade by `build/bench/bench_accuracy {} {}` (configured with `-DSOFTLAND_BENCH=ON`) on {:%Y-%m-%d}, {} threads.\n", count, seed,
+             fmt::localtime(std::time(nullptr)), workers);
+}
+
+}  // namespace
+}  // namespace softland
+
+int main(int argc, char** argv) {
+  try {
+    softland::run(argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 200, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "bench_accuracy: " << error.what() << "\n";
+    return 2;
+  }
+}

@@ -1,0 +1,188 @@
+#include "model/lawson.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace softland::internal {
+namespace {
+
+constexpr double nodes[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+constexpr double tableau[7][6] = {{},
+                                  {1.0 / 5},
+                                  {3.0 / 40, 9.0 / 40},
+                                  {44.0 / 45, -56.0 / 15, 32.0 / 9},
+                                  {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+                                  {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+                                  {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+// Fifth minus fourth order.
+constexpr double difference[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+
+constexpr double integral = 0.04;
+constexpr double proportional = 0.2 - 0.75 * integral;
+constexpr double safety = 0.9;
+constexpr double least_growth = 0.2, most_growth = 10;
+constexpr double first_growth = 1e4;  // a first step is a guess
+constexpr double least_error = 1e-4;  // what the controller remembers at the least
+constexpr double not_finite = 0.1;    // shrinks a step whose error is not a number
+
+}  // namespace
+
+Lawson::Lawson(const OdeSystem& system)
+    : system_(system),
+      modes_(system.frequencies.size()),
+      rest_(system.size - 2 * modes_),
+      omega_(padded_to_lanes(system.frequencies, 1)),
+      y_(system.size),
+      trial_(system.size),
+      rates_(modes_ + rest_),
+      next_rates_(modes_ + rest_),
+      weight_(system.size) {
+  if (modes_ > 0) fastest_ = *std::max_element(system.frequencies.begin(), system.frequencies.end());
+  for (Modal* m : {&inverse_, &q_, &v_, &a_, &q_weight_, &v_weight_}) m->resize(omega_.size());
+  std::transform(omega_.begin(), omega_.end(), inverse_.begin(), [](double omega) { return 1 / omega; });
+  for (Stage& k : k_) {
+    for (Modal* m : {&k.q, &k.v, &k.cosine, &k.sine, &k.slack}) m->resize(omega_.size());
+    k.rest.resize(rest_);
+  }
+}
+
+bool Lawson::restart(double t, const double* y, const double* rates, const std::vector<double>& absolute, double first_step,
+                     double max_step) {
+  t_ = t;
+  std::copy_n(y, y_.size(), y_.begin());
+  std::copy_n(rates, rates_.size(), rates_.begin());
+  std::transform(absolute.begin(), absolute.end(), weight_.begin(), [](double a) { return 1 / a; });
+  std::copy_n(weight_.begin(), modes_, q_weight_.begin());
+  std::copy_n(weight_.begin() + static_cast<std::ptrdiff_t>(modes_), modes_, v_weight_.begin());
+  h_ = first_step;
+  max_step_ = modes_ > 0 ? std::min(max_step, largest_phase / fastest_) : max_step;
+  last_error_ = 1;
+  first_ = true;
+  return true;
+}
+
+void Lawson::turn_to_nodes(double h) {
+  if (h == turned_) return;
+  turned_ = h;
+  constexpr std::size_t last = stages - 1;
+  for (std::size_t b = 0; b < omega_.size(); b += lanes) {
+    const Lane phase = h * lane(omega_, b);
+    for (std::size_t s = 1; s < stages; ++s) {
+      if (s == last) {  // at the node of the stage before
+        for (const auto member : {&Stage::cosine, &Stage::sine, &Stage::slack})
+          lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
+        continue;
+      }
+      const Turn turned = turn(nodes[s] * phase);
+      lane(k_[s].cosine, b) = turned.cosine;
+      lane(k_[s].sine, b) = turned.sine;
+      lane(k_[s].slack, b) = turned.slack * lane(inverse_, b) * lane(inverse_, b);
+    }
+  }
+}
+
+template <std::size_t S>
+void Lawson::evaluate(double t, double h) {
+  Stage& stage = k_[S];
+  std::array<double, S> factor;
+  for (std::size_t j = 0; j < S; ++j) factor[j] = h * tableau[S][j];
+  for (std::size_t b = 0; b < omega_.size(); b += lanes) {
+    Lane kq = Lane::Zero(), kv = lane(v_, b);
+    for (std::size_t j = 1; j < S; ++j) {
+      kq += factor[j] * lane(k_[j].q, b);
+      kv += factor[j] * lane(k_[j].v, b);
+    }
+    const Lane omega = lane(omega_, b), inverse = lane(inverse_, b), a = lane(a_, b);
+    const Lane cosine = lane(stage.cosine, b), sine = lane(stage.sine, b);
+    const Lane q = lane(q_, b) + a * lane(stage.slack, b) + kq * cosine + kv * (sine * inverse);
+    const Lane v = kv * cosine + a * (sine * inverse) - kq * (sine * omega);
+    put(q, b, trial_.data());
+    put(v, b, trial_.data() + modes_);
+  }
+  for (std::size_t i = 0; i < rest_; ++i) {
+    double sum = y_[2 * modes_ + i];
+    for (std::size_t j = 0; j < S; ++j) sum += factor[j] * k_[j].rest[i];
+    trial_[2 * modes_ + i] = sum;
+  }
+  system_.rates(t, trial_.data(), next_rates_.data());
+  for (std::size_t b = 0; b < omega_.size(); b += lanes) {
+    const Lane omega = lane(omega_, b);
+    const Lane excess = get(next_rates_.data(), b) - lane(a_, b) + omega * omega * (get(trial_.data(), b) - lane(q_, b));
+    lane(stage.q, b) = -excess * lane(stage.sine, b) * lane(inverse_, b);
+    lane(stage.v, b) = excess * lane(stage.cosine, b);
+  }
+  std::copy_n(next_rates_.begin() + static_cast<std::ptrdiff_t>(modes_), rest_, stage.rest.begin());
+}
+
+double Lawson::error(double h) const {
+  Lane squares = Lane::Zero();
+  for (std::size_t b = 0; b < omega_.size(); b += lanes) {
+    Lane q = Lane::Zero(), v = Lane::Zero();
+    for (std::size_t j = 1; j < stages; ++j) {
+      q += difference[j] * lane(k_[j].q, b);
+      v += difference[j] * lane(k_[j].v, b);
+    }
+    q *= lane(q_weight_, b);
+    v *= lane(v_weight_, b);
+    squares += q * q + v * v;
+  }
+  double sum = squares.sum();
+  for (std::size_t i = 0; i < rest_; ++i) {
+    double estimate = 0;
+    for (std::size_t j = 0; j < stages; ++j) estimate += difference[j] * k_[j].rest[i];
+    estimate *= weight_[2 * modes_ + i];
+    sum += estimate * estimate;
+  }
+  return h * std::sqrt(sum / static_cast<double>(y_.size()));
+}
+
+bool Lawson::step(double t_stop) {
+  double most = first_ ? first_growth : most_growth;
+  for (std::size_t b = 0; b < omega_.size(); b += lanes) {
+    lane(q_, b) = get(y_.data(), b);
+    lane(v_, b) = get(y_.data() + modes_, b);
+    lane(a_, b) = get(rates_.data(), b);
+  }
+  std::copy_n(rates_.begin() + static_cast<std::ptrdiff_t>(modes_), rest_, k_[0].rest.begin());
+  while (true) {
+    double h = std::min(h_, max_step_);
+    const bool stops = t_ + h >= t_stop;
+    if (stops) h = t_stop - t_;
+    if (!(t_ + h > t_)) {
+      message_ = fmt::format("no step is short enough for the tolerance at t = {:.9g} s", t_);
+      return false;
+    }
+    const double end = stops ? t_stop : t_ + h;
+    turn_to_nodes(h);
+    evaluate<1>(t_ + nodes[1] * h, h);
+    evaluate<2>(t_ + nodes[2] * h, h);
+    evaluate<3>(t_ + nodes[3] * h, h);
+    evaluate<4>(t_ + nodes[4] * h, h);
+    evaluate<5>(end, h);
+    evaluate<6>(end, h);
+    const double e = error(h);
+    if (!std::isfinite(e)) {
+      h_ = not_finite * h;
+      most = 1;
+      continue;
+    }
+    const double growth = safety * std::pow(std::max(e, 1e-300), -proportional) * std::pow(last_error_, integral);
+    if (e <= 1) {
+      t_ = end;
+      y_.swap(trial_);
+      rates_.swap(next_rates_);
+      last_error_ = std::max(e, least_error);
+      // A step cut short by t_stop says little about the ones after it, which begin with a restart anyway.
+      h_ = h * std::clamp(growth, least_growth, most);
+      first_ = false;
+      return true;
+    }
+    h_ = h * std::clamp(growth, least_growth, 0.9);
+    most = 1;
+  }
+}
+
+}  // namespace softland::internal
