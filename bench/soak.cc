@@ -28,7 +28,7 @@
 namespace softland {
 namespace {
 
-constexpr long most_steps = 200'000, most_steps_with_film = 20'000;  // the work bound of a scene
+constexpr long most_steps = 100'000, most_steps_with_film = 2'000;  // the work bound of a scene
 constexpr int threads = 2;
 
 struct Outcome {

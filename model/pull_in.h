@@ -52,7 +52,8 @@ struct ClosedEquilibrium {
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts);
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest whose contact point reaches the contact plane, whether
-/// or not it stays, within 100 periods of the first mode; to 1e-7 relative. NaN with a status when static pull-in fails.
+/// or not it stays, within 100 periods of the first mode; to 1e-7 relative. At most the static pull-in voltage, at which the
+/// thickest film gives way in the end. NaN with a status when static pull-in fails.
 struct DynamicPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; of the dispersion force its factor less one

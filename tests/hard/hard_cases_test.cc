@@ -268,5 +268,28 @@ TEST(HardCases, AreEitherRightOrRefusedAtEveryTolerance) {
   }
 }
 
+// The rates of the stiff film are its error times its stiffness: what the books make of them must not fail a good run.
+TEST(HardCases, ACompressibleFilmKeepsItsBooksAtEveryTolerance) {
+  Device d = test::gold_cantilever();
+  d.gas = Gas{.model = GasModel::reynolds, .viscosity = 1.86e-5_Pa_s};
+  const Switch device(d);
+  const auto run = [&](double tolerance) {
+    const CheckedRun c =
+        checked_run(device, std::vector<Signal>{Signal::constant(step_level)}, {.duration = 50_us, .tolerance = tolerance}, 0.2);
+    EXPECT_EQ(c.violations, std::vector<std::string>{});
+    return c;
+  };
+  const Landing best = test::landing(run(1e-7).trajectory);
+  for (const auto& [tolerance, error, energy] : {Delivered{1e-6, 1e-4, 2e-3}, {1e-5, 1e-3, 1e-2}, {1e-4, 1e-2, 5e-2}}) {
+    SCOPED_TRACE(tolerance);
+    const CheckedRun c = run(tolerance);
+    EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
+    EXPECT_LE(c.trajectory.energy_error, energy * device.bending_energy());
+    const Landing l = test::landing(c.trajectory);
+    EXPECT_NEAR(l.time, best.time, error * best.time);
+    EXPECT_NEAR(l.velocity, best.velocity, error * best.velocity);
+  }
+}
+
 }  // namespace
 }  // namespace softland

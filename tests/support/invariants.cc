@@ -101,8 +101,9 @@ class Findings {
 };
 
 // `off` is how far the motion may be on the wrong side of the plane [m].
-void check_knots(const Trajectory& t, bool rigid, double off, Findings& found) {
+void check_knots(const Trajectory& t, const Metrics& m, bool rigid, double off, Findings& found) {
   std::size_t touch = 0;  // the one under way or next
+  double highest = 0;     // after first touch
   for (std::size_t i = 0; i < t.points.size(); ++i) {
     const TrajectoryPoint& p = t.points[i];
     found.expect(std::isfinite(p.time + p.position + p.velocity + p.acceleration + p.contact_force), "knot {} is not finite", i);
@@ -117,11 +118,14 @@ void check_knots(const Trajectory& t, bool rigid, double off, Findings& found) {
     constexpr int samples = 8;
     for (int s = 0; s <= samples; ++s) {
       const double d = tip.position(before.time + (p.time - before.time) * s / samples) - t.contact_gap;
+      if (touch > 0) highest = std::max(highest, -d);
       found.expect(in_contact ? d >= -off : d <= off,
                    "between knots {} and {}, at {:.9g} s, the contact point is {:.3g} m {} the plane {}", i - 1, i, before.time,
                    std::abs(d), d > 0 ? "beyond" : "before", in_contact ? "in contact" : "in flight");
     }
   }
+  found.expect(!(highest > m.major_bounce_height + off), "it stands {:.9g} m off the plane after touch, and B_H = {:.9g} m",
+               highest, m.major_bounce_height);
   for (std::size_t i = 0; i < t.touches.size(); ++i) {
     const Touch& one = t.touches[i];
     const bool last = i + 1 == t.touches.size();
@@ -186,7 +190,7 @@ CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, con
   const bool rigid = device.rigid_contact() != nullptr, completed = t.status == Status::done;
   // Where a run fails its steps need not fit together.
   const double off = completed ? options.tolerance * t.contact_gap : std::numeric_limits<double>::infinity();
-  check_knots(t, rigid, off, found);
+  check_knots(t, run.metrics, rigid, off, found);
   found.expect(rebounds(t).size() <= t.touches.size() || !completed, "{} rebounds after {} touches", rebounds(t).size(),
                t.touches.size());
   check_figures(run.metrics, t.message, rigid, found);
