@@ -83,7 +83,8 @@ Outcome try_scene(std::uint64_t seed, std::uint64_t index) {
   o.time = std::abs(a.time / b.time - 1);
   o.velocity = std::abs(a.velocity / b.velocity - 1);
   // Up to the first large rebound, where no motion of its own has magnified anything yet, the touches are those of a tighter run.
-  if (std::abs(a.rebound - b.rebound) <= 1e-3 * b.rebound && a.touches != b.touches) {
+  const auto touches = [&](double least) { return test::landing(t, least).touches; };
+  if (std::abs(a.rebound - b.rebound) <= 1e-3 * b.rebound && (b.touches < touches(2e-6) || b.touches > touches(0.5e-6))) {
     o.violations.push_back(
         fmt::format("{} touches up to the first large rebound, and {} in a tighter run", a.touches, b.touches));
   }

@@ -226,7 +226,11 @@ class Run {
     if (next_.time < stop_) last_step_ = next_.time - here_.time;
 
     const Event event = follow();
-    if (event.time > 0 && !step_again(event)) return;
+    if (event.time > 0) {
+      if (!step_again(event)) return;
+      // The event may have moved before knots on the way to it.
+      while (out_.points.back().time >= next_.time && out_.points.back().time > here_.time) out_.points.pop_back();
+    }
     const double gap = Switch::smallest_gap(work_);
     account();
     here_.state.swap(next_.state);
@@ -425,8 +429,9 @@ class Run {
   bool meet(const Edge& edge) {
     constexpr double short_of_a_radian = 1e-3;
     const double* v = next_.state.data() + n_;
-    const double later = (edge.level - device_.contact_deflection(next_.state.data())) / device_.contact_deflection(v);
+    double later = (edge.level - device_.contact_deflection(next_.state.data())) / device_.contact_deflection(v);
     if (!(std::abs(later) * fastest_ < short_of_a_radian)) return false;
+    later = std::max(later, here_.time - next_.time);  // a step that began beyond the edge, by rounding, ends where it began
     for (std::size_t i = 0; i < n_; ++i) next_.state[i] += later * (v[i] + later / 2 * next_.rates[i]);
     for (std::size_t i = n_; i < size_; ++i) next_.state[i] += later * next_.rates[i - n_];
     next_.time += later;

@@ -213,8 +213,8 @@ CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, con
   return run;
 }
 
-Landing landing(const Trajectory& trajectory) {
-  constexpr double low = 0.01, least = 1e-6;  // of the contact gap
+Landing landing(const Trajectory& trajectory, double least) {
+  constexpr double low = 0.01;  // of the contact gap
   if (trajectory.touches.empty()) return {};
   Landing l{.time = trajectory.touches.front().begin, .velocity = trajectory.touches.front().impact_velocity, .touches = 1};
   for (const Rebound& r : rebounds(trajectory)) {

@@ -41,8 +41,9 @@ struct Landing {
   double time = 0;      ///< t_i [s]
   double velocity = 0;  ///< v_i [m/s]
   double rebound = 0;   ///< [m]
-  int touches = 0;      ///< up to the end of that rebound, or of the run; those after rebounds below 1e-6 of the gap do not count
+  int touches = 0;      ///< up to the end of that rebound, or of the run; those after rebounds below `least` do not count
 };
-[[nodiscard]] Landing landing(const Trajectory& trajectory);
+/// `least` over the contact gap.
+[[nodiscard]] Landing landing(const Trajectory& trajectory, double least = 1e-6);
 
 }  // namespace softland::test
