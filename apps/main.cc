@@ -50,7 +50,7 @@ std::string optimizer_help() {
   return text;
 }
 
-const std::vector<std::string> coming{"explore", "robustness", "accuracy"};
+const std::vector<std::string> coming{"explore", "robustness"};
 
 int run(int argc, char** argv) {
   Common common{.command = command_line(argc, argv), .stop = &stop_requested};
@@ -145,6 +145,15 @@ int run(int argc, char** argv) {
   with_json(effects);
   effects->footer("Example:\n  softland effects scenes/mem-gold.toml --set gas.pressure=\"1 kPa\"");
 
+  CLI::App* accuracy =
+      add_verb("accuracy", "what accuracy costs in time: errors of the figures for every integrator and setting");
+  with_scene(accuracy, true);
+  with_json(accuracy);
+  option(accuracy, "--out", common.out, "FOLDER", "folder for accuracy.json and the diagram accuracy.svg");
+  accuracy->footer(
+      "Combinations that take more than 2 s per closing are cut, and listed as such.\n"
+      "Example:\n  softland accuracy scenes/mem-gold.toml --set simulate.duration=\"100 us\" --out accuracy");
+
   CLI::App* optimize = add_verb("optimize", "search the drive waveform that closes without bounce");
   with_scene(optimize, false);
   with_json(optimize);
@@ -200,7 +209,8 @@ int run(int argc, char** argv) {
     const auto chosen = app.get_subcommands();
     if (chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
       throw InvalidInput(
-          "a verb is required: simulate, pull-in, modes, check, effects, optimize, new, export or report (see softland --help)");
+          "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, new, export or report (see softland "
+          "--help)");
     }
     throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
                        "--help)");
@@ -211,6 +221,7 @@ int run(int argc, char** argv) {
   if (*modes) return modes_verb(common);
   if (*check) return check_verb(common);
   if (*effects) return effects_verb(common);
+  if (*accuracy) return accuracy_verb(common);
   if (*optimize) return optimize_verb(common, request);
   if (*fresh) return new_verb(kind);
   if (*exporting) return export_verb(result, format);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <limits>
@@ -17,11 +18,13 @@
 #include <optional>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "apps/search_folder.h"
 #include "base/require.h"
 #include "config/units.h"
 #include "model/constants.h"
+#include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
 #include "reports/files.h"
 #include "reports/html.h"
@@ -169,52 +172,73 @@ void read_budget(const std::string& text, OptimizeOptions& options) {
   }
 }
 
-// How far a search is, on standard error: a bar that is rewritten in place on a terminal, elsewhere a line every ten seconds.
-class Progress {
+// How far a study is, on standard error: a bar that is rewritten in place on a terminal, elsewhere a line every ten seconds.
+class Bar {
  public:
-  Progress(bool quiet, const OptimizeOptions& options)
-      : quiet_(quiet), budget_(options.max_evaluations), seconds_(options.max_seconds) {}
+  explicit Bar(bool quiet) : quiet_(quiet) {}
 
-  void show(const OptimizeProgress& progress) {
-    progress_ = progress;
+  /// `state` gives the part that is done, 0 to 1, and words; it is asked only when something is printed.
+  using State = std::function<std::pair<double, std::string>(double elapsed)>;
+  void show(const State& state) {
     const auto now = std::chrono::steady_clock::now();
     if (now - shown_ < std::chrono::milliseconds(terminal_ ? 200 : 10000)) return;
     shown_ = now;
-    print();
+    print(state);
   }
   /// Leaves the last state of the bar on the screen.
-  void close() {
+  void close(const State& state) {
     if (!terminal_ || quiet_) return;
-    print();
+    print(state);
     fmt::print(stderr, "\n");
   }
 
  private:
-  void print() const {
+  void print(const State& state) const {
     if (quiet_) return;
-    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const auto [part, words] = state(std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+    if (terminal_) {
+      constexpr int cells = 24;
+      const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(part * cells), 0, cells));
+      fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(full, '#'), std::string(cells - full, '.'), words);
+    } else {
+      fmt::print(stderr, "softland: {}\n", words);
+    }
+    std::fflush(stderr);
+  }
+
+  bool terminal_ = isatty(2) != 0, quiet_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
+};
+
+// How far a search is.
+class Progress {
+ public:
+  Progress(bool quiet, const OptimizeOptions& options)
+      : bar_(quiet), budget_(options.max_evaluations), seconds_(options.max_seconds) {}
+
+  void show(const OptimizeProgress& progress) {
+    progress_ = progress;
+    bar_.show([this](double elapsed) { return state(elapsed); });
+  }
+  void close() {
+    bar_.close([this](double elapsed) { return state(elapsed); });
+  }
+
+ private:
+  [[nodiscard]] std::pair<double, std::string> state(double elapsed) const {
     const bool timed = std::isfinite(seconds_);
     std::string state = timed ? fmt::format("{:.0f} of {:g} s, {} evaluations", elapsed, seconds_, progress_.evaluations)
                               : fmt::format("{} of {} evaluations, {:.0f} s", progress_.evaluations, budget_, elapsed);
     state += std::isfinite(progress_.best_cost)
                  ? fmt::format(", cost {:.4f} (plain step {:.4f})", progress_.best_cost, progress_.baseline_cost)
                  : ", no feasible waveform yet";
-    if (terminal_) {
-      constexpr int cells = 24;
-      const double part = timed ? elapsed / seconds_ : static_cast<double>(progress_.evaluations) / static_cast<double>(budget_);
-      const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(part * cells), 0, cells));
-      fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(full, '#'), std::string(cells - full, '.'), state);
-    } else {
-      fmt::print(stderr, "softland: {}\n", state);
-    }
-    std::fflush(stderr);
+    return {timed ? elapsed / seconds_ : static_cast<double>(progress_.evaluations) / static_cast<double>(budget_), state};
   }
 
-  bool terminal_ = isatty(2) != 0, quiet_;
+  Bar bar_;
   long budget_;
   double seconds_;
   OptimizeProgress progress_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
 };
 
 // Where the shipped scenes are: beside the sources, or beside the program in an unpacked tree.
@@ -381,6 +405,34 @@ int effects_verb(const Common& c) {
   const Effects effects = compare_effects(p, c.stop);
   print_json_or(c, effects_json(p, effects, {.command = c.command}), effects_text(effects));
   return status_code(effects.own("gas").metrics.status);
+}
+
+int accuracy_verb(const Common& c) {
+  const Prepared p = prepare(load_scene(c));
+  if (!c.out.empty()) make_folder(c.out);
+  Bar bar(c.quiet);
+  AccuracyOptions options{.stop = c.stop};
+  std::size_t done = 0, of = 0;
+  const auto state = [&](double elapsed) {
+    return std::pair(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)),
+                     fmt::format("{} of {} settings, {:.0f} s", done, of, elapsed));
+  };
+  options.on_progress = [&](std::size_t now, std::size_t all) {
+    done = now;
+    of = all;
+    bar.show(state);
+  };
+  const AccuracyStudy study = study_accuracy(p, options);
+  bar.close(state);
+  const json j = accuracy_json(p, study, {.command = c.command});
+  std::string text = accuracy_text(study);
+  if (!c.out.empty() && !study.rows.empty()) {
+    write_whole(fs::path(c.out) / "accuracy.json", j.dump(2) + "\n");
+    write_whole(fs::path(c.out) / "accuracy.svg", accuracy_svg(p.scene.title, study));
+    text += fmt::format("\nIn {}: accuracy.json, accuracy.svg\n", c.out);
+  }
+  print_json_or(c, j, text);
+  return status_code(study.status);
 }
 
 int optimize_verb(const Common& given, const OptimizeRequest& request) {

@@ -36,6 +36,7 @@ int pull_in_verb(const Common& common);
 int modes_verb(const Common& common);
 int check_verb(const Common& common);
 int effects_verb(const Common& common);
+int accuracy_verb(const Common& common);
 int optimize_verb(const Common& common, const OptimizeRequest& request);
 int new_verb(const std::string& kind);
 int export_verb(const std::string& result, const std::string& format);

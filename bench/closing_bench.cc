@@ -42,15 +42,6 @@ struct Options {
   bool json = false;
 };
 
-struct Named {
-  Integrator integrator;
-  std::string_view name;
-};
-constexpr Named integrators[] = {{Integrator::lawson, "lawson"},
-                                 {Integrator::arkode_erk, "arkode-erk"},
-                                 {Integrator::esdirk, "esdirk"},
-                                 {Integrator::bdf, "bdf"},
-                                 {Integrator::adams, "adams"}};
 constexpr double tolerances[] = {1e-4, 1e-5, 1e-6, 1e-8};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -73,9 +64,9 @@ struct Row {
 
 double relative(double value, double reference) { return std::abs(value - reference) / std::abs(reference); }
 
-Row measure(const Prepared& prepared, const std::vector<Signal>& signals, Named which, double tolerance, int runs,
+Row measure(const Prepared& prepared, const std::vector<Signal>& signals, Integrator integrator, double tolerance, int runs,
             const Metrics& reference) {
-  const ClosingOptions options{.duration = window, .tolerance = tolerance, .integrator = which.integrator};
+  const ClosingOptions options{.duration = window, .tolerance = tolerance, .integrator = integrator};
   std::vector<double> wall;
   Trajectory last;
   for (int i = 0; i < runs; ++i) {
@@ -83,7 +74,11 @@ Row measure(const Prepared& prepared, const std::vector<Signal>& signals, Named 
     last = simulate_closing(prepared.device, signals, options);
     wall.push_back(seconds_since(start));
   }
-  Row row{.integrator = which.name, .tolerance = tolerance, .status = last.status, .work = last.work, .wall = median(wall)};
+  Row row{.integrator = to_string(integrator),
+          .tolerance = tolerance,
+          .status = last.status,
+          .work = last.work,
+          .wall = median(wall)};
   row.figures = metrics(last, prepared.scene.metrics);
   row.worst_error = std::max({relative(row.figures.initial_contact_time, reference.initial_contact_time),
                               relative(row.figures.impact_velocity, reference.impact_velocity),
@@ -125,11 +120,11 @@ Options parse(int argc, char** argv) {
     } else if (key == "--runs") {
       options.runs = std::max(1, std::stoi(value()));
     } else {
+      std::vector<std::string_view> names;
+      for (const Integrator one : all_integrators) names.push_back(to_string(one));
       throw std::invalid_argument(
-          fmt::format("unknown option {}: bench_closing [--scene FILE] [--integrator lawson|arkode-erk|esdirk|bdf|adams] "
-                      "[--tolerance X] "
-                      "[--runs N] [--json]",
-                      key));
+          fmt::format("unknown option {}: bench_closing [--scene FILE] [--integrator {}] [--tolerance X] [--runs N] [--json]",
+                      key, fmt::join(names, "|")));
     }
   }
   return options;
@@ -147,8 +142,8 @@ void run(const Options& options) {
       simulate_closing(prepared.device, signals, {.duration = window, .tolerance = reference_tolerance}), prepared.scene.metrics);
   const double rhs = right_hand_side_seconds(prepared.device, signals, window, options.runs * 20);
   std::vector<Row> rows;
-  for (const Named& which : integrators) {
-    if (options.integrator && *options.integrator != which.name) continue;
+  for (const Integrator which : all_integrators) {
+    if (options.integrator && *options.integrator != to_string(which)) continue;
     if (options.tolerance) {
       rows.push_back(measure(prepared, signals, which, *options.tolerance, options.runs, reference));
       continue;

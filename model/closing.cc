@@ -75,7 +75,8 @@ class Run {
     }
     system_.rates = [this](double t, const double* y, double* result) { rates(t, y, result); };
     system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, j); };
-    stepper_ = internal::make_stepper(options.integrator, system_);
+    stepper_ = internal::make_stepper(
+        options.integrator == Integrator::automatic ? automatic_integrator(device) : options.integrator, system_);
     here_ = {.time = 0, .state = std::vector<double>(size_, 0.0), .rates = std::vector<double>(n_ + film_, 0.0)};
     if (device.rest()) std::copy_n(device.rest()->data(), n_, here_.state.begin());
     rest_energy_ = device.potential(here_.state.data(), volts_, false, work_);
@@ -766,6 +767,28 @@ class Run {
 };
 
 }  // namespace
+
+std::string_view to_string(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::automatic:
+      return "automatic";
+    case Integrator::lawson:
+      return "lawson";
+    case Integrator::arkode_erk:
+      return "arkode-erk";
+    case Integrator::esdirk:
+      return "esdirk";
+    case Integrator::bdf:
+      return "bdf";
+    case Integrator::adams:
+      return "adams";
+  }
+  return "unknown";
+}
+
+Integrator automatic_integrator(const Switch& device) {
+  return device.film_states() > 0 ? Integrator::esdirk : Integrator::lawson;
+}
 
 Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options) {
   require(drives.size() == device.drives(),

@@ -18,10 +18,12 @@
 // with an equation solver that knows that the stations of the film only meet in the beam.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <limits>
 #include <span>
+#include <string_view>
 
 #include "model/switch.h"
 #include "model/trajectory.h"
@@ -37,6 +39,13 @@ enum class Integrator {
   bdf,         ///< CVODE, exact Jacobian
   adams,       ///< CVODE, functional iteration
 };
+
+/// Those that can be chosen between.
+inline constexpr std::array all_integrators{Integrator::lawson, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf,
+                                            Integrator::adams};
+[[nodiscard]] std::string_view to_string(Integrator integrator);
+/// What `automatic` stands for.
+[[nodiscard]] Integrator automatic_integrator(const Switch& device);
 
 struct ClosingOptions {
   double duration = 0;      ///< window [s]

@@ -287,9 +287,7 @@ std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& sy
       return std::make_unique<CvodeStepper>(system, CV_ADAMS);
     case Integrator::arkode_erk:
       return std::make_unique<ErkStepper>(system);
-    case Integrator::automatic:
-      if (system.block > 0) return std::make_unique<DirkStepper>(system);
-      break;
+    case Integrator::automatic:  // the caller knows better: see automatic_integrator()
     case Integrator::lawson:
       break;
   }

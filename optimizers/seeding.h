@@ -9,7 +9,7 @@
 namespace softland::internal {
 
 /// What a number is drawn for; keeps the streams of one seed apart.
-enum class Draw : std::uint64_t { sobol_shift = 1, skew = 2, library_seed = 3, normals = 4, scene = 5 };
+enum class Draw : std::uint64_t { sobol_shift = 1, skew = 2, library_seed = 3, normals = 4, scene = 5, perturbation = 6 };
 
 /// A well mixed hash of its arguments: the output function of splitmix64 (Steele, Lea, Flood 2014) applied once for each of them.
 [[nodiscard]] std::uint64_t draw_bits(std::uint64_t seed, Draw study, std::uint64_t sample);

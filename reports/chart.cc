@@ -30,6 +30,7 @@ const char* role_name(Role role) {
     case Role::evaluations:
     case Role::third:
     case Role::fourth:
+    case Role::fifth:
     case Role::measured:
       break;
   }

@@ -14,9 +14,9 @@ namespace softland::internal {
 using Table = std::map<std::string, std::vector<double>>;
 using Tables = std::map<std::string, Table>;
 
-/// Whose data a curve shows, which gives it its pen; `third`, `fourth` and `measured` (dots) are for pictures of
+/// Whose data a curve shows, which gives it its pen; `third`, `fourth`, `fifth` and `measured` (dots) are for pictures of
 /// other than results.
-enum class Role { best, baseline, evaluations, third, fourth, measured };
+enum class Role { best, baseline, evaluations, third, fourth, fifth, measured };
 enum class Scale { linear, logarithmic };
 
 struct Series {
@@ -43,7 +43,8 @@ struct Chart {
   std::string x_unit;  ///< empty: a count
   std::string y_label;
   std::string y_unit;
-  Scale scale = Scale::linear;
+  Scale scale = Scale::linear;                  ///< of y
+  Scale x_scale = Scale::linear;                ///< in the static picture; the page's is linear
   std::array<double, 2> x_home{0, 1};           ///< what is shown before any zoom
   std::array<double, 2> x_whole{0, 1};          ///< all there is
   std::optional<std::array<double, 2>> y_home;  ///< not set: from the data in view

@@ -38,6 +38,8 @@ Stroke stroke(Role role) {
       return {"#009e73", 1.8, "2.5 2.5"};
     case Role::fourth:
       return {"#cc79a7", 1.8, "10 3 2 3"};
+    case Role::fifth:
+      return {"#e69f00", 1.8, "5 2 1.5 2 1.5 2"};
     case Role::measured:
       return {ink, 5, ""};
     case Role::evaluations:
@@ -81,6 +83,14 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
   const int last = static_cast<int>(std::floor(std::log10(axis.high) + 1e-9));
   const int every = std::max(1, (last - first + 7) / 8);
   for (int exponent = first; exponent <= last; exponent += every) out.push_back(std::pow(10, exponent));
+  if (out.size() > 2) return out;
+  out.clear();  // few decades: their parts as well
+  for (int exponent = first - 1; exponent <= last; ++exponent) {
+    for (const double part : {1.0, 2.0, 5.0}) {
+      const double tick = part * std::pow(10, exponent);
+      if (tick >= axis.low * (1 - 1e-9) && tick <= axis.high * (1 + 1e-9)) out.push_back(tick);
+    }
+  }
   return out;
 }
 
@@ -164,6 +174,7 @@ double chart_svg_height(const Chart& chart) { return above + chart.height + belo
 
 std::string chart_svg(const Tables& tables, const Chart& chart, double width, double top) {
   Axis x;
+  x.scale = chart.x_scale;
   x.low = chart.x_home[0];
   x.high = chart.x_home[1];
   x.pixel_low = left;

@@ -251,4 +251,15 @@ double Signal::resolving_step(double time) const {
   return 2 * std::numbers::pi / piece.angular_frequency / steps_per_period;
 }
 
+Signal scaled(const Signal& signal, double factor) {
+  std::vector<SignalPiece> pieces = signal.pieces();
+  for (SignalPiece& piece : pieces) {
+    for (double SignalPiece::*level :
+         {&SignalPiece::value, &SignalPiece::slope, &SignalPiece::amplitude, &SignalPiece::amplitude_slope}) {
+      piece.*level *= factor;
+    }
+  }
+  return Signal(std::move(pieces));
+}
+
 }  // namespace softland

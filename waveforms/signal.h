@@ -88,4 +88,7 @@ class Signal {
   std::vector<SignalPiece> pieces_;
 };
 
+/// The signal times a factor, a finite number.
+[[nodiscard]] Signal scaled(const Signal& signal, double factor);
+
 }  // namespace softland

@@ -51,14 +51,14 @@ class BadInput : public testing::Test {
 
 TEST_F(BadInput, Verbs) {
   const std::string missing =
-      "a verb is required: simulate, pull-in, modes, check, effects, optimize, new, export or report (see softland --help)";
+      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, new, export or report (see softland "
+      "--help)";
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "there is no verb 'frobnicate' (see softland --help)"},
       {{"--frob"}, missing},
       {{"explore", "gold.toml", "--shard", "1/2"}, "the verb 'explore' is not available yet"},
       {{"robustness", "gold.toml"}, "the verb 'robustness' is not available yet"},
-      {{"accuracy", "gold.toml"}, "the verb 'accuracy' is not available yet"},
   });
 }
 
@@ -68,6 +68,7 @@ TEST_F(BadInput, Options) {
       {{"simulate", "gold.toml", "extra"}, "The following argument was not expected: extra (see softland simulate --help)"},
       {{"simulate", "gold.toml", "--json"}, "--json: 1 required FILE missing (see softland simulate --help)"},
       {{"simulate", "gold.toml", "--set"}, "--set: 1 required KEY=VALUE missing (see softland simulate --help)"},
+      {{"accuracy", "gold.toml", "--jobs"}, "The following argument was not expected: --jobs (see softland accuracy --help)"},
       {{"new", "a", "b"}, "The following argument was not expected: b (see softland new --help)"},
       {{"simulate", "gold.toml", "--certify"}, "the option --certify is not available yet"},
       {{"optimize", "gold.toml", "--resume"}, "the option --resume is not available yet"},
@@ -79,6 +80,8 @@ TEST_F(BadInput, Options) {
 TEST_F(BadInput, SceneFiles) {
   expect_refused({
       {{"simulate"}, "SCENE is required (see softland simulate --help)"},
+      {{"accuracy"}, "SCENE is required (see softland accuracy --help)"},
+      {{"accuracy", "none.toml"}, "none.toml: cannot be opened: No such file or directory"},
       {{"pull-in"}, "SCENE is required (see softland pull-in --help)"},
       {{"simulate", "none.toml"}, "none.toml: cannot be opened: No such file or directory"},
       {{"modes", "none.toml"}, "none.toml: cannot be opened: No such file or directory"},
@@ -174,6 +177,7 @@ TEST_F(BadInput, PlacesToWriteTo) {
        "--out /proc/x: the folder cannot be created: No such file or directory"},
       {{"optimize", "gold.toml", "--quiet", "--out", "gold.toml"},
        "--out gold.toml: the folder cannot be created: Not a directory"},
+      {{"accuracy", "gold.toml", "--out", "/proc/x"}, "--out /proc/x: the folder cannot be created: No such file or directory"},
       {{"modes", "gold.toml", "--json", "/proc/x.json"}, "/proc/x.json: cannot write in its folder: No such file or directory"},
       {{"modes", "gold.toml", "--json", "folder"}, "folder: cannot replace it: Is a directory"},
   });

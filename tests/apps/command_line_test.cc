@@ -22,7 +22,8 @@ std::set<std::string> keys(const json& object) {
 
 TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
   const Workplace here;
-  for (const char* verb : {"", "simulate", "pull-in", "modes", "check", "effects", "optimize", "new", "export", "report"}) {
+  for (const char* verb :
+       {"", "simulate", "pull-in", "modes", "check", "effects", "accuracy", "optimize", "new", "export", "report"}) {
     std::vector<std::string> words;
     if (*verb != '\0') words.emplace_back(verb);
     words.emplace_back("--help");
@@ -34,8 +35,7 @@ TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
     EXPECT_THAT(o.out, HasSubstr(std::string("Usage: softland ") + verb)) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("ubcommand"))) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("TEXT"))) << verb;
-    for (const char* coming :
-         {"explore", "robustness", "accuracy", "--certify", "--robust", "--samples", "--resume", "--shard", "--vary"})
+    for (const char* coming : {"explore", "robustness", "--certify", "--robust", "--samples", "--resume", "--shard", "--vary"})
       EXPECT_THAT(o.out, Not(HasSubstr(coming))) << verb;
   }
 }
@@ -227,6 +227,38 @@ TEST(Effects, AreChosenByTheSceneAndSaidInTheResult) {
   EXPECT_EQ(j["effects"]["left_out"][0]["effect"], "structure.damping_ratio");
   EXPECT_LT(j["effects"]["left_out"][0]["influence"], 1e-3);
   EXPECT_EQ(j["scene"]["simulate"]["effects"], "all") << "the scene written is the one that ran";
+}
+
+TEST(Accuracy, PrintsATableAndTheAgreedJsonAndDraws) {
+  const Workplace here;
+  const Outcome o =
+      here.run({"accuracy", "gold.toml", "--quiet", "--set", "simulate.duration=60 us", "--json", "a.json", "--out", "acc"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(o.err, "");
+  EXPECT_THAT(o.out, HasSubstr("\nfor 1e-3 in t_i, v_i, B_H and peak force: "));
+  EXPECT_THAT(o.out, HasSubstr("\nIn acc: accuracy.json, accuracy.svg\n"));
+  EXPECT_THAT(read(here.path() / "acc/accuracy.svg"), HasSubstr("what accuracy costs"));
+  const json j = json::parse(read(here.path() / "a.json"));
+  EXPECT_EQ(j, json::parse(read(here.path() / "acc/accuracy.json")));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "scene", "version", "command", "reference", "rows", "modes",
+                                            "cloud", "recommendations"}));
+  const json& row = j["rows"][0];
+  EXPECT_EQ(keys(row), (std::set<std::string>{"integrator", "tolerance", "points_per_length", "modes", "relative_errors",
+                                              "metrics", "steps", "rhs_evaluations", "cpu_s", "runs"}));
+  EXPECT_EQ(keys(row["relative_errors"]), (std::set<std::string>{"initial_contact_time_s", "impact_velocity_m_s",
+                                                                 "major_bounce_height_m", "peak_contact_force_N"}));
+  EXPECT_EQ(keys(j["cloud"]["bounce_count"]), (std::set<std::string>{"low", "median", "high", "runs"}));
+  EXPECT_EQ(j["cloud"]["major_bounce_height_m"]["well_conditioned"], true);
+  EXPECT_EQ(keys(j["recommendations"][0]), (std::set<std::string>{"accuracy", "words", "setting"}));
+  EXPECT_LE(j["recommendations"][1]["setting"]["relative_errors"]["major_bounce_height_m"], 1e-3);
+}
+
+TEST(Accuracy, EndsWithFourWhenTheSwitchDoesNotClose) {
+  const Workplace here;
+  const Outcome o = here.run({"accuracy", "gold.toml", "--set", "waveform.main.level=0.5 Vdp", "--out", "acc"});
+  EXPECT_EQ(o.status, 4);
+  EXPECT_EQ(o.out, "The switch does not touch within its window: there are no figures to be accurate in.\n");
+  EXPECT_FALSE(fs::exists(here.path() / "acc/accuracy.svg"));
 }
 
 TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {

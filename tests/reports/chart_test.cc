@@ -154,5 +154,23 @@ TEST(Charts, OfCostsThatReachZeroAreLinear) {
   EXPECT_EQ(picture(result).charts.at(0).scale, Scale::logarithmic);
 }
 
+TEST(ChartSvg, SpacesDecadesEvenlyOnALogarithmicAxis) {
+  Chart chart{.id = "log"};
+  chart.x_scale = chart.scale = Scale::logarithmic;
+  chart.x_home = {1, 100};
+  chart.y_home = {1, 100};
+  for (const double x : {2.0, 20.0}) chart.marks.push_back({x, x, Role::fifth, ""});
+  const std::string svg = chart_svg({}, chart, 500, 0);
+  std::vector<double> at;
+  for (auto found = svg.find("cx=\""); found != std::string::npos; found = svg.find("cx=\"", found + 1))
+    at.push_back(std::stod(svg.substr(found + 4)));
+  ASSERT_EQ(at.size(), 2U);
+  // Half of the 404 px between the margins of 78 and 18 px is one decade; positions have one decimal.
+  EXPECT_NEAR(at[1] - at[0], 202, 0.11);
+  for (const char* tick : {">1<", ">10<", ">100<"}) EXPECT_NE(svg.find(tick), std::string::npos) << tick;
+  chart.x_home = {0.9, 6};
+  EXPECT_NE(chart_svg({}, chart, 500, 0).find(">5<"), std::string::npos) << "less than a decade has its parts as ticks";
+}
+
 }  // namespace
 }  // namespace softland::internal

@@ -209,5 +209,14 @@ TEST(Signal, RefusesASpanThatEndsBeforeZero) {
   expect_invalid([&] { (void)signal.peak_slew(kNaN); }, {"nan", ">= 0"});
 }
 
+TEST(Signal, ScaledIsTheSameShapeAtAnotherLevel) {
+  const Signal sines = of({{.value = 2, .slope = 3, .amplitude = 4, .amplitude_slope = 5, .angular_frequency = 6, .phase = 1},
+                           {.begin = 2, .value = 1, .amplitude = 2, .angular_frequency = 3}});
+  const Signal half = scaled(sines, 0.5);
+  for (const double t : {0.0, 0.7, 1.99, 2.0, 3.3}) EXPECT_EQ(half.voltage(t), 0.5 * sines.voltage(t)) << t;
+  EXPECT_EQ(half.breakpoints(), sines.breakpoints());
+  EXPECT_TRUE(scaled(sines, 0).is_zero());
+}
+
 }  // namespace
 }  // namespace softland

@@ -1,0 +1,327 @@
+#include "reports/accuracy_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "reports/chart.h"
+#include "reports/quantity.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json errors_json(const FigureErrors& errors) {
+  json all = json::object();
+  for (std::size_t i = 0; i < errors.size(); ++i) all[std::string(studied_figures[i].key)] = number(errors[i]);
+  return all;
+}
+
+json setting_json(const AccuracyRow& row) {
+  return {{"integrator", to_string(row.integrator)},
+          {"tolerance", row.tolerance},
+          {"points_per_length", row.points_per_length},
+          {"modes", row.modes}};
+}
+
+json row_json(const AccuracyRow& row) {
+  json j = setting_json(row);
+  if (!row.missing.empty()) {
+    j["missing"] = row.missing;
+    return j;
+  }
+  j["relative_errors"] = errors_json(row.errors);
+  j["metrics"] = metrics_json(row.figures);
+  j["steps"] = row.work.steps;
+  j["rhs_evaluations"] = row.work.rhs_evaluations;
+  j["cpu_s"] = number(row.seconds);
+  j["runs"] = row.runs;
+  return j;
+}
+
+json rows_json(const std::vector<AccuracyRow>& rows) {
+  json all = json::array();
+  for (const AccuracyRow& row : rows) all.push_back(row_json(row));
+  return all;
+}
+
+json spread_json(const Spread& s) {
+  return {{"low", number(s.low)}, {"median", number(s.median)}, {"high", number(s.high)}, {"runs", s.runs}};
+}
+
+// "1e-4"
+std::string power(double value) {
+  std::string text = fmt::format("{:.1e}", value);
+  if (const auto tenths = text.find(".0e"); tenths != std::string::npos) text.erase(tenths, 2);
+  if (const auto zero = text.find("-0"); zero != std::string::npos) text.erase(zero + 1, 1);
+  return text;
+}
+
+std::string error_cell(double error) {
+  if (std::isnan(error)) return "-";
+  return std::isinf(error) ? "missing" : error == 0 ? "0" : fmt::format("{:.1e}", error);
+}
+
+// Columns of words and numbers: the first to the left, the others to the right.
+std::string aligned(const std::vector<std::string>& cells) {
+  constexpr std::size_t first = 16, other = 11;
+  std::string line = fmt::format("{:<{}}", cells[0], first);
+  for (std::size_t i = 1; i < cells.size(); ++i) line += fmt::format("{:>{}}", cells[i], other);
+  return line + "\n";
+}
+
+std::vector<std::string> head(const std::vector<std::string>& setting) {
+  std::vector<std::string> cells = setting;
+  for (const StudiedFigure& f : studied_figures) cells.emplace_back(f.symbol);
+  cells.insert(cells.end(), {"rhs", "ms"});
+  return cells;
+}
+
+std::string line(std::vector<std::string> cells, const AccuracyRow& row) {
+  if (!row.missing.empty()) {
+    std::string text = aligned(cells);
+    text.pop_back();
+    return text + "    " + row.missing + "\n";
+  }
+  for (const double error : row.errors) cells.push_back(error_cell(error));
+  cells.push_back(fmt::format("{}", row.work.rhs_evaluations));
+  cells.push_back(fmt::format("{:.3g}", 1e3 * row.seconds));
+  return aligned(cells);
+}
+
+std::string figure_text(double value, std::string_view unit) {
+  std::string text = internal::quantity(value, unit, 5);
+  for (auto at = text.find("\u00a0"); at != std::string::npos; at = text.find("\u00a0")) text.replace(at, 2, " ");
+  return text;
+}
+
+std::string symbols(const AccuracyStudy& study, bool conditioned) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    const bool there = std::isfinite(study.reference.figures.*studied_figures[i].figure);
+    if (there && study.conditioned[i] == conditioned) names.push_back(studied_figures[i].symbol);
+  }
+  if (names.size() < 2) return fmt::format("{}", fmt::join(names, ""));
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+std::string setting_text(const AccuracyRow& row) {
+  return fmt::format("{}, tolerance {}, {:g} points per length", to_string(row.integrator), power(row.tolerance),
+                     row.points_per_length);
+}
+
+std::string recommended(const AccuracyStudy& study, const Recommendation& r) {
+  if (!r.row) return "nothing that was tried";
+  const AccuracyRow& row = study.rows[*r.row];
+  return fmt::format("{}: {} ms", setting_text(row), internal::plain_number(1e3 * row.seconds, 2));
+}
+
+// One line per wanted accuracy.
+std::vector<std::string> recommendations(const AccuracyStudy& study) {
+  std::vector<std::string> lines;
+  const std::string figures = symbols(study, true);
+  if (figures.empty()) return {"No figure is well-conditioned here: no setting can be recommended."};
+  for (const Recommendation& r : study.recommendations) {
+    lines.push_back(fmt::format("for {} in {}: {}", power(r.accuracy), figures, recommended(study, r)));
+  }
+  return lines;
+}
+
+// The rows with the integrator that simulate takes at its tightest tolerance, one per number of points.
+std::vector<const AccuracyRow*> quadrature_rows(const AccuracyStudy& study) {
+  std::vector<const AccuracyRow*> rows;
+  double tightest = std::numeric_limits<double>::infinity();
+  for (const AccuracyRow& row : study.rows) tightest = std::min(tightest, row.tolerance);
+  for (const AccuracyRow& row : study.rows) {
+    if (row.integrator == study.reference.integrator && row.tolerance == tightest) rows.push_back(&row);
+  }
+  std::sort(rows.begin(), rows.end(), [](auto* a, auto* b) { return a->points_per_length < b->points_per_length; });
+  return rows;
+}
+
+double own_points(const AccuracyStudy& study) { return study.rows.front().points_per_length; }
+
+std::string cloud_text(const AccuracyStudy& study) {
+  std::string text = fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}\n", "cloud", "low", "median", "high", "runs");
+  const auto add = [&](std::string_view name, std::string_view unit, const Spread& s, bool ill) {
+    if (s.runs == 0) {
+      text += fmt::format("{:<16}{:>14}\n", name, "none");
+      return;
+    }
+    text += fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}{}\n", name, figure_text(s.low, unit), figure_text(s.median, unit),
+                        figure_text(s.high, unit), s.runs, ill ? "  ill-conditioned" : "");
+  };
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    if (study.cloud[i].runs > 0) add(studied_figures[i].symbol, studied_figures[i].unit, study.cloud[i], !study.conditioned[i]);
+  }
+  add("t_p", "s", study.permanent_contact_time, false);
+  add("N_B", "", study.bounce_count, false);
+  return text;
+}
+
+}  // namespace
+
+json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
+  json j{{"kind", "accuracy"},
+         {"status", to_string(study.status)},
+         {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
+         {"version", version},
+         {"command", provenance.command}};
+  if (!study.message.empty()) j["message"] = study.message;
+  if (study.rows.empty()) return j;
+  j["reference"] = row_json(study.reference);
+  j["reference"].erase("relative_errors");
+  j["reference"]["resolution"] = errors_json(study.resolution);
+  j["rows"] = rows_json(study.rows);
+  j["modes"] = rows_json(study.modes);
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    json cloud = spread_json(study.cloud[i]);
+    cloud["well_conditioned"] = study.conditioned[i];
+    j["cloud"][std::string(studied_figures[i].key)] = std::move(cloud);
+  }
+  j["cloud"]["permanent_contact_time_s"] = spread_json(study.permanent_contact_time);
+  j["cloud"]["bounce_count"] = spread_json(study.bounce_count);
+  const std::vector<std::string> words = recommendations(study);
+  j["recommendations"] = json::array();
+  for (std::size_t i = 0; i < study.recommendations.size(); ++i) {
+    const Recommendation& r = study.recommendations[i];
+    json one{{"accuracy", r.accuracy}, {"words", words[std::min(i, words.size() - 1)]}, {"setting", nullptr}};
+    if (r.row) one["setting"] = row_json(study.rows[*r.row]);
+    j["recommendations"].push_back(std::move(one));
+  }
+  return j;
+}
+
+std::string accuracy_text(const AccuracyStudy& study) {
+  if (study.rows.empty()) {
+    return study.status == Status::no_contact
+               ? "The switch does not touch within its window: there are no figures to be accurate in.\n"
+               : wrapped(fmt::format("There is no reference to compare with: {}",
+                                     study.message.empty() ? std::string(to_string(study.status)) : study.message)) +
+                     "\n";
+  }
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    const double value = study.reference.figures.*studied_figures[i].figure;
+    if (std::isfinite(value)) {
+      values.push_back(fmt::format("{} {} ({})", studied_figures[i].symbol, figure_text(value, studied_figures[i].unit),
+                                   error_cell(study.resolution[i])));
+    }
+  }
+  std::string text = wrapped(fmt::format("Reference: {}, {} modes: {}. In brackets what a second reference differs by.",
+                                         setting_text(study.reference), study.reference.modes, fmt::join(values, ", "))) +
+                     "\n\n";
+  text += aligned(head({"integrator", "tolerance"}));
+  for (const AccuracyRow& row : study.rows) {
+    if (row.points_per_length != own_points(study)) continue;
+    text += line({std::string(to_string(row.integrator)), power(row.tolerance)}, row);
+  }
+  text += "\n" + aligned(head({"points", "per length"}));
+  for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", row->points_per_length)}, *row);
+  if (!study.modes.empty()) {
+    text += "\n" + aligned(head({"modes", ""}));
+    for (const AccuracyRow& row : study.modes) text += line({"", fmt::format("{}", row.modes)}, row);
+  }
+  text += "\n" +
+          wrapped(fmt::format(
+              "Relative errors of the delivered figures against the reference; times are medians of processor time. Integrators "
+              "with {:g} points per length, points and modes with {}, tolerance {}. What another number "
+              "of modes changes is no error of the integration.",
+              own_points(study), to_string(study.reference.integrator), power(quadrature_rows(study).front()->tolerance))) +
+          "\n\n";
+  text += cloud_text(study) + "\n" +
+          wrapped(
+              "The cloud: runs whose drives differ by one part in 1e9 to 1e7. Permanent contact time and bounce count are "
+              "properties of such a cloud, not of one run.") +
+          "\n\n";
+  const std::string ill = symbols(study, false);
+  if (!ill.empty()) text += wrapped(fmt::format("Ill-conditioned here, and left out of what follows: {}.", ill)) + "\n\n";
+  for (const std::string& words : recommendations(study)) text += words + "\n";
+  return text;
+}
+
+std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {
+  using namespace internal;
+  constexpr std::array pens{Role::best, Role::baseline, Role::third, Role::fourth, Role::fifth};
+  Picture drawn;
+  const auto add = [&](Chart& chart, std::string label, Role pen, std::vector<std::array<double, 2>> points) {
+    std::erase_if(points, [](const auto& p) { return !(p[0] > 0 && p[1] > 0 && std::isfinite(p[1])); });
+    if (points.empty()) return;
+    std::sort(points.begin(), points.end());
+    const std::string name = fmt::format("{}/{}", chart.id, chart.series.size());
+    for (const auto& [x, y] : points) {
+      drawn.tables[name]["x"].push_back(x);
+      drawn.tables[name]["y"].push_back(y);
+      chart.marks.push_back({x, y, pen, ""});
+    }
+    chart.series.push_back({name, "y", std::move(label), pen});
+  };
+  const auto keep = [&](Chart chart) {
+    if (chart.marks.empty()) return;
+    const auto [first, last] =
+        std::minmax_element(chart.marks.begin(), chart.marks.end(), [](const Mark& a, const Mark& b) { return a.x < b.x; });
+    constexpr double margin = 1.15;
+    chart.x_home = chart.x_whole = {first->x / margin, last->x * margin};
+    drawn.charts.push_back(std::move(chart));
+  };
+
+  Chart work;
+  work.id = "work-precision";
+  work.title = fmt::format("Largest relative error of {}", symbols(study, true));
+  work.x_column = "x";
+  work.x_label = "Time of one closing";
+  work.x_unit = "s";
+  work.y_label = "Relative error";
+  work.scale = work.x_scale = Scale::logarithmic;
+  work.height = 380;
+  for (std::size_t i = 0; i < all_integrators.size(); ++i) {
+    std::vector<std::array<double, 2>> points;
+    for (const AccuracyRow& row : study.rows) {
+      if (row.integrator != all_integrators[i] || row.points_per_length != own_points(study)) continue;
+      points.push_back({row.seconds, study.worst_error(row)});
+    }
+    add(work, std::string(to_string(all_integrators[i])), pens[i % pens.size()], std::move(points));
+  }
+  for (Mark& mark : work.marks) {  // which tolerance is where, said once
+    for (const AccuracyRow& row : study.rows) {
+      const bool own = row.integrator == study.reference.integrator && row.points_per_length == own_points(study);
+      if (own && row.seconds == mark.x && mark.role == pens[0]) mark.text = power(row.tolerance);
+    }
+  }
+  keep(std::move(work));
+
+  Chart points_chart;
+  points_chart.id = "quadrature";
+  points_chart.title = fmt::format("Quadrature: {} at its tightest tolerance", to_string(study.reference.integrator));
+  points_chart.x_column = "x";
+  points_chart.x_label = "Quadrature points per length";
+  points_chart.y_label = "Relative error";
+  points_chart.scale = points_chart.x_scale = Scale::logarithmic;
+  points_chart.height = 260;
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    if (!study.conditioned[i]) continue;
+    std::vector<std::array<double, 2>> points;
+    for (const AccuracyRow* row : quadrature_rows(study)) {
+      if (row->missing.empty()) points.push_back({row->points_per_length, row->errors[i]});
+    }
+    add(points_chart, std::string(studied_figures[i].symbol), pens[i % pens.size()], std::move(points));
+  }
+  keep(std::move(points_chart));
+  std::string words = "Dots are tolerances, a factor of ten apart. Quickest within";
+  for (const Recommendation& r : study.recommendations)
+    words += fmt::format(" {}: {}{}", power(r.accuracy), recommended(study, r), &r == &study.recommendations.back() ? "." : ";");
+  return svg_page(title.empty() ? "What accuracy costs" : title + ": what accuracy costs", words, drawn);
+}
+
+}  // namespace softland

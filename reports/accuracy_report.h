@@ -1,0 +1,17 @@
+// What `softland accuracy` found: JSON with SI units in the names, tables for a terminal, and a work-precision diagram.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reports/result_json.h"
+#include "studies/accuracy.h"
+
+namespace softland {
+
+[[nodiscard]] nlohmann::json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance);
+[[nodiscard]] std::string accuracy_text(const AccuracyStudy& study);
+/// Error against time, one curve per integrator, and error against quadrature points, one per figure.
+[[nodiscard]] std::string accuracy_svg(const std::string& title, const AccuracyStudy& study);
+
+}  // namespace softland

@@ -1,0 +1,274 @@
+#include "studies/accuracy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+namespace softland {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double enough_seconds = 0.03;     // of timed runs of one setting
+constexpr double reference_tighter = 1e-4;  // than the tightest tolerance
+constexpr double reference_looser = 100;    // the second reference, than the first
+constexpr int most_modes = 20;              // of a scene
+constexpr CloudOptions cloud_options{.runs = 8, .smallest = 1e-9, .largest = 1e-7};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
+
+class Study {
+ public:
+  Study(const Prepared& prepared, const AccuracyOptions& options)
+      : prepared_(prepared), options_(options), signals_(prepared.signals()) {
+    own_points_ = SwitchOptions{}.points_per_length;
+    own_modes_ = prepared.device.modes();
+    own_integrator_ = automatic_integrator(prepared.device);
+    if (prepared.scene.device.structure.kind != StructureKind::plate) {
+      for (const int modes : {own_modes_ - 1, own_modes_ + 1, own_modes_ + 2}) {
+        if (modes >= 1 && modes <= most_modes) other_modes_.push_back(modes);
+      }
+    }
+    const std::size_t tolerances = options.tolerances.size();
+    // Two references and the cloud count as one each.
+    all_ =
+        3 + all_integrators.size() * tolerances + (options.points.size() - own_points_among()) * tolerances + other_modes_.size();
+  }
+
+  AccuracyStudy run() {
+    if (!find_reference()) return std::move(found_);
+    const Switch own(prepared_.scene.device, {.points_per_length = own_points_});
+    gather_cloud(own);
+    start_ = Clock::now();
+    sweep(own, own_integrator_, own_points_);
+    for (const double points : options_.points) {
+      if (points == own_points_) continue;
+      sweep(Switch(prepared_.scene.device, {.points_per_length = points}), own_integrator_, points);
+    }
+    for (const int modes : other_modes_) {
+      Device device = prepared_.scene.device;
+      device.structure.modes = modes;
+      AccuracyRow row = setting(own_integrator_, options_.tolerances.back(), own_points_, modes);
+      try_out(Switch(device), row);
+      found_.modes.push_back(std::move(row));
+    }
+    for (const Integrator integrator : all_integrators) {
+      if (integrator != own_integrator_) sweep(own, integrator, own_points_);
+    }
+    if (stopped()) found_.status = Status::interrupted;
+    recommend();
+    return std::move(found_);
+  }
+
+ private:
+  [[nodiscard]] std::size_t own_points_among() const {
+    return static_cast<std::size_t>(std::count(options_.points.begin(), options_.points.end(), own_points_));
+  }
+  [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  void progress() {
+    ++done_;
+    if (options_.on_progress) options_.on_progress(done_, all_);
+  }
+  static AccuracyRow setting(Integrator integrator, double tolerance, double points, int modes) {
+    return {.integrator = integrator, .tolerance = tolerance, .points_per_length = points, .modes = modes};
+  }
+
+  [[nodiscard]] ClosingOptions closing(const AccuracyRow& row) const {
+    return {.duration = prepared_.duration, .tolerance = row.tolerance, .integrator = row.integrator, .stop = options_.stop};
+  }
+
+  // Runs a setting until it is timed well enough, none longer than `most_seconds`.
+  void measure(const Switch& device, AccuracyRow& row, int runs, double most_seconds) {
+    if (stopped()) {
+      row.missing = "interrupted";
+      return;
+    }
+    ClosingOptions closing_options = closing(row);
+    constexpr int steps_per_look = 64;  // at the clock
+    int steps = 0;
+    bool cut = false;
+    Clock::time_point start;
+    closing_options.observer = [&](double, const double*, const double*) {
+      if (++steps % steps_per_look == 0) cut = seconds_since(start) > most_seconds;
+      return cut;
+    };
+    std::vector<double> seconds;
+    for (double spent = 0; row.runs < runs && spent < enough_seconds; ++row.runs) {
+      start = Clock::now();
+      const std::clock_t begin = std::clock();
+      const Trajectory t = simulate_closing(device, signals_, closing_options);
+      seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+      if (cut) {
+        row.missing = fmt::format("cut after {:g} s", most_seconds);
+        return;
+      }
+      spent += seconds.back();
+      if (row.runs > 0) continue;
+      row.work = t.work;
+      row.figures = figures(t);
+      if (t.status != Status::done) {
+        row.missing = t.message.empty() ? std::string(to_string(t.status)) : t.message;
+        return;
+      }
+    }
+    row.seconds = spread(seconds).median;
+    row.errors = relative_errors(row.figures, found_.reference.figures, prepared_.scene.metrics);
+  }
+
+  // Without a contact law a run ends at first touch.
+  [[nodiscard]] Metrics figures(const Trajectory& t) const {
+    Metrics m = metrics(t, prepared_.scene.metrics);
+    if (!prepared_.device.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;
+    return m;
+  }
+
+  // As long as there is time.
+  void try_out(const Switch& device, AccuracyRow& row) {
+    if (seconds_since(start_) < options_.all_seconds) {
+      measure(device, row, options_.runs, options_.most_seconds);
+    } else {
+      row.missing = fmt::format("not tried: the {:g} s of the study are over", options_.all_seconds);
+    }
+    progress();
+  }
+
+  void sweep(const Switch& device, Integrator integrator, double points) {
+    bool cut = false;
+    for (const double tolerance : options_.tolerances) {
+      AccuracyRow row = setting(integrator, tolerance, points, own_modes_);
+      if (cut) {
+        progress();
+        row.missing = fmt::format("not tried: a looser tolerance took more than {:g} s", options_.most_seconds);
+      } else {
+        try_out(device, row);
+        cut = row.missing.starts_with("cut");
+      }
+      found_.rows.push_back(std::move(row));
+    }
+  }
+
+  // A tolerance that is too tight for rounding, or for the time there is, gives way to the next.
+  bool find_reference() {
+    const double points = 2 * options_.points.back();
+    const Switch fine(prepared_.scene.device, {.points_per_length = points});
+    const double tightest = options_.tolerances.back();
+    AccuracyRow& reference = found_.reference;
+    for (double tolerance = reference_tighter * tightest; tolerance < tightest; tolerance *= 10) {
+      reference = setting(own_integrator_, tolerance, points, own_modes_);
+      measure(fine, reference, 1, options_.reference_seconds);
+      if (reference.missing.empty() || stopped()) break;
+    }
+    progress();
+    if (!reference.missing.empty() || !touched(reference.figures)) {
+      found_.status = reference.missing.starts_with("cut") ? Status::numerical_failure : reference.figures.status;
+      found_.message = reference.missing;
+      return false;
+    }
+    found_.status = Status::done;
+    AccuracyRow second = setting(own_integrator_, reference_looser * reference.tolerance, options_.points.back(), own_modes_);
+    measure(Switch(prepared_.scene.device, {.points_per_length = second.points_per_length}), second, 1,
+            options_.reference_seconds);
+    found_.resolution = second.errors;
+    if (!second.missing.empty()) found_.resolution.fill(Metrics::unset);
+    progress();
+    return true;
+  }
+
+  void gather_cloud(const Switch& device) {
+    const ClosingOptions options = closing(setting(own_integrator_, options_.tolerances.back(), own_points_, own_modes_));
+    std::vector<Metrics> runs;
+    for (const Trajectory& t : perturbed_closings(device, signals_, options, cloud_options)) {
+      if (t.status == Status::done) runs.push_back(figures(t));
+    }
+    const auto over = [&](auto&& value) {
+      std::vector<double> values;
+      for (const Metrics& m : runs) values.push_back(value(m));
+      return spread(std::move(values));
+    };
+    for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+      const auto figure = studied_figures[i].figure;
+      const Spread& s = found_.cloud[i] = over([&](const Metrics& m) { return m.*figure; });
+      const double own = found_.reference.figures.*figure;
+      Metrics low, high;
+      low.*figure = s.low;
+      high.*figure = s.high;
+      const bool in_all = s.runs == static_cast<int>(runs.size());
+      found_.conditioned[i] =
+          std::isfinite(own) && in_all && relative_errors(high, low, prepared_.scene.metrics)[i] <= ill_conditioned_range;
+    }
+    found_.permanent_contact_time = over([](const Metrics& m) { return m.permanent_contact_time; });
+    found_.bounce_count = over([](const Metrics& m) { return touched(m) ? m.bounce_count : Metrics::unset; });
+    progress();
+  }
+
+  void recommend() {
+    for (const double accuracy : options_.wanted) {
+      Recommendation r{.accuracy = accuracy, .row = {}};
+      for (std::size_t i = 0; i < found_.rows.size(); ++i) {
+        if (within(i, accuracy) && !(r.row && found_.rows[*r.row].seconds <= found_.rows[i].seconds)) r.row = i;
+      }
+      found_.recommendations.push_back(r);
+    }
+  }
+
+  // With the tighter tolerances of the same setting, which are the rows that follow.
+  [[nodiscard]] bool within(std::size_t index, double accuracy) const {
+    const AccuracyRow& first = found_.rows[index];
+    if (!first.missing.empty()) return false;
+    for (std::size_t i = index; i < found_.rows.size(); ++i) {
+      const AccuracyRow& row = found_.rows[i];
+      if (row.integrator != first.integrator || row.points_per_length != first.points_per_length) break;
+      if (row.missing.empty() && !(found_.worst_error(row) <= accuracy)) return false;
+    }
+    return true;
+  }
+
+  const Prepared& prepared_;
+  const AccuracyOptions& options_;
+  std::vector<Signal> signals_;
+  double own_points_ = 0;
+  int own_modes_ = 0;
+  Integrator own_integrator_ = Integrator::automatic;
+  std::vector<int> other_modes_;
+  std::size_t done_ = 0, all_ = 0;
+  Clock::time_point start_ = Clock::now();
+  AccuracyStudy found_;
+};
+
+}  // namespace
+
+FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options) {
+  FigureErrors errors{};
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const auto figure = studied_figures[i].figure;
+    double a = value.*figure, b = reference.*figure;
+    if (figure == &Metrics::major_bounce_height) {
+      for (double* height : {&a, &b}) {
+        if (*height < options.significant_rebound) *height = options.significant_rebound;
+      }
+    }
+    errors[i] = std::isnan(b)   ? Metrics::unset
+                : std::isnan(a) ? std::numeric_limits<double>::infinity()
+                : a == b        ? 0
+                                : std::abs(a - b) / std::abs(b);
+  }
+  return errors;
+}
+
+double AccuracyStudy::worst_error(const AccuracyRow& row) const {
+  if (!row.missing.empty()) return Metrics::unset;
+  double worst = Metrics::unset;
+  for (std::size_t i = 0; i < row.errors.size(); ++i) {
+    if (conditioned[i]) worst = std::fmax(worst, row.errors[i]);
+  }
+  return worst;
+}
+
+AccuracyStudy study_accuracy(const Prepared& prepared, const AccuracyOptions& options) { return Study(prepared, options).run(); }
+
+}  // namespace softland

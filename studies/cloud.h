@@ -1,0 +1,33 @@
+// A closing repeated under imperceptibly perturbed drives. Where a closing is chaotic no tolerance settles the bounce count or
+// the permanent contact time: such figures are properties of a cloud of runs.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "model/closing.h"
+#include "objectives/metrics.h"
+
+namespace softland {
+
+struct CloudOptions {
+  int runs = 16;
+  double smallest = 1e-7, largest = 1e-7;  ///< relative change of every drive's levels, of either sign; between them by decades
+  std::uint64_t seed = 1;
+};
+
+/// The runs in order: a function of the arguments alone. Those that `closing.stop` ends are left out.
+[[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const Signal> drives,
+                                                         const ClosingOptions& closing, const CloudOptions& options = {});
+
+/// Where a figure lies in the runs that have it; NaN when none has.
+struct Spread {
+  double low = Metrics::unset, median = Metrics::unset, high = Metrics::unset;
+  int runs = 0;
+};
+[[nodiscard]] Spread spread(std::vector<double> values);
+
+}  // namespace softland

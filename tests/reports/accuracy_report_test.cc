@@ -1,0 +1,97 @@
+// What the user reads of an accuracy study, made here of round numbers.
+#include "reports/accuracy_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "xml.h"
+
+namespace softland {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+AccuracyRow row(Integrator integrator, double tolerance, double points, double error, double seconds) {
+  AccuracyRow r{.integrator = integrator, .tolerance = tolerance, .points_per_length = points, .modes = 4};
+  r.figures.initial_contact_time = 34.257e-6;
+  r.figures.impact_velocity = 0.08564;
+  r.figures.major_bounce_height = 495.9e-9;
+  r.errors = {error / 10, error, error, Metrics::unset};
+  r.work = {.steps = 100, .rhs_evaluations = 600, .wall = seconds};
+  r.seconds = seconds;
+  r.runs = 7;
+  return r;
+}
+
+// Peak force is missing, B_H ill-conditioned.
+AccuracyStudy sample() {
+  AccuracyStudy s;
+  s.status = Status::done;
+  s.reference = row(all_integrators[0], 1e-8, 48, 0, 1e-2);
+  s.resolution = {1e-12, 1e-11, 1e-10, Metrics::unset};
+  for (const double points : {24.0, 8.0}) {
+    s.rows.push_back(row(all_integrators[0], 1e-3, points, 1e-3, 1.5e-4));
+    s.rows.push_back(row(all_integrators[0], 1e-4, points, 1e-5, 3e-4));
+  }
+  s.rows.push_back(row(all_integrators[1], 1e-3, 24, 1e-4, 0.23));
+  s.rows.push_back({.integrator = all_integrators[1], .tolerance = 1e-4, .points_per_length = 24, .missing = "cut after 2 s"});
+  s.modes.push_back(row(all_integrators[0], 1e-4, 24, 1e-2, 1e-3));
+  s.modes.back().modes = 5;
+  s.conditioned = {true, true, false, false};
+  s.cloud[0] = {.low = 34.2e-6, .median = 34.2e-6, .high = 34.2e-6, .runs = 8};
+  s.cloud[2] = {.low = 400e-9, .median = 480e-9, .high = 600e-9, .runs = 8};
+  s.bounce_count = {.low = 44, .median = 54, .high = 60, .runs = 8};
+  s.recommendations = {{.accuracy = 1e-3, .row = 2}, {.accuracy = 1e-9, .row = {}}};
+  return s;
+}
+
+TEST(AccuracyText, ListsEverySettingAndRecommendsInOneLine) {
+  const std::string text = accuracy_text(sample());
+  const std::string own(to_string(all_integrators[0]));
+  EXPECT_THAT(text, HasSubstr("\nfor 1e-3 in t_i and v_i: " + own + ", tolerance 1e-3, 8 points per length: 0.15 ms\n"));
+  EXPECT_THAT(text, HasSubstr("\nfor 1e-9 in t_i and v_i: nothing that was tried\n"));
+  EXPECT_THAT(text, HasSubstr("1e-4    cut after 2 s\n"));
+  EXPECT_THAT(text, HasSubstr("1.0e-06    1.0e-05    1.0e-05          -        600        0.3\n"));
+  EXPECT_THAT(text, HasSubstr("230\n")) << "milliseconds without an exponent";
+  EXPECT_THAT(text, HasSubstr("Reference: " + own + ", tolerance 1e-8, 48 points per length, 4 modes:"));
+}
+
+TEST(AccuracyText, ShowsIllConditionedFiguresAsClouds) {
+  const std::string text = accuracy_text(sample());
+  EXPECT_THAT(text, ::testing::ContainsRegex("B_H +400.00 nm +480.00 nm +600.00 nm +8  ill-conditioned\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("N_B +44 +54 +60 +8\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("t_p +none\n"));
+  EXPECT_THAT(text, HasSubstr("Ill-conditioned here, and left out of what follows: B_H.\n"));
+  AccuracyStudy none = sample();
+  none.conditioned = {};
+  EXPECT_THAT(accuracy_text(none), HasSubstr("No figure is well-conditioned here"));
+}
+
+TEST(AccuracyText, OfNoStudySaysWhy) {
+  AccuracyStudy none;
+  none.status = Status::no_contact;
+  EXPECT_THAT(accuracy_text(none), HasSubstr("does not touch within its window"));
+  none.status = Status::numerical_failure;
+  none.message = "cut after 20 s";
+  EXPECT_THAT(accuracy_text(none), HasSubstr("no reference to compare with: cut after 20 s"));
+}
+
+TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
+  const std::string svg = accuracy_svg("Gold & more", sample());
+  EXPECT_EQ(softland::testing::xml_fault(svg), "");
+  EXPECT_THAT(svg, HasSubstr("Gold &amp; more: what accuracy costs"));
+  EXPECT_THAT(svg, HasSubstr("Largest relative error of t_i and v_i"));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_THAT(svg, HasSubstr(">" + std::string(to_string(all_integrators[i])) + "<"));
+  EXPECT_THAT(svg, Not(HasSubstr(">" + std::string(to_string(all_integrators[2])) + "<")));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, HasSubstr(">1e-4</text>")) << "the tolerances along the curve of the own integrator";
+  AccuracyStudy none = sample();
+  none.conditioned = {};
+  EXPECT_EQ(softland::testing::xml_fault(accuracy_svg("", none)), "");
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,57 @@
+// A closing repeated under imperceptibly perturbed drives.
+#include "studies/cloud.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenes.h"
+#include "studies/prepared.h"
+
+namespace softland {
+namespace {
+
+std::vector<double> first_touches(const CloudOptions& options) {
+  const Prepared p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
+  std::vector<double> times;
+  for (const Trajectory& t : perturbed_closings(p.device, p.signals(), {.duration = p.duration, .tolerance = 1e-10}, options))
+    times.push_back(t.touches.at(0).begin);
+  return times;
+}
+
+TEST(Cloud, IsAFunctionOfItsArgumentsAlone) {
+  const std::vector<double> times = first_touches({.runs = 4});
+  EXPECT_EQ(times, first_touches({.runs = 4}));
+  EXPECT_NE(times, first_touches({.runs = 4, .seed = 2}));
+}
+
+// A higher step closes sooner: d ln t_i / d ln V is -1.6 at this level.
+TEST(Cloud, PerturbsTheDrivesByWhatWasAsked) {
+  const Prepared p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
+  const double own = simulate_closing(p.device, p.signals(), {.duration = p.duration, .tolerance = 1e-10}).touches.at(0).begin;
+  bool sooner = false, later = false;
+  for (const double size : {1e-6, 1e-4}) {
+    for (const double time : first_touches({.runs = 6, .smallest = size, .largest = size})) {
+      EXPECT_NEAR(std::abs(time / own - 1), 1.6 * size, 0.5 * size);
+      (time < own ? sooner : later) = true;
+    }
+  }
+  EXPECT_TRUE(sooner && later);
+  for (const double time : first_touches({.runs = 6, .smallest = 1e-6, .largest = 1e-4})) {
+    EXPECT_GT(std::abs(time / own - 1), 1e-6);
+    EXPECT_LT(std::abs(time / own - 1), 3e-4);
+  }
+}
+
+TEST(Spread, IsOverTheValuesThatThereAre) {
+  const Spread all = spread({3, Metrics::unset, 1, 10, 2});
+  EXPECT_EQ(all.low, 1);
+  EXPECT_EQ(all.median, 2.5);
+  EXPECT_EQ(all.high, 10);
+  EXPECT_EQ(all.runs, 4);
+  EXPECT_EQ(spread({5, 1, 7}).median, 5);
+  EXPECT_TRUE(std::isnan(spread({Metrics::unset}).median));
+}
+
+}  // namespace
+}  // namespace softland
