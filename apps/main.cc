@@ -67,7 +67,7 @@ int run(int argc, char** argv) {
     if (!words.empty() && words.front() == verb) throw InvalidInput("the verb '" + verb + "' is not available yet");
   }
   for (const std::string& word : words) {
-    for (const char* option : {"--certify", "--robust", "--samples", "--resume", "--shard"}) {
+    for (const char* option : {"--robust", "--samples", "--resume", "--shard"}) {
       if (word == option || word.starts_with(std::string(option) + "="))
         throw InvalidInput("the option " + std::string(option) + " is not available yet");
     }
@@ -124,6 +124,8 @@ int run(int argc, char** argv) {
   with_scene(simulate, true);
   with_json(simulate);
   option(simulate, "--out", common.out, "FOLDER", "folder for report.html, gap.svg, result.json and trajectory.csv");
+  bool certified = false;
+  simulate->add_flag("--certify", certified, "errors that cover the true ones, and clouds of runs for ill-conditioned figures");
   simulate->footer("Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -");
 
   CLI::App* pull_in = add_verb("pull-in", "static and dynamic pull-in voltage and release voltage of every electrode");
@@ -216,7 +218,7 @@ int run(int argc, char** argv) {
                        "--help)");
   }
 
-  if (*simulate) return simulate_verb(common);
+  if (*simulate) return simulate_verb(common, certified);
   if (*pull_in) return pull_in_verb(common);
   if (*modes) return modes_verb(common);
   if (*check) return check_verb(common);

@@ -31,6 +31,7 @@
 #include "reports/result_json.h"
 #include "reports/svg.h"
 #include "reports/text.h"
+#include "studies/certify.h"
 #include "studies/omissions.h"
 #include "studies/optimize.h"
 #include "studies/timing.h"
@@ -287,10 +288,10 @@ void log_time_saved(const Prepared& chosen) {
 
 }  // namespace
 
-int simulate_verb(const Common& c) {
+int simulate_verb(const Common& c, bool certified) {
   const Prepared prepared = prepare(load_scene(c));
   if (!c.out.empty()) make_folder(c.out);
-  const Closing closing = simulate(prepared, true, c.stop);
+  const Closing closing = certified ? certify(prepared, c.stop) : simulate(prepared, true, c.stop);
   const json result = result_json(prepared, closing, {.command = c.command});
   write_outputs(c, result);
   if (prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);

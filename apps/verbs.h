@@ -31,7 +31,7 @@ struct OptimizeRequest {
 
 inline constexpr int exit_done = 0, exit_bad_input = 2, exit_numerical_failure = 3, exit_no_success = 4, exit_interrupted = 130;
 
-int simulate_verb(const Common& common);
+int simulate_verb(const Common& common, bool certified);
 int pull_in_verb(const Common& common);
 int modes_verb(const Common& common);
 int check_verb(const Common& common);

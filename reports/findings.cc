@@ -205,6 +205,35 @@ std::string figure_text(const json& metrics, const json& beside, const Figure& f
   return quantity_beside(number(metrics, {figure.key}), number(beside, {figure.key}), figure.unit, digits);
 }
 
+std::string cloud_text(const json& result, const Figure& figure) {
+  const json& cloud = at(result, {"certified", figure.key});
+  if (!cloud.is_object()) return {};
+  constexpr int digits = 4;
+  const auto value = [&](const char* key) {
+    return quantity_beside(number(cloud, {key}), number(cloud, {"high"}), figure.unit, digits);
+  };
+  return fmt::format("median {}, {} to {} in {:.0f} runs", value("median"), value("low"), value("high"), number(cloud, {"runs"}));
+}
+
+std::string certificate_caption(const json& result) {
+  const json& certified = at(result, {"certified"});
+  if (!certified.is_object()) return {};
+  if (certified.empty())
+    return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance and quadrature.";
+  std::string words = fmt::format(
+      "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {:.0f} runs whose drives "
+      "differ by one part in 1e7.",
+      number(result, {"cloud", "runs"}));
+  const json& grazing = at(result, {"cloud", "grazing_rebound"});
+  if (!grazing.is_object()) return words;
+  words += fmt::format(" The runs part at rebound {:.0f} ({}, {} high)", number(grazing, {"rebound"}),
+                       quantity(number(grazing, {"time_s"}), "s", 4), quantity(number(grazing, {"height_m"}), "m"));
+  return words + (truth(grazing, {"at_significant_height"}).value_or(false)
+                      ? ", near the height from which rebounds count."
+                      : fmt::format(", after the gentlest touch until then, {}.",
+                                    quantity(number(grazing, {"impact_velocity_m_s"}), "m/s")));
+}
+
 std::string missing_reason(const json& metrics, std::string_view key) {
   if (!metrics.is_object() || std::isfinite(number(metrics, {key}))) return {};
   if (!touches(metrics)) return "no contact";

@@ -53,6 +53,10 @@ struct Figure {
 [[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& beside, const Figure& figure);
 /// The same in words when a number is not available but the reason is: "no contact", "not settled"; else empty.
 [[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, std::string_view key);
+/// Of an ill-conditioned figure of a certified result: "median 305.5 µs, 280.5 µs to 336.1 µs in 16 runs"; else empty.
+[[nodiscard]] std::string cloud_text(const nlohmann::json& result, const Figure& figure);
+/// What a certificate says of the figures and of the rebound at which the runs part, in a sentence or two; empty without one.
+[[nodiscard]] std::string certificate_caption(const nlohmann::json& result);
 /// What the search wanted of a figure: "0", "yes", "below 323.1 µs"; empty where it wanted nothing.
 [[nodiscard]] std::string goal_text(const nlohmann::json& result, std::string_view key);
 [[nodiscard]] Change figure_change(const nlohmann::json& before, const nlohmann::json& after, const Figure& figure);

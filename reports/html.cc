@@ -118,12 +118,18 @@ std::string figures_table(const json& result) {
       const double error = number(errors, {one.key});
       const double value = number(own, {one.key});
       constexpr double ill = 0.1;  // an error above a tenth of the figure
-      out += fmt::format("<td>{}{}</td>", std::isfinite(error) ? "± " + quantity(error, one.unit, 2) : "—",
-                         error > ill * std::abs(value) ? " <span class=\"note\">ill-conditioned</span>" : "");
+      const std::string cloud = cloud_text(result, one);
+      out += fmt::format("<td>{}{}</td>",
+                         !cloud.empty()         ? cloud
+                         : std::isfinite(error) ? "± " + quantity(error, one.unit, 2)
+                                                : "—",
+                         !cloud.empty() || error > ill * std::abs(value) ? " <span class=\"note\">ill-conditioned</span>" : "");
     }
     out += "</tr>\n";
   }
-  return out + "</tbody></table></div></section>\n";
+  out += "</tbody></table></div>\n";
+  if (const std::string words = certificate_caption(result); !words.empty()) out += fmt::format("<p>{}</p>\n", escaped(words));
+  return out + "</section>\n";
 }
 
 std::string charts(const Picture& drawn) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/quintic.h"
+#include "studies/certify.h"
 #include "studies/omissions.h"
 #include "version.h"
 #include "waveforms/export.h"
@@ -98,6 +99,27 @@ json errors_json(const Closing& c) {
   return e;
 }
 
+// Of an ill-conditioned figure the cloud it is a property of.
+json certified_json(const Certificate& certificate) {
+  json all = json::object();
+  for (const IllConditioned& f : certificate.ill_conditioned) {
+    all[std::string(f.key)] = {{"median", number(f.spread.median)},
+                               {"low", number(f.spread.low)},
+                               {"high", number(f.spread.high)},
+                               {"runs", f.spread.runs}};
+  }
+  return all;
+}
+
+json grazing_json(const std::optional<GrazingRebound>& r) {
+  if (!r) return nullptr;
+  return {{"rebound", r->number},
+          {"time_s", r->time},
+          {"height_m", r->height},
+          {"impact_velocity_m_s", number(r->impact_velocity)},
+          {"at_significant_height", r->at_threshold}};
+}
+
 json work_json(const Work& w) { return {{"steps", w.steps}, {"rhs_evaluations", w.rhs_evaluations}, {"wall_s", w.wall}}; }
 
 void add_scene(json& j, const Prepared& p) {
@@ -156,6 +178,10 @@ json result_json(const Prepared& prepared, const Closing& closing, const Provena
   j["metrics"] = figures_json(closing);
   j["metrics"].erase("status");
   j["errors"] = errors_json(closing);
+  if (closing.certificate) {
+    j["certified"] = certified_json(*closing.certificate);
+    j["cloud"] = {{"runs", closing.certificate->runs}, {"grazing_rebound", grazing_json(closing.certificate->grazing)}};
+  }
   j["pull_in"] = pull_in_json(prepared);
   j["work"] = work_json(closing.trajectory.work);
   j["warnings"] = closing.warnings;

@@ -58,7 +58,10 @@ std::string text_report(const json& result) {
              right(internal::figure_text(best, baseline, f)) + "   " + change.words;
     } else {
       const double error = internal::number(result, {"errors", f.key});
-      const std::string shown = std::isfinite(error) ? internal::quantity(error, f.unit, 2) : std::string();
+      const std::string cloud = internal::cloud_text(result, f);
+      const std::string shown = !cloud.empty()         ? cloud
+                                : std::isfinite(error) ? internal::quantity(error, f.unit, 2)
+                                                       : std::string();
       out += padded(f.label, 36) + right(internal::figure_text(best, json::object(), f)) + "   " + shown;
     }
     while (!out.empty() && out.back() == ' ') out.pop_back();
@@ -68,6 +71,7 @@ std::string text_report(const json& result) {
   const bool lands_softly = compares && internal::number(best, {"bounce_count"}) == 0;
   if (const std::string checks = internal::checks_caption(result); lands_softly && !checks.empty())
     out += "\n" + wrapped(checks) + "\n";
+  if (const std::string words = internal::certificate_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   for (const json& warning : internal::at(result, {"warnings"})) {
     if (warning.is_string()) out += "\n" + wrapped("warning: " + warning.get<std::string>()) + "\n";
   }

@@ -35,7 +35,7 @@ TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
     EXPECT_THAT(o.out, HasSubstr(std::string("Usage: softland ") + verb)) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("ubcommand"))) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("TEXT"))) << verb;
-    for (const char* coming : {"explore", "robustness", "--certify", "--robust", "--samples", "--resume", "--shard", "--vary"})
+    for (const char* coming : {"explore", "robustness", "--robust", "--samples", "--resume", "--shard", "--vary"})
       EXPECT_THAT(o.out, Not(HasSubstr(coming))) << verb;
   }
 }
@@ -143,6 +143,30 @@ TEST(Simulate, EndsWithFourWhenTheSwitchDoesNotClose) {
   EXPECT_EQ(j["status"], "no_contact");
   EXPECT_TRUE(j["metrics"]["initial_contact_time_s"].is_null());
   EXPECT_TRUE(j["metrics"]["bounce_count"].is_null());
+}
+
+TEST(Simulate, CertifiesItsFigures) {
+  const Workplace here;
+  const Outcome plain = here.run({"simulate", "gold.toml", "--set", "simulate.accuracy=1e-3", "--json", "-"});
+  const Outcome o =
+      here.run({"simulate", "gold.toml", "--set", "simulate.accuracy=1e-3", "--certify", "--json", "-", "--out", "run"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const json j = json::parse(o.out), before = json::parse(plain.out);
+  std::set<std::string> more = keys(before);
+  more.insert({"certified", "cloud"});
+  EXPECT_EQ(keys(j), more);
+  EXPECT_EQ(j["metrics"], before["metrics"]);
+  EXPECT_EQ(keys(j["errors"]), keys(before["errors"]));
+  EXPECT_GT(j["errors"]["hold_force_N"], 0);
+  ASSERT_TRUE(j["certified"].contains("permanent_contact_time_s"));
+  const json& cloud = j["certified"]["permanent_contact_time_s"];
+  EXPECT_EQ(keys(cloud), (std::set<std::string>{"median", "low", "high", "runs"}));
+  EXPECT_LT(cloud["low"], cloud["high"]);
+  EXPECT_EQ(j["cloud"]["runs"], 16);
+  EXPECT_EQ(keys(j["cloud"]["grazing_rebound"]),
+            (std::set<std::string>{"rebound", "time_s", "height_m", "impact_velocity_m_s", "at_significant_height"}));
+  EXPECT_THAT(here.run({"report", "run"}).out, HasSubstr("Certified: "));
+  EXPECT_EQ(here.run({"simulate", "gold.toml", "--set", "waveform.main.level=3 V", "--certify"}).status, 4);
 }
 
 TEST(PullIn, PrintsTheAgreedJson) {

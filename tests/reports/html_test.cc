@@ -175,5 +175,15 @@ TEST(PageFiles, AreTheFilesOfTheSourceTree) {
   EXPECT_THROW((void)internal::page_file("page/none"), std::logic_error);
 }
 
+TEST(HtmlReport, GivesIllConditionedFiguresAsMedianAndRange) {
+  json result = softland::testing::sample_simulate_result(600);
+  result["certified"]["bounce_count"] = {{"median", 54.5}, {"low", 44}, {"high", 60}, {"runs", 16}};
+  result["cloud"] = {{"runs", 16}, {"grazing_rebound", nullptr}};
+  const std::string page = html_report(result);
+  EXPECT_NE(page.find("<td>median 54.5, 44 to 60 in 16 runs <span class=\"note\">ill-conditioned</span></td>"),
+            std::string::npos);
+  EXPECT_NE(page.find("<p>Certified: the figures with a median"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace softland

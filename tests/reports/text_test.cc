@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "sample_result.h"
@@ -41,6 +42,31 @@ TEST(TextReport, ConfirmsOnlyAWinnerThatLandsSoftly) {
 TEST(TextReport, PassesOverWhatIsNotThere) {
   for (const char* text : {"{}", R"({"kind": "optimize"})", R"({"kind": "simulate", "warnings": [1, "so"], "checks": 2})"})
     EXPECT_NO_THROW((void)text_report(json::parse(text))) << text;
+}
+
+TEST(TextReport, GivesIllConditionedFiguresAsMedianAndRange) {
+  json result = softland::testing::sample_simulate_result(few_rows);
+  EXPECT_THAT(text_report(result), Not(HasSubstr("Certified")));
+  result["certified"] = json::object();
+  EXPECT_THAT(text_report(result), HasSubstr("no figure is ill-conditioned"));
+  result["certified"]["bounce_count"] = {{"median", 54.5}, {"low", 44}, {"high", 60}, {"runs", 16}};
+  result["certified"]["permanent_contact_time_s"] = {{"median", 305e-6}, {"low", 280e-6}, {"high", 336e-6}, {"runs", 16}};
+  result["cloud"] = {{"runs", 16}, {"grazing_rebound", nullptr}};
+  EXPECT_THAT(text_report(result), ::testing::ContainsRegex("Rebounds .* median 54.5, 44 to 60 in 16 runs\n"));
+  EXPECT_THAT(text_report(result), HasSubstr("median 305.0\u00a0µs, 280.0\u00a0µs to 336.0\u00a0µs in 16 runs\n"));
+  EXPECT_THAT(text_report(result), Not(HasSubstr("The runs part")));
+  result["cloud"]["grazing_rebound"] = {
+      {"rebound", 7}, {"time_s", 85.2e-6}, {"height_m", 1.01e-9}, {"impact_velocity_m_s", 2e-3}, {"at_significant_height", true}};
+  const auto words = [&] {
+    std::string text = text_report(result);
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  };
+  EXPECT_THAT(words(), HasSubstr("a cloud of 16 runs"));
+  EXPECT_THAT(words(), HasSubstr("The runs part at rebound 7 (85.20\u00a0µs, 1.01\u00a0nm high), near the height from which "
+                                 "rebounds count."));
+  result["cloud"]["grazing_rebound"]["at_significant_height"] = false;
+  EXPECT_THAT(words(), HasSubstr("after the gentlest touch until then, 2.00\u00a0mm/s."));
 }
 
 }  // namespace

@@ -1,0 +1,164 @@
+#include "studies/certify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softland {
+namespace {
+
+constexpr double tighter = 0.01;        // tolerance of the better run
+constexpr double tightest = 1e-13;      // rounding permits
+constexpr double finer = 2;             // its quadrature points
+constexpr double shared = 0.01;         // of the tolerance, relative to a figure: what both runs may miss alike
+constexpr double visible_range = 1e-4;  // of a figure over the cloud: a thousandfold magnification
+constexpr double parted = 0.1;          // relative difference of a rebound's height from which runs have parted
+
+template <double Metrics::*figure>
+constexpr CertifiedFigure certified(std::string_view key) {
+  return {
+      .key = key, .value = [](const Metrics& m) { return m.*figure; }, .error = [](Metrics& m) -> double& { return m.*figure; }};
+}
+
+constexpr std::array all_figures{
+    certified<&Metrics::initial_contact_time>("initial_contact_time_s"),
+    certified<&Metrics::permanent_contact_time>("permanent_contact_time_s"),
+    certified<&Metrics::bounce_time>("bounce_time_s"),
+    CertifiedFigure{.key = "bounce_count",
+                    .value =
+                        [](const Metrics& m) {
+                          const bool known = std::isfinite(m.major_bounce_height);
+                          return known ? static_cast<double>(m.bounce_count) : Metrics::unset;
+                        }},
+    certified<&Metrics::major_bounce_height>("major_bounce_height_m"),
+    certified<&Metrics::impact_velocity>("impact_velocity_m_s"),
+    certified<&Metrics::peak_contact_force>("peak_contact_force_N"),
+    certified<&Metrics::impact_energy>("impact_energy_J"),
+    certified<&Metrics::hold_force>("hold_force_N"),
+    certified<&Metrics::drive_energy>("drive_energy_J"),
+};
+
+double hold_force(const Switch& device, const std::vector<Signal>& signals) {
+  std::vector<double> hold;
+  for (const Signal& signal : signals) hold.push_back(signal.hold_level());
+  const auto closed = closed_equilibrium(device, hold);
+  return closed ? closed->contact_force : Metrics::unset;
+}
+
+// Of one figure: whether the drives' last digits decide it. `least` is the size below which it does not count.
+bool ill_conditioned(const std::vector<double>& cloud, double own, double better, double least) {
+  std::vector<double> values = cloud;
+  values.insert(values.end(), {own, better});
+  const auto there = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  if (there == 0 || cloud.empty()) return false;
+  if (there < static_cast<std::ptrdiff_t>(values.size())) return true;
+  values.resize(cloud.size());  // what a loose tolerance does to the other two is an error, not a condition
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double size = std::max(std::abs(*low), std::abs(*high));
+  return size > least && *high - std::max(*low, least) > visible_range * size;
+}
+
+// What one run did, rebound by rebound, with the touch before each.
+struct Course {
+  std::vector<Rebound> rebounds;
+  std::vector<double> impacts;  // [m/s]
+};
+
+Course course(const Trajectory& run) {
+  Course c{.rebounds = rebounds(run), .impacts = {}};
+  std::size_t touch = 0;
+  for (const Rebound& r : c.rebounds) {
+    while (touch + 1 < run.touches.size() && run.touches[touch + 1].begin <= r.begin) ++touch;
+    c.impacts.push_back(touch < run.touches.size() ? run.touches[touch].impact_velocity : Metrics::unset);
+  }
+  return c;
+}
+
+}  // namespace
+
+std::span<const CertifiedFigure> certified_figures() { return all_figures; }
+
+std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options) {
+  std::vector<Course> courses;
+  for (const Trajectory& run : runs) courses.push_back(course(run));
+  if (courses.empty()) return std::nullopt;
+  const Course& first = courses.front();
+  const auto named = [&](std::size_t k, bool at_threshold) {
+    const Rebound& r = first.rebounds[k];
+    return GrazingRebound{.number = static_cast<int>(k) + 1,
+                          .time = r.begin,
+                          .height = r.height,
+                          .impact_velocity = first.impacts[k],
+                          .at_threshold = at_threshold};
+  };
+  // Gentle touches are the ones that a hair's breadth makes or unmakes.
+  const auto gentlest = [&](std::size_t count) {
+    const auto found = std::min_element(first.impacts.begin(), first.impacts.begin() + static_cast<std::ptrdiff_t>(count));
+    return named(static_cast<std::size_t>(found - first.impacts.begin()), false);
+  };
+  for (std::size_t k = 0; k < first.rebounds.size(); ++k) {
+    const double own = first.rebounds[k].height;
+    const bool counts = own > options.significant_rebound;
+    bool apart = false, across = false;
+    for (const Course& other : courses) {
+      const double height = k < other.rebounds.size() ? other.rebounds[k].height : Metrics::unset;
+      apart = apart || !(std::abs(height - own) <= parted * own);
+      across = across || (height > options.significant_rebound) != counts;
+    }
+    if (apart) return gentlest(k + 1);
+    if (across) return named(k, true);
+  }
+  const bool others_go_on = std::any_of(courses.begin(), courses.end(),
+                                        [&](const Course& other) { return other.rebounds.size() > first.rebounds.size(); });
+  if (!others_go_on || first.rebounds.empty()) return std::nullopt;
+  return gentlest(first.rebounds.size());
+}
+
+Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
+  Closing c = simulate(prepared, false, stop);
+  if (c.trajectory.status != Status::done) return c;
+  const std::vector<Signal> signals = prepared.signals();
+  const Switch fine(prepared.scene.device, {.points_per_length = finer * SwitchOptions{}.points_per_length});
+  ClosingOptions options{
+      .duration = prepared.duration, .tolerance = std::max(tightest, tighter * prepared.tolerance), .stop = stop};
+  Trajectory better_run = simulate_closing(fine, signals, options);
+  if (better_run.status != Status::done) {
+    c.warnings.push_back(fmt::format("the figures could not be certified: a hundredfold tighter run ended with {}{}{}",
+                                     to_string(better_run.status), better_run.message.empty() ? "" : ": ", better_run.message));
+    return c;
+  }
+  better_run.hold_force = hold_force(fine, signals);
+  const Metrics better = metrics(better_run, prepared.scene.metrics);
+
+  std::vector<Trajectory> cloud = perturbed_closings(prepared.device, signals, options);
+  std::erase_if(cloud, [](const Trajectory& t) { return t.status != Status::done; });
+  std::vector<Metrics> runs;
+  for (Trajectory& t : cloud) {
+    t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move
+    runs.push_back(metrics(t, prepared.scene.metrics));
+  }
+  Certificate certificate{.ill_conditioned = {}, .grazing = {}, .runs = static_cast<int>(runs.size())};
+  for (const CertifiedFigure& figure : all_figures) {
+    std::vector<double> values;
+    for (const Metrics& m : runs) values.push_back(figure.value(m));
+    const double own = figure.value(c.metrics), other = figure.value(better);
+    const bool is_height = figure.key == "major_bounce_height_m";
+    double error = error_safety * std::abs(own - other) + shared * prepared.tolerance * std::abs(own);
+    if (ill_conditioned(values, own, other, is_height ? prepared.scene.metrics.significant_rebound : 0)) {
+      const Spread cloud_spread = spread(std::move(values));
+      for (const double value : {cloud_spread.low, cloud_spread.high}) error = std::fmax(error, std::abs(own - value));
+      certificate.ill_conditioned.push_back({figure.key, cloud_spread});
+    }
+    if (figure.error != nullptr) {
+      figure.error(c.errors) = error;
+    } else if (std::isfinite(error)) {
+      c.errors.bounce_count = static_cast<int>(std::ceil(error - 0.5));
+    }
+  }
+  if (!certificate.ill_conditioned.empty()) certificate.grazing = grazing_rebound(cloud, prepared.scene.metrics);
+  c.certificate = std::make_shared<const Certificate>(std::move(certificate));
+  return c;
+}
+
+}  // namespace softland

@@ -1,0 +1,57 @@
+// Figures of merit that carry an error to rely on, and clouds in the place of those that have none.
+//
+// The error of a figure is a multiple of the difference to a run with a hundredth of the integrator's tolerance and twice the
+// quadrature points, and a hundredth of the tolerance for what both miss; calibrated on random scenes
+// (bench/certify_coverage.cc). A figure is ill-conditioned where imperceptible changes of the drives move it visibly: it is then
+// given as median and range over a cloud of runs, and its error reaches to the end of that range.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "studies/cloud.h"
+#include "studies/simulate.h"
+
+namespace softland {
+
+/// A figure that can be certified; `key` as in metrics_json().
+struct CertifiedFigure {
+  std::string_view key;
+  double (*value)(const Metrics&);       ///< NaN where there is none
+  double& (*error)(Metrics&) = nullptr;  ///< null: the bounce count, which is a whole number
+};
+[[nodiscard]] std::span<const CertifiedFigure> certified_figures();
+
+/// Where the runs of a cloud part: up to here they have the same rebounds.
+struct GrazingRebound {
+  int number = 0;              ///< counted from 1, all rebounds of the first run
+  double time = 0;             ///< at which it begins [s]
+  double height = 0;           ///< [m]
+  double impact_velocity = 0;  ///< of the touch that it follows [m/s]
+  bool at_threshold = false;   ///< it counts in some runs only; else the touch before it is the gentlest of all until then
+};
+
+struct IllConditioned {
+  std::string_view key;
+  Spread spread;
+};
+
+struct Certificate {
+  std::vector<IllConditioned> ill_conditioned;
+  std::optional<GrazingRebound> grazing;  ///< none where the runs do not part at a rebound
+  int runs = 0;
+};
+
+/// Of the difference to the better run.
+inline constexpr double error_safety = 2;
+
+/// The first rebound in which runs differ, named by what made them differ. None for runs that do not.
+[[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
+
+/// Runs the scene's own waveforms as simulate() does, and certifies the figures; not those of a run that is not done.
+[[nodiscard]] Closing certify(const Prepared& prepared, const std::atomic<bool>* stop = nullptr);
+
+}  // namespace softland

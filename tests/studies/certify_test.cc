@@ -1,0 +1,182 @@
+// Figures of merit with errors to rely on, and clouds in the place of those that have none.
+#include "studies/certify.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scenes.h"
+#include "tests/support/random_scenes.h"
+
+namespace softland {
+namespace {
+
+using testing::Contains;
+using testing::IsEmpty;
+using testing::Not;
+
+Prepared gold_at_17_volts(std::string_view duration, std::string_view accuracy = "1e-6") {
+  return prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
+                       fmt::format("simulate.duration={}", duration), fmt::format("simulate.accuracy={}", accuracy)}));
+}
+
+std::vector<std::string_view> ill_conditioned(const Closing& c) {
+  std::vector<std::string_view> keys;
+  for (const IllConditioned& f : c.certificate->ill_conditioned) keys.push_back(f.key);
+  return keys;
+}
+
+// Covered and not covered, of the figures that are not ill-conditioned.
+std::pair<int, int> coverage(const Prepared& p, const Closing& c) {
+  const Switch fine(p.scene.device, {.points_per_length = 96});
+  const Trajectory best_run = simulate_closing(fine, p.signals(), {.duration = p.duration, .tolerance = 1e-4 * p.tolerance});
+  if (best_run.status != Status::done) return {};
+  const Metrics truth = metrics(best_run, p.scene.metrics);
+  constexpr double rounding = 1e-11;  // relative: closer no two runs can be told apart
+  std::pair<int, int> counts;
+  Metrics errors = c.errors;
+  const std::vector<std::string_view> ill = ill_conditioned(c);
+  for (const CertifiedFigure& f : certified_figures()) {
+    const double own = f.value(c.metrics), best = f.value(truth);
+    if (f.key == "hold_force_N" || !std::isfinite(own) || std::find(ill.begin(), ill.end(), f.key) != ill.end()) continue;
+    const double error = f.error != nullptr ? f.error(errors) : errors.bounce_count;
+    const bool covered = std::abs(own - best) <= std::max(error, rounding * std::abs(best));
+    ++(covered ? counts.first : counts.second);
+  }
+  return counts;
+}
+
+TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
+  const Prepared p = gold_at_17_volts("60 us");
+  const Closing plain = simulate(p, true), certified = certify(p);
+  EXPECT_EQ(plain.certificate, nullptr);
+  EXPECT_EQ(certified.metrics.major_bounce_height, plain.metrics.major_bounce_height);
+  EXPECT_EQ(certified.metrics.initial_contact_time, plain.metrics.initial_contact_time);
+}
+
+TEST(Certify, CoversTheTrueErrorsOfAWellConditionedClosing) {
+  for (const char* accuracy : {"1e-2", "1e-4", "1e-6"}) {
+    const Prepared p = gold_at_17_volts("60 us", accuracy);
+    const Closing c = certify(p);
+    EXPECT_THAT(ill_conditioned(c), IsEmpty()) << accuracy << ": a loose tolerance is an error, not a condition";
+    EXPECT_FALSE(c.certificate->grazing);
+    const auto [covered, missed] = coverage(p, c);
+    EXPECT_GE(covered, 6);
+    EXPECT_EQ(missed, 0) << accuracy;
+    EXPECT_GT(c.errors.hold_force, 0);
+    EXPECT_LT(c.errors.hold_force, 1e-3 * c.metrics.hold_force);
+  }
+}
+
+// bench/certify_coverage.cc asks the same of hundreds.
+TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
+  int covered = 0, missed = 0;
+  for (std::uint64_t i = 0; i < 24; ++i) {
+    SceneFile file = test::random_scene(3, i);
+    file.set("simulate.accuracy=1e-4");
+    const Prepared p = prepare(file);
+    constexpr long most_steps = 1000;  // long ones are left to the bench
+    const ClosingOptions options{.duration = p.duration, .tolerance = p.tolerance, .max_steps = most_steps};
+    if (p.device.film_states() > 0 || simulate_closing(p.device, p.signals(), options).work.steps >= most_steps) continue;
+    const Closing c = certify(p);
+    if (!c.certificate) continue;
+    const auto [yes, no] = coverage(p, c);
+    covered += yes;
+    missed += no;
+  }
+  EXPECT_GE(covered, 20);
+  EXPECT_LE(missed, 0.05 * covered);
+}
+
+TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
+  const Prepared p = gold_at_17_volts("600 us", "1e-3");
+  const Closing c = certify(p);
+  EXPECT_THAT(ill_conditioned(c), Contains("permanent_contact_time_s"));
+  EXPECT_THAT(ill_conditioned(c), Not(Contains("major_bounce_height_m"))) << "the first large rebound";
+  for (const IllConditioned& f : c.certificate->ill_conditioned) {
+    EXPECT_LE(f.spread.low, f.spread.median) << f.key;
+    EXPECT_LE(f.spread.median, f.spread.high) << f.key;
+    EXPECT_EQ(f.spread.runs, 16) << f.key;
+    if (f.key != "permanent_contact_time_s") continue;
+    EXPECT_LT(f.spread.low, f.spread.high);
+    EXPECT_GE(c.errors.permanent_contact_time, c.metrics.permanent_contact_time - f.spread.low);
+    EXPECT_GE(c.errors.permanent_contact_time, f.spread.high - c.metrics.permanent_contact_time);
+  }
+  ASSERT_TRUE(c.certificate->grazing);
+  EXPECT_GT(c.certificate->grazing->number, 1);
+  EXPECT_GT(c.certificate->grazing->time, c.metrics.initial_contact_time);
+  EXPECT_LT(c.certificate->grazing->impact_velocity, c.metrics.impact_velocity);
+}
+
+TEST(Certify, SaysNothingOfARunThatIsNotDone) {
+  const Prepared p = gold_at_17_volts("60 us");
+  const std::atomic<bool> stop{true};
+  const Closing c = certify(p, &stop);
+  EXPECT_EQ(c.certificate, nullptr);
+  EXPECT_TRUE(std::isnan(c.errors.impact_velocity));
+}
+
+// Touches of 1 us between ballistic rebounds of these heights [m].
+Trajectory hops(const std::vector<double>& heights) {
+  constexpr double gap = 1e-6, pull = 1e3, dwell = 1e-6;
+  Trajectory t;
+  t.status = Status::done;
+  t.contact_gap = gap;
+  double time = 1e-3, in = 1;
+  t.points.push_back({.time = 0, .position = 0, .velocity = gap / time, .acceleration = 0});
+  for (const double height : heights) {
+    const double out = std::sqrt(2 * pull * height);
+    t.touches.push_back({.begin = time, .end = time + dwell, .impact_velocity = in});
+    t.points.push_back({.time = time, .position = gap, .velocity = in, .acceleration = 0});
+    time += dwell;
+    t.points.push_back({.time = time, .position = gap, .velocity = -out, .acceleration = 0});
+    t.points.push_back({.time = time, .position = gap, .velocity = -out, .acceleration = pull});
+    time += 2 * out / pull;
+    t.points.push_back({.time = time, .position = gap, .velocity = out, .acceleration = pull});
+    in = out;
+  }
+  t.touches.push_back({.begin = time, .impact_velocity = in});
+  t.points.push_back({.time = time, .position = gap, .velocity = in, .acceleration = 0});
+  t.points.push_back({.time = time + dwell, .position = gap + in * dwell / 2, .velocity = 0, .acceleration = 0});
+  return t;
+}
+
+TEST(GrazingRebound, IsNoneWhereRunsAgree) {
+  const std::vector<Trajectory> alike{hops({5e-9, 50e-9, 5e-9}), hops({5.1e-9, 50e-9, 5.1e-9})};
+  EXPECT_FALSE(grazing_rebound(alike, {}));
+  EXPECT_FALSE(grazing_rebound({}, {}));
+}
+
+TEST(GrazingRebound, IsTheOneThatCountsInSomeRunsOnly) {
+  const std::vector<Trajectory> runs{hops({5e-9, 50e-9, 1.01e-9, 3e-9}), hops({5e-9, 50e-9, 0.99e-9, 3e-9})};
+  const auto found = grazing_rebound(runs, {.significant_rebound = 1e-9});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->at_threshold);
+  EXPECT_EQ(found->number, 3);
+  EXPECT_NEAR(found->height, 1.01e-9, 1e-12);
+  EXPECT_NEAR(found->time, runs[0].touches[2].end, 1e-12);
+}
+
+TEST(GrazingRebound, FollowsTheGentlestTouchBeforeTheRunsPart) {
+  const std::vector<Trajectory> runs{hops({5e-9, 2e-9, 50e-9, 80e-9, 1.5e-9}), hops({5e-9, 2e-9, 51e-9, 8e-9, 1.5e-9})};
+  const auto found = grazing_rebound(runs, {.significant_rebound = 1e-9});
+  ASSERT_TRUE(found);
+  EXPECT_FALSE(found->at_threshold);
+  EXPECT_EQ(found->number, 3) << "after the rebound of 2 nm";
+  EXPECT_EQ(found->impact_velocity, runs[0].touches[2].impact_velocity);
+}
+
+TEST(GrazingRebound, IsSeenWhereSomeRunsGoOn) {
+  const std::vector<Trajectory> fewer{hops({50e-9, 5e-9}), hops({50e-9, 5e-9, 2e-9})};
+  ASSERT_TRUE(grazing_rebound(fewer, {}));
+  EXPECT_EQ(grazing_rebound(fewer, {})->number, 2);
+  const std::vector<Trajectory> more{fewer[1], fewer[0]};
+  EXPECT_EQ(grazing_rebound(more, {})->number, 3);
+}
+
+}  // namespace
+}  // namespace softland
