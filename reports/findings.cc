@@ -222,7 +222,7 @@ std::string certificate_caption(const json& result) {
     return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance and quadrature.";
   std::string words = fmt::format(
       "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {:.0f} runs whose drives "
-      "differ by one part in 1e7.",
+      "differ by one part in 1e9 to 1e7.",
       number(result, {"cloud", "runs"}));
   const json& grazing = at(result, {"cloud", "grazing_rebound"});
   if (!grazing.is_object()) return words;

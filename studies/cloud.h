@@ -15,7 +15,7 @@ namespace softland {
 
 struct CloudOptions {
   int runs = 16;
-  double smallest = 1e-7, largest = 1e-7;  ///< relative change of every drive's levels, of either sign; between them by decades
+  double smallest = 1e-9, largest = 1e-7;  ///< relative change of every drive's levels, of either sign; between them by decades
   std::uint64_t seed = 1;
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "scenes.h"
 #include "studies/prepared.h"
@@ -23,6 +24,8 @@ TEST(Cloud, IsAFunctionOfItsArgumentsAlone) {
   const std::vector<double> times = first_touches({.runs = 4});
   EXPECT_EQ(times, first_touches({.runs = 4}));
   EXPECT_NE(times, first_touches({.runs = 4, .seed = 2}));
+  const std::vector<double> all = first_touches({});
+  EXPECT_EQ(std::set<double>(all.begin(), all.end()).size(), 16U) << "one drive is enough for as many runs";
 }
 
 // A higher step closes sooner: d ln t_i / d ln V is -1.6 at this level.
