@@ -279,7 +279,7 @@ SceneFile scene_of_result(const std::string& result) {
 void log_time_saved(const Prepared& chosen) {
   Prepared whole = chosen;
   whole.scene.device = chosen.effects->described;
-  whole.device = Switch(whole.scene.device);
+  whole.device = Switch(whole.scene.device, whole.quadrature);
   const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.device, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
   fmt::print(stderr, "softland: effects = \"auto\": a right-hand side takes {:.0f} ns instead of {:.0f} ns, {:.0f} % less\n",

@@ -1,8 +1,9 @@
 // Whether the accuracy that a scene asks for is the accuracy of its figures, on random scenes: bench_accuracy [COUNT [SEED]]
 //
 // Every scene is run as `simulate` runs it at accuracies from 1e-2 to 1e-5, and against a reference at an integrator tolerance of
-// 1e-12 with twice the quadrature points of the finest setting. A figure counts where it is well-conditioned: where a change of the contact gap by a
-// billionth, which nobody could see, moves it by less than a tenth of the accuracy asked for. Prints Markdown.
+// 1e-12 with twice the quadrature points of the finest setting. A figure counts where it is well-conditioned: where a change of
+// the contact gap by a billionth, which nobody could see, moves it by less than a tenth of the accuracy asked for. Prints
+// Markdown.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <iostream>
 #include <limits>
@@ -31,7 +33,7 @@ namespace {
 constexpr std::array accuracies{1e-2, 1e-3, 1e-4, 1e-5};
 constexpr std::array names{"t_i", "v_i", "B_H", "peak force"};
 constexpr double reference_tolerance = 1e-12, imperceptible = 1e-9;
-constexpr SwitchOptions reference_quadrature{.points_per_length = 48};
+constexpr SwitchOptions reference_quadrature{.points_per_length = 128};
 
 using Figures = std::array<double, 4>;
 
@@ -48,7 +50,7 @@ Outcome reference(const Prepared& p, double perturbation) {
   Device device = p.scene.device;
   device.gap.contact *= 1 + perturbation;
   const Trajectory t = simulate_closing(Switch(device, reference_quadrature), p.signals(),
-                                        {.duration = p.duration, .tolerance = reference_tolerance, .max_steps = 300'000});
+                                        {.duration = p.duration, .tolerance = reference_tolerance, .max_steps = 100'000});
   return {t.status, figures(metrics(t, p.scene.metrics))};
 }
 
@@ -80,6 +82,10 @@ double relative(double value, double truth, double least) {
 void judge(std::uint64_t seed, std::uint64_t index, Result& result) {
   const SceneFile file = test::random_scene(seed, index);
   const Prepared p = prepare(file);
+  if (p.device.film_states() > 0) {  // a reference would take minutes
+    ++result.scenes["with a compressible film, left out"];
+    return;
+  }
   const Outcome truth = reference(p, 0);
   if (truth.status != Status::done && truth.status != Status::no_contact) {
     ++result.scenes[std::string(to_string(truth.status))];
@@ -149,19 +155,22 @@ void run(std::uint64_t count, std::uint64_t seed) {
   std::sort(all.misses.begin(), all.misses.end(),
             [](const Miss& a, const Miss& b) { return std::pair(a.index, -a.accuracy) < std::pair(b.index, -b.accuracy); });
 
-  std::vector<std::vector<std::string>> rows{{"accuracy", "figure", "well-conditioned", "within", "share", "median error / accuracy",
-                                              "99 % error / accuracy", "ill-conditioned"}};
+  std::vector<std::vector<std::string>> rows{{"accuracy", "figure", "well-conditioned", "within", "share",
+                                              "median error / accuracy", "99 % error / accuracy", "ill-conditioned"}};
   long figures = 0, within = 0;
   for (std::size_t a = 0; a < accuracies.size(); ++a) {
     for (std::size_t f = 0; f < names.size(); ++f) {
       Tally& t = all.tallies[a][f];
       std::sort(t.share.begin(), t.share.end());
       const auto quantile = [&](double q) {
-        return t.share.empty() ? std::string("-") : fmt::format("{:.2g}", t.share[static_cast<std::size_t>(q * static_cast<double>(t.share.size() - 1))]);
+        return t.share.empty()
+                   ? std::string("-")
+                   : fmt::format("{:.2g}", t.share[static_cast<std::size_t>(q * static_cast<double>(t.share.size() - 1))]);
       };
-      rows.push_back({fmt::format("{:g}", accuracies[a]), names[f], std::to_string(t.figures), std::to_string(t.within),
-                      fmt::format("{:.2f} %", 100.0 * static_cast<double>(t.within) / static_cast<double>(std::max(1L, t.figures))),
-                      quantile(0.5), quantile(0.99), std::to_string(t.ill)});
+      rows.push_back(
+          {fmt::format("{:g}", accuracies[a]), names[f], std::to_string(t.figures), std::to_string(t.within),
+           fmt::format("{:.2f} %", 100.0 * static_cast<double>(t.within) / static_cast<double>(std::max(1L, t.figures))),
+           quantile(0.5), quantile(0.99), std::to_string(t.ill)});
       figures += t.figures;
       within += t.within;
     }
@@ -169,19 +178,20 @@ void run(std::uint64_t count, std::uint64_t seed) {
   fmt::print("# Accuracy asked for and delivered\n\n");
   std::vector<std::string> kinds;
   for (const auto& [what, n] : all.scenes) kinds.push_back(fmt::format("{} {}", n, what));
-  fmt::print("{} random scenes of seed {} ({}). A figure is well-conditioned where a billionth of the contact gap moves it by less\n"
-             "than a tenth of the accuracy. Reference: integrator tolerance {:g}, {:g} quadrature points per length.\n\n",
-             count, seed, fmt::join(kinds, ", "), reference_tolerance, reference_quadrature.points_per_length);
+  fmt::print(
+      "{} random scenes of seed {} ({}). A figure is well-conditioned where a billionth of the contact gap moves it by less\n"
+      "than a tenth of the accuracy. Reference: integrator tolerance {:g}, {:g} quadrature points per length.\n\n",
+      count, seed, fmt::join(kinds, ", "), reference_tolerance, reference_quadrature.points_per_length);
   fmt::print("Within the accuracy asked for: **{} of {} figures, {:.2f} %**.\n\n{}\n", within, figures,
              100.0 * static_cast<double>(within) / static_cast<double>(std::max(1L, figures)), markdown_table(rows));
   fmt::print("Misses:\n\n");
   for (const Miss& m : all.misses) {
-    fmt::print("- scene {} ({}), accuracy {:g}, {}: {:.2g}\n", m.index, test::scene_families[m.index % test::scene_families.size()],
-               m.accuracy, m.figure, m.error);
+    fmt::print("- scene {} ({}), accuracy {:g}, {}: {:.2g}\n", m.index,
+               test::scene_families[m.index % test::scene_families.size()], m.accuracy, m.figure, m.error);
   }
   if (all.misses.empty()) fmt::print("- none\n");
-  fmt::print("\nMade by `build/bench/bench_accuracy {} {}` (configured with `-DSOFTLAND_BENCH=ON`) on {:%Y-%m-%d}, {} threads.\n", count, seed,
-             fmt::localtime(std::time(nullptr)), workers);
+  fmt::print("\nMade by `build/bench/bench_accuracy {} {}` (configured with `-DSOFTLAND_BENCH=ON`) on {:%Y-%m-%d}, {} threads.\n",
+             count, seed, fmt::localtime(std::time(nullptr)), workers);
 }
 
 }  // namespace

@@ -619,7 +619,7 @@ std::vector<Section> make_schema() {
                  .range = small_error,
                  .fallback = "1e-06",
                  .instead_of = {"tolerance"},
-                 .about = "target relative error of t_i, v_i and B_H"},
+                 .about = "relative error of t_i, v_i, B_H and the peak force"},
                 {.name = "tolerance",
                  .dimensions = {dimension::none},
                  .range = small_error,

@@ -188,6 +188,7 @@ json result_json(const Prepared& prepared, const Closing& closing, const Provena
   j["best"] = {{"metrics", figures_json(closing)}, {"waveforms", waveforms_json(prepared, prepared.duration)}};
   j["curves"] = {{"best", curves_json(closing.trajectory, prepared.scene.metrics)}};
   add_scene(j, prepared);
+  j["tolerance"] = closing.tolerance;
   return j;
 }
 

@@ -26,7 +26,7 @@ class Study {
  public:
   Study(const Prepared& prepared, const AccuracyOptions& options)
       : prepared_(prepared), options_(options), signals_(prepared.signals()) {
-    own_points_ = SwitchOptions{}.points_per_length;
+    own_points_ = prepared_.quadrature.points_per_length;
     own_modes_ = prepared.device.modes();
     own_integrator_ = automatic_integrator(prepared.device);
     if (prepared.scene.device.structure.kind != StructureKind::plate) {

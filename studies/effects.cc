@@ -13,7 +13,7 @@ namespace {
 Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const std::atomic<bool>* stop) {
   Device described = prepared.scene.device;
   described.gas = gas;
-  const Switch device(described);
+  const Switch device(described, prepared.quadrature);
   const std::vector<Signal> signals = prepared.signals();
   const Trajectory t =
       simulate_closing(device, signals, {.duration = prepared.duration, .tolerance = prepared.tolerance, .stop = stop});

@@ -67,7 +67,7 @@ std::vector<ConfirmingRun> confirm(const Prepared& winner) {
   Device richer = winner.scene.device;
   if (richer.structure.kind != StructureKind::plate) {
     richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
-    runs.push_back({fmt::format("{} modes", richer.structure.modes), run(Switch(richer), winner.tolerance)});
+    runs.push_back({fmt::format("{} modes", richer.structure.modes), run(Switch(richer, winner.quadrature), winner.tolerance)});
   }
   return runs;
 }

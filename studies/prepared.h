@@ -34,6 +34,7 @@ struct Prepared {
   Drives drives;                                   ///< in volts
   double duration = 0;                             ///< window [s]
   double tolerance = 0;                            ///< of the integrator
+  SwitchOptions quadrature = {};
   /// Where the scene says effects = "auto": what it describes and what was left out. The scene above is the one without.
   std::shared_ptr<const DescribedEffects> effects = {};
 
@@ -45,8 +46,9 @@ struct Prepared {
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
 };
 
-/// Integrator tolerance that delivers a relative `accuracy` of t_i, v_i and B_H.
+/// Integrator tolerance and quadrature that deliver a relative `accuracy` of t_i, v_i, B_H and the peak force.
 [[nodiscard]] double tolerance_for(double accuracy);
+[[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
 
 /// Reads, composes and resolves a scene; modes = "auto" is replaced by the number chosen, with a warning that says so; pull-in
 /// voltages are computed for the electrodes that need them (and, with `default_limits`, for all that have no written limit).

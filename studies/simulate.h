@@ -1,4 +1,4 @@
-// One closing, with figures of merit and their errors.
+// One closing, with figures of merit and their errors, as accurate as the scene asks for.
 #pragma once
 
 #include <atomic>
@@ -17,16 +17,23 @@ struct Certificate;
 struct Closing {
   Trajectory trajectory;
   Metrics metrics;
-  /// Absolute error estimates, NaN where not estimated: the difference to a run at a hundredth of the tolerance, or what
-  /// certify() makes of it.
+  /// Absolute error estimates, NaN where not estimated: the difference to a run at a hundredth of the tolerance with twice the
+  /// quadrature points, or what certify() makes of it.
   Metrics errors;
+  double tolerance = 0;     ///< of the integrator, in the run that the figures are of
   double peak_voltage = 0;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
   double peak_slew = 0;     ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
   std::vector<std::string> warnings;                    ///< of the scene, of the laws, and of ill-conditioned figures
   std::shared_ptr<const Certificate> certificate = {};  ///< from certify() only
 };
 
-/// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure.
+/// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
+[[nodiscard]] double least_peak_force(const Prepared& prepared);
+
+/// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure; where a scene
+/// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
+/// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
+/// helps.
 [[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace softland

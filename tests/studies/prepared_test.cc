@@ -12,11 +12,14 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(ToleranceFor, IsAHundredthOfTheAccuracyWithinWhatIntegratorsCanDo) {
-  EXPECT_DOUBLE_EQ(tolerance_for(1e-6), 1e-8);
-  EXPECT_DOUBLE_EQ(tolerance_for(1e-3), 1e-5);
-  EXPECT_DOUBLE_EQ(tolerance_for(0.5), 1e-4);
+TEST(Accuracy, TakesATenthForTheToleranceAndFourPointsADigit) {
+  EXPECT_DOUBLE_EQ(tolerance_for(1e-6), 1e-7);
+  EXPECT_DOUBLE_EQ(tolerance_for(0.5), 1e-3);
   EXPECT_DOUBLE_EQ(tolerance_for(1e-15), 1e-12);
+  EXPECT_DOUBLE_EQ(quadrature_for(1e-6, 4).points_per_length, 24);
+  EXPECT_DOUBLE_EQ(quadrature_for(0.1, 1).points_per_length, 8);
+  EXPECT_DOUBLE_EQ(quadrature_for(1e-3, 10).points_per_length, 24) << "two to a mode";
+  EXPECT_LT(prepare(gold({"simulate.accuracy=1e-3"})).device.points(), prepare(gold({"simulate.accuracy=1e-6"})).device.points());
 }
 
 TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
@@ -62,7 +65,7 @@ TEST(Prepare, GivesEveryElectrodeItsOwnSignal) {
 
 TEST(Prepare, TakesWindowAndToleranceFromTheScene) {
   const Prepared p = prepare(gold({"simulate.accuracy=1e-4", "simulate.duration=123 us"}));
-  EXPECT_DOUBLE_EQ(p.tolerance, 1e-6);
+  EXPECT_DOUBLE_EQ(p.tolerance, 1e-5);
   EXPECT_DOUBLE_EQ(p.duration, 123e-6);
   EXPECT_DOUBLE_EQ(prepare(gold({"simulate.tolerance=3e-7"})).tolerance, 3e-7);
 }
