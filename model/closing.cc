@@ -64,8 +64,8 @@ class Run {
         pieces_(drives.size(), 0),
         plane_(device.device().gap.contact),
         fastest_(device.angular_frequencies().maxCoeff()),
-        // The quintic between two knots errs by a tenth of the tolerance times the mode's amplitude, and by 1e-6 at the most.
-        knot_phase_(std::pow(46080 * std::min(options.tolerance / 10, 1e-6), 1.0 / 6)),
+        // The quintic between two knots errs by a tenth of the tolerance times the mode's amplitude, and by 1e-5 at the most.
+        knot_phase_(std::pow(46080 * std::min(options.tolerance / 10, 1e-5), 1.0 / 6)),
         motion_(as_vector(device.angular_frequencies()), as_vector(device.contact_shape())) {
     system_.size = size_;
     system_.frequencies = as_vector(device.angular_frequencies());

@@ -106,19 +106,10 @@ class Quintic {
     double least = 0, most = 0;  ///< [m]
   };
   [[nodiscard]] Bounds bounds() const {
-    constexpr std::array<std::array<double, 6>, 6> points{{{1, 0, 0, 0, 0, 0},
-                                                           {1, 0.2, 0, 0, 0, 0},
-                                                           {1, 0.4, 0.1, 0, 0, 0},
-                                                           {1, 0.6, 0.3, 0.1, 0, 0},
-                                                           {1, 0.8, 0.6, 0.4, 0.2, 0},
-                                                           {1, 1, 1, 1, 1, 1}}};
-    Bounds bounds{.least = c_[0], .most = c_[0]};
-    for (const auto& row : points) {
-      const double place = std::inner_product(c_.begin(), c_.end(), row.begin(), 0.0);
-      bounds.least = std::min(bounds.least, place);
-      bounds.most = std::max(bounds.most, place);
-    }
-    return bounds;
+    const auto [c0, c1, c2, c3, c4, c5] = c_;
+    const double b1 = c0 + 0.2 * c1, b2 = c0 + 0.4 * c1 + 0.1 * c2, b3 = c0 + 0.6 * c1 + 0.3 * c2 + 0.1 * c3;
+    const double b4 = c0 + 0.8 * c1 + 0.6 * c2 + 0.4 * c3 + 0.2 * c4, b5 = c0 + c1 + c2 + c3 + c4 + c5;
+    return {.least = std::min({c0, b1, b2, b3, b4, b5}), .most = std::max({c0, b1, b2, b3, b4, b5})};
   }
   [[nodiscard]] double begin() const { return begin_; }
   [[nodiscard]] double end() const { return begin_ + length_; }

@@ -259,7 +259,7 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
                            Workspace& work, double* result, const double* film) const {
   const int n = modes();
   set_field(q, v, work);
-  work.load.setZero();
+  for (Eigen::Index p = 0; p < work.load.size(); p += block) Eigen::Map<Block>(work.load.data() + p).setZero();
   for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
     if (const double drive = strength(k, volts[k]); drive != 0) driven_laws_[k]->add_load(work.field, drive, work.load.data());
   }
