@@ -131,7 +131,7 @@ Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
   better_run.hold_force = hold_force(fine, signals);
   const Metrics better = metrics(better_run, prepared.scene.metrics);
 
-  std::vector<Trajectory> cloud = perturbed_closings(prepared.device, signals, options);
+  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options);
   std::erase_if(cloud, [](const Trajectory& t) { return t.status != Status::done; });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
