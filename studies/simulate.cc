@@ -82,7 +82,8 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
   if (estimate_errors && best.trajectory.status == Status::done) {
     Run tighter = tighter_than(best);
     double e = error(best, tighter, prepared);
-    for (int vain = 0; may_tighten && e > asked.accuracy && vain < most_in_vain && tighter.tolerance > least_tolerance;) {
+    for (int vain = 0; may_tighten && e > asked.accuracy && vain < most_in_vain && tighter.trajectory.status == Status::done &&
+                       tighter.tolerance > least_tolerance;) {
       Run next = tighter_than(tighter);
       if (next.trajectory.status != Status::done) break;
       const double less = error(tighter, next, prepared);
@@ -91,14 +92,14 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
       best = std::move(tighter);
       tighter = std::move(next);
     }
-    if (may_tighten && e > asked.accuracy) {
-      c.warnings.push_back(fmt::format(
-          "accuracy {:g} is not reached: at an integrator tolerance of {:.0e} t_i, v_i, B_H or the peak force is still "
-          "known to {:.1g} only, for so small a change decides it",
-          asked.accuracy, best.tolerance, e));
-    }
     if (tighter.trajectory.status == Status::done) {
       c.errors = difference(best.metrics, tighter.metrics);
+      if (may_tighten && e > asked.accuracy) {
+        c.warnings.push_back(fmt::format(
+            "accuracy {:g} is not reached: at an integrator tolerance of {:.0e} t_i, v_i, B_H or the peak force is still "
+            "known to {:.1g} only, for so small a change decides it",
+            asked.accuracy, best.tolerance, e));
+      }
       if (c.errors.bounce_count > 0 || c.errors.bounce_time > 0.01 * std::abs(best.metrics.bounce_time)) {
         c.warnings.push_back(
             fmt::format("bounce count and permanent contact time are ill-conditioned here: a hundredfold tighter run gives {} "
