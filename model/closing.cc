@@ -73,8 +73,13 @@ class Run {
       system_.core = 2 * n_;
       system_.block = ReynoldsFilm::nodes;
     }
-    system_.rates = [this](double t, const double* y, double* result) { rates(t, y, result); };
-    system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, j); };
+    if (options.restart_at_contact) {
+      system_.rates = [this](double t, const double* y, double* result) { rates(t, y, law_, result); };
+      system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, law_, j); };
+    } else {
+      system_.rates = [this](double t, const double* y, double* result) { rates(t, y, law_at(y), result); };
+      system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, law_at(y), j); };
+    }
     stepper_ = internal::make_stepper(
         options.integrator == Integrator::automatic ? automatic_integrator(device) : options.integrator, system_);
     here_ = {.time = 0, .state = std::vector<double>(size_, 0.0), .rates = std::vector<double>(n_ + film_, 0.0)};
@@ -119,9 +124,9 @@ class Run {
     for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = drives_[k].pieces()[pieces_[k]].voltage(t);
   }
 
-  void rates(double t, const double* y, double* result) {
+  void rates(double t, const double* y, const ContactState& law, double* result) {
     set_volts(t);
-    device_.rates(y, volts_, law_, work_, result);
+    device_.rates(y, volts_, law, work_, result);
     ++out_.work.rhs_evaluations;
   }
 
@@ -132,14 +137,19 @@ class Run {
     std::copy_n(stepper_->rates(), n_ + film_, next_.rates.begin());
   }
 
-  void jacobian(double t, const double* y, double* j) {
+  // Of a contact without memory in any state.
+  [[nodiscard]] ContactState law_at(const double* y) const {
+    return device_.has_pad_contact() || (device_.has_contact() && device_.contact_deflection(y) > plane_ - reach_);
+  }
+
+  void jacobian(double t, const double* y, const ContactState& law, double* j) {
     set_volts(t);
     const auto n = static_cast<Eigen::Index>(n_);
     const auto size = static_cast<Eigen::Index>(size_);
     Eigen::Map<Eigen::MatrixXd> full(j, size, size);
     full.setZero();
     full.block(0, n, n, n).setIdentity();
-    device_.jacobian(y, y + n_, volts_, law_, work_, full.block(n, 0, n, n), full.block(n, n, n, n));
+    device_.jacobian(y, y + n_, volts_, law, work_, full.block(n, 0, n, n), full.block(n, n, n, n));
     if (film_ > 0) device_.add_film_derivatives(y, work_, full);
   }
 
@@ -200,11 +210,11 @@ class Run {
 
   // A law that acts beyond the plane changes over lengths like those of penetration.
   [[nodiscard]] const std::vector<double>& tolerances() const {
-    return in_contact_ || branch_ == Branch::near ? touching_ : in_flight_;
+    return in_contact_ || branch_ == Branch::near || !options_.restart_at_contact ? touching_ : in_flight_;
   }
 
   void restart() {
-    rates(here_.time, here_.state.data(), here_.rates.data());
+    rates(here_.time, here_.state.data(), law_, here_.rates.data());
     if (branch_ == Branch::rest) return lie_down();
     double max_step = std::numeric_limits<double>::infinity();
     for (const Signal& signal : drives_) max_step = std::min(max_step, signal.resolving_step(here_.time));
@@ -323,6 +333,9 @@ class Run {
     [[nodiscard]] double velocity(double t) const {
       return modal_ ? run_.motion(end_).at(t - run_.here_.time).velocity : Quintic::velocity(t);
     }
+    [[nodiscard]] double acceleration(double t) const {
+      return modal_ ? run_.motion(end_).at(t - run_.here_.time).acceleration : Quintic::acceleration(t);
+    }
     [[nodiscard]] double velocity_zero() const {
       return bracketed_zero([&](double t) { return velocity(t); }, begin(), Quintic::end());
     }
@@ -355,7 +368,7 @@ class Run {
   }
 
   // Follows the contact point through the step from here_ to next_: knots where the interpolant needs them, up to the first
-  // event.
+  // event at which to start anew.
   Event follow() {
     const double h = next_.time - here_.time;
     const int pieces = moves_by_modes() ? static_cast<int>(std::ceil(fastest_ * h / knot_phase_)) : 1;
@@ -365,13 +378,34 @@ class Run {
       const TrajectoryPoint from = out_.points.back(), to = k < pieces ? halfway(h * k / pieces, end) : end;
       const Tip tip(*this, from, to, end);
       const Event event = next_event(tip, from, to);
-      if (event.time > 0) return event;
-      if (k < pieces) {
+      if (event.time > 0) {
+        if (options_.restart_at_contact || !device_.has_contact()) return event;
+        go_through(event, tip, end);
+        if (ended_) return {};
+        if (event.time < to.time) --k;  // what is left of the piece
+      } else if (k < pieces) {
         deepen(tip, from, to);
         out_.points.push_back(to);
       }
     }
     return {};
+  }
+
+  // An event at which the integrator is not restarted.
+  void go_through(const Event& event, const Tip& tip, const TrajectoryPoint& end) {
+    const TrajectoryPoint from = out_.points.back();
+    TrajectoryPoint at{.time = event.time,
+                       .position = event.edge->level,
+                       .velocity = tip.velocity(event.time),
+                       .acceleration = tip.acceleration(event.time)};
+    if (device_.has_pad_contact()) {
+      at.contact_force = std::lerp(from.contact_force, end.contact_force, (at.time - from.time) / (end.time - from.time));
+    }
+    if (at.time > from.time) deepen(Tip(*this, from, at, end), from, at);
+    out_.points.push_back(at);
+    note(event);
+    enter(event.edge->next);
+    if (static_cast<long>(out_.touches.size()) > options_.max_steps) fail(too_many_steps());
   }
 
   // Time in [from, to] at which the contact point first crosses an edge outwards; 0 if it does not. Between its turns the motion
@@ -422,7 +456,7 @@ class Run {
       time -= off / device_.contact_deflection(next_.state.data() + n_);
     }
     if (!(time > here_.time)) next_ = here_;
-    rates(next_.time, next_.state.data(), next_.rates.data());  // leaves the field there
+    rates(next_.time, next_.state.data(), law_, next_.rates.data());  // leaves the field there
     return true;
   }
 
@@ -447,16 +481,12 @@ class Run {
     if (event.edge != nullptr) p.position = event.edge->level;  // to rounding
     if (p.position == plane_ && !device_.has_pad_contact()) p.contact_force = 0;
     balance();
-    if (!in_contact_ && event.edge->level == plane_) {
-      out_.touches.push_back(
-          {.begin = p.time, .end = std::numeric_limits<double>::quiet_NaN(), .impact_velocity = std::abs(p.velocity)});
+    if (note(event)) {
       if (!device_.has_contact()) {
         out_.warnings.push_back("no [contact] section: the run ends at first touch");
         return end(Status::done);
       }
       if (rigid_ != nullptr) return strike();
-    } else if (in_contact_ && event.edge != nullptr && event.edge->next == above()) {
-      out_.touches.back().end = p.time;
     }
     if (event.edge == nullptr) {
       // What is left of the velocity still carries it this much deeper.
@@ -467,6 +497,19 @@ class Run {
       enter(event.edge->next);
     }
     restart();
+  }
+
+  // Enters an event that the trajectory has just reached in the list of touches; true when one begins.
+  bool note(const Event& event) {
+    const TrajectoryPoint& p = out_.points.back();
+    const bool begins = !in_contact_ && event.edge->level == plane_;
+    if (begins) {
+      out_.touches.push_back(
+          {.begin = p.time, .end = std::numeric_limits<double>::quiet_NaN(), .impact_velocity = std::abs(p.velocity)});
+    } else if (in_contact_ && event.edge != nullptr && event.edge->next == above()) {
+      out_.touches.back().end = p.time;
+    }
+    return begins;
   }
 
   // At here_, on a rigid contact: reverses the velocity, or ends the motion where the rebound would be too low.
@@ -495,7 +538,7 @@ class Run {
 
   // Force with which the plate would press on a rigid contact at here_ under the voltages of another time [N]; negative: pull.
   double press(double t) {
-    rates(t, here_.state.data(), free_.data());
+    rates(t, here_.state.data(), law_, free_.data());
     return free_[0] / device_.contact_shape()[0];
   }
 
@@ -790,12 +833,20 @@ Integrator automatic_integrator(const Switch& device) {
   return device.film_states() > 0 ? Integrator::esdirk : Integrator::lawson;
 }
 
+std::string why_always_restarted(const Switch& device) {
+  if (device.rigid_contact() != nullptr) return "an impact on a rigid contact is no force";
+  if (device.has_contact() && has_memory(device.contact())) return "a contact law with memory turns at the deepest point";
+  return {};
+}
+
 Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options) {
   require(drives.size() == device.drives(),
           fmt::format("{} signals for a switch with {} drives", drives.size(), device.drives()));
   require(options.duration > 0 && options.duration < 1e6, fmt::format("duration = {} s: must be positive", options.duration));
   require(options.tolerance > 0 && options.tolerance <= 0.1,
           fmt::format("tolerance = {}: must be in (0, 0.1]", options.tolerance));
+  require(options.restart_at_contact || why_always_restarted(device).empty(),
+          fmt::format("restart_at_contact = false: {}", why_always_restarted(device)));
   return Run(device, drives, options).run();
 }
 

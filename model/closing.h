@@ -23,6 +23,7 @@
 #include <functional>
 #include <limits>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "model/switch.h"
@@ -54,6 +55,10 @@ struct ClosingOptions {
   double after_contact = std::numeric_limits<double>::infinity();      ///< end this long after first touch [s]
   double no_contact_before = std::numeric_limits<double>::infinity();  ///< end here if nothing has touched [s]
   long max_steps = 2'000'000;  ///< work bound: a run that needs more ends as numerical_failure
+  /// False: the contact is a force that sets in within a step, as to an integrator that knows of no events. Steps go on through
+  /// make and break, which are then as exact as the interpolant; tolerances are those of contact throughout. For studies of what
+  /// restarting is worth: see why_always_restarted().
+  bool restart_at_contact = true;
   /// Potential of the closed equilibrium under the hold levels [J]: when given, Trajectory::landing_excess is measured against
   /// it.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
@@ -63,8 +68,11 @@ struct ClosingOptions {
   std::function<bool(double, const double*, const double*)> observer = {};
 };
 
+/// Why a closing of this switch cannot be run with restart_at_contact = false; empty when it can.
+[[nodiscard]] std::string why_always_restarted(const Switch& device);
+
 /// Never throws for numerical trouble: see Trajectory::status. Throws InvalidInput unless there is one signal per drive of the
-/// switch, duration and tolerance are positive and tolerance <= 0.1.
+/// switch, duration and tolerance are positive and tolerance <= 0.1; or where restart_at_contact is false and cannot be.
 [[nodiscard]] Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options);
 
 }  // namespace softland

@@ -127,6 +127,13 @@ std::string recommended(const AccuracyStudy& study, const Recommendation& r) {
   return fmt::format("{}: {} ms", setting_text(row), internal::plain_number(1e3 * row.seconds, 2));
 }
 
+std::string restart_text(const AccuracyStudy& study) {
+  return study.through.empty()
+             ? fmt::format("Nothing was tried without a restart at the contact: {}.", study.why_always_restarted)
+             : "No restart: the integrator steps over make and break of contact as over a force that sets in; simulate starts it "
+               "anew there.";
+}
+
 // One line per wanted accuracy.
 std::vector<std::string> recommendations(const AccuracyStudy& study) {
   std::vector<std::string> lines;
@@ -170,6 +177,110 @@ std::string cloud_text(const AccuracyStudy& study) {
   return text;
 }
 
+// ---- pictures
+// ---------------------------------------------------------------------------------------------------------------------
+
+using internal::Chart;
+using internal::Mark;
+using internal::Picture;
+using internal::Role;
+using Points = std::vector<std::array<double, 2>>;
+
+Chart logarithmic_chart(std::string id, std::string title, std::string x_label, std::string x_unit, int height) {
+  Chart chart;
+  chart.id = std::move(id);
+  chart.title = std::move(title);
+  chart.x_column = "x";
+  chart.x_label = std::move(x_label);
+  chart.x_unit = std::move(x_unit);
+  chart.y_label = "Relative error";
+  chart.scale = chart.x_scale = internal::Scale::logarithmic;
+  chart.height = height;
+  return chart;
+}
+
+void add_curve(Picture& drawn, Chart& chart, std::string label, Role pen, Points points) {
+  std::erase_if(points, [](const auto& p) { return !(p[0] > 0 && p[1] > 0 && std::isfinite(p[1])); });
+  if (points.empty()) return;
+  std::sort(points.begin(), points.end());
+  const std::string name = fmt::format("{}/{}", chart.id, chart.series.size());
+  for (const auto& [x, y] : points) {
+    drawn.tables[name]["x"].push_back(x);
+    drawn.tables[name]["y"].push_back(y);
+    chart.marks.push_back({x, y, pen, ""});
+  }
+  chart.series.push_back({name, "y", std::move(label), pen});
+}
+
+void keep(Picture& drawn, Chart chart) {
+  if (chart.marks.empty()) return;
+  const auto [first, last] =
+      std::minmax_element(chart.marks.begin(), chart.marks.end(), [](const Mark& a, const Mark& b) { return a.x < b.x; });
+  constexpr double margin = 1.15;
+  chart.x_home = chart.x_whole = {first->x / margin, last->x * margin};
+  drawn.charts.push_back(std::move(chart));
+}
+
+// Error against time, of an integrator at every tolerance.
+Points work_precision(const AccuracyStudy& study, const std::vector<AccuracyRow>& rows, Integrator integrator) {
+  Points points;
+  for (const AccuracyRow& row : rows) {
+    if (row.integrator == integrator && row.points_per_length == own_points(study))
+      points.push_back({row.seconds, study.worst_error(row)});
+  }
+  return points;
+}
+
+Picture picture(const AccuracyStudy& study) {
+  constexpr std::array pens{Role::best, Role::baseline, Role::third, Role::fourth, Role::fifth};
+  Picture drawn;
+  const Integrator own = study.reference.integrator;
+  const std::string time = "Time of one closing", figures = symbols(study, true);
+
+  Chart work = logarithmic_chart("work-precision", "Largest relative error of " + figures, time, "s", 380);
+  work.caption =
+      "One curve per integrator; the dots of a curve are tolerances, a factor of ten apart. The lower left is where to be.";
+  for (std::size_t i = 0; i < all_integrators.size(); ++i) {
+    add_curve(drawn, work, std::string(to_string(all_integrators[i])), pens[i % pens.size()],
+              work_precision(study, study.rows, all_integrators[i]));
+    if (all_integrators[i] != own) continue;
+    for (Mark& mark : work.marks) {  // which tolerance is where, said once
+      for (const AccuracyRow& row : study.rows) {
+        const bool shown = row.integrator == own && row.points_per_length == own_points(study) && row.seconds == mark.x;
+        if (shown && mark.role == pens[i % pens.size()]) mark.text = power(row.tolerance);
+      }
+    }
+  }
+  keep(drawn, std::move(work));
+
+  // The integrator that simulate takes, and the one that loses its history with every restart.
+  Chart contact = logarithmic_chart(
+      "contact", "Restarted at make and break of contact, or not: largest relative error of " + figures, time, "s", 260);
+  contact.caption = restart_text(study);
+  std::size_t pen = 0;
+  for (const Integrator integrator : {own, Integrator::bdf}) {
+    for (const auto* rows : {&study.rows, &study.through}) {
+      const char* how = rows == &study.through ? ", not restarted" : "";
+      add_curve(drawn, contact, std::string(to_string(integrator)) + how, pens[pen++], work_precision(study, *rows, integrator));
+    }
+  }
+  if (!study.through.empty()) keep(drawn, std::move(contact));
+
+  Chart points = logarithmic_chart("quadrature", fmt::format("Quadrature: {} at its tightest tolerance", to_string(own)),
+                                   "Quadrature points per length", "", 260);
+  points.caption = "What too few points leave, however tight the tolerance.";
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    if (!study.conditioned[i]) continue;
+    Points errors;
+    for (const AccuracyRow* row : quadrature_rows(study)) {
+      if (row->missing.empty()) errors.push_back({row->points_per_length, row->errors[i]});
+    }
+    add_curve(drawn, points, std::string(studied_figures[i].symbol), pens[i % pens.size()], std::move(errors));
+  }
+  keep(drawn, std::move(points));
+  return drawn;
+}
+
 }  // namespace
 
 json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
@@ -185,6 +296,8 @@ json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const P
   j["reference"]["resolution"] = errors_json(study.resolution);
   j["rows"] = rows_json(study.rows);
   j["modes"] = rows_json(study.modes);
+  j["without_restart_at_contact"] = rows_json(study.through);
+  if (!study.why_always_restarted.empty()) j["why_always_restarted"] = study.why_always_restarted;
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     json cloud = spread_json(study.cloud[i]);
     cloud["well_conditioned"] = study.conditioned[i];
@@ -227,6 +340,10 @@ std::string accuracy_text(const AccuracyStudy& study) {
     if (row.points_per_length != own_points(study)) continue;
     text += line({std::string(to_string(row.integrator)), power(row.tolerance)}, row);
   }
+  if (!study.through.empty()) text += "\n" + aligned(head({"no restart", "tolerance"}));
+  for (const AccuracyRow& row : study.through) {
+    text += line({std::string(to_string(row.integrator)), power(row.tolerance)}, row);
+  }
   text += "\n" + aligned(head({"points", "per length"}));
   for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", row->points_per_length)}, *row);
   if (!study.modes.empty()) {
@@ -237,8 +354,9 @@ std::string accuracy_text(const AccuracyStudy& study) {
           wrapped(fmt::format(
               "Relative errors of the delivered figures against the reference; times are medians of processor time. Integrators "
               "with {:g} points per length, points and modes with {}, tolerance {}. What another number "
-              "of modes changes is no error of the integration.",
-              own_points(study), to_string(study.reference.integrator), power(quadrature_rows(study).front()->tolerance))) +
+              "of modes changes is no error of the integration. {}",
+              own_points(study), to_string(study.reference.integrator), power(quadrature_rows(study).front()->tolerance),
+              restart_text(study))) +
           "\n\n";
   text += cloud_text(study) + "\n" +
           wrapped(
@@ -252,76 +370,10 @@ std::string accuracy_text(const AccuracyStudy& study) {
 }
 
 std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {
-  using namespace internal;
-  constexpr std::array pens{Role::best, Role::baseline, Role::third, Role::fourth, Role::fifth};
-  Picture drawn;
-  const auto add = [&](Chart& chart, std::string label, Role pen, std::vector<std::array<double, 2>> points) {
-    std::erase_if(points, [](const auto& p) { return !(p[0] > 0 && p[1] > 0 && std::isfinite(p[1])); });
-    if (points.empty()) return;
-    std::sort(points.begin(), points.end());
-    const std::string name = fmt::format("{}/{}", chart.id, chart.series.size());
-    for (const auto& [x, y] : points) {
-      drawn.tables[name]["x"].push_back(x);
-      drawn.tables[name]["y"].push_back(y);
-      chart.marks.push_back({x, y, pen, ""});
-    }
-    chart.series.push_back({name, "y", std::move(label), pen});
-  };
-  const auto keep = [&](Chart chart) {
-    if (chart.marks.empty()) return;
-    const auto [first, last] =
-        std::minmax_element(chart.marks.begin(), chart.marks.end(), [](const Mark& a, const Mark& b) { return a.x < b.x; });
-    constexpr double margin = 1.15;
-    chart.x_home = chart.x_whole = {first->x / margin, last->x * margin};
-    drawn.charts.push_back(std::move(chart));
-  };
-
-  Chart work;
-  work.id = "work-precision";
-  work.title = fmt::format("Largest relative error of {}", symbols(study, true));
-  work.x_column = "x";
-  work.x_label = "Time of one closing";
-  work.x_unit = "s";
-  work.y_label = "Relative error";
-  work.scale = work.x_scale = Scale::logarithmic;
-  work.height = 380;
-  for (std::size_t i = 0; i < all_integrators.size(); ++i) {
-    std::vector<std::array<double, 2>> points;
-    for (const AccuracyRow& row : study.rows) {
-      if (row.integrator != all_integrators[i] || row.points_per_length != own_points(study)) continue;
-      points.push_back({row.seconds, study.worst_error(row)});
-    }
-    add(work, std::string(to_string(all_integrators[i])), pens[i % pens.size()], std::move(points));
-  }
-  for (Mark& mark : work.marks) {  // which tolerance is where, said once
-    for (const AccuracyRow& row : study.rows) {
-      const bool own = row.integrator == study.reference.integrator && row.points_per_length == own_points(study);
-      if (own && row.seconds == mark.x && mark.role == pens[0]) mark.text = power(row.tolerance);
-    }
-  }
-  keep(std::move(work));
-
-  Chart points_chart;
-  points_chart.id = "quadrature";
-  points_chart.title = fmt::format("Quadrature: {} at its tightest tolerance", to_string(study.reference.integrator));
-  points_chart.x_column = "x";
-  points_chart.x_label = "Quadrature points per length";
-  points_chart.y_label = "Relative error";
-  points_chart.scale = points_chart.x_scale = Scale::logarithmic;
-  points_chart.height = 260;
-  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    if (!study.conditioned[i]) continue;
-    std::vector<std::array<double, 2>> points;
-    for (const AccuracyRow* row : quadrature_rows(study)) {
-      if (row->missing.empty()) points.push_back({row->points_per_length, row->errors[i]});
-    }
-    add(points_chart, std::string(studied_figures[i].symbol), pens[i % pens.size()], std::move(points));
-  }
-  keep(std::move(points_chart));
   std::string words = "Dots are tolerances, a factor of ten apart. Quickest within";
   for (const Recommendation& r : study.recommendations)
     words += fmt::format(" {}: {}{}", power(r.accuracy), recommended(study, r), &r == &study.recommendations.back() ? "." : ";");
-  return svg_page(title.empty() ? "What accuracy costs" : title + ": what accuracy costs", words, drawn);
+  return svg_page(title.empty() ? "What accuracy costs" : title + ": what accuracy costs", words, picture(study));
 }
 
 }  // namespace softland

@@ -11,7 +11,8 @@ namespace softland {
 
 [[nodiscard]] nlohmann::json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance);
 [[nodiscard]] std::string accuracy_text(const AccuracyStudy& study);
-/// Error against time, one curve per integrator, and error against quadrature points, one per figure.
+/// Error against time, one curve per integrator; the same with and without a restart at the contact; and error against quadrature
+/// points, one curve per figure.
 [[nodiscard]] std::string accuracy_svg(const std::string& title, const AccuracyStudy& study);
 
 }  // namespace softland

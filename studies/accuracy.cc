@@ -38,6 +38,8 @@ class Study {
     // Two references and the cloud count as one each.
     all_ =
         3 + all_integrators.size() * tolerances + (options.points.size() - own_points_among()) * tolerances + other_modes_.size();
+    found_.why_always_restarted = prepared.device.has_contact() ? why_always_restarted(prepared.device) : "there is no contact";
+    if (found_.why_always_restarted.empty()) all_ += all_integrators.size() * tolerances;
   }
 
   AccuracyStudy run() {
@@ -45,20 +47,25 @@ class Study {
     const Switch own(prepared_.scene.device, {.points_per_length = own_points_});
     gather_cloud(own);
     start_ = Clock::now();
-    sweep(own, own_integrator_, own_points_);
+    sweep(own, setting(own_integrator_, own_points_), found_.rows);
     for (const double points : options_.points) {
       if (points == own_points_) continue;
-      sweep(Switch(prepared_.scene.device, {.points_per_length = points}), own_integrator_, points);
+      sweep(Switch(prepared_.scene.device, {.points_per_length = points}), setting(own_integrator_, points), found_.rows);
     }
     for (const int modes : other_modes_) {
       Device device = prepared_.scene.device;
       device.structure.modes = modes;
-      AccuracyRow row = setting(own_integrator_, options_.tolerances.back(), own_points_, modes);
+      AccuracyRow row = setting(own_integrator_, own_points_, options_.tolerances.back());
+      row.modes = modes;
       try_out(Switch(device), row);
       found_.modes.push_back(std::move(row));
     }
+    go_through(own, own_integrator_);
     for (const Integrator integrator : all_integrators) {
-      if (integrator != own_integrator_) sweep(own, integrator, own_points_);
+      if (integrator != own_integrator_) sweep(own, setting(integrator, own_points_), found_.rows);
+    }
+    for (const Integrator integrator : all_integrators) {
+      if (integrator != own_integrator_) go_through(own, integrator);
     }
     if (stopped()) found_.status = Status::interrupted;
     recommend();
@@ -74,12 +81,16 @@ class Study {
     ++done_;
     if (options_.on_progress) options_.on_progress(done_, all_);
   }
-  static AccuracyRow setting(Integrator integrator, double tolerance, double points, int modes) {
-    return {.integrator = integrator, .tolerance = tolerance, .points_per_length = points, .modes = modes};
+  [[nodiscard]] AccuracyRow setting(Integrator integrator, double points, double tolerance = 0) const {
+    return {.integrator = integrator, .tolerance = tolerance, .points_per_length = points, .modes = own_modes_};
   }
 
   [[nodiscard]] ClosingOptions closing(const AccuracyRow& row) const {
-    return {.duration = prepared_.duration, .tolerance = row.tolerance, .integrator = row.integrator, .stop = options_.stop};
+    return {.duration = prepared_.duration,
+            .tolerance = row.tolerance,
+            .integrator = row.integrator,
+            .restart_at_contact = row.restart,
+            .stop = options_.stop};
   }
 
   // Runs a setting until it is timed well enough, none longer than `most_seconds`.
@@ -137,10 +148,12 @@ class Study {
     progress();
   }
 
-  void sweep(const Switch& device, Integrator integrator, double points) {
+  // A setting at every tolerance.
+  void sweep(const Switch& device, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
     bool cut = false;
     for (const double tolerance : options_.tolerances) {
-      AccuracyRow row = setting(integrator, tolerance, points, own_modes_);
+      AccuracyRow row = given;
+      row.tolerance = tolerance;
       if (cut) {
         progress();
         row.missing = fmt::format("not tried: a looser tolerance took more than {:g} s", options_.most_seconds);
@@ -148,8 +161,16 @@ class Study {
         try_out(device, row);
         cut = row.missing.starts_with("cut");
       }
-      found_.rows.push_back(std::move(row));
+      rows.push_back(std::move(row));
     }
+  }
+
+  // The same without a restart at the contact.
+  void go_through(const Switch& device, Integrator integrator) {
+    if (!found_.why_always_restarted.empty()) return;
+    AccuracyRow row = setting(integrator, own_points_);
+    row.restart = false;
+    sweep(device, row, found_.through);
   }
 
   // A tolerance that is too tight for rounding, or for the time there is, gives way to the next.
@@ -159,7 +180,7 @@ class Study {
     const double tightest = options_.tolerances.back();
     AccuracyRow& reference = found_.reference;
     for (double tolerance = reference_tighter * tightest; tolerance < tightest; tolerance *= 10) {
-      reference = setting(own_integrator_, tolerance, points, own_modes_);
+      reference = setting(own_integrator_, points, tolerance);
       measure(fine, reference, 1, options_.reference_seconds);
       if (reference.missing.empty() || stopped()) break;
     }
@@ -170,7 +191,7 @@ class Study {
       return false;
     }
     found_.status = Status::done;
-    AccuracyRow second = setting(own_integrator_, reference_looser * reference.tolerance, options_.points.back(), own_modes_);
+    AccuracyRow second = setting(own_integrator_, options_.points.back(), reference_looser * reference.tolerance);
     measure(Switch(prepared_.scene.device, {.points_per_length = second.points_per_length}), second, 1,
             options_.reference_seconds);
     found_.resolution = second.errors;
@@ -180,7 +201,7 @@ class Study {
   }
 
   void gather_cloud(const Switch& device) {
-    const ClosingOptions options = closing(setting(own_integrator_, options_.tolerances.back(), own_points_, own_modes_));
+    const ClosingOptions options = closing(setting(own_integrator_, own_points_, options_.tolerances.back()));
     std::vector<Metrics> runs;
     for (const Trajectory& t : perturbed_closings(device, signals_, options, cloud_options)) {
       if (t.status == Status::done) runs.push_back(figures(t));

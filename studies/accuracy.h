@@ -3,7 +3,8 @@
 //
 // The reference has a ten-thousandth of the tightest tolerance and twice the most quadrature points. Drives keep the volts that
 // the scene gives them, whatever the number of modes. What another number of modes changes is a matter of the model, not an error
-// of the integration, and stands by itself. Figures that imperceptible perturbations of the drives move visibly have no error:
+// of the integration, and stands by itself. So do runs whose integrator is not restarted at the contact: simulate() restarts
+// it. Figures that imperceptible perturbations of the drives move visibly have no error:
 // they are shown as the range of a cloud of runs.
 #pragma once
 
@@ -61,6 +62,7 @@ struct AccuracyRow {
   double tolerance = 0;
   double points_per_length = 0;
   int modes = 0;
+  bool restart = true;       ///< of the integrator, at make and break of contact
   std::string missing = {};  ///< why there are no figures; empty when there are
   Metrics figures = {};
   FigureErrors errors = {};  ///< relative, against the reference
@@ -85,7 +87,9 @@ struct AccuracyStudy {
   /// With the integrator that simulate takes every tolerance and number of points, the points that simulate takes first; with the
   /// others every tolerance at those points.
   std::vector<AccuracyRow> rows;
-  std::vector<AccuracyRow> modes;                        ///< other numbers of modes, at the tightest tolerance
+  std::vector<AccuracyRow> modes;    ///< other numbers of modes, at the tightest tolerance
+  std::vector<AccuracyRow> through;  ///< every integrator and tolerance, without a restart at make and break of contact
+  std::string why_always_restarted;  ///< why there are none of those
   std::array<Spread, studied_figures.size()> cloud;      ///< over perturbed runs at the tightest tolerance
   Spread permanent_contact_time, bounce_count;           ///< over the same runs
   std::array<bool, studied_figures.size()> conditioned;  ///< which figures have errors at all

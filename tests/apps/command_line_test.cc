@@ -265,8 +265,9 @@ TEST(Accuracy, PrintsATableAndTheAgreedJsonAndDraws) {
   const json j = json::parse(read(here.path() / "a.json"));
   EXPECT_EQ(j, json::parse(read(here.path() / "acc/accuracy.json")));
   EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "scene", "version", "command", "reference", "rows", "modes",
-                                            "cloud", "recommendations"}));
+                                            "without_restart_at_contact", "cloud", "recommendations"}));
   const json& row = j["rows"][0];
+  EXPECT_EQ(j["without_restart_at_contact"].size(), 35U);
   EXPECT_EQ(keys(row), (std::set<std::string>{"integrator", "tolerance", "points_per_length", "modes", "relative_errors",
                                               "metrics", "steps", "rhs_evaluations", "cpu_s", "runs"}));
   EXPECT_EQ(keys(row["relative_errors"]), (std::set<std::string>{"initial_contact_time_s", "impact_velocity_m_s",

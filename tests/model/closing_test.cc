@@ -1,6 +1,7 @@
 // Events, endings and bad arguments of a closing.
 #include "model/closing.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -340,6 +341,70 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
       EXPECT_NEAR(speed(t.touches[1].end), after, 1e-6 * before) << "a lighter impact on the dent is elastic";
     }
   }
+}
+
+// Touches that tighter and tighter runs agree on: later ones magnify what the earlier ones leave.
+TEST(ThroughContact, IsTheSameClosingUnderEveryLawWithoutMemory) {
+  constexpr std::size_t compared = 3;  // touches
+  constexpr double drift = 1_ns, digits = 1e-4;
+  std::vector<Contact> contacts = test::contacts();
+  for (const Contact& c : test::pad_contacts()) contacts.push_back(c);
+  int tried = 0;
+  for (const Contact& contact : contacts) {
+    Device device = test::gold_cantilever();
+    device.contact = contact;
+    const Switch with(device);
+    if (!why_always_restarted(with).empty()) continue;
+    ++tried;
+    SCOPED_TRACE(fmt::format("{} {} {}", to_string(contact.model), contact.damping, static_cast<int>(contact.distribution)));
+    ClosingOptions options{.duration = 60_us, .tolerance = 1e-9};
+    const Trajectory restarted = simulate_closing(with, step(), options);
+    options.restart_at_contact = false;
+    const Trajectory through = simulate_closing(with, step(), options);
+    ASSERT_EQ(through.status, Status::done) << through.message;
+    ASSERT_GE(restarted.touches.size(), compared);
+    ASSERT_GE(through.touches.size(), compared);
+    for (std::size_t i = 0; i < compared; ++i) {
+      const Touch &a = through.touches[i], &b = restarted.touches[i];
+      EXPECT_NEAR(a.begin, b.begin, drift) << i;
+      EXPECT_NEAR(a.impact_velocity, b.impact_velocity, digits * restarted.touches[0].impact_velocity) << i;
+      EXPECT_NEAR(a.peak_force, b.peak_force, digits * restarted.touches[0].peak_force) << i;
+      if (std::isfinite(b.end)) {
+        EXPECT_NEAR(a.end, b.end, drift) << i;
+      }
+    }
+  }
+  EXPECT_GE(tried, 10);
+}
+
+TEST(ThroughContact, GoesOnWhereADefaultRunStopsAndStartsAnew) {
+  const auto steps_that_end_at_a_touch = [](bool restart) {
+    std::vector<double> ends;
+    ClosingOptions options{.duration = 60_us, .restart_at_contact = restart};
+    options.observer = [&](double t, const double*, const double*) { return ends.push_back(t), false; };
+    const Trajectory t = simulate_closing(gold(), step(), options);
+    EXPECT_GE(t.touches.size(), 3u);
+    for (std::size_t i = 1; i < t.points.size(); ++i) EXPECT_GE(t.points[i].time, t.points[i - 1].time);
+    return std::count_if(t.touches.begin(), t.touches.end(),
+                         [&](const Touch& touch) { return std::find(ends.begin(), ends.end(), touch.begin) != ends.end(); });
+  };
+  EXPECT_GE(steps_that_end_at_a_touch(true), 3);
+  EXPECT_EQ(steps_that_end_at_a_touch(false), 0);
+}
+
+TEST(ThroughContact, IsRefusedWhereTheContactIsNoFunctionOfTheState) {
+  const auto run = [](const Device& device) {
+    return [=] { (void)simulate_closing(Switch(device), step(), {.duration = 1e-4, .restart_at_contact = false}); };
+  };
+  Device device = test::gold_cantilever();
+  device.contact->model = ContactModel::hysteretic;
+  device.contact->stiffness = 1e4;
+  device.contact->unloading_stiffness = 2e4;
+  test::expect_refused(run(device), "restart_at_contact = false: a contact law with memory turns at the deepest point");
+  device = test::full_plate();
+  device.electrodes.pop_back();
+  device.contact = Contact{.model = ContactModel::rigid, .restitution = 0.5};
+  test::expect_refused(run(device), "restart_at_contact = false: an impact on a rigid contact is no force");
 }
 
 TEST(Closing, RefusesBadArguments) {

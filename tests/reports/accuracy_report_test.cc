@@ -38,6 +38,9 @@ AccuracyStudy sample() {
   }
   s.rows.push_back(row(all_integrators[1], 1e-3, 24, 1e-4, 0.23));
   s.rows.push_back({.integrator = all_integrators[1], .tolerance = 1e-4, .points_per_length = 24, .missing = "cut after 2 s"});
+  s.through.push_back(row(all_integrators[0], 1e-3, 24, 2e-3, 1.6e-4));
+  s.through.push_back(row(all_integrators[0], 1e-4, 24, 2e-5, 4e-4));
+  for (AccuracyRow& r : s.through) r.restart = false;
   s.modes.push_back(row(all_integrators[0], 1e-4, 24, 1e-2, 1e-3));
   s.modes.back().modes = 5;
   s.conditioned = {true, true, false, false};
@@ -70,6 +73,17 @@ TEST(AccuracyText, ShowsIllConditionedFiguresAsClouds) {
   EXPECT_THAT(accuracy_text(none), HasSubstr("No figure is well-conditioned here"));
 }
 
+TEST(AccuracyText, ListsWhatWasTriedWithoutARestartOrWhyNothingWas) {
+  const std::string own(to_string(all_integrators[0]));
+  EXPECT_THAT(accuracy_text(sample()), ::testing::ContainsRegex("no restart +tolerance [^\n]+\n" + own +
+                                                                " +1e-3 +2.0e-04 +2.0e-03 +2.0e-03 +- +600 +0.16\n"));
+  AccuracyStudy none = sample();
+  none.through.clear();
+  none.why_always_restarted = "there is no contact";
+  EXPECT_THAT(accuracy_text(none), HasSubstr("without a restart at the\ncontact: there is no contact."));
+  EXPECT_THAT(accuracy_svg("", none), Not(HasSubstr("not restarted")));
+}
+
 TEST(AccuracyText, OfNoStudySaysWhy) {
   AccuracyStudy none;
   none.status = Status::no_contact;
@@ -87,6 +101,7 @@ TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_THAT(svg, HasSubstr(">" + std::string(to_string(all_integrators[i])) + "<"));
   EXPECT_THAT(svg, Not(HasSubstr(">" + std::string(to_string(all_integrators[2])) + "<")));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_THAT(svg, HasSubstr(">" + std::string(to_string(all_integrators[0])) + ", not restarted<"));
   EXPECT_THAT(svg, HasSubstr(">1e-4</text>")) << "the tolerances along the curve of the own integrator";
   AccuracyStudy none = sample();
   none.conditioned = {};

@@ -59,6 +59,9 @@ TEST(Accuracy, TriesEverySettingOnce) {
   for (const Integrator integrator : all_integrators)
     EXPECT_EQ(rows_of(study, integrator, 24).size(), 3U) << to_string(integrator);
   EXPECT_EQ(rows_of(study, study.reference.integrator, 8).size(), 3U);
+  EXPECT_EQ(study.through.size(), 3 * all_integrators.size());
+  for (const AccuracyRow& row : study.through) EXPECT_FALSE(row.restart);
+  for (const AccuracyRow& row : study.rows) EXPECT_TRUE(row.restart);
   EXPECT_EQ(study.rows.size(), 3 * (all_integrators.size() + 1));
   std::vector<int> modes;
   for (const AccuracyRow& row : study.modes) modes.push_back(row.modes);
@@ -76,6 +79,29 @@ TEST(Accuracy, ErrorsFallWithTheTolerance) {
     EXPECT_GT(rows.back().work.rhs_evaluations, rows.front().work.rhs_evaluations) << to_string(integrator);
     EXPECT_LT(study.worst_error(rows[2]), left_at_most * study.worst_error(rows[0])) << to_string(integrator);
   }
+}
+
+// Integrators that step over make and break of contact converge to the same figures, and do other work for them.
+TEST(Accuracy, ShowsWhatRestartingAtTheContactIsWorth) {
+  constexpr double close = 1e-4;
+  const AccuracyStudy& study = study_of_first_bounces();
+  for (const AccuracyRow& row : study.through) {
+    ASSERT_EQ(row.missing, "");
+    if (row.tolerance == 1e-8) {
+      EXPECT_LT(study.worst_error(row), close) << to_string(row.integrator);
+    }
+    for (const AccuracyRow& restarted : rows_of(study, row.integrator, 24)) {
+      if (restarted.tolerance == row.tolerance) {
+        EXPECT_NE(row.work.rhs_evaluations, restarted.work.rhs_evaluations);
+      }
+    }
+  }
+  const AccuracyStudy memory =
+      study_accuracy(prepare(gold({"contact.model=elastic-plastic", "contact.hardness=1 GPa", "simulate.duration=40 us"})),
+                     {.tolerances = {1e-4}, .points = {24}, .runs = 1});
+  EXPECT_EQ(memory.status, Status::done);
+  EXPECT_TRUE(memory.through.empty());
+  EXPECT_EQ(memory.why_always_restarted, "a contact law with memory turns at the deepest point");
 }
 
 TEST(Accuracy, MoreModesAreAnotherModelAndNotAnError) {
