@@ -151,7 +151,7 @@ int run(int argc, char** argv) {
       add_verb("accuracy", "what accuracy costs in time: errors of the figures for every integrator and setting");
   with_scene(accuracy, true);
   with_json(accuracy);
-  option(accuracy, "--out", common.out, "FOLDER", "folder for accuracy.json and the diagram accuracy.svg");
+  option(accuracy, "--out", common.out, "FOLDER", "folder for report.html, accuracy.svg and accuracy.json");
   accuracy->footer(
       "Combinations that take more than 2 s per closing are cut, and listed as such.\n"
       "Example:\n  softland accuracy scenes/mem-gold.toml --set simulate.duration=\"100 us\" --out accuracy");

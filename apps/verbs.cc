@@ -428,9 +428,11 @@ int accuracy_verb(const Common& c) {
   const json j = accuracy_json(p, study, {.command = c.command});
   std::string text = accuracy_text(study);
   if (!c.out.empty() && !study.rows.empty()) {
-    write_whole(fs::path(c.out) / "accuracy.json", j.dump(2) + "\n");
-    write_whole(fs::path(c.out) / "accuracy.svg", accuracy_svg(p.scene.title, study));
-    text += fmt::format("\nIn {}: accuracy.json, accuracy.svg\n", c.out);
+    const fs::path folder = c.out;
+    write_whole(folder / "report.html", accuracy_html(p, study, {.command = c.command}));
+    write_whole(folder / "accuracy.svg", accuracy_svg(p.scene.title, study));
+    write_whole(folder / "accuracy.json", j.dump(2) + "\n");
+    text += fmt::format("\nIn {}: report.html, accuracy.svg, accuracy.json\n", c.out);
   }
   print_json_or(c, j, text);
   return status_code(study.status);

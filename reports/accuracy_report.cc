@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "reports/chart.h"
+#include "reports/escape.h"
+#include "reports/findings.h"
+#include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
 #include "reports/text.h"
@@ -281,6 +286,145 @@ Picture picture(const AccuracyStudy& study) {
   return drawn;
 }
 
+// ---- the page
+// ---------------------------------------------------------------------------------------------------------------------
+
+// "t<sub>i</sub>"
+std::string symbol_html(std::string_view symbol) {
+  const std::size_t at = symbol.find('_');
+  return at == std::string_view::npos ? std::string(symbol)
+                                      : fmt::format("{}<sub>{}</sub>", symbol.substr(0, at), symbol.substr(at + 1));
+}
+
+std::string table_row(std::string_view cell, const std::vector<std::string>& cells) {
+  return fmt::format(
+      "<tr><{0} scope=\"{1}\">{2}</{0}>{3}</tr>\n", "th", cell == "td" ? "row" : "col", cells[0],
+      fmt::format("<{0}>{1}</{0}>", cell, fmt::join(cells.begin() + 1, cells.end(), fmt::format("</{0}><{0}>", cell))));
+}
+
+std::string table(const std::vector<std::string>& head, const std::string& rows) {
+  return "<div class=\"scroll\"><table><thead>" + table_row("th", head) + "</thead><tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
+std::string section(std::string_view id, std::string_view heading, const std::string& body) {
+  return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, heading, body);
+}
+
+// Errors and costs of settings; `first` says what a row is.
+std::string errors_table(const std::vector<std::string>& first, const std::vector<const AccuracyRow*>& rows,
+                         const std::function<std::vector<std::string>(const AccuracyRow&)>& setting) {
+  std::vector<std::string> head = first;
+  for (const StudiedFigure& f : studied_figures) head.push_back(symbol_html(f.symbol));
+  head.insert(head.end(), {"right-hand sides", "time"});
+  std::string body;
+  for (const AccuracyRow* row : rows) {
+    std::vector<std::string> cells = setting(*row);
+    if (!row->missing.empty()) {
+      std::string line = table_row("td", cells);
+      line.insert(line.rfind("</tr>"), fmt::format("<td class=\"missing\" colspan=\"{}\">{}</td>", studied_figures.size() + 2,
+                                                   internal::escaped(row->missing)));
+      body += line;
+      continue;
+    }
+    for (const double error : row->errors) cells.push_back(error_cell(error));
+    cells.push_back(fmt::format("{}", row->work.rhs_evaluations));
+    cells.push_back(internal::quantity(row->seconds, "s"));
+    body += table_row("td", cells);
+  }
+  return table(head, body);
+}
+
+std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
+  std::vector<const AccuracyRow*> all;
+  for (const AccuracyRow& row : rows) all.push_back(&row);
+  return all;
+}
+
+std::string recommendations_html(const AccuracyStudy& study) {
+  if (symbols(study, true).empty()) return "<p>" + recommendations(study).front() + "</p>\n";
+  std::string rows;
+  for (const Recommendation& r : study.recommendations) {
+    const std::string accuracy = power(r.accuracy);
+    if (!r.row) {
+      rows += table_row("td", {accuracy, "nothing that was tried", "", "", ""});
+      continue;
+    }
+    const AccuracyRow& row = study.rows[*r.row];
+    rows += table_row("td", {accuracy, std::string(to_string(row.integrator)), power(row.tolerance),
+                             fmt::format("{:g}", row.points_per_length), internal::quantity(row.seconds, "s", 2)});
+  }
+  const std::string ill = symbols(study, false);
+  return table({"Accuracy wanted", "Integrator", "Tolerance", "Points per length", "Time of a closing"}, rows) +
+         fmt::format(
+             "<p class=\"below\">The quickest setting with which {} are that accurate, there and at every tighter tolerance "
+             "tried.{}</p>\n",
+             symbols(study, true), ill.empty() ? "" : " Left out, because ill-conditioned here: " + ill + ".");
+}
+
+std::string clouds_html(const AccuracyStudy& study) {
+  std::string rows;
+  const auto add = [&](std::string_view symbol, std::string_view unit, const Spread& s, const char* note) {
+    const auto value = [&](double v) { return s.runs > 0 ? internal::quantity(v, unit, 5) : std::string("—"); };
+    rows += table_row("td", {symbol_html(symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
+                             fmt::format("<span class=\"note\">{}</span>", note)});
+  };
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    if (study.cloud[i].runs == 0) continue;
+    add(studied_figures[i].symbol, studied_figures[i].unit, study.cloud[i], study.conditioned[i] ? "" : "ill-conditioned");
+  }
+  const auto apart = [](const Spread& s) { return s.high - s.low > ill_conditioned_range * s.high ? "ill-conditioned" : ""; };
+  add("t_p", "s", study.permanent_contact_time, apart(study.permanent_contact_time));
+  add("N_B", "", study.bounce_count, apart(study.bounce_count));
+  return table({"Figure", "lowest", "median", "highest", "runs", ""}, rows) +
+         "<p class=\"below\">Runs whose drives differ by one part in 1e9 to 1e7, which nobody could notice. Permanent contact "
+         "time and "
+         "bounce count are properties of such a cloud, not of one run.</p>\n";
+}
+
+std::string charts_html(const AccuracyStudy& study) {
+  const Picture drawn = picture(study);
+  std::string out;
+  for (const Chart& chart : drawn.charts) {
+    out += fmt::format("<figure id=\"figure-{}\">{}<figcaption>{}</figcaption></figure>\n", chart.id,
+                       internal::still_picture(drawn.tables, chart), internal::escaped(chart.caption));
+  }
+  return out;
+}
+
+std::string reference_keys(const AccuracyStudy& study) {
+  std::string out;
+  for (std::size_t i = 0; i < studied_figures.size(); ++i) {
+    const StudiedFigure& f = studied_figures[i];
+    const double value = study.reference.figures.*f.figure;
+    const auto& named = internal::figures();
+    const auto label = std::find_if(named.begin(), named.end(), [&](const internal::Figure& one) { return one.key == f.key; });
+    out += fmt::format(
+        "<div class=\"key\"><dt>{}{}</dt><dd><span class=\"after\">{}</span><span class=\"change\">{}</span></dd></div>\n",
+        label->label, f.symbol.find('_') == std::string_view::npos ? "" : ", " + symbol_html(f.symbol),
+        internal::quantity(value, f.unit, 4),
+        !std::isfinite(value)   ? ""
+        : !study.conditioned[i] ? "ill-conditioned"
+                                : "known to " + error_cell(study.resolution[i]));
+  }
+  return out;
+}
+
+// What the accuracy takes that is nearest to the one the scene asks for.
+std::pair<std::string, std::string> headline(const Prepared& prepared, const AccuracyStudy& study) {
+  const std::string figures = symbols(study, true);
+  if (figures.empty() || study.recommendations.empty()) return {recommendations(study).front(), ""};
+  const double asked = std::log(prepared.scene.simulate.accuracy);
+  const auto& r =
+      *std::min_element(study.recommendations.begin(), study.recommendations.end(), [&](const auto& a, const auto& b) {
+        return std::abs(std::log(a.accuracy) - asked) < std::abs(std::log(b.accuracy) - asked);
+      });
+  if (!r.row) return {fmt::format("Nothing that was tried has {} within {}.", figures, power(r.accuracy)), ""};
+  const AccuracyRow& row = study.rows[*r.row];
+  return {
+      fmt::format("A closing with {} within {} takes {}", figures, power(r.accuracy), internal::quantity(row.seconds, "s", 2)),
+      fmt::format(", with {}.", setting_text(row))};
+}
+
 }  // namespace
 
 json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
@@ -367,6 +511,52 @@ std::string accuracy_text(const AccuracyStudy& study) {
   if (!ill.empty()) text += wrapped(fmt::format("Ill-conditioned here, and left out of what follows: {}.", ill)) + "\n\n";
   for (const std::string& words : recommendations(study)) text += words + "\n";
   return text;
+}
+
+std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
+  const auto integrator = [](const AccuracyRow& row) {
+    return std::vector<std::string>{std::string(to_string(row.integrator)), power(row.tolerance)};
+  };
+  std::vector<const AccuracyRow*> own;
+  for (const AccuracyRow& row : study.rows) {
+    if (row.points_per_length == own_points(study)) own.push_back(&row);
+  }
+  std::string settings = fmt::format(
+      "<p>Relative errors of the delivered figures against the reference: {}, {} modes. Times are medians of processor "
+      "time.</p>\n",
+      setting_text(study.reference), study.reference.modes);
+  settings += fmt::format("<h3>Integrator and tolerance, with {:g} points per length</h3>\n", own_points(study)) +
+              errors_table({"Integrator", "Tolerance"}, own, integrator);
+  settings += "<h3>The same without a restart at make and break of contact</h3>\n";
+  settings += study.through.empty()
+                  ? "<p>" + restart_text(study) + "</p>\n"
+                  : "<details><summary>" + restart_text(study) + "</summary>\n" +
+                        errors_table({"Integrator", "Tolerance"}, all_of(study.through), integrator) + "</details>\n";
+  const std::vector<const AccuracyRow*> quadrature = quadrature_rows(study);
+  const std::string tightest =
+      fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator), power(quadrature.front()->tolerance));
+  settings += fmt::format("<h3>Quadrature, with {}</h3>\n", tightest) +
+              errors_table({"Points per length"}, quadrature,
+                           [](const AccuracyRow& row) { return std::vector{fmt::format("{:g}", row.points_per_length)}; });
+  if (!study.modes.empty()) {
+    settings += fmt::format("<h3>Another number of modes, with {}: another model, not an error</h3>\n", tightest) +
+                errors_table({"Modes"}, all_of(study.modes),
+                             [](const AccuracyRow& row) { return std::vector{fmt::format("{}", row.modes)}; });
+  }
+  const auto [main, rest] = headline(prepared, study);
+  const json result{{"command", provenance.command},
+                    {"version", version},
+                    {"scene_toml", resolved(prepared.scene, prepared.voltage_units()).text()}};
+  return internal::page({.title = prepared.scene.title,
+                         .origin = "accuracy",
+                         .headline = main,
+                         .headline_rest = rest,
+                         .keys = reference_keys(study),
+                         .body = section("recommendations", "Quickest settings", recommendations_html(study)) +
+                                 section("charts", "What accuracy costs", charts_html(study)) +
+                                 section("settings", "Every setting that was tried", settings) +
+                                 section("cloud", "What no setting can tell", clouds_html(study)) + internal::reproduce(result) +
+                                 internal::scene(result)});
 }
 
 std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {

@@ -11,6 +11,7 @@
 #include "reports/chart.h"
 #include "reports/escape.h"
 #include "reports/findings.h"
+#include "reports/page.h"
 #include "reports/page_files.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
@@ -23,30 +24,7 @@ using nlohmann::json;
 
 /// Rows per curve in the page: several times the pixels of a wide screen, so that zooming shows more, at about 100 kB a curve.
 constexpr std::size_t rows_per_curve = 6000;
-/// Bytes of text shown per block; more is cut.
-constexpr std::size_t most_text = 100'000;
 constexpr std::size_t most_lines = 200;
-
-/// Replaces each {{name}} of the page by its part; parts are not searched again, so they may contain anything.
-std::string filled(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts) {
-  std::string out;
-  for (;;) {
-    const std::size_t begin = page.find("{{");
-    if (begin == std::string_view::npos) break;
-    const std::size_t end = page.find("}}", begin);
-    out += page.substr(0, begin);
-    out += parts.find(page.substr(begin + 2, end - begin - 2))->second;
-    page.remove_prefix(end + 2);
-  }
-  return out + std::string(page);
-}
-
-/// Text cut to `most_text` bytes at a line end, with a word about it.
-std::string shortened(const std::string& words) {
-  if (words.size() <= most_text) return words;
-  return words.substr(0, words.rfind('\n', most_text)) +
-         fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
-}
 
 std::string verdict_class(Verdict verdict) {
   switch (verdict) {
@@ -133,15 +111,12 @@ std::string figures_table(const json& result) {
 }
 
 std::string charts(const Picture& drawn) {
-  constexpr double width = 960;
   std::string time_charts;
   std::string search;
   for (const Chart& chart : drawn.charts) {
     std::string words = fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n",
                                     chart.id, escaped(chart.title));
-    words += fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
-                         chart_svg_height(chart), escaped(chart.title + ". " + chart.caption),
-                         chart_svg(drawn.tables, chart, width, 0));
+    words += still_picture(drawn.tables, chart);
     words += fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(chart.caption));
     (chart.group.empty() ? search : time_charts) += words;
   }
@@ -225,14 +200,6 @@ std::string parameters_table(const json& result) {
   return out + "</tbody></table></div></section>\n";
 }
 
-/// A string, or a number in its shortest form; empty for anything else.
-std::string any(const json& result, std::initializer_list<std::string_view> path) {
-  const json& value = at(result, path);
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_integer()) return value.dump();
-  return value.is_number() ? plain_number(value.get<double>(), 6) : std::string();
-}
-
 /// What was asked for, and what the device is like.
 std::string facts(const json& result) {
   std::string out;
@@ -273,33 +240,6 @@ std::string facts(const json& result) {
                      : "<section id=\"facts\"><h2>About this result</h2>\n<dl class=\"facts\">\n" + out + "</dl></section>\n";
 }
 
-std::string reproduce(const json& result) {
-  std::string commands;
-  const json& lines = at(result, {"reproduce"});
-  if (lines.is_array()) {
-    for (const json& line : lines) {
-      if (line.is_string()) commands += line.get<std::string>() + "\n";
-    }
-  }
-  if (commands.empty()) commands = text(result, {"command"});
-  std::string with;
-  for (const auto& [name, key] : {std::pair{"softland ", "version"}, {"seed ", "seed"}, {"integrator tolerance ", "tolerance"}}) {
-    if (const std::string value = any(result, {key}); !value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
-  }
-  if (commands.empty() && with.empty()) return {};
-  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre></section>\n",
-                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)));
-}
-
-std::string scene(const json& result) {
-  std::string words = text(result, {"scene_toml"});
-  if (words.empty() && at(result, {"scene"}).is_object())
-    words = at(result, {"scene"}).dump(2, ' ', false, json::error_handler_t::replace);
-  if (words.empty()) return {};
-  return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
-         escaped(shortened(words)) + "</code></pre></details></section>\n";
-}
-
 }  // namespace
 
 std::string html_report(const json& result) {
@@ -311,27 +251,22 @@ std::string html_report(const json& result) {
   for (const char* key : {"target", "actuator"}) {
     if (const std::string word = text(result, {key}); !word.empty()) origin += " · " + word;
   }
-  return filled(page_file("page/page.html"), {{"page_title", escaped(title.empty() ? "softland report" : title + " – softland")},
-                                              {"chart_css", std::string(page_file("uplot/uPlot.min.css"))},
-                                              {"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
+  const std::string scripts =
+      filled(page_file("page/scripts.html"), {{"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
                                               {"chart_licence", std::string(page_file("uplot/LICENSE"))},
-                                              {"css", std::string(page_file("page/page.css"))},
                                               {"js", std::string(page_file("page/page.js"))},
-                                              {"origin", escaped(origin)},
-                                              {"title", escaped(title)},
-                                              {"headline", escaped(line.main)},
-                                              {"headline_rest", escaped(line.rest)},
-                                              {"doubt", checks_agree(result) ? "" : escaped(checks_caption(result))},
-                                              {"keys", key_numbers(result)},
-                                              {"warnings", list_of(at(result, {"warnings"}), "Warnings", "warnings")},
-                                              {"charts", charts(drawn)},
-                                              {"figures", figures_table(result)},
-                                              {"checks", checks_table(result)},
-                                              {"parameters", parameters_table(result)},
-                                              {"facts", facts(result)},
-                                              {"reproduce", reproduce(result)},
-                                              {"scene", scene(result)},
                                               {"data", script_json(chart_json(drawn, rows_per_curve))}});
+  return page({.title = title,
+               .origin = origin,
+               .headline = line.main,
+               .headline_rest = line.rest,
+               .doubt = checks_agree(result) ? "" : checks_caption(result),
+               .keys = key_numbers(result),
+               .body = charts(drawn) + figures_table(result) + checks_table(result) +
+                       list_of(at(result, {"warnings"}), "Warnings", "warnings") + parameters_table(result) + facts(result) +
+                       reproduce(result) + scene(result),
+               .style = std::string(page_file("uplot/uPlot.min.css")),
+               .scripts = scripts});
 }
 
 }  // namespace softland

@@ -260,8 +260,9 @@ TEST(Accuracy, PrintsATableAndTheAgreedJsonAndDraws) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_EQ(o.err, "");
   EXPECT_THAT(o.out, HasSubstr("\nfor 1e-3 in t_i, v_i, B_H and peak force: "));
-  EXPECT_THAT(o.out, HasSubstr("\nIn acc: accuracy.json, accuracy.svg\n"));
+  EXPECT_THAT(o.out, HasSubstr("\nIn acc: report.html, accuracy.svg, accuracy.json\n"));
   EXPECT_THAT(read(here.path() / "acc/accuracy.svg"), HasSubstr("what accuracy costs"));
+  EXPECT_THAT(read(here.path() / "acc/report.html"), HasSubstr("softland accuracy gold.toml"));
   const json j = json::parse(read(here.path() / "a.json"));
   EXPECT_EQ(j, json::parse(read(here.path() / "acc/accuracy.json")));
   EXPECT_EQ(keys(j), (std::set<std::string>{"kind", "status", "scene", "version", "command", "reference", "rows", "modes",
@@ -283,7 +284,7 @@ TEST(Accuracy, EndsWithFourWhenTheSwitchDoesNotClose) {
   const Outcome o = here.run({"accuracy", "gold.toml", "--set", "waveform.main.level=0.5 Vdp", "--out", "acc"});
   EXPECT_EQ(o.status, 4);
   EXPECT_EQ(o.out, "The switch does not touch within its window: there are no figures to be accurate in.\n");
-  EXPECT_FALSE(fs::exists(here.path() / "acc/accuracy.svg"));
+  EXPECT_TRUE(fs::is_empty(here.path() / "acc"));
 }
 
 TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {

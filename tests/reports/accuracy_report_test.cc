@@ -93,6 +93,31 @@ TEST(AccuracyText, OfNoStudySaysWhy) {
   EXPECT_THAT(accuracy_text(none), HasSubstr("no reference to compare with: cut after 20 s"));
 }
 
+TEST(AccuracyPage, HoldsRecommendationsDiagramsTablesAndClouds) {
+  Prepared gold = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml"));
+  gold.scene.simulate.accuracy = 1e-8;
+  const std::string own(to_string(all_integrators[0]));
+  AccuracyStudy study = sample();
+  study.rows.back().missing = "cut <early>";
+  const std::string page = accuracy_html(gold, study, {.command = "softland accuracy 'a & b.toml'"});
+  EXPECT_THAT(page, HasSubstr("<h1>Nothing that was tried has t_i and v_i within 1e-9.<"))
+      << "nearest to the accuracy that the scene asks for";
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">1e-3</th><td>" + own + "</td><td>1e-3</td><td>8</td><td>150\u00a0µs</td>"));
+  EXPECT_THAT(page, HasSubstr("id=\"figure-work-precision\""));
+  EXPECT_THAT(page, HasSubstr("id=\"figure-contact\""));
+  EXPECT_THAT(page, HasSubstr("cut &lt;early&gt;"));
+  EXPECT_THAT(page,
+              HasSubstr("B<sub>H</sub></th><td>400.00\u00a0nm</td><td>480.00\u00a0nm</td><td>600.00\u00a0nm</td><td>8</td>"));
+  EXPECT_THAT(page, HasSubstr("softland accuracy &#39;a &amp; b.toml&#39;"));
+  EXPECT_THAT(page, Not(HasSubstr("<script"))) << "nothing here needs one";
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+  EXPECT_THAT(page, Not(HasSubstr("{{")));
+  study.recommendations.pop_back();
+  EXPECT_THAT(accuracy_html(gold, study, {}), HasSubstr("<h1>A closing with t_i and v_i within 1e-3 takes 150\u00a0µs<"));
+  study.conditioned = {};
+  EXPECT_THAT(accuracy_html(gold, study, {}), HasSubstr("<h1>No figure is well-conditioned here"));
+}
+
 TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
   const std::string svg = accuracy_svg("Gold & more", sample());
   EXPECT_EQ(softland::testing::xml_fault(svg), "");

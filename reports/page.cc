@@ -1,0 +1,96 @@
+#include "reports/page.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "reports/escape.h"
+#include "reports/page_files.h"
+#include "reports/quantity.h"
+#include "reports/result_view.h"
+
+namespace softland::internal {
+namespace {
+
+using nlohmann::json;
+
+/// Bytes of text shown per block; more is cut.
+constexpr std::size_t most_text = 100'000;
+
+}  // namespace
+
+std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts) {
+  std::string out;
+  for (;;) {
+    const std::size_t begin = text.find("{{");
+    if (begin == std::string_view::npos) break;
+    const std::size_t end = text.find("}}", begin);
+    out += text.substr(0, begin);
+    out += parts.find(text.substr(begin + 2, end - begin - 2))->second;
+    text.remove_prefix(end + 2);
+  }
+  return out + std::string(text);
+}
+
+std::string shortened(const std::string& words) {
+  if (words.size() <= most_text) return words;
+  return words.substr(0, words.rfind('\n', most_text)) +
+         fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
+}
+
+std::string any(const json& result, std::initializer_list<std::string_view> path) {
+  const json& value = at(result, path);
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return value.dump();
+  return value.is_number() ? plain_number(value.get<double>(), 6) : std::string();
+}
+
+std::string still_picture(const Tables& tables, const Chart& chart) {
+  constexpr double width = 960;
+  return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
+                     chart_svg_height(chart), escaped(chart.title + ". " + chart.caption), chart_svg(tables, chart, width, 0));
+}
+
+std::string reproduce(const json& result) {
+  std::string commands;
+  const json& lines = at(result, {"reproduce"});
+  if (lines.is_array()) {
+    for (const json& line : lines) {
+      if (line.is_string()) commands += line.get<std::string>() + "\n";
+    }
+  }
+  if (commands.empty()) commands = text(result, {"command"});
+  std::string with;
+  for (const auto& [name, key] : {std::pair{"softland ", "version"}, {"seed ", "seed"}, {"integrator tolerance ", "tolerance"}}) {
+    if (const std::string value = any(result, {key}); !value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
+  }
+  if (commands.empty() && with.empty()) return {};
+  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre></section>\n",
+                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)));
+}
+
+std::string scene(const json& result) {
+  std::string words = text(result, {"scene_toml"});
+  if (words.empty() && at(result, {"scene"}).is_object())
+    words = at(result, {"scene"}).dump(2, ' ', false, json::error_handler_t::replace);
+  if (words.empty()) return {};
+  return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
+         escaped(shortened(words)) + "</code></pre></details></section>\n";
+}
+
+std::string page(const Page& parts) {
+  return filled(page_file("page/page.html"),
+                {{"page_title", escaped(parts.title.empty() ? "softland report" : parts.title + " – softland")},
+                 {"style", parts.style},
+                 {"css", std::string(page_file("page/page.css"))},
+                 {"origin", escaped(parts.origin)},
+                 {"title", escaped(parts.title)},
+                 {"headline", escaped(parts.headline)},
+                 {"headline_rest", escaped(parts.headline_rest)},
+                 {"doubt", escaped(parts.doubt)},
+                 {"keys", parts.keys},
+                 {"body", parts.body},
+                 {"scripts", parts.scripts}});
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,42 @@
+// The frame of every report page, and the parts that they share.
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "reports/chart.h"
+
+namespace softland::internal {
+
+/// What stands in the frame. Texts are escaped; what is HTML already is not.
+struct Page {
+  std::string title;  ///< of the scene; may be empty
+  std::string origin;
+  std::string headline, headline_rest;
+  std::string doubt = {};
+  std::string keys = {};     ///< HTML
+  std::string body;          ///< HTML
+  std::string style = {};    ///< CSS besides that of the frame
+  std::string scripts = {};  ///< HTML
+};
+[[nodiscard]] std::string page(const Page& parts);
+
+/// Replaces each {{name}} of the text by its part; parts are not searched again, so they may contain anything.
+[[nodiscard]] std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts);
+
+/// Text cut to 100 kB at a line end, with a word about it.
+[[nodiscard]] std::string shortened(const std::string& words);
+
+/// A string, or a number in its shortest form; empty for anything else.
+[[nodiscard]] std::string any(const nlohmann::json& result, std::initializer_list<std::string_view> path);
+
+/// The chart as an <svg> element.
+[[nodiscard]] std::string still_picture(const Tables& tables, const Chart& chart);
+/// Sections of a result: the command lines that make it again, and its scene.
+[[nodiscard]] std::string reproduce(const nlohmann::json& result);
+[[nodiscard]] std::string scene(const nlohmann::json& result);
+
+}  // namespace softland::internal
