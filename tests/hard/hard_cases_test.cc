@@ -201,7 +201,7 @@ TEST(HardCases, KeepTheInvariantsAndTheirLandingFromEveryIntegrator) {
       EXPECT_NEAR(l.velocity, expected.velocity, (device.modes() > 8 ? twelfth : close) * expected.velocity);
       EXPECT_NEAR(l.rebound, expected.rebound, apart * expected.rebound);
       if (integrator == Integrator::lawson) {
-        EXPECT_EQ(l.touches, expected.touches) << "an event was missed";
+        EXPECT_EQ(test::missed_touch(c.trajectory, best.trajectory), "");
       }
     }
   }
@@ -219,9 +219,8 @@ TEST(HardCases, AHairAboveOrBelowDynamicPullInABeamTouchesOrDoesNot) {
   double before = 0;
   for (const double hair : {1e-3, 1e-4, 1e-5, 1e-6}) {
     SCOPED_TRACE(hair);
-    EXPECT_EQ(run(pull_in * (1 - hair), Integrator::lawson).touches, 0);
+    EXPECT_EQ(run(pull_in * (1 - hair), Integrator::lawson).time, 0) << "touches nothing";
     const Landing one = run(pull_in * (1 + hair), Integrator::lawson);
-    EXPECT_GE(one.touches, 1);
     EXPECT_GT(one.time, before) << "the nearer, the slower";
     before = one.time;
     const Landing other = run(pull_in * (1 + hair), Integrator::esdirk);
