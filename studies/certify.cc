@@ -8,9 +8,6 @@
 namespace softland {
 namespace {
 
-constexpr double tighter = 0.01;        // tolerance of the better run
-constexpr double tightest = 1e-13;      // rounding permits
-constexpr double finer = 2;             // its quadrature points
 constexpr double shared = 0.01;         // of the tolerance, relative to a figure: what both runs may miss alike
 constexpr double visible_range = 1e-4;  // of a figure over the cloud: a thousandfold magnification
 constexpr double parted = 0.1;          // relative difference of a rebound's height from which runs have parted
@@ -116,21 +113,18 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
 }
 
 Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
-  Closing c = simulate(prepared, false, stop);
-  if (c.trajectory.status != Status::done) return c;
-  const std::vector<Signal> signals = prepared.signals();
-  const Switch fine(prepared.scene.device, {.points_per_length = finer * SwitchOptions{}.points_per_length});
-  ClosingOptions options{
-      .duration = prepared.duration, .tolerance = std::max(tightest, tighter * prepared.tolerance), .stop = stop};
-  Trajectory better_run = simulate_closing(fine, signals, options);
-  if (better_run.status != Status::done) {
+  Closing c = simulate(prepared, true, stop);
+  if (!c.judge) return c;
+  if (c.judge->status != Status::done) {
     c.warnings.push_back(fmt::format("the figures could not be certified: a hundredfold tighter run ended with {}{}{}",
-                                     to_string(better_run.status), better_run.message.empty() ? "" : ": ", better_run.message));
+                                     to_string(c.judge->status), c.judge->message.empty() ? "" : ": ", c.judge->message));
     return c;
   }
-  better_run.hold_force = hold_force(fine, signals);
-  const Metrics better = metrics(better_run, prepared.scene.metrics);
-
+  const std::vector<Signal> signals = prepared.signals();
+  const Switch fine(prepared.scene.device, c.judge->quadrature);
+  const ClosingOptions options{.duration = prepared.duration, .tolerance = c.judge->tolerance, .stop = stop};
+  Metrics better = c.judge->metrics;
+  better.hold_force = hold_force(fine, signals);
   std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options);
   std::erase_if(cloud, [](const Trajectory& t) { return t.status != Status::done; });
   std::vector<Metrics> runs;
@@ -144,7 +138,7 @@ Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
     for (const Metrics& m : runs) values.push_back(figure.value(m));
     const double own = figure.value(c.metrics), other = figure.value(better);
     const bool is_height = figure.key == "major_bounce_height_m";
-    double error = error_safety * std::abs(own - other) + shared * prepared.tolerance * std::abs(own);
+    double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
     if (ill_conditioned(values, own, other, is_height ? prepared.scene.metrics.significant_rebound : 0)) {
       const Spread cloud_spread = spread(std::move(values));
       for (const double value : {cloud_spread.low, cloud_spread.high}) error = std::fmax(error, std::abs(own - value));

@@ -1,7 +1,7 @@
 // Figures of merit that carry an error to rely on, and clouds in the place of those that have none.
 //
-// The error of a figure is a multiple of the difference to a run with a hundredth of the integrator's tolerance and twice the
-// quadrature points, and a hundredth of the tolerance for what both miss; calibrated on random scenes
+// The figures are those of simulate(). Their errors are a multiple of the difference to the run that judged them, and a hundredth
+// of the tolerance for what both miss; calibrated on random scenes
 // (bench/certify_coverage.cc). A figure is ill-conditioned where imperceptible changes of the drives move it visibly: it is then
 // given as median and range over a cloud of runs, and its error reaches to the end of that range.
 #pragma once
@@ -51,7 +51,7 @@ inline constexpr double error_safety = 2;
 /// The first rebound in which runs differ, named by what made them differ. None for runs that do not.
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
 
-/// Runs the scene's own waveforms as simulate() does, and certifies the figures; not those of a run that is not done.
+/// Runs the scene's own waveforms with simulate() and certifies the figures; not those of a run, or of a judge, that is not done.
 [[nodiscard]] Closing certify(const Prepared& prepared, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace softland

@@ -92,6 +92,11 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
       best = std::move(tighter);
       tighter = std::move(next);
     }
+    c.judge = {.status = tighter.trajectory.status,
+               .message = tighter.trajectory.message,
+               .metrics = tighter.metrics,
+               .tolerance = tighter.tolerance,
+               .quadrature = tighter.quadrature};
     if (tighter.trajectory.status == Status::done) {
       c.errors = difference(best.metrics, tighter.metrics);
       if (may_tighten && e > asked.accuracy) {
@@ -110,6 +115,7 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
   }
   c.trajectory = std::move(best.trajectory);
   c.tolerance = best.tolerance;
+  c.quadrature = best.quadrature;
   std::vector<double> hold;
   for (const Signal& signal : signals) hold.push_back(signal.hold_level());
   if (const auto closed = closed_equilibrium(prepared.device, hold)) c.trajectory.hold_force = closed->contact_force;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,13 +15,23 @@ namespace softland {
 
 struct Certificate;
 
+/// The run that judges another: a hundredth of its tolerance, twice its quadrature points.
+struct Judge {
+  Status status = Status::not_run;
+  std::string message = {};  ///< why, where it is not done
+  Metrics metrics;
+  double tolerance = 0;
+  SwitchOptions quadrature;
+};
+
 struct Closing {
   Trajectory trajectory;
   Metrics metrics;
-  /// Absolute error estimates, NaN where not estimated: the difference to a run at a hundredth of the tolerance with twice the
-  /// quadrature points, or what certify() makes of it.
+  /// Absolute error estimates, NaN where not estimated: the difference to the judge's, or what certify() makes of it.
   Metrics errors;
-  double tolerance = 0;     ///< of the integrator, in the run that the figures are of
+  double tolerance = 0;        ///< of the integrator, in the run that the figures are of
+  SwitchOptions quadrature;    ///< of that run
+  std::optional<Judge> judge;  ///< of that run, where errors are estimated
   double peak_voltage = 0;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
   double peak_slew = 0;     ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
   std::vector<std::string> warnings;                    ///< of the scene, of the laws, and of ill-conditioned figures

@@ -110,6 +110,11 @@ void vary_electrodes(SceneFile& file, Dice& dice) {
   }
 }
 
+void put_state(SceneFile& file, Dice& dice) {
+  put(file, "gas.viscosity", 1.85e-5 * dice.about(), "Pa s");
+  put(file, "gas.pressure", dice.log_between(1e3, 1.2e5), "Pa");
+}
+
 void vary_gas(SceneFile& file, Dice& dice) {
   file.erase("gas");
   if (dice.chance(0.3)) return;
@@ -120,8 +125,7 @@ void vary_gas(SceneFile& file, Dice& dice) {
                                                                        "near-contact", "guo-alexeenko", "linear"});
   put(file, "gas.model", model);
   if (model == "linear") return put(file, "gas.quality_factor", dice.log_between(0.3, 3000));
-  put(file, "gas.viscosity", 1.85e-5 * dice.about(), "Pa s");
-  put(file, "gas.pressure", dice.log_between(1e3, 1.2e5), "Pa");
+  put_state(file, dice);
   if (model == "strip-slit") {
     put(file, "gas.slit_height", d.gap.electrode * dice.log_between(0.3, 1), "m");
     put(file, "gas.slit_length", d.gap.electrode * dice.log_between(0.3, 3), "m");
@@ -302,6 +306,17 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
     }
   }
   throw std::logic_error(fmt::format("no valid scene in {} draws: seed {}, index {}", most_draws, seed, index));
+}
+
+std::optional<SceneFile> random_film_scene(std::uint64_t seed, std::uint64_t index) {
+  SceneFile file = random_scene(seed, index);
+  const Device d = device_of(file);
+  if (d.contact && d.contact->model == ContactModel::rigid) return std::nullopt;
+  Dice dice(seed, index, most_draws);  // a draw that the scene itself does not use
+  file.erase("gas");
+  put(file, "gas.model", "reynolds");
+  put_state(file, dice);
+  return file;
 }
 
 }  // namespace softland::test

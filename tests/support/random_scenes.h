@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "config/scene.h"
@@ -22,5 +23,8 @@ inline constexpr std::array<std::string_view, 8> scene_families{
 /// Throws std::logic_error when `most_draws` draws give no valid scene.
 [[nodiscard]] SceneFile random_scene(std::uint64_t seed, std::uint64_t index);
 inline constexpr int most_draws = 100;
+
+/// The same with a compressible film in the place of its gas; none where the contact is rigid, under which such a film cannot be.
+[[nodiscard]] std::optional<SceneFile> random_film_scene(std::uint64_t seed, std::uint64_t index);
 
 }  // namespace softland::test

@@ -51,5 +51,22 @@ TEST(RandomScenes, AreFunctionsOfSeedAndIndexAndNoTwoAreAlike) {
   EXPECT_NE(prepare(random_scene(seed, 3)).duration, prepare(random_scene(seed + 1, 3)).duration);
 }
 
+TEST(RandomFilmScenes, AreTheSameSwitchInACompressibleFilm) {
+  int rigid = 0;
+  for (std::uint64_t i = 0; i < scenes / 2; ++i) {
+    SCOPED_TRACE(i);
+    const auto file = random_film_scene(seed, i);
+    if (!file) {
+      ++rigid;
+      continue;
+    }
+    EXPECT_GT(prepare(*file).device.film_states(), 0u);
+    EXPECT_EQ(file->json()["structure"], random_scene(seed, i).json()["structure"]);
+    EXPECT_EQ(file->text(), random_film_scene(seed, i)->text());
+  }
+  EXPECT_GT(rigid, 0);
+  EXPECT_LT(rigid, 5);
+}
+
 }  // namespace
 }  // namespace softland::test
