@@ -27,6 +27,16 @@ constexpr double penetrations_in_contact = 1;  // of the static interference tha
 
 // Of the energy that bends the beam by the contact gap: see closing.h.
 constexpr double worth_warning = 0.01, not_credible = 0.2;
+constexpr double worth_care = 1e-4;  // from there on dissipation is added up with more points
+
+// An explicit method held back by stability in one look after the other gives way to an implicit one. A thick film in a gap that
+// is all but closed makes every step one of these; in other closings they come and go (measured: twelve in a row at the most in
+// a damped contact that rattles, ninety).
+constexpr double held_back = 2;  // Stepper::stiffness()
+constexpr long steps_to_look = 100;
+constexpr int patience = 10;  // looks
+// Of the tolerance: where the explicit method took a hundred times the steps, its errors were far below the tolerance.
+constexpr double implicit_care = 0.01;
 
 struct Knot {
   double time = 0;
@@ -45,6 +55,7 @@ struct Edge {
   double level = 0;  // [m]
   double side = 0;
   Branch next = Branch::flight;
+  std::size_t zone = 0;  // of the next branch
 };
 
 std::vector<double> as_vector(const Eigen::VectorXd& v) { return {v.begin(), v.end()}; }
@@ -63,6 +74,7 @@ class Run {
         volts_(drives.size(), 0.0),
         pieces_(drives.size(), 0),
         plane_(device.device().gap.contact),
+        tolerance_(options.tolerance),
         fastest_(device.angular_frequencies().maxCoeff()),
         // The quintic between two knots errs by a tenth of the tolerance times the mode's amplitude, and by 1e-5 at the most.
         knot_phase_(std::pow(46080 * std::min(options.tolerance / 10, 1e-5), 1.0 / 6)),
@@ -80,8 +92,8 @@ class Run {
       system_.rates = [this](double t, const double* y, double* result) { rates(t, y, law_at(y), result); };
       system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, law_at(y), j); };
     }
-    stepper_ = internal::make_stepper(
-        options.integrator == Integrator::automatic ? automatic_integrator(device) : options.integrator, system_);
+    out_.work.integrator = options.integrator == Integrator::automatic ? automatic_integrator(device) : options.integrator;
+    stepper_ = internal::make_stepper(out_.work.integrator, system_);
     here_ = {.time = 0, .state = std::vector<double>(size_, 0.0), .rates = std::vector<double>(n_ + film_, 0.0)};
     if (device.rest()) std::copy_n(device.rest()->data(), n_, here_.state.begin());
     rest_energy_ = device.potential(here_.state.data(), volts_, false, work_);
@@ -91,6 +103,7 @@ class Run {
     set_tolerances();
     reach_ = device.contact_reach();
     remembers_ = device.has_contact() && has_memory(device.contact());
+    if (device.has_contact()) kinks_ = contact_kinks(device.contact());
     enter(Branch::flight);
     out_.contact_gap = plane_;
     out_.in_contact_period = device.in_contact_period();
@@ -194,14 +207,14 @@ class Run {
     const Eigen::VectorXd& shape = device_.contact_shape();
     const double largest = shape.cwiseAbs().maxCoeff();
     const auto fill = [&](std::vector<double>& absolute, double length) {
-      absolute.resize(size_, film_ > 0 ? options_.tolerance * device_.film_scale() : 0);
+      absolute.resize(size_, film_ > 0 ? tolerance_ * device_.film_scale() : 0);
       for (std::size_t i = 0; i < n_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         // A mode that hardly moves the contact point still shakes the rest of the beam: count it as if it moved it by a tenth of
         // the others.
         const double amplitude = std::max(std::abs(shape[k]), largest / 10);
-        absolute[i] = options_.tolerance * length / amplitude;
-        absolute[n_ + i] = options_.tolerance * flight_fraction * plane_ / amplitude * omega[k];
+        absolute[i] = tolerance_ * length / amplitude;
+        absolute[n_ + i] = tolerance_ * flight_fraction * plane_ / amplitude * omega[k];
       }
     };
     fill(in_flight_, flight_fraction * plane_);
@@ -228,7 +241,8 @@ class Run {
   // ----------------------------------------------------------------------------------------------------------
 
   void advance() {
-    if (out_.work.steps >= options_.max_steps) return fail(too_many_steps());
+    if (out_.work.steps >= next_look_) look_at_work();
+    if (ended_) return;
     if (branch_ == Branch::rest) return lie_on();
     if (!stepper_->step(stop_)) return fail(stepper_->message());
     ++out_.work.steps;
@@ -251,6 +265,23 @@ class Run {
     if (event.time > 0) pass(event);
     out_.smallest_gap = std::min(out_.smallest_gap, gap);
     look_around(gap);
+  }
+
+  // Now and then: whether the work is within its bound, and with the right method.
+  void look_at_work() {
+    if (out_.work.steps >= options_.max_steps) return fail(too_many_steps());
+    next_look_ = options_.max_steps;
+    if (options_.integrator != Integrator::automatic || out_.work.integrator != Integrator::lawson) return;
+    stiff_looks_ = stepper_->stiffness() > held_back && branch_ != Branch::rest ? stiff_looks_ + 1 : 0;
+    if (stiff_looks_ < patience) {
+      next_look_ = std::min(next_look_, out_.work.steps + steps_to_look);
+      return;
+    }
+    out_.work.integrator = Integrator::bdf;
+    stepper_ = internal::make_stepper(out_.work.integrator, system_);
+    tolerance_ *= implicit_care;
+    set_tolerances();
+    restart();
   }
 
   // After a step.
@@ -404,7 +435,7 @@ class Run {
     if (at.time > from.time) deepen(Tip(*this, from, at, end), from, at);
     out_.points.push_back(at);
     note(event);
-    enter(event.edge->next);
+    enter(event.edge->next, event.edge->zone);
     if (static_cast<long>(out_.touches.size()) > options_.max_steps) fail(too_many_steps());
   }
 
@@ -494,7 +525,7 @@ class Run {
       dent_ = dent(device_.contact(), deepest_);
       enter(Branch::unloading);
     } else {
-      enter(event.edge->next);
+      enter(event.edge->next, event.edge->zone);
     }
     restart();
   }
@@ -577,7 +608,8 @@ class Run {
   // Where the contact point goes when it leaves the plane.
   [[nodiscard]] Branch above() const { return reach_ > 0 ? Branch::near : Branch::flight; }
 
-  void enter(Branch branch) {
+  // `zone`: between which kinks of the law, counted from the plane.
+  void enter(Branch branch, std::size_t zone = 0) {
     branch_ = branch;
     in_contact_ = branch != Branch::flight && branch != Branch::near;
     if (!in_contact_ && dent_.heals) {
@@ -605,8 +637,11 @@ class Run {
         edges_[0] = {.level = plane_, .side = -1, .next = deepest_ > 0 ? Branch::dent : Branch::loading};
         return;
       case Branch::loading:
-        edges_[0] = {.level = plane_, .side = 1, .next = above()};
-        return;
+        edges_[0] = zone == 0 ? Edge{.level = plane_, .side = 1, .next = above()}
+                              : Edge{.level = plane_ + kinks_[zone - 1], .side = 1, .next = Branch::loading, .zone = zone - 1};
+        if (zone == kinks_.size()) return;
+        edges_[1] = {.level = plane_ + kinks_[zone], .side = -1, .next = Branch::loading, .zone = zone + 1};
+        break;
       case Branch::unloading:
         edges_ = {Edge{.level = plane_ + dent_.shift, .side = 1, .next = Branch::dent},
                   Edge{.level = plane_ + deepest_, .side = -1, .next = Branch::loading}};
@@ -661,10 +696,7 @@ class Run {
       const double* q = next_.state.data();
       // take_state() left the field there
       const double power = device_.dissipated_power(q + n_, work_, film_of(q)) + contact_power(q);
-      halve_step();
-      const double* q_half = middle_.data();
-      const double halfway = device_.dissipated_power(q_half, q_half + n_, work_, film_of(q_half)) + contact_power(q_half);
-      dissipated_ += (t1 - t0) / 6 * (power_ + 4 * halfway + power);
+      dissipated_ += (t1 - t0) * mean_power(power);
       power_ = power;
     }
     // The part of the sources' work that a changing voltage adds: see settle_charges().
@@ -677,6 +709,30 @@ class Run {
       };
       source_work_ -= (t1 - t0) / 6 * (flow(t0, here_.state) + 4 * flow((t0 + t1) / 2, middle_) + flow(t1, next_.state));
     }
+  }
+
+  // Dissipated in the step from here_ to next_, where it is `last`: by Simpson's rule, or where its error may have shown by that
+  // of Lobatto with four points, over a motion that is exact for the modes. They may turn by two radians, their power by four.
+  double mean_power(double last) {
+    const auto inside = [&] {
+      const double* q = middle_.data();
+      return device_.dissipated_power(q, q + n_, work_, film_of(q)) + contact_power(q);
+    };
+    if (!careful_ || is_implicit()) {
+      halve_step();
+      return (power_ + 4 * inside() + last) / 6;
+    }
+    const double place = 0.5 - 0.5 / std::sqrt(5.0);
+    double sum = 0;
+    for (const double share : {place, 1 - place}) {
+      move_to(share);
+      sum += inside();
+    }
+    return (power_ + 5 * sum + last) / 12;
+  }
+
+  [[nodiscard]] bool is_implicit() const {
+    return out_.work.integrator == Integrator::esdirk || out_.work.integrator == Integrator::bdf;
   }
 
   [[nodiscard]] const double* film_of(const double* y) const { return film_ > 0 ? y + 2 * n_ : nullptr; }
@@ -699,12 +755,19 @@ class Run {
 
   double charge(std::size_t k, double volts, const double* q) { return device_.charge(k, volts, q, work_); }
 
-  // Where the step's quintic Hermite interpolant stands at half time.
+  // Where the step's Hermite interpolant stands at half time: the quintic, or, where accelerations may be an implicit method's
+  // errors times the stiffness, the cubic.
   void halve_step() {
     const double h = next_.time - here_.time;
+    const bool cubic = is_implicit();
     for (std::size_t i = 0; i < n_; ++i) {
       const double p0 = here_.state[i], p1 = next_.state[i], v0 = here_.state[n_ + i], v1 = next_.state[n_ + i];
       const double a0 = here_.rates[i], a1 = next_.rates[i];
+      if (cubic) {
+        middle_[i] = (p0 + p1) / 2 + h / 8 * (v0 - v1);
+        middle_[n_ + i] = 3.0 / 2 * (p1 - p0) / h - (v0 + v1) / 4;
+        continue;
+      }
       middle_[i] = (p0 + p1) / 2 + h * (5.0 / 32 * (v0 - v1) + h / 64 * (a0 + a1));
       middle_[n_ + i] = 15.0 / 8 * (p1 - p0) / h - 7.0 / 16 * (v0 + v1) + h / 32 * (a1 - a0);
     }
@@ -713,6 +776,24 @@ class Run {
       const double p0 = here_.state[2 * n_ + i], p1 = next_.state[2 * n_ + i];
       const double far = std::abs(p1 - p0) + std::max(std::abs(p0), std::abs(p1)) / 20;
       middle_[2 * n_ + i] = (p0 + p1) / 2 + std::clamp(h / 8 * (here_.rates[n_ + i] - next_.rates[n_ + i]), -far, far);
+    }
+  }
+
+  // Where the modes stand after a share of the step: as if the forces on them stayed what they were, and a quintic that makes
+  // them right at the end (model/modal_motion.h).
+  void move_to(double share) {
+    const double h = next_.time - here_.time;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double q = here_.state[i], v = here_.state[n_ + i], a = here_.rates[i];
+      const double omega = device_.angular_frequencies()[static_cast<Eigen::Index>(i)];
+      const auto free = [&](double t) {
+        const double c = std::cos(omega * t), s = std::sin(omega * t);
+        return std::array{q + a / (omega * omega) * (1 - c) + v / omega * s, v * c + a / omega * s, a * c - v * omega * s};
+      };
+      const auto end = free(h), at = free(share * h);
+      const Quintic rest(0, 0, 0, 0, h, next_.state[i] - end[0], next_.state[n_ + i] - end[1], next_.rates[i] - end[2]);
+      middle_[i] = at[0] + rest.position(share * h);
+      middle_[n_ + i] = at[1] + rest.velocity(share * h);
     }
   }
 
@@ -737,6 +818,7 @@ class Run {
       e.dissipated += healed_ + (branch_ == Branch::loading ? dent(device_.contact(), d) : dent_).lost;
     }
     if (!(std::abs(e.residual()) <= out_.energy_error)) out_.energy_error = std::abs(e.residual());  // keeps what is not a number
+    careful_ = careful_ || out_.energy_error > worth_care * device_.bending_energy();
   }
 
   void end(Status status) {
@@ -778,6 +860,7 @@ class Run {
   double plane_;
   internal::OdeSystem system_;
   std::unique_ptr<internal::Stepper> stepper_;
+  double tolerance_;
   std::vector<double> in_flight_, touching_;  // absolute tolerances
   double fastest_;                            // angular frequency of the last mode [rad/s]
   double knot_phase_;                         // of the fastest mode between two knots of the trajectory, at the most
@@ -789,7 +872,9 @@ class Run {
   double source_work_ = 0;      // without the charges that stand on the drives now [J]
   double dissipated_ = 0;       // [J]
   double power_ = 0;            // dissipated at here_ [W]
+  bool careful_ = false;        // with dissipated_
   double reach_ = 0;            // how far above the plane the contact acts [m]
+  std::vector<double> kinks_;   // interferences at which the contact law is not smooth [m]
   bool remembers_ = false;      // the contact law has memory
   Branch branch_ = Branch::flight;
   bool in_contact_ = false;  // not in flight
@@ -804,6 +889,8 @@ class Run {
   std::vector<double> free_;  // accelerations without contact
   double healed_ = 0;         // energy lost to dents that are forgotten [J]
   bool ended_ = false;
+  long next_look_ = 0;  // at work, in steps
+  int stiff_looks_ = 0;
   double stop_ = 0;
   double last_step_ = 0;
   Trajectory out_;

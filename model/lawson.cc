@@ -139,6 +139,25 @@ double Lawson::error(double h) const {
   return h * std::sqrt(sum / static_cast<double>(y_.size()));
 }
 
+double Lawson::stiffness() const {
+  constexpr std::size_t last = stages - 1;
+  Lane slopes = Lane::Zero(), states = Lane::Zero();
+  for (std::size_t b = 0; b < omega_.size(); b += lanes) {
+    const Lane q_weight = lane(q_weight_, b), v_weight = lane(v_weight_, b);
+    Lane q = Lane::Zero(), v = Lane::Zero();
+    for (std::size_t j = 1; j < last; ++j) {
+      const double weight = tableau[last][j] - tableau[last - 1][j];
+      q += weight * lane(k_[j].q, b);
+      v += weight * lane(k_[j].v, b);
+    }
+    states += (q * q_weight).square() + (v * v_weight).square();
+    q = lane(k_[last].q, b) - lane(k_[last - 1].q, b);
+    v = lane(k_[last].v, b) - lane(k_[last - 1].v, b);
+    slopes += (q * q_weight).square() + (v * v_weight).square();
+  }
+  return std::sqrt(slopes.sum() / std::max(states.sum(), std::numeric_limits<double>::min()));
+}
+
 bool Lawson::step(double t_stop) {
   double most = first_ ? first_growth : most_growth;
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {

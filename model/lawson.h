@@ -15,6 +15,9 @@
 // rejects the step. What follows the modes in the state is integrated by the pair as it is. A step turns the fastest mode by two
 // radians at the most.
 //
+// How stiff the equations are shows in the last two stages, which are at the same time: what their slopes differ by over what
+// their states do (Hairer & Wanner 1996, IV.2).
+//
 // The reference closing takes 2100 right-hand sides at a tolerance of 1e-6 where the pair by itself takes 4200, and its B_H is
 // then 3e-7 off instead of 2e-4.
 #pragma once
@@ -36,6 +39,7 @@ class Lawson final : public Stepper {
   [[nodiscard]] const double* state() const override { return y_.data(); }
   [[nodiscard]] const double* rates() override { return rates_.data(); }
   [[nodiscard]] std::string message() const override { return message_; }
+  [[nodiscard]] double stiffness() const override;
 
  private:
   static constexpr std::size_t stages = 7, lanes = phase_lanes;

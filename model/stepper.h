@@ -36,6 +36,9 @@ class Stepper {
   /// (v', z') at time(); the last evaluation of the right-hand side was there.
   [[nodiscard]] virtual const double* rates() = 0;
   [[nodiscard]] virtual std::string message() const = 0;
+  /// Of an explicit method that knows it: the last step's length over the time in which the fastest part of what it integrates
+  /// decays. At its limit of stability, about 3, it is this and not the tolerance that keeps steps short. 0 where not known.
+  [[nodiscard]] virtual double stiffness() const { return 0; }
 };
 
 [[nodiscard]] std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system);

@@ -29,7 +29,17 @@ struct Touch {
   double peak_energy = 0;      ///< largest energy stored in the contact law, of a rigid one the kinetic energy at impact [J]
 };
 
+enum class Integrator {
+  automatic,   ///< lawson, and bdf from where that is held back by stability; esdirk where a gas film is compressible
+  lawson,      ///< explicit Runge-Kutta 5(4) on top of the free motion of the modes, ours
+  arkode_erk,  ///< the same pair on the motion itself, ARKODE
+  esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
+  bdf,         ///< CVODE, exact Jacobian
+  adams,       ///< CVODE, functional iteration
+};
+
 struct Work {
+  Integrator integrator = Integrator::automatic;  ///< that ended the run
   long steps = 0;
   long rhs_evaluations = 0;
   double wall = 0;  ///< [s]

@@ -120,7 +120,10 @@ json grazing_json(const std::optional<GrazingRebound>& r) {
           {"at_significant_height", r->at_threshold}};
 }
 
-json work_json(const Work& w) { return {{"steps", w.steps}, {"rhs_evaluations", w.rhs_evaluations}, {"wall_s", w.wall}}; }
+json work_json(const Work& w) {
+  return {
+      {"integrator", to_string(w.integrator)}, {"steps", w.steps}, {"rhs_evaluations", w.rhs_evaluations}, {"wall_s", w.wall}};
+}
 
 void add_scene(json& j, const Prepared& p) {
   if (p.effects) {

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 
 namespace softland {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 constexpr double enough_seconds = 0.03;     // of timed runs of one setting
 constexpr double reference_tighter = 1e-4;  // than the tightest tolerance
@@ -15,8 +18,7 @@ constexpr double reference_looser = 100;    // the second reference, than the fi
 constexpr int most_modes = 20;              // of a scene
 constexpr CloudOptions cloud_options{.runs = 8};
 
-// Of the processor: what else the machine does cuts no run.
-double seconds_since(std::clock_t start) { return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
 
@@ -44,7 +46,7 @@ class Study {
     if (!find_reference()) return std::move(found_);
     const Switch own(prepared_.scene.device, {.points_per_length = own_points_});
     gather_cloud(own);
-    start_ = std::clock();
+    start_ = Clock::now();
     sweep(own, setting(own_integrator_, own_points_), found_.rows);
     for (const double points : options_.points) {
       if (points == own_points_) continue;
@@ -101,16 +103,17 @@ class Study {
     constexpr int steps_per_look = 64;  // at the clock
     int steps = 0;
     bool cut = false;
-    std::clock_t start = 0;
+    Clock::time_point start;
     closing_options.observer = [&](double, const double*, const double*) {
       if (++steps % steps_per_look == 0) cut = seconds_since(start) > most_seconds;
       return cut;
     };
     std::vector<double> seconds;
     for (double spent = 0; row.runs < runs && spent < enough_seconds; ++row.runs) {
-      start = std::clock();
+      start = Clock::now();
+      const std::clock_t begin = std::clock();
       const Trajectory t = simulate_closing(device, signals_, closing_options);
-      seconds.push_back(seconds_since(start));
+      seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
       if (cut) {
         row.missing = fmt::format("cut after {:g} s", most_seconds);
         return;
@@ -254,7 +257,7 @@ class Study {
   Integrator own_integrator_ = Integrator::automatic;
   std::vector<int> other_modes_;
   std::size_t done_ = 0, all_ = 0;
-  std::clock_t start_ = std::clock();
+  Clock::time_point start_ = Clock::now();
   AccuracyStudy found_;
 };
 

@@ -49,7 +49,7 @@ struct AccuracyOptions {
   std::vector<double> points{6, 8, 12, 16, 24, 48};                          ///< per length, ascending
   std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};                  ///< accuracies to recommend a setting for
   int runs = 7;                   ///< timed, of which the median is taken; fewer where they take long
-  double most_seconds = 2;        ///< of processor time for one closing; a slower one is cut, and tighter ones are not tried
+  double most_seconds = 2;        ///< for one closing; a slower one is cut, and tighter ones are not tried
   double reference_seconds = 10;  ///< for a reference; a slower one gives way to a looser one
   double all_seconds = 15;        ///< for everything else together; what comes later is not tried
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};

@@ -17,6 +17,12 @@ AdhesiveRepulsiveContact::AdhesiveRepulsiveContact(const SurfacePressure& law, d
   }
 }
 
+std::vector<double> AdhesiveRepulsiveContact::kinks() const {
+  std::vector<double> all{touch_ - law_.asperity_distance - law_.adhesion_range, touch_ - law_.asperity_distance};
+  std::erase_if(all, [](double d) { return !(d > 0); });
+  return all;
+}
+
 double AdhesiveRepulsiveContact::energy(double d) const {
   const double x = touch_ - d, r = law_.reach, s = law_.smoothing_distance;
   // Antiderivative of 1 / (x^3 + s^3).

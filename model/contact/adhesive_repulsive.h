@@ -13,13 +13,15 @@
 //
 // The published law has no reach; the straight line that is subtracted makes force and slope end continuously at xr (with the
 // default, 1 um, it is 1.2 % of the attraction at 150 nm). Lossless: jumping into contact and off it takes energy through
-// the motion that follows. Force continuous; its slope jumps at x = dc + ta, its second derivative at dc. Validity: x > 0, and
-// the pair of surfaces it was fitted to; the defaults are nickel on a dielectric. Source: the contact model of MEMOSA, Purdue's
-// PRISM centre (public code of its force models); attraction: Hamaker 1937.
+// the motion that follows. Force continuous; its slope jumps at x = dc + ta, its second derivative at dc: the integrator restarts
+// at both, where they lie beyond touch. Validity: x > 0, and the pair of surfaces it was fitted to; the defaults are nickel on a
+// dielectric. Source: the contact model of MEMOSA, Purdue's PRISM centre (public code of its force models); attraction: Hamaker
+// 1937.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "model/constants.h"
 #include "model/device.h"
@@ -58,6 +60,8 @@ class AdhesiveRepulsiveContact {
   [[nodiscard]] double touch_distance() const { return touch_; }
   /// How far above the plane of first touch the law acts [m]
   [[nodiscard]] double reach() const { return law_.reach - touch_; }
+  /// Interferences beyond touch at which adhesion begins and asperities meet [m]: the integrator restarts there
+  [[nodiscard]] std::vector<double> kinks() const;
 
  private:
   static constexpr double unit = 1e-9;  // of length, in which the pressures are given [m]

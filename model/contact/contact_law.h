@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "model/contact/adhesive.h"
 #include "model/contact/adhesive_repulsive.h"
@@ -119,6 +120,11 @@ struct Dent {
 [[nodiscard]] inline double contact_reach(const ContactLaw& law) {
   const auto* far = std::get_if<AdhesiveRepulsiveContact>(&law);
   return far != nullptr ? far->reach() : 0;
+}
+/// Interferences beyond touch at which a law is continuous, but not smooth, in order [m]; none for most.
+[[nodiscard]] inline std::vector<double> contact_kinks(const ContactLaw& law) {
+  const auto* far = std::get_if<AdhesiveRepulsiveContact>(&law);
+  return far != nullptr ? far->kinks() : std::vector<double>{};
 }
 [[nodiscard]] inline bool is_rate_dependent(const ContactLaw& law) {
   return std::visit(

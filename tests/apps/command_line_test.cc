@@ -80,7 +80,7 @@ TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
   EXPECT_EQ(keys(j["metrics"]), with_settled);
   EXPECT_EQ(keys(j["errors"]), figures);
   EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "dynamic_V"}));
-  EXPECT_EQ(keys(j["work"]), (std::set<std::string>{"steps", "rhs_evaluations", "wall_s"}));
+  EXPECT_EQ(keys(j["work"]), (std::set<std::string>{"integrator", "steps", "rhs_evaluations", "wall_s"}));
   EXPECT_EQ(j["natural_frequencies_rad_s"].size(), 4U);
   EXPECT_TRUE(j["metrics"]["peak_slew_V_s"].is_null()) << "a jump has no finite slew";
   EXPECT_EQ(j["scene"]["gap"]["contact"], "2 um");

@@ -118,7 +118,8 @@ TEST(AdhesiveRepulsive, BookkeepsEveryPassageOfItsReach) {
     const Trajectory t = simulate_closing(device, drives, {.duration = 2e-3, .tolerance = 1e-9, .integrator = integrator});
     ASSERT_EQ(t.status, Status::done) << t.message;
     EXPECT_GE(t.touches.size(), 3u);
-    EXPECT_LT(t.energy_error, 1e-5 * device.bending_energy());  // 4e-6 seen; the contact stores a thousand times that
+    // The implicit method loses some; the explicit one lost 4e-6 while it stepped over the kinks of the law. Seen: 1e-10, 7e-7.
+    EXPECT_LT(t.energy_error, (integrator == Integrator::lawson ? 2e-9 : 5e-6) * device.bending_energy());
     const auto most = std::minmax_element(t.points.begin(), t.points.end(),
                                           [](const auto& a, const auto& b) { return a.contact_force < b.contact_force; });
     EXPECT_LT(most.first->contact_force, 0) << "it pulls on the way";

@@ -1079,6 +1079,20 @@ TEST(AdhesiveRepulsive, BeginsSmoothlyAtItsReachAndTouchesWhereItsAttractionEnds
   EXPECT_EQ(contact_reach(contact_law(gold_pad, beam_width)), 0);
 }
 
+TEST(AdhesiveRepulsive, SaysWhereItIsNotSmooth) {
+  const AdhesiveRepulsiveContact law(SurfacePressure{}, beam_width * 5_um);
+  const auto slope = [&](double d) { return law.force(Dual(d, 1)).slope; };
+  const std::vector<double> kinks = contact_kinks(contact_law(pad(ContactModel::adhesive_repulsive, 0), beam_width));
+  ASSERT_EQ(kinks.size(), 2u);
+  const double jump = slope(kinks[0] + 1e-15) - slope(kinks[0] - 1e-15);
+  const double adhesion = beam_width * 5_um * SurfacePressure{}.adhesion_pressure / 1_nm;
+  EXPECT_NEAR(jump, -adhesion, 1e-3 * adhesion) << "where adhesion begins";
+  // Where asperities meet the slope grows like a root.
+  const auto bend = [&](double at) { return slope(kinks[1] + at) - slope(kinks[1] - at); };
+  EXPECT_NEAR(bend(1e-13) / bend(1e-15), 10, 0.1);
+  EXPECT_TRUE(contact_kinks(contact_law(gold_pad, beam_width)).empty());
+}
+
 // ---- dual numbers
 
 TEST(Dual, FollowsTheRulesOfDifferentiation) {

@@ -172,7 +172,7 @@ json sample_optimize_result(std::size_t rows_per_curve) {
               {"goal_met", true},
               {"natural_frequencies_rad_s", {97117.55, 615469.80, 1736866.72, 3424811.84}},
               {"pull_in", {{"static_V", 24.500}, {"dynamic_V", 22.4695}}},
-              {"work", {{"steps", 9120}, {"rhs_evaluations", 21877}, {"wall_s", 74.3}}},
+              {"work", {{"integrator", "lawson"}, {"steps", 9120}, {"rhs_evaluations", 21877}, {"wall_s", 74.3}}},
               {"warnings", {"The width exceeds five thicknesses and plate_strain is off: the stiffness may be up to 10 % low."}},
               {"scene_toml", scene_text},
               {"scene", {{"metrics", {{"significant_rebound", "1 nm"}}}}},

@@ -2,14 +2,11 @@
 #include "studies/accuracy.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "scenes.h"
 
@@ -169,15 +166,6 @@ TEST(Accuracy, CutsWhatIsSlowAndListsIt) {
   EXPECT_EQ(none.status, Status::numerical_failure);
   EXPECT_EQ(none.message, "cut after 0 s");
   EXPECT_TRUE(none.rows.empty());
-}
-
-TEST(Accuracy, LeavesNothingOutBecauseTheMachineIsBusy) {
-  AccuracyOptions options{.tolerances = {1e-3}, .points = {24}, .wanted = {1e-2}, .runs = 1, .all_seconds = 0.5};
-  options.on_progress = [](std::size_t done, std::size_t) {
-    if (done == 4) std::this_thread::sleep_for(std::chrono::milliseconds(550));
-  };
-  const AccuracyStudy study = study_accuracy(prepare(gold({"simulate.duration=40 us"})), options);
-  for (const AccuracyRow& row : study.rows) EXPECT_THAT(row.missing, testing::Not(testing::StartsWith("not tried")));
 }
 
 TEST(Accuracy, SaysHowFarItIsAndCanBeStopped) {
