@@ -47,9 +47,9 @@ struct Landing {
 /// What a run of a closing and a tighter one say of an event that one of them has missed; empty where they agree. They are
 /// followed touch by touch. Lengths over the contact gap and velocities over the contact point's largest, a touch of speed u
 /// makes of a difference e one of about e / u, and one gentler than the root of e may be had by one run alone: so from touch to
-/// touch the difference grows to a few times its root at the most, while a touch that is missed differs by u at once. Follows
-/// them until they differ by 1e-4: what a closing has magnified by a thousand and more, the rattle of a soft landing too, says
-/// nothing of its events.
+/// touch the difference grows to ten times its root at the most, while a touch that is missed differs by u at once. What the ends
+/// of touches differ by counts as well: in its dent a contact with memory rattles. Follows them until they differ by 1e-4: what a
+/// closing has magnified by a thousand and more, the rattle of a soft landing too, says nothing of its events.
 [[nodiscard]] std::string missed_touch(const Trajectory& run, const Trajectory& tighter);
 
 }  // namespace softland::test
