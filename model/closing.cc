@@ -76,8 +76,8 @@ class Run {
         plane_(device.device().gap.contact),
         tolerance_(options.tolerance),
         fastest_(device.angular_frequencies().maxCoeff()),
-        // The quintic between two knots errs by a tenth of the tolerance times the mode's amplitude, and by 1e-5 at the most.
-        knot_phase_(std::pow(46080 * std::min(options.tolerance / 10, 1e-5), 1.0 / 6)),
+        // The quintic between two knots errs by the tolerance times the fastest mode's amplitude, and by 1e-5 of it at the most.
+        knot_phase_(std::pow(46080 * std::min(options.tolerance, 1e-5), 1.0 / 6)),
         motion_(as_vector(device.angular_frequencies()), as_vector(device.contact_shape())) {
     system_.size = size_;
     system_.frequencies = as_vector(device.angular_frequencies());
@@ -134,7 +134,7 @@ class Run {
   // -------------------------------------------------------------------------------------------------------------
 
   void set_volts(double t) {
-    for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = drives_[k].pieces()[pieces_[k]].voltage(t);
+    for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = volts_at(k, t);
   }
 
   void rates(double t, const double* y, const ContactState& law, double* result) {
@@ -250,9 +250,11 @@ class Run {
     if (!std::isfinite(next_.rates[0])) return fail("the motion is no longer finite");
     if (next_.time < stop_) last_step_ = next_.time - here_.time;
 
+    reach();
     const Event event = follow();
     if (event.time > 0) {
       if (!step_again(event)) return;
+      reach();
       // The event may have moved before knots on the way to it.
       while (out_.points.back().time >= next_.time && out_.points.back().time > here_.time) out_.points.pop_back();
     }
@@ -261,7 +263,7 @@ class Run {
     here_.state.swap(next_.state);
     here_.rates.swap(next_.rates);
     here_.time = next_.time;
-    record(here_);
+    out_.points.push_back(end_);
     if (event.time > 0) pass(event);
     out_.smallest_gap = std::min(out_.smallest_gap, gap);
     look_around(gap);
@@ -322,30 +324,36 @@ class Run {
                                                        : 0};
   }
 
-  // The contact point in the step from here_ to next_, where it is `end`.
-  const ModalMotion& motion(const TrajectoryPoint& end) {
+  // Takes next_ for the end of the step from here_.
+  void reach() {
+    end_ = point(next_);
+    const double phase = fastest_ * (next_.time - here_.time);
+    constexpr double rounding = 1e-9;
+    moves_by_modes_ = phase <= (1 + rounding) * largest_phase;
+    step_pieces_ = moves_by_modes_ ? std::max(1, static_cast<int>(std::ceil(phase / knot_phase_))) : 1;
+    motion_known_ = false;
+  }
+
+  // The contact point in the step from here_ to next_; of use where moves_by_modes_: not in the long steps of an implicit method.
+  const ModalMotion& motion() {
     if (!motion_known_) {
       const double* q = here_.state.data();
-      motion_.set(next_.time - here_.time, q, q + n_, here_.rates.data(), {end.position, end.velocity, end.acceleration});
+      motion_.set(next_.time - here_.time, step_pieces_, q, q + n_, here_.rates.data(),
+                  {end_.position, end_.velocity, end_.acceleration});
       motion_known_ = true;
     }
     return motion_;
   }
 
-  // Whether motion() is of use in the step from here_ to next_: not in the long ones of an implicit method.
-  [[nodiscard]] bool moves_by_modes() const {
-    constexpr double rounding = 1e-9;
-    return fastest_ * (next_.time - here_.time) <= (1 + rounding) * largest_phase;
-  }
-
-  // A knot within the step; the force along a pad, which more than the contact point decides, is drawn on a line.
-  [[nodiscard]] TrajectoryPoint halfway(double after, const TrajectoryPoint& end) {
-    const ModalMotion::Sample s = motion(end).at(after);
+  // The knot after k pieces of the step; the force along a pad, which more than the contact point decides, is drawn on a line.
+  [[nodiscard]] TrajectoryPoint knot(int k) {
+    if (k == step_pieces_) return end_;
+    const ModalMotion::Sample& s = motion().knot(k);
     const TrajectoryPoint& from = out_.points.back();
-    const double time = here_.time + after;
+    const double time = here_.time + (next_.time - here_.time) * k / step_pieces_;
     const double force = !law_.active ? 0
                          : device_.has_pad_contact()
-                             ? std::lerp(from.contact_force, end.contact_force, (time - from.time) / (end.time - from.time))
+                             ? std::lerp(from.contact_force, end_.contact_force, (time - from.time) / (end_.time - from.time))
                              : contact_force(device_.contact(), s.position - plane_, law_, s.velocity);
     return {.time = time, .position = s.position, .velocity = s.velocity, .acceleration = s.acceleration, .contact_force = force};
   }
@@ -353,19 +361,17 @@ class Run {
   // The same in a piece of the step, worked out when something happens in it.
   class Tip : public Quintic {
    public:
-    Tip(Run& run, const TrajectoryPoint& from, const TrajectoryPoint& to, const TrajectoryPoint& end)
+    Tip(Run& run, const TrajectoryPoint& from, const TrajectoryPoint& to)
         : Quintic(from.time, from.position, from.velocity, from.acceleration, to.time, to.position, to.velocity, to.acceleration),
-          run_(run),
-          end_(end),
-          modal_(run.moves_by_modes()) {}
+          run_(run) {}
     [[nodiscard]] double position(double t) const {
-      return modal_ ? run_.motion(end_).at(t - run_.here_.time).position : Quintic::position(t);
+      return run_.moves_by_modes_ ? run_.motion().at(t - run_.here_.time).position : Quintic::position(t);
     }
     [[nodiscard]] double velocity(double t) const {
-      return modal_ ? run_.motion(end_).at(t - run_.here_.time).velocity : Quintic::velocity(t);
+      return run_.moves_by_modes_ ? run_.motion().at(t - run_.here_.time).velocity : Quintic::velocity(t);
     }
     [[nodiscard]] double acceleration(double t) const {
-      return modal_ ? run_.motion(end_).at(t - run_.here_.time).acceleration : Quintic::acceleration(t);
+      return run_.moves_by_modes_ ? run_.motion().at(t - run_.here_.time).acceleration : Quintic::acceleration(t);
     }
     [[nodiscard]] double velocity_zero() const {
       return bracketed_zero([&](double t) { return velocity(t); }, begin(), Quintic::end());
@@ -373,8 +379,6 @@ class Run {
 
    private:
     Run& run_;
-    const TrajectoryPoint& end_;
-    bool modal_;
   };
 
   void record(const Knot& knot) { out_.points.push_back(point(knot)); }
@@ -401,20 +405,16 @@ class Run {
   // Follows the contact point through the step from here_ to next_: knots where the interpolant needs them, up to the first
   // event at which to start anew.
   Event follow() {
-    const double h = next_.time - here_.time;
-    const int pieces = moves_by_modes() ? static_cast<int>(std::ceil(fastest_ * h / knot_phase_)) : 1;
-    const TrajectoryPoint end = point(next_);
-    motion_known_ = false;
-    for (int k = 1; k <= pieces; ++k) {
-      const TrajectoryPoint from = out_.points.back(), to = k < pieces ? halfway(h * k / pieces, end) : end;
-      const Tip tip(*this, from, to, end);
+    for (int k = 1; k <= step_pieces_; ++k) {
+      const TrajectoryPoint from = out_.points.back(), to = knot(k);
+      const Tip tip(*this, from, to);
       const Event event = next_event(tip, from, to);
       if (event.time > 0) {
         if (options_.restart_at_contact || !device_.has_contact()) return event;
-        go_through(event, tip, end);
+        go_through(event, tip);
         if (ended_) return {};
         if (event.time < to.time) --k;  // what is left of the piece
-      } else if (k < pieces) {
+      } else if (k < step_pieces_) {
         deepen(tip, from, to);
         out_.points.push_back(to);
       }
@@ -423,19 +423,20 @@ class Run {
   }
 
   // An event at which the integrator is not restarted.
-  void go_through(const Event& event, const Tip& tip, const TrajectoryPoint& end) {
+  void go_through(const Event& event, const Tip& tip) {
     const TrajectoryPoint from = out_.points.back();
     TrajectoryPoint at{.time = event.time,
                        .position = event.edge->level,
                        .velocity = tip.velocity(event.time),
                        .acceleration = tip.acceleration(event.time)};
     if (device_.has_pad_contact()) {
-      at.contact_force = std::lerp(from.contact_force, end.contact_force, (at.time - from.time) / (end.time - from.time));
+      at.contact_force = std::lerp(from.contact_force, end_.contact_force, (at.time - from.time) / (end_.time - from.time));
     }
-    if (at.time > from.time) deepen(Tip(*this, from, at, end), from, at);
+    if (at.time > from.time) deepen(Tip(*this, from, at), from, at);
     out_.points.push_back(at);
     note(event);
     enter(event.edge->next, event.edge->zone);
+    end_ = point(next_);  // on the new branch
     if (static_cast<long>(out_.touches.size()) > options_.max_steps) fail(too_many_steps());
   }
 
@@ -672,9 +673,8 @@ class Run {
   void account() {
     const double t0 = here_.time, t1 = next_.time;
     if (t0 == t1) return;
-    const TrajectoryPoint from = out_.points.back(), to = point(next_);
-    motion_known_ = false;
-    if (to.time > from.time) deepen(Tip(*this, from, to, to), from, to);
+    const TrajectoryPoint from = out_.points.back();
+    if (end_.time > from.time) deepen(Tip(*this, from, end_), from, end_);
     // The peak of a damped contact comes before the deepest point, that along a pad anywhere about it.
     if (in_contact_ && (device_.has_damped_contact() || device_.has_pad_contact())) {
       halve_step();
@@ -864,6 +864,9 @@ class Run {
   std::vector<double> in_flight_, touching_;  // absolute tolerances
   double fastest_;                            // angular frequency of the last mode [rad/s]
   double knot_phase_;                         // of the fastest mode between two knots of the trajectory, at the most
+  TrajectoryPoint end_;                       // of the step from here_ to next_
+  bool moves_by_modes_ = true;                // whether its phase is within what motion() holds for
+  int step_pieces_ = 1;                       // between its knots
   ModalMotion motion_;
   bool motion_known_ = false;
   Knot here_, next_;

@@ -8,10 +8,12 @@
 #include <algorithm>
 
 #include "model/dual.h"
+#include "model/lanes.h"
 
 namespace softland {
 
-/// The beam at the quadrature points: local gap h [m] and velocity towards the electrode [m/s].
+/// The beam at the quadrature points, and at idle ones that fill the last lane (model/lanes.h): local gap h [m] and velocity
+/// towards the electrode [m/s].
 struct GapField {
   Eigen::ArrayXd gap;
   Eigen::ArrayXd velocity;
@@ -21,7 +23,7 @@ struct GapField {
 class DistributedLaw {
  public:
   virtual ~DistributedLaw() = default;
-  /// load += drive * law [N/m] at the law's points; laws that are not driven ignore `drive`.
+  /// load += drive * law [N/m] at the law's points; laws that are not driven ignore `drive`. `load` is as long as the field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
   /// Derivatives of the load with respect to deflection and velocity, added at the law's points.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
@@ -31,19 +33,29 @@ class DistributedLaw {
 
 template <class Law>
 class DistributedLawOf final : public DistributedLaw {
+  static constexpr Eigen::Index lanes = softland::lanes;
+
  public:
   /// Acts at the points [begin, end). Below `floor` [m] the load is continued by its tangent, the potential by the parabola
   /// that belongs to it.
   DistributedLawOf(Law law, Eigen::Index begin, Eigen::Index end, double floor)
-      : law_(law), begin_(begin), end_(end), floor_(floor) {}
+      : law_(law), begin_(begin), end_(end), floor_(floor), share_(Eigen::ArrayXd::Zero((end + lanes - 1) / lanes * lanes)) {
+    share_.segment(begin, end - begin).setOnes();
+  }
 
-  void add_load(const GapField& field, double drive, double* load) const override {
+  void add_load(const GapField& field, double drive, double* __restrict load) const override {
     const double* gap = field.gap.data();
     const double* velocity = field.velocity.data();
     const double factor = Law::driven ? drive : 1;
     const Law law = law_;  // a local copy lets the compiler keep the parameters in registers
     if (field.smallest_gap >= floor_) {
-      for (Eigen::Index p = begin_; p < end_; ++p) load[p] += factor * law.load(gap[p], velocity[p]);
+      // Whole lanes, so that the compiler makes them vectors: what is left over at an end would take as long, point by point.
+      const double* share = share_.data();
+      for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
+        double sum[lanes];
+        for (Eigen::Index k = p; k < p + lanes; ++k) sum[k - p] = load[k] + factor * share[k] * law.load(gap[k], velocity[k]);
+        std::copy_n(sum, lanes, load + p);
+      }
       return;
     }
     for (Eigen::Index p = begin_; p < end_; ++p) {
@@ -92,6 +104,7 @@ class DistributedLawOf final : public DistributedLaw {
   Law law_;
   Eigen::Index begin_, end_;
   double floor_;
+  Eigen::ArrayXd share_;  // 1 at the law's points, 0 at those that fill its lanes
 };
 
 }  // namespace softland

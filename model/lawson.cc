@@ -20,12 +20,11 @@ constexpr double tableau[7][6] = {{},
 // Fifth minus fourth order.
 constexpr double difference[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
-constexpr double integral = 0.04;
-constexpr double proportional = 0.2 - 0.75 * integral;
+constexpr float integral = 0.04F, proportional = 0.2F - 0.75F * integral;
 constexpr double safety = 0.9;
 constexpr double least_growth = 0.2, most_growth = 10;
 constexpr double first_growth = 1e4;  // a first step is a guess
-constexpr double least_error = 1e-4;  // what the controller remembers at the least
+constexpr float least_error = -13;    // what the controller remembers at the least, binary logarithm
 constexpr double not_finite = 0.1;    // shrinks a step whose error is not a number
 
 }  // namespace
@@ -59,7 +58,7 @@ bool Lawson::restart(double t, const double* y, const double* rates, const std::
   std::copy_n(weight_.begin() + static_cast<std::ptrdiff_t>(modes_), modes_, v_weight_.begin());
   h_ = first_step;
   max_step_ = modes_ > 0 ? std::min(max_step, largest_phase / fastest_) : max_step;
-  last_error_ = 1;
+  last_error_ = 0;
   first_ = true;
   return true;
 }
@@ -97,10 +96,11 @@ void Lawson::evaluate(double t, double h) {
     }
     const Lane omega = lane(omega_, b), inverse = lane(inverse_, b), a = lane(a_, b);
     const Lane cosine = lane(stage.cosine, b), sine = lane(stage.sine, b);
-    const Lane q = lane(q_, b) + a * lane(stage.slack, b) + kq * cosine + kv * (sine * inverse);
-    const Lane v = kv * cosine + a * (sine * inverse) - kq * (sine * omega);
-    put(q, b, trial_.data());
-    put(v, b, trial_.data() + modes_);
+    const Lane by_speed = sine * inverse;
+    const Lane q = (lane(q_, b) + a * lane(stage.slack, b) + kq * cosine) + kv * by_speed;
+    const Lane v = (a * by_speed - kq * (sine * omega)) + kv * cosine;
+    store_lane(q, trial_.data(), b, modes_);
+    store_lane(v, trial_.data() + modes_, b, modes_);
   }
   for (std::size_t i = 0; i < rest_; ++i) {
     double sum = y_[2 * modes_ + i];
@@ -110,14 +110,15 @@ void Lawson::evaluate(double t, double h) {
   system_.rates(t, trial_.data(), next_rates_.data());
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     const Lane omega = lane(omega_, b);
-    const Lane excess = get(next_rates_.data(), b) - lane(a_, b) + omega * omega * (get(trial_.data(), b) - lane(q_, b));
-    lane(stage.q, b) = -excess * lane(stage.sine, b) * lane(inverse_, b);
+    const Lane moved = omega * omega * (load_lane(trial_.data(), b, modes_) - lane(q_, b)) - lane(a_, b);
+    const Lane excess = moved + load_lane(next_rates_.data(), b, modes_);
+    lane(stage.q, b) = excess * (lane(stage.sine, b) * -lane(inverse_, b));
     lane(stage.v, b) = excess * lane(stage.cosine, b);
   }
   std::copy_n(next_rates_.begin() + static_cast<std::ptrdiff_t>(modes_), rest_, stage.rest.begin());
 }
 
-double Lawson::error(double h) const {
+double Lawson::squared_error(double h) const {
   Lane squares = Lane::Zero();
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     Lane q = Lane::Zero(), v = Lane::Zero();
@@ -136,7 +137,7 @@ double Lawson::error(double h) const {
     estimate *= weight_[2 * modes_ + i];
     sum += estimate * estimate;
   }
-  return h * std::sqrt(sum / static_cast<double>(y_.size()));
+  return h * h * sum / static_cast<double>(y_.size());
 }
 
 double Lawson::stiffness() const {
@@ -161,9 +162,9 @@ double Lawson::stiffness() const {
 bool Lawson::step(double t_stop) {
   double most = first_ ? first_growth : most_growth;
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
-    lane(q_, b) = get(y_.data(), b);
-    lane(v_, b) = get(y_.data() + modes_, b);
-    lane(a_, b) = get(rates_.data(), b);
+    lane(q_, b) = load_lane(y_.data(), b, modes_);
+    lane(v_, b) = load_lane(y_.data() + modes_, b, modes_);
+    lane(a_, b) = load_lane(rates_.data(), b, modes_);
   }
   std::copy_n(rates_.begin() + static_cast<std::ptrdiff_t>(modes_), rest_, k_[0].rest.begin());
   while (true) {
@@ -182,18 +183,19 @@ bool Lawson::step(double t_stop) {
     evaluate<4>(t_ + nodes[4] * h, h);
     evaluate<5>(end, h);
     evaluate<6>(end, h);
-    const double e = error(h);
-    if (!std::isfinite(e)) {
+    const double e2 = squared_error(h);
+    if (!std::isfinite(e2)) {
       h_ = not_finite * h;
       most = 1;
       continue;
     }
-    const double growth = safety * std::pow(std::max(e, 1e-300), -proportional) * std::pow(last_error_, integral);
-    if (e <= 1) {
+    const float log_error = std::log2(static_cast<float>(std::clamp(e2, 1e-36, 1e36))) / 2;  // a step size needs no more digits
+    const double growth = safety * static_cast<double>(std::exp2(integral * last_error_ - proportional * log_error));
+    if (e2 <= 1) {
       t_ = end;
       y_.swap(trial_);
       rates_.swap(next_rates_);
-      last_error_ = std::max(e, least_error);
+      last_error_ = std::max(log_error, least_error);
       // A step cut short by t_stop says little about the ones after it, which begin with a restart anyway.
       h_ = h * std::clamp(growth, least_growth, most);
       first_ = false;

@@ -42,8 +42,7 @@ class Lawson final : public Stepper {
   [[nodiscard]] double stiffness() const override;
 
  private:
-  static constexpr std::size_t stages = 7, lanes = phase_lanes;
-  using Lane = PhaseLane;
+  static constexpr std::size_t stages = 7;
   using Modal = std::vector<double>;  // per mode, padded to whole lanes
 
   struct Stage {
@@ -52,27 +51,10 @@ class Lawson final : public Stepper {
     std::vector<double> rest;   // slope of what follows the modes
   };
 
-  static Eigen::Map<Lane> lane(Modal& m, std::size_t begin) { return Eigen::Map<Lane>(m.data() + begin); }
-  static Eigen::Map<const Lane> lane(const Modal& m, std::size_t begin) { return Eigen::Map<const Lane>(m.data() + begin); }
-  // The same of unpadded arrays.
-  [[nodiscard]] Lane get(const double* from, std::size_t begin) const {
-    if (begin + lanes <= modes_) return Eigen::Map<const Lane>(from + begin);
-    Lane lane = Lane::Zero();
-    for (std::size_t i = begin; i < modes_; ++i) lane[static_cast<Eigen::Index>(i - begin)] = from[i];
-    return lane;
-  }
-  void put(const Lane& lane, std::size_t begin, double* to) const {
-    if (begin + lanes <= modes_) {
-      Eigen::Map<Lane>(to + begin) = lane;
-      return;
-    }
-    for (std::size_t i = begin; i < modes_; ++i) to[i] = lane[static_cast<Eigen::Index>(i - begin)];
-  }
-
   void turn_to_nodes(double h);
   template <std::size_t S>
   void evaluate(double t, double h);
-  [[nodiscard]] double error(double h) const;
+  [[nodiscard]] double squared_error(double h) const;
 
   const OdeSystem& system_;
   std::size_t modes_, rest_;
@@ -84,7 +66,7 @@ class Lawson final : public Stepper {
   std::array<Stage, stages> k_;
   double turned_ = 0;  // the step that the phases are for
   double t_ = 0, h_ = 0, max_step_ = 0;
-  double last_error_ = 0;
+  float last_error_ = 0;  // binary logarithm
   bool first_ = true;
   std::string message_;
 };

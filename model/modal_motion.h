@@ -23,49 +23,65 @@ class ModalMotion {
     push_.resize(omega_.size());
   }
 
-  /// A step of `length` [s] from modal coordinates, velocities and accelerations to what the point does at its end. The fastest
-  /// mode's phase must not exceed largest_phase.
-  void set(double length, const double* q, const double* v, const double* a, const Sample& end) {
-    start_ = 0;
-    for (std::size_t i = 0; i < modes_; ++i) {
-      start_ += shape_[i] * q[i];
-      pull_[i] = shape_[i] * a[i] / (omega_[i] * omega_[i]);
-      push_[i] = shape_[i] * v[i] / omega_[i];
+  /// A step of `length` [s] from modal coordinates, velocities and accelerations to what the point does at its end, in equal
+  /// pieces. The fastest mode's phase must not exceed largest_phase.
+  void set(double length, int pieces, const double* q, const double* v, const double* a, const Sample& end) {
+    per_length_ = 1 / length;
+    Lane start = Lane::Zero();
+    knots_.assign(static_cast<std::size_t>(pieces), {0, 0, 0});
+    for (std::size_t b = 0; b < omega_.size(); b += lanes) {
+      const Lane shape = lane(shape_, b), omega = lane(omega_, b);
+      start += shape * load_lane(q, b, modes_);
+      lane(pull_, b) = shape * load_lane(a, b, modes_) / (omega * omega);
+      lane(push_, b) = shape * load_lane(v, b, modes_) / omega;
+      const Turn piece = turn(omega * (length / pieces));
+      Turn turned = piece;
+      for (Sample& knot : knots_) {
+        add_free(b, turned, knot);
+        turned = turned + piece;
+      }
     }
-    length_ = length;
-    const Sample reached = free(length);
+    start_ = start.sum();
+    for (Sample& knot : knots_) knot.position += start_;
+    const Sample& reached = knots_.back();
     const double p = end.position - reached.position, pv = length * (end.velocity - reached.velocity);
     const double pa = length * length * (end.acceleration - reached.acceleration);
     rest_ = {10 * p - 4 * pv + pa / 2, -15 * p + 7 * pv - pa, 6 * p - 3 * pv + pa / 2};
+    for (int k = 1; k <= pieces; ++k) add_rest(static_cast<double>(k) / pieces, knots_[static_cast<std::size_t>(k) - 1]);
   }
+
+  /// After k pieces, 1 <= k <= pieces.
+  [[nodiscard]] const Sample& knot(int k) const { return knots_[static_cast<std::size_t>(k) - 1]; }
 
   /// `time` after the begin, at most the step's length [s].
   [[nodiscard]] Sample at(double time) const {
-    Sample s = free(time);
-    const double x = time / length_, x2 = x * x;
-    s.position += x2 * x * (rest_[0] + x * (rest_[1] + x * rest_[2]));
-    s.velocity += x2 / length_ * (3 * rest_[0] + x * (4 * rest_[1] + x * 5 * rest_[2]));
-    s.acceleration += x / (length_ * length_) * (6 * rest_[0] + x * (12 * rest_[1] + x * 20 * rest_[2]));
+    Sample s{start_, 0, 0};
+    for (std::size_t b = 0; b < omega_.size(); b += lanes) add_free(b, turn(lane(omega_, b) * time), s);
+    add_rest(time * per_length_, s);
     return s;
   }
 
  private:
-  [[nodiscard]] Sample free(double time) const {
-    PhaseLane position = PhaseLane::Zero(), velocity = position, acceleration = position;
-    for (std::size_t b = 0; b < omega_.size(); b += phase_lanes) {
-      const Eigen::Map<const PhaseLane> omega(omega_.data() + b), pull(pull_.data() + b), push(push_.data() + b);
-      const Turn turned = turn(omega * time);
-      position += pull * turned.slack + push * turned.sine;
-      velocity += omega * (pull * turned.sine + push * turned.cosine);
-      acceleration += omega * omega * (pull * turned.cosine - push * turned.sine);
-    }
-    return {start_ + position.sum(), velocity.sum(), acceleration.sum()};
+  void add_free(std::size_t begin, const Turn& turned, Sample& s) const {
+    const Lane omega = lane(omega_, begin), pull = lane(pull_, begin), push = lane(push_, begin);
+    s.position += (pull * turned.slack + push * turned.sine).sum();
+    s.velocity += (omega * (pull * turned.sine + push * turned.cosine)).sum();
+    s.acceleration += (omega * omega * (pull * turned.cosine - push * turned.sine)).sum();
+  }
+
+  // At the share x of the step.
+  void add_rest(double x, Sample& s) const {
+    const double x2 = x * x;
+    s.position += x2 * x * (rest_[0] + x * (rest_[1] + x * rest_[2]));
+    s.velocity += x2 * per_length_ * (3 * rest_[0] + x * (4 * rest_[1] + x * 5 * rest_[2]));
+    s.acceleration += x * per_length_ * per_length_ * (6 * rest_[0] + x * (12 * rest_[1] + x * 20 * rest_[2]));
   }
 
   std::size_t modes_;
   std::vector<double> omega_, shape_, pull_, push_;
+  std::vector<Sample> knots_;
   std::array<double, 3> rest_{};  // of the remainder: powers 3 to 5 of time / length
-  double start_ = 0, length_ = 0;
+  double start_ = 0, per_length_ = 0;
 };
 
 }  // namespace softland

@@ -2,39 +2,42 @@
 // once.
 #pragma once
 
-#include <Eigen/Core>
-#include <cstddef>
-#include <vector>
+#include <array>
+
+#include "model/lanes.h"
 
 namespace softland {
-
-inline constexpr std::size_t phase_lanes = 4;
-using PhaseLane = Eigen::Array<double, phase_lanes, 1>;
 
 /// Largest phase turn() is exact for, to rounding.
 inline constexpr double largest_phase = 2;
 
 struct Turn {
-  PhaseLane cosine, sine;
-  PhaseLane slack;  ///< 1 - cosine, without cancellation
+  Lane cosine, sine;
+  Lane slack;  ///< 1 - cosine, without cancellation
 };
 
 /// Taylor series of cosine and sine at half the phase; the first term left out is below 1e-18.
-[[nodiscard]] inline Turn turn(const PhaseLane& phase) {
-  const PhaseLane x = phase / 2, x2 = x * x;
-  PhaseLane cosine = PhaseLane::Constant(1), over_x = cosine;
-  for (int k = 18; k > 0; k -= 2) {
-    cosine = 1 - x2 / (k * (k - 1)) * cosine;
-    over_x = 1 - x2 / (k * (k + 1)) * over_x;
+[[nodiscard]] inline Turn turn(const Lane& phase) {
+  constexpr int degree = 18;
+  constexpr auto factors = [] {  // (-1)^(k/2) / k!, even and odd k in turn
+    std::array<double, degree + 2> f{1, 1};
+    for (int k = 2; k < degree + 2; ++k) f[k] = -f[k - 2] / (k * (k - 1));
+    return f;
+  }();
+  const Lane x = phase / 2, x2 = x * x;
+  Lane cosine = Lane::Constant(factors[degree]), over_x = Lane::Constant(factors[degree + 1]);
+  for (int k = degree - 2; k >= 0; k -= 2) {
+    cosine = cosine * x2 + factors[k];
+    over_x = over_x * x2 + factors[k + 1];
   }
-  const PhaseLane sine = x * over_x, slack = 2 * sine * sine;
+  const Lane sine = x * over_x, slack = 2 * sine * sine;
   return {.cosine = 1 - slack, .sine = 2 * sine * cosine, .slack = slack};
 }
 
-/// Per mode, padded to whole lanes with `idle`.
-[[nodiscard]] inline std::vector<double> padded_to_lanes(std::vector<double> values, double idle) {
-  values.resize((values.size() + phase_lanes - 1) / phase_lanes * phase_lanes, idle);
-  return values;
+/// One turn after the other.
+[[nodiscard]] inline Turn operator+(const Turn& a, const Turn& b) {
+  const Lane slack = a.slack + b.slack - a.slack * b.slack + a.sine * b.sine;
+  return {.cosine = 1 - slack, .sine = a.sine * b.cosine + a.cosine * b.sine, .slack = slack};
 }
 
 }  // namespace softland

@@ -4,34 +4,33 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 
 namespace softland {
 
-/// A zero of f in [low, high] where f(low) and f(high) differ in sign: bisection and regula falsi (ITP-like), to rounding of the
-/// bracket.
+/// A zero of f in [low, high] where f(low) and f(high) differ in sign, to rounding: TOMS algorithm 748 (Alefeld, Potra & Shi
+/// 1995). Where they do not differ, the end at which |f| is less.
 template <class F>
 double bracketed_zero(F&& f, double low, double high) {
-  double f_low = f(low), f_high = f(high);
-  if (f_low == 0) return low;
-  if (f_high == 0) return high;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = low + (high - low) / 2;
-    if (!(middle > low && middle < high)) break;
-    double t = i % 3 == 2 ? middle
-                          : low - f_low * (high - low) / (f_high - f_low);  // every third step halves, so the bracket must shrink
-    if (!(t > low && t < high)) t = middle;
-    const double value = f(t);
-    if (value == 0) return t;
-    if ((value < 0) == (f_low < 0)) {
-      low = t, f_low = value, f_high /= i % 3 == 1 ? 2 : 1;
-    } else {
-      high = t, f_high = value, f_low /= i % 3 == 1 ? 2 : 1;
-    }
-  }
-  return std::abs(f_low) < std::abs(f_high) ? low : high;
+  const double f_low = f(low), f_high = f(high);
+  double zero = low, least = std::abs(f_low);
+  const auto keep = [&](double t, double value) {
+    if (std::abs(value) < least) zero = t, least = std::abs(value);
+    return value;
+  };
+  keep(high, f_high);
+  if (!(f_low < 0 && f_high > 0) && !(f_low > 0 && f_high < 0)) return zero;
+  const auto neighbours = [](double a, double b) {
+    const double middle = a + (b - a) / 2;
+    return !(middle > a && middle < b);
+  };
+  std::uintmax_t most = 200;  // evaluations
+  boost::math::tools::toms748_solve([&](double t) { return keep(t, f(t)); }, low, high, f_low, f_high, neighbours, most);
+  return zero;
 }
 
 /// Places in (0, 1) in order, at most N.

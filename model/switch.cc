@@ -80,7 +80,7 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
     piezo_shape_ =
         piezo_moment_per_volt(s, *device_.piezo) * (structure.slope(device_.piezo->end) - structure.slope(device_.piezo->begin));
   }
-  if (device_.contact) {
+  if (pad_) {
     const auto [begin, end] = device_.pad();
     corners.insert({begin, end});
   }
@@ -104,6 +104,20 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
   for (Eigen::Index p = 0; p < n; ++p) {
     shapes_.row(p) = structure.value(positions_[p]).transpose();
     weighted_shapes_.row(p) = weights_[p] * shapes_.row(p);
+  }
+
+  const auto in_lanes = [](const Eigen::VectorXd& v) { return padded_to_lanes({v.begin(), v.end()}, 0); };
+  stiffness_lanes_ = in_lanes(squares_);
+  friction_lanes_ = in_lanes(2 * s.damping_ratio * frequencies_);
+  contact_lanes_ = in_lanes(contact_shape_);
+  piezo_lanes_ = in_lanes(piezo_shape_);
+  const auto rows = static_cast<std::size_t>(shapes_.rows()), columns = static_cast<std::size_t>(modes());
+  weighted_lanes_.assign(stiffness_lanes_.size() * rows, 0);
+  for (std::size_t i = 0; i < columns; ++i) {
+    double* group = weighted_lanes_.data() + i / lanes * lanes * rows + i % lanes;
+    for (std::size_t p = 0; p < rows; ++p) {
+      group[p * lanes] = weighted_shapes_(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(i));
+    }
   }
 }
 
@@ -224,63 +238,77 @@ void Switch::set_gap(const double* q, Workspace& work) const {
   work.field.gap = device_.gap.electrode - work.field.gap;
 }
 
-// The matrices are small: a block of points at a time, its sums in registers, beats a general product.
-void Switch::set_field(const double* q, const double* v, Workspace& work) const {
-  const Eigen::Index n = modes(), points = shapes_.rows();
-  const double* shapes = shapes_.data();
-  Block smallest = Block::Constant(device_.gap.electrode);
+// The matrices are small: a block of points at a time, with the modes' coordinates in registers, beats a general product.
+template <int Modes>
+double Switch::add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const {
+  const Eigen::Index points = shapes_.rows();
+  const double* shapes = shapes_.data() + first * points;
+  Lane at[Modes], rate[Modes];
+  for (int i = 0; i < Modes; ++i) at[i].setConstant(q[first + i]), rate[i].setConstant(v[first + i]);
+  const double open = device_.gap.electrode;
+  Block smallest = Block::Constant(open);
   for (Eigen::Index p = 0; p < points; p += block) {
-    Block gap = Block::Constant(device_.gap.electrode), velocity = Block::Zero();
-    for (Eigen::Index i = 0; i < n; ++i) {
+    Eigen::Map<Block> all_gap(field.gap.data() + p), all_velocity(field.velocity.data() + p);
+    Block gap = Block::Constant(open), velocity = Block::Zero();
+    if (first > 0) gap = all_gap, velocity = all_velocity;
+    for (int i = 0; i < Modes; ++i) {
       const Eigen::Map<const Block> shape(shapes + i * points + p);
-      gap -= shape * q[i];
-      velocity += shape * v[i];
+      gap -= shape * at[i];
+      velocity += shape * rate[i];
     }
-    Eigen::Map<Block>(work.field.gap.data() + p) = gap;
-    Eigen::Map<Block>(work.field.velocity.data() + p) = velocity;
+    all_gap = gap;
+    all_velocity = velocity;
     smallest = smallest.min(gap);
   }
-  work.field.smallest_gap = smallest.minCoeff();
+  return smallest.minCoeff();
 }
 
-void Switch::project(const Workspace& work, double* result) const {
-  const Eigen::Index points = weighted_shapes_.rows();
-  const double* shapes = weighted_shapes_.data();
-  for (Eigen::Index i = 0; i < modes(); ++i, shapes += points) {
-    Block sum = Block::Zero();
-    for (Eigen::Index p = 0; p < points; p += block) {
-      sum += Eigen::Map<const Block>(shapes + p) * Eigen::Map<const Block>(work.load.data() + p);
-    }
-    result[i] = sum.sum();
+void Switch::set_field(const double* q, const double* v, Workspace& work) const {
+  Eigen::Index first = 0, left = modes();
+  double& smallest = work.field.smallest_gap;
+  for (; left >= 4; first += 4, left -= 4) smallest = add_modes<4>(first, q, v, work.field);
+  if (left == 3) smallest = add_modes<3>(first, q, v, work.field);
+  if (left == 2) smallest = add_modes<2>(first, q, v, work.field);
+  if (left == 1) smallest = add_modes<1>(first, q, v, work.field);
+}
+
+inline Lane Switch::projected(const Workspace& work, std::size_t first) const {
+  const auto points = static_cast<std::size_t>(shapes_.rows());
+  const double* shapes = weighted_lanes_.data() + first * points;
+  const double* load = work.load.data();
+  constexpr std::size_t chains = 4;  // sums that do not wait for one another
+  Lane sum[chains] = {Lane::Zero(), Lane::Zero(), Lane::Zero(), Lane::Zero()};
+  for (std::size_t p = 0; p < points; p += chains) {
+    for (std::size_t k = 0; k < chains; ++k) sum[k] += load[p + k] * Eigen::Map<const Lane>(shapes + (p + k) * lanes);
   }
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 void Switch::accelerations(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                            Workspace& work, double* result, const double* film) const {
-  const int n = modes();
+  const auto n = static_cast<std::size_t>(modes());
   set_field(q, v, work);
   for (Eigen::Index p = 0; p < work.load.size(); p += block) Eigen::Map<Block>(work.load.data() + p).setZero();
+  for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
+  if (film != nullptr) film_->add_load(film, work.load.data());
   for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
     if (const double drive = strength(k, volts[k]); drive != 0) driven_laws_[k]->add_load(work.field, drive, work.load.data());
   }
-  for (const auto& law : passive_laws_) law->add_load(work.field, 0, work.load.data());
-  if (film != nullptr) film_->add_load(film, work.load.data());
-  project(work, result);
-  const double damping = 2 * device_.structure.damping_ratio;
-  for (int i = 0; i < n; ++i) result[i] -= squares_[i] * q[i] + damping * frequencies_[i] * v[i];
-  // Plain loops: the vectors are too short for Eigen's to begin well.
-  if (device_.piezo) {
-    const double volt = volts.back();
-    for (int i = 0; i < n; ++i) result[i] += volt * piezo_shape_[i];
-  }
-  if (contact.active && pad_) {
-    add_pad_force(q, v, result);
-  } else if (contact.active) {
+
+  double push = 0;
+  if (contact.active && !pad_) {
     const double d = contact_deflection(q) - device_.gap.contact;
     const auto rate = [&] { return contact_deflection(v); };
-    const double force = visit_inline([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
-    for (int i = 0; i < n; ++i) result[i] -= force * contact_shape_[i];
+    push = visit_inline([&](const auto& law) { return force_of(law, d, contact, rate); }, *contact_);
   }
+  const double piezo = device_.piezo ? volts.back() : 0;
+  for (std::size_t i = 0; i < n; i += lanes) {
+    // What waits for the load comes last.
+    const Lane own = piezo * lane(piezo_lanes_, i) - push * lane(contact_lanes_, i) -
+                     lane(stiffness_lanes_, i) * load_lane(q, i, n) - lane(friction_lanes_, i) * load_lane(v, i, n);
+    store_lane(own + projected(work, i), result, i, n);
+  }
+  if (contact.active && pad_) add_pad_force(q, v, result);
   if (stretching_) stretching_->add_force(q, result);
 }
 

@@ -6,8 +6,8 @@
 // q modal coordinates [m kg^(1/2)], phi mass-normalised modes [kg^(-1/2)], f load per length of all distributed laws [N/m], w
 // quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P contact force [N], d
 // interference [m], Q force of stretching (model/stretching.h). Deflection y(x) = sum phi_i(x) q_i, positive towards the
-// electrode. Galerkin projection on Gauss panels that start and end where an electrode, the piezo layer or the pad does. Only the
-// laws that the device has are composed: an absent effect costs nothing. A rigid plate is a strip that stays flat: one mode, one
+// electrode. Galerkin projection on Gauss panels that start and end where an electrode, the piezo layer or a pad that acts along its
+// length does. Only the laws that the device has are composed: an absent effect costs nothing. A rigid plate is a strip that stays flat: one mode, one
 // quadrature point per panel.
 #pragma once
 
@@ -27,6 +27,7 @@
 #include "model/distributed_law.h"
 #include "model/gas/gas_law.h"
 #include "model/gas/reynolds_film.h"
+#include "model/lanes.h"
 #include "model/stretching.h"
 
 namespace softland {
@@ -163,8 +164,8 @@ class Switch {
                                  Workspace& work) const;
 
  private:
-  static constexpr Eigen::Index block = 8;  // points a pass over the modes handles at once
-  using Block = Eigen::Array<double, block, 1>;
+  static constexpr Eigen::Index block = lanes;  // points that are handled at once
+  using Block = Lane;
 
   /// Takes frequencies, shapes and quadrature from what moves, a beam or a plate.
   template <class Modes>
@@ -178,16 +179,21 @@ class Switch {
   [[nodiscard]] double penetration_under(double force) const;
   void set_gap(const double* q, Workspace& work) const;
   void set_field(const double* q, const double* v, Workspace& work) const;
-  /// Modal forces of the load in `work`: the sum over points of w_p phi_i(x_p) f(x_p).
-  void project(const Workspace& work, double* result) const;
+  /// Adds modes from `first` on to the field; returns the smallest gap so far.
+  template <int Modes>
+  double add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const;
+  /// Modal forces of the load in `work` on modes from `first` on: the sums over points of w_p phi_i(x_p) f(x_p).
+  [[nodiscard]] Lane projected(const Workspace& work, std::size_t first) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> find_rest() const;
 
   Device device_;
   std::size_t electrodes_ = 0;
   Eigen::VectorXd frequencies_, squares_, contact_shape_, piezo_shape_;
+  std::vector<double> stiffness_lanes_, friction_lanes_, contact_lanes_, piezo_lanes_;  // omega^2, 2 zeta omega, phi(x_c), theta
   Eigen::ArrayXd positions_, weights_;
   Eigen::MatrixXd shapes_;                                           // phi_i(x_p), points and idle points x modes
   Eigen::MatrixXd weighted_shapes_;                                  // w_p phi_i(x_p)
+  std::vector<double> weighted_lanes_;                               // the same, for each whole lane of modes point by point
   std::vector<std::shared_ptr<const DistributedLaw>> driven_laws_;   // one per electrode, then the dispersion force
   std::vector<std::shared_ptr<const DistributedLaw>> passive_laws_;  // these dissipate
   std::optional<ContactLaw> contact_;

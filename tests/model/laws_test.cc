@@ -1141,19 +1141,21 @@ TEST(Dual, RootAtZeroHasNoInfiniteSlope) {
 
 // ---- a law along the beam
 
+// At most a lane of points, and idle ones that fill it.
 GapField field(const std::vector<double>& gap, double velocity) {
-  GapField f;
-  f.gap = Eigen::Map<const Eigen::ArrayXd>(gap.data(), static_cast<Eigen::Index>(gap.size()));
-  f.velocity = Eigen::ArrayXd::Constant(f.gap.size(), velocity);
+  constexpr double rest_gap = 3.5_um;
+  GapField f{.gap = Eigen::ArrayXd::Constant(lanes, rest_gap), .velocity = Eigen::ArrayXd::Constant(lanes, velocity)};
+  std::copy(gap.begin(), gap.end(), f.gap.begin());
   f.smallest_gap = f.gap.minCoeff();
   return f;
 }
 
 template <class Law>
 double load_at(const DistributedLawOf<Law>& law, double gap, double velocity) {
-  double load = 0;
-  law.add_load(field({gap}, velocity), 1, &load);
-  return load;
+  std::array<double, lanes> load{};
+  law.add_load(field({gap}, velocity), 1, load.data());
+  EXPECT_EQ(load[1], 0);
+  return load[0];
 }
 
 template <class Law>
@@ -1255,7 +1257,7 @@ TEST(DistributedLaw, ActsAtItsOwnPointsOnly) {
 
 TEST(DistributedLaw, OnePointBelowTheFloorChangesNothingAtTheOthers) {
   const DistributedLawOf law(ElectrostaticForce<MeijsFokkemaFringing>{fringing<MeijsFokkemaFringing>(20_um, 2_um)}, 0, 2, 35_nm);
-  std::vector<double> alone(2, 0.0), beside(2, 0.0);
+  std::vector<double> alone(lanes, 0.0), beside(lanes, 0.0);
   law.add_load(field({2_um, 3_um}, 0), 1, alone.data());
   law.add_load(field({2_um, 10_nm}, 0), 1, beside.data());
   EXPECT_DOUBLE_EQ(alone[0], beside[0]);
@@ -1264,9 +1266,9 @@ TEST(DistributedLaw, OnePointBelowTheFloorChangesNothingAtTheOthers) {
 TEST(PassiveLaw, IgnoresTheDrive) {
   const StripSqueezeFilm film{.viscosity = 1.86e-5_Pa_s, .width = 20_um};
   const DistributedLawOf law(film, 0, 1, 35_nm);
-  double load = 0;
-  law.add_load(field({1_um}, 0.3), 0, &load);
-  EXPECT_DOUBLE_EQ(load, film.load(1_um, 0.3));
+  std::array<double, lanes> load{};
+  law.add_load(field({1_um}, 0.3), 0, load.data());
+  EXPECT_DOUBLE_EQ(load[0], film.load(1_um, 0.3));
 }
 
 }  // namespace

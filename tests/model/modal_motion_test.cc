@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -13,7 +14,7 @@ constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
 TEST(Turn, IsThatOfTheCircleUpToTheLargestPhase) {
   for (double phase = 1e-9; phase <= largest_phase; phase = std::min(1.3 * phase, phase + 0.01)) {
-    const Turn turned = turn(PhaseLane(0, phase, -phase, phase / 2));
+    const Turn turned = turn(Lane(0, phase, -phase, phase / 2));
     EXPECT_EQ(turned.cosine[0], 1);
     EXPECT_EQ(turned.sine[0], 0);
     EXPECT_NEAR(turned.cosine[1], std::cos(phase), rounding);
@@ -21,6 +22,20 @@ TEST(Turn, IsThatOfTheCircleUpToTheLargestPhase) {
     EXPECT_NEAR(turned.sine[2], -std::sin(phase), rounding * std::sin(phase));
     const double slack = 2 * std::pow(std::sin(phase / 2), 2);
     EXPECT_NEAR(turned.slack[1], slack, rounding * slack) << "without cancellation";
+  }
+}
+
+TEST(Turn, AddsUp) {
+  const Turn once = turn(Lane(0.01, 0.3, 1, 1.9));
+  Turn sum = once;
+  for (int k = 2; k <= 50; ++k) {
+    sum = sum + once;
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(lanes); ++i) {
+      const double phase = k * std::array{0.01, 0.3, 1.0, 1.9}[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(sum.cosine[i], std::cos(phase), k * rounding);
+      EXPECT_NEAR(sum.sine[i], std::sin(phase), k * rounding);
+      EXPECT_NEAR(sum.slack[i], 1 - std::cos(phase), k * rounding);
+    }
   }
 }
 
@@ -60,7 +75,8 @@ double worst_error(double length, double growth) {
     a.push_back(begin.acceleration);
   }
   ModalMotion motion(omega, shape);
-  motion.set(length, q.data(), v.data(), a.data(), exact(length));
+  constexpr int pieces = 7;
+  motion.set(length, pieces, q.data(), v.data(), a.data(), exact(length));
   double worst = 0;
   for (int i = 0; i <= 20; ++i) {
     const double t = length * i / 20;
@@ -68,6 +84,13 @@ double worst_error(double length, double growth) {
     worst = std::max(worst, std::abs(found.position - truth.position));
     EXPECT_NEAR(found.velocity, truth.velocity, 1e-2 * growth + 1e-13);
     EXPECT_NEAR(found.acceleration, truth.acceleration, 1e-1 * growth + 1e-13);
+  }
+  constexpr double rotations = 1e-14;  // one after the other, against one at once
+  for (int k = 1; k <= pieces; ++k) {
+    const ModalMotion::Sample found = motion.at(length * k / pieces), knot = motion.knot(k);
+    EXPECT_NEAR(knot.position, found.position, rotations);
+    EXPECT_NEAR(knot.velocity, found.velocity, rotations);
+    EXPECT_NEAR(knot.acceleration, found.acceleration, rotations);
   }
   return worst;
 }

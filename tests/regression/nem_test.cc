@@ -57,7 +57,7 @@ TEST(NemTin, ClosesBouncesAndSettlesAtItsVoltage) {
   const Metrics m = metrics(t, {.significant_rebound = 1e-11});
   EXPECT_LT(m.initial_contact_time, 2 * pi / device.angular_frequencies()[0]);
   EXPECT_GT(m.bounce_count, 0);
-  EXPECT_GT(t.smallest_gap, 3_nm);
+  EXPECT_GT(t.smallest_gap, 2.5_nm) << "2.8 nm with four times the quadrature points, which then come nearest to the end";
 }
 
 TEST(NemCasimir, HangsFreeAndClosesWhenTheForceGrowsByAQuarter) {

@@ -1,0 +1,45 @@
+// Four numbers at once: what the machine's vector instructions take, whatever the number of modes.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace softland {
+
+inline constexpr std::size_t lanes = 4;
+using Lane = Eigen::Array<double, lanes, 1>;
+
+/// Filled up to whole lanes with `idle`.
+[[nodiscard]] inline std::vector<double> padded_to_lanes(std::vector<double> values, double idle) {
+  values.resize((values.size() + lanes - 1) / lanes * lanes, idle);
+  return values;
+}
+
+/// Of a padded array.
+inline Eigen::Map<Lane> lane(std::vector<double>& values, std::size_t begin) { return Eigen::Map<Lane>(values.data() + begin); }
+inline Eigen::Map<const Lane> lane(const std::vector<double>& values, std::size_t begin) {
+  return Eigen::Map<const Lane>(values.data() + begin);
+}
+
+/// Of an array of `size` numbers, those beyond its end 0. One by one where they do not fill a lane: a vector read from numbers
+/// just written one by one would wait for them.
+[[nodiscard]] inline Lane load_lane(const double* from, std::size_t begin, std::size_t size) {
+  if (begin + lanes <= size) return Eigen::Map<const Lane>(from + begin);
+  const std::size_t left = size - begin;
+  from += begin;
+  return {from[0], left > 1 ? from[1] : 0, left > 2 ? from[2] : 0, 0};
+}
+inline void store_lane(const Lane& lane, double* to, std::size_t begin, std::size_t size) {
+  to += begin;
+  if (begin + lanes <= size) {
+    Eigen::Map<Lane>{to} = lane;
+    return;
+  }
+  const std::size_t left = size - begin;
+  to[0] = lane[0];
+  if (left > 1) to[1] = lane[1];
+  if (left > 2) to[2] = lane[2];
+}
+
+}  // namespace softland
