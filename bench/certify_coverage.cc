@@ -3,8 +3,8 @@
 // The truth is a run at a ten-thousandth of the tolerance of the run that the figures are of, with four times its quadrature
 // points, 96 at least. A figure whose difference from it is below what two such runs differ by counts as covered by any error.
 // Ill-conditioned figures have no truth: of them is said how often the run lies in the range of the cloud, which 16 runs alike in
-// distribution would give 15 of 17 times. With --film yes every scene has a compressible film in the place of its gas, which takes
-// a hundred times longer.
+// distribution would give 15 of 17 times. With --film yes every scene has a compressible film in the place of its gas, which
+// takes a hundred times longer.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -6,9 +6,9 @@
 // q modal coordinates [m kg^(1/2)], phi mass-normalised modes [kg^(-1/2)], f load per length of all distributed laws [N/m], w
 // quadrature weights [m], theta_i = M_p [phi_i'(Lp2) - phi_i'(Lp1)] with M_p the piezo moment per volt, P contact force [N], d
 // interference [m], Q force of stretching (model/stretching.h). Deflection y(x) = sum phi_i(x) q_i, positive towards the
-// electrode. Galerkin projection on Gauss panels that start and end where an electrode, the piezo layer or a pad that acts along its
-// length does. Only the laws that the device has are composed: an absent effect costs nothing. A rigid plate is a strip that stays flat: one mode, one
-// quadrature point per panel.
+// electrode. Galerkin projection on Gauss panels that start and end where an electrode, the piezo layer or a pad that acts along
+// its length does. Only the laws that the device has are composed: an absent effect costs nothing. A rigid plate is a strip that
+// stays flat: one mode, one quadrature point per panel.
 #pragma once
 
 #include <Eigen/Core>
