@@ -78,6 +78,7 @@ class Run {
         fastest_(device.angular_frequencies().maxCoeff()),
         // The quintic between two knots errs by the tolerance times the fastest mode's amplitude, and by 1e-5 of it at the most.
         knot_phase_(std::pow(46080 * std::min(options.tolerance, 1e-5), 1.0 / 6)),
+        omega_(padded_to_lanes(as_vector(device.angular_frequencies()), 1)),
         motion_(as_vector(device.angular_frequencies()), as_vector(device.contact_shape())) {
     system_.size = size_;
     system_.frequencies = as_vector(device.angular_frequencies());
@@ -718,7 +719,7 @@ class Run {
       const double* q = middle_.data();
       return device_.dissipated_power(q, q + n_, work_, film_of(q)) + contact_power(q);
     };
-    if (!careful_ || is_implicit()) {
+    if (!careful_ || !moves_by_modes_ || is_implicit()) {
       halve_step();
       return (power_ + 4 * inside() + last) / 6;
     }
@@ -783,17 +784,18 @@ class Run {
   // them right at the end (model/modal_motion.h).
   void move_to(double share) {
     const double h = next_.time - here_.time;
-    for (std::size_t i = 0; i < n_; ++i) {
-      const double q = here_.state[i], v = here_.state[n_ + i], a = here_.rates[i];
-      const double omega = device_.angular_frequencies()[static_cast<Eigen::Index>(i)];
-      const auto free = [&](double t) {
-        const double c = std::cos(omega * t), s = std::sin(omega * t);
-        return std::array{q + a / (omega * omega) * (1 - c) + v / omega * s, v * c + a / omega * s, a * c - v * omega * s};
-      };
-      const auto end = free(h), at = free(share * h);
-      const Quintic rest(0, 0, 0, 0, h, next_.state[i] - end[0], next_.state[n_ + i] - end[1], next_.rates[i] - end[2]);
-      middle_[i] = at[0] + rest.position(share * h);
-      middle_[n_ + i] = at[1] + rest.velocity(share * h);
+    const double *q = here_.state.data(), *q_end = next_.state.data();
+    for (std::size_t b = 0; b < n_; b += lanes) {
+      const Lane omega = lane(omega_, b), start = load_lane(q, b, n_), a = load_lane(here_.rates.data(), b, n_);
+      const Lane pull = a / (omega * omega), push = load_lane(q + n_, b, n_) / omega;
+      const Turn end = turn(omega * h), at = turn(omega * (share * h));
+      const auto place = [&](const Turn& t) -> Lane { return start + pull * t.slack + push * t.sine; };
+      const auto speed = [&](const Turn& t) -> Lane { return omega * (pull * t.sine + push * t.cosine); };
+      const Lane end_acceleration = omega * omega * (pull * end.cosine - push * end.sine);
+      const Remainder<Lane> rest(load_lane(q_end, b, n_) - place(end), h * (load_lane(q_end + n_, b, n_) - speed(end)),
+                                 h * h * (load_lane(next_.rates.data(), b, n_) - end_acceleration));
+      store_lane(place(at) + rest.position(share), middle_.data(), b, n_);
+      store_lane(speed(at) + rest.velocity(share) / h, middle_.data() + n_, b, n_);
     }
   }
 
@@ -867,6 +869,7 @@ class Run {
   TrajectoryPoint end_;                       // of the step from here_ to next_
   bool moves_by_modes_ = true;                // whether its phase is within what motion() holds for
   int step_pieces_ = 1;                       // between its knots
+  std::vector<double> omega_;                 // angular frequencies, in whole lanes [rad/s]
   ModalMotion motion_;
   bool motion_known_ = false;
   Knot here_, next_;

@@ -53,8 +53,9 @@ class DistributedLawOf final : public DistributedLaw {
       const double* share = share_.data();
       for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
         double sum[lanes];
-        for (Eigen::Index k = p; k < p + lanes; ++k) sum[k - p] = load[k] + factor * share[k] * law.load(gap[k], velocity[k]);
-        std::copy_n(sum, lanes, load + p);
+        for (Eigen::Index k = 0; k < lanes; ++k)
+          sum[k] = load[p + k] + factor * share[p + k] * law.load(gap[p + k], velocity[p + k]);
+        for (Eigen::Index k = 0; k < lanes; ++k) load[p + k] = sum[k];  // one by one: a copy of memory would undo the vectors
       }
       return;
     }

@@ -10,6 +10,18 @@
 
 namespace softland {
 
+/// The quintic that starts from rest at 0 and is p, v and a at the end of a step of length 1.
+template <class T>
+struct Remainder {
+  std::array<T, 3> factors{};  ///< of the powers 3 to 5
+
+  Remainder() = default;
+  Remainder(const T& p, const T& v, const T& a) : factors{10 * p - 4 * v + a / 2, -15 * p + 7 * v - a, 6 * p - 3 * v + a / 2} {}
+  [[nodiscard]] T position(double x) const { return x * x * x * (factors[0] + x * (factors[1] + x * factors[2])); }
+  [[nodiscard]] T velocity(double x) const { return x * x * (3 * factors[0] + x * (4 * factors[1] + 5 * x * factors[2])); }
+  [[nodiscard]] T acceleration(double x) const { return x * (6 * factors[0] + x * (12 * factors[1] + 20 * x * factors[2])); }
+};
+
 class ModalMotion {
  public:
   struct Sample {
@@ -44,9 +56,8 @@ class ModalMotion {
     start_ = start.sum();
     for (Sample& knot : knots_) knot.position += start_;
     const Sample& reached = knots_.back();
-    const double p = end.position - reached.position, pv = length * (end.velocity - reached.velocity);
-    const double pa = length * length * (end.acceleration - reached.acceleration);
-    rest_ = {10 * p - 4 * pv + pa / 2, -15 * p + 7 * pv - pa, 6 * p - 3 * pv + pa / 2};
+    rest_ = {end.position - reached.position, length * (end.velocity - reached.velocity),
+             length * length * (end.acceleration - reached.acceleration)};
     for (int k = 1; k <= pieces; ++k) add_rest(static_cast<double>(k) / pieces, knots_[static_cast<std::size_t>(k) - 1]);
   }
 
@@ -71,16 +82,15 @@ class ModalMotion {
 
   // At the share x of the step.
   void add_rest(double x, Sample& s) const {
-    const double x2 = x * x;
-    s.position += x2 * x * (rest_[0] + x * (rest_[1] + x * rest_[2]));
-    s.velocity += x2 * per_length_ * (3 * rest_[0] + x * (4 * rest_[1] + x * 5 * rest_[2]));
-    s.acceleration += x * per_length_ * per_length_ * (6 * rest_[0] + x * (12 * rest_[1] + x * 20 * rest_[2]));
+    s.position += rest_.position(x);
+    s.velocity += per_length_ * rest_.velocity(x);
+    s.acceleration += per_length_ * per_length_ * rest_.acceleration(x);
   }
 
   std::size_t modes_;
   std::vector<double> omega_, shape_, pull_, push_;
   std::vector<Sample> knots_;
-  std::array<double, 3> rest_{};  // of the remainder: powers 3 to 5 of time / length
+  Remainder<double> rest_;  // in units of the step's length
   double start_ = 0, per_length_ = 0;
 };
 
