@@ -38,7 +38,7 @@ std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
 }
 
 // The cheapest that deliver on random scenes: results/accuracy.md.
-double tolerance_for(double accuracy) { return std::clamp(accuracy / 10, 1e-12, 1e-3); }
+double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 
 SwitchOptions quadrature_for(double accuracy, int modes) {
   constexpr double points_per_digit = 4, fewest = 8;  // and two to a mode, which has about half a wave more than the last
@@ -73,7 +73,8 @@ Prepared as_described(const SceneFile& given, bool default_limits) {
   }
   p.drives = scene.drives(p.voltage_units());
   p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.device.angular_frequencies()[0];
-  p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance : tolerance_for(scene.simulate.accuracy);
+  p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance
+                                             : tolerance_for(scene.simulate.accuracy, p.device.film_states() > 0);
   return p;
 }
 

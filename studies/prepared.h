@@ -47,7 +47,7 @@ struct Prepared {
 };
 
 /// Integrator tolerance and quadrature that deliver a relative `accuracy` of t_i, v_i, B_H and the peak force.
-[[nodiscard]] double tolerance_for(double accuracy);
+[[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
 
 /// Reads, composes and resolves a scene; modes = "auto" is replaced by the number chosen, with a warning that says so; pull-in

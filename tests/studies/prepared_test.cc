@@ -16,6 +16,8 @@ TEST(Accuracy, TakesATenthForTheToleranceAndFourPointsADigit) {
   EXPECT_DOUBLE_EQ(tolerance_for(1e-6), 1e-7);
   EXPECT_DOUBLE_EQ(tolerance_for(0.5), 1e-3);
   EXPECT_DOUBLE_EQ(tolerance_for(1e-15), 1e-12);
+  EXPECT_EQ(prepare(gold({"simulate.accuracy=1e-2"})).tolerance, 1e-3);
+  EXPECT_EQ(prepare(gold({"simulate.accuracy=1e-2", "gas.model=reynolds"})).tolerance, 1e-4) << "a stiff film";
   EXPECT_DOUBLE_EQ(quadrature_for(1e-6, 4).points_per_length, 24);
   EXPECT_DOUBLE_EQ(quadrature_for(0.1, 1).points_per_length, 8);
   EXPECT_DOUBLE_EQ(quadrature_for(1e-3, 10).points_per_length, 24) << "two to a mode";
