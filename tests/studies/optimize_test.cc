@@ -25,13 +25,16 @@ Log search(const SceneFile& file, OptimizeOptions options, long budget = 60) {
   return {std::move(seen), std::move(result)};
 }
 
+// In a window that holds every landing a search may choose, a quarter of the scene's own.
+SceneFile quick() { return gold({"simulate.duration=150 us"}); }
+
 const Log& reference() {
-  static const Log log = search(gold(), {});
+  static const Log log = search(quick(), {});
   return log;
 }
 
 TEST(Optimize, GivesTheSameBitsWhateverTheNumberOfJobs) {
-  const Log two = search(gold(), {.jobs = 2});
+  const Log two = search(quick(), {.jobs = 2});
   ASSERT_EQ(two.evaluations.size(), reference().evaluations.size());
   for (const auto& [index, e] : reference().evaluations) {
     EXPECT_EQ(two.evaluations.at(index).x, e.x) << index;
@@ -39,14 +42,16 @@ TEST(Optimize, GivesTheSameBitsWhateverTheNumberOfJobs) {
   }
   EXPECT_EQ(two.result.parameters, reference().result.parameters);
   ASSERT_TRUE(two.result.best && reference().result.best);
-  EXPECT_EQ(two.result.best->metrics.permanent_contact_time, reference().result.best->metrics.permanent_contact_time);
+  EXPECT_EQ(two.result.best->metrics.major_bounce_height, reference().result.best->metrics.major_bounce_height);
+  EXPECT_EQ(two.result.best->trajectory.points.back().position, reference().result.best->trajectory.points.back().position);
   EXPECT_EQ(two.result.best_scene->scene.file.text(), reference().result.best_scene->scene.file.text());
 }
 
 TEST(Optimize, TriesOtherPointsWithAnotherSeed) {
-  const Log other = search(gold(), {.seed = 2});
+  constexpr long few = 10;
+  const Log first = search(quick(), {}, few), other = search(quick(), {.seed = 2}, few);
   bool differs = false;
-  for (const auto& [index, e] : reference().evaluations) {
+  for (const auto& [index, e] : first.evaluations) {
     const auto found = other.evaluations.find(index);
     differs = differs || found == other.evaluations.end() || found->second.x != e.x;
   }
@@ -72,7 +77,8 @@ TEST(Optimize, StaysInsideItsBoundsAndItsBudget) {
 }
 
 TEST(Optimize, ComparesWithAPlainStepToTheSameHoldLevel) {
-  const Log log = search(gold_pzt({"waveform.piezo.family=step", "waveform.piezo.level=0.4 V", "waveform.main.rise_time=30 us"}),
+  const Log log = search(gold_pzt({"simulate.duration=150 us", "waveform.piezo.family=step", "waveform.piezo.level=0.4 V",
+                                   "waveform.main.rise_time=30 us"}),
                          {.actuator = Actuator::electrostatic}, 12);
   const Prepared& baseline = log.result.baseline_scene;
   const auto& main = std::get<Step>(baseline.drives.waveforms.at("main"));
@@ -84,7 +90,7 @@ TEST(Optimize, ComparesWithAPlainStepToTheSameHoldLevel) {
 
 TEST(Optimize, PricesTheBaselineAtAboutOne) {
   for (const Target target : {Target::bounce, Target::settling, Target::rebound, Target::count, Target::impact, Target::energy}) {
-    const double cost = search(gold(), {.target = target}, 3).result.baseline_cost;
+    const double cost = search(quick(), {.target = target}, 3).result.baseline_cost;
     EXPECT_GT(cost, 0.5) << to_string(target);
     EXPECT_LT(cost, 4) << to_string(target);
   }
@@ -93,7 +99,7 @@ TEST(Optimize, PricesTheBaselineAtAboutOne) {
 TEST(Optimize, NeverChoosesALandingLaterThanItsBound) {
   for (const char* family : {"step", "pulse"}) {
     for (const Target target : {Target::impact, Target::bounce}) {
-      const Log log = search(gold(), {.target = target, .family = family}, 40);
+      const Log log = search(quick(), {.target = target, .family = family}, 40);
       const OptimizeResult& r = log.result;
       ASSERT_TRUE(r.best) << family;
       EXPECT_LE(r.best->metrics.initial_contact_time, 2.5 * r.baseline.metrics.initial_contact_time * (1 + 1e-4)) << family;
@@ -139,7 +145,7 @@ TEST(Optimize, RunsTheBestSoFarToItsEndWhenToldToStop) {
   std::atomic<bool> stop{false};
   OptimizeOptions options{.max_evaluations = 100000, .stop = &stop};
   options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { stop = stop || e.index >= 30; };
-  const OptimizeResult r = optimize(gold(), options);
+  const OptimizeResult r = optimize(gold({"simulate.duration=400 us"}), options);  // settled by then
   EXPECT_EQ(r.search.termination, Termination::interrupted);
   ASSERT_TRUE(r.best);
   EXPECT_EQ(r.best->metrics.status, Status::done);
@@ -162,7 +168,7 @@ TEST(Optimize, WarnsOfTheSceneInTheUsersFileAndOnce) {
 }
 
 TEST(Optimize, UnderASlewLimitComparesWithTheFastestPermittedStep) {
-  const SceneFile slow = gold({"waveform.main.rise_time=50 us", "driver.main.max_slew=2 V/us"});
+  const SceneFile slow = gold({"simulate.duration=200 us", "waveform.main.rise_time=50 us", "driver.main.max_slew=2 V/us"});
   for (const char* family : {"pulse", "harmonic"}) {
     const Log log = search(slow, {.family = family}, 30);
     const auto& main = std::get<Step>(log.result.baseline_scene.drives.waveforms.at("main"));
