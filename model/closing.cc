@@ -34,7 +34,7 @@ constexpr double worth_care = 1e-4;  // from there on dissipation is added up wi
 // a damped contact that rattles, ninety).
 constexpr double held_back = 2;  // Stepper::stiffness()
 constexpr long steps_to_look = 100;
-constexpr int patience = 10;  // looks
+constexpr int patience = 50;  // looks
 // Of the tolerance: where the explicit method took a hundred times the steps, its errors were far below the tolerance.
 constexpr double implicit_care = 0.01;
 

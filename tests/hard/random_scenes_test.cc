@@ -25,7 +25,7 @@ Prepared random_closing() {
 
 test::CheckedRun closing(const Prepared& p, Integrator integrator, double tolerance) {
   return test::checked_run(p.device, p.signals(),
-                           {.duration = p.duration, .tolerance = tolerance, .integrator = integrator, .max_steps = 10'000}, 1e-3,
+                           {.duration = p.duration, .tolerance = tolerance, .integrator = integrator, .max_steps = 20'000}, 1e-3,
                            p.scene.metrics);
 }
 
@@ -57,7 +57,7 @@ TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
     SCOPED_TRACE(index);
     const Prepared p = prepare(test::random_scene(2, index));
     const auto run = [&](Integrator integrator, double tolerance) {
-      const test::CheckedRun c = closing(p, integrator, tolerance);  // within 10 000 steps
+      const test::CheckedRun c = closing(p, integrator, tolerance);  // within 20 000 steps
       EXPECT_EQ(c.violations, std::vector<std::string>{});
       EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
       EXPECT_EQ(c.trajectory.work.integrator, Integrator::bdf);
