@@ -239,8 +239,10 @@ void Switch::set_gap(const double* q, Workspace& work) const {
 }
 
 // The matrices are small: a block of points at a time, with the modes' coordinates in registers, beats a general product.
+// Inlined, like the two that follow: a call would end the vectors that go on behind it.
 template <int Modes>
-double Switch::add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const {
+[[gnu::always_inline]] inline double Switch::add_modes(Eigen::Index first, const double* q, const double* v,
+                                                       GapField& field) const {
   const Eigen::Index points = shapes_.rows();
   const double* shapes = shapes_.data() + first * points;
   Lane at[Modes], rate[Modes];
@@ -263,7 +265,7 @@ double Switch::add_modes(Eigen::Index first, const double* q, const double* v, G
   return smallest.minCoeff();
 }
 
-void Switch::set_field(const double* q, const double* v, Workspace& work) const {
+[[gnu::always_inline]] inline void Switch::set_field(const double* q, const double* v, Workspace& work) const {
   Eigen::Index first = 0, left = modes();
   double& smallest = work.field.smallest_gap;
   for (; left >= 4; first += 4, left -= 4) smallest = add_modes<4>(first, q, v, work.field);
@@ -272,7 +274,7 @@ void Switch::set_field(const double* q, const double* v, Workspace& work) const 
   if (left == 1) smallest = add_modes<1>(first, q, v, work.field);
 }
 
-inline Lane Switch::projected(const Workspace& work, std::size_t first) const {
+[[gnu::always_inline]] inline Lane Switch::projected(const Workspace& work, std::size_t first) const {
   const auto points = static_cast<std::size_t>(shapes_.rows());
   const double* shapes = weighted_lanes_.data() + first * points;
   const double* load = work.load.data();
