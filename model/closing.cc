@@ -30,8 +30,8 @@ constexpr double worth_warning = 0.01, not_credible = 0.2;
 constexpr double worth_care = 1e-4;  // from there on dissipation is added up with more points
 
 // An explicit method held back by stability in one look after the other gives way to an implicit one. A thick film in a gap that
-// is all but closed makes every step one of these; in other closings they come and go (measured: twelve in a row at the most in
-// a damped contact that rattles, ninety).
+// is all but closed makes every step one of these. In other closings they come and go, a dozen in a row at the most; but a damped
+// contact that rattles has made ninety, so that some such runs go over without need.
 constexpr double held_back = 2;  // Stepper::stiffness()
 constexpr long steps_to_look = 100;
 constexpr int patience = 50;  // looks
@@ -713,13 +713,15 @@ class Run {
   }
 
   // Dissipated in the step from here_ to next_, where it is `last`: by Simpson's rule, or where its error may have shown by that
-  // of Lobatto with four points, over a motion that is exact for the modes. They may turn by two radians, their power by four.
+  // of Lobatto with four points, over a motion that is exact for the modes. They may turn by two radians, their power by four. A
+  // compressible film has no such motion.
   double mean_power(double last) {
     const auto inside = [&] {
       const double* q = middle_.data();
       return device_.dissipated_power(q, q + n_, work_, film_of(q)) + contact_power(q);
     };
-    if (!careful_ || !moves_by_modes_ || is_implicit()) {
+    const bool by_modes = careful_ && moves_by_modes_ && film_ == 0 && !is_implicit();
+    if (!by_modes) {
       halve_step();
       return (power_ + 4 * inside() + last) / 6;
     }
@@ -802,7 +804,7 @@ class Run {
   // Closes the books at here_. What is stored is the potential and, where a source holds a charge at its voltage, V Q.
   void balance() {
     const double* q = here_.state.data();
-    for (std::size_t k = 0; k < drives_.size(); ++k) volts_[k] = volts_at(k, here_.time);
+    set_volts(here_.time);
     EnergyBalance& e = out_.energy;
     e = {.source_work = source_work_,
          .stored = device_.kinetic_energy(q + n_) + device_.potential(q, volts_, false, work_) - rest_energy_ +
