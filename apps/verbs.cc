@@ -1,16 +1,13 @@
 #include "apps/verbs.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <functional>
 #include <iostream>
 #include <iterator>
 #include <limits>
@@ -20,6 +17,8 @@
 #include <thread>
 #include <utility>
 
+#include "apps/output.h"
+#include "apps/progress.h"
 #include "apps/search_folder.h"
 #include "base/require.h"
 #include "config/units.h"
@@ -27,9 +26,7 @@
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
 #include "reports/files.h"
-#include "reports/html.h"
 #include "reports/result_json.h"
-#include "reports/svg.h"
 #include "reports/text.h"
 #include "studies/certify.h"
 #include "studies/omissions.h"
@@ -59,12 +56,6 @@ std::string read_text(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void make_folder(const std::string& out) {
-  std::error_code error;
-  fs::create_directories(out, error);
-  require(!error, fmt::format("--out {}: the folder cannot be created: {}", out, error.message()));
-}
-
 // Voltages of the scene, for generators and simulators of circuits: the factor of the dispersion force is none.
 std::map<std::string, Signal> named_signals(const Prepared& p) {
   std::map<std::string, Signal> all;
@@ -74,33 +65,6 @@ std::map<std::string, Signal> named_signals(const Prepared& p) {
     if (names[k] != dispersion_drive) all.emplace(names[k], signals[k]);
   }
   return all;
-}
-
-void write_report(const fs::path& folder, const json& result) {
-  write_whole(folder / "report.html", html_report(result));
-  write_whole(folder / "gap.svg", svg_gap_chart(result));
-}
-
-// Everything a result leaves behind, in one place. `left` names what stands in the folder already.
-void write_outputs(const Common& c, const json& result, std::vector<std::string> left = {}) {
-  if (!c.out.empty()) {
-    const fs::path folder = c.out;
-    write_whole(folder / "result.json", result.dump() + "\n");
-    write_report(folder, result);
-    left.insert(left.begin(), {"report.html", "gap.svg", "result.json"});
-    const auto curves = result.at("curves").find("best");
-    if (curves != result.at("curves").end()) {
-      write_whole(folder / "trajectory.csv", trajectory_csv(*curves));
-      left.emplace_back("trajectory.csv");
-    }
-  }
-  if (!c.json.empty() && c.json != "-") write_whole(c.json, summary_json(result).dump(2) + "\n");
-  if (c.json == "-") {
-    std::cout << summary_json(result).dump(2) << "\n";
-    return;
-  }
-  std::cout << text_report(result);
-  if (!left.empty()) std::cout << "\n" << wrapped(fmt::format("In {}: {}", c.out, fmt::join(left, ", "))) << "\n";
 }
 
 // Pull-in of every electrode, without any waveform of the scene.
@@ -114,11 +78,6 @@ json pull_in_of(const Prepared& p, std::size_t k) {
             {"static_kind", to_string(s.kind)},
             {"dynamic_V", number(d.voltage)},
             {"release_V", number(release_voltage(p.device, k))}}}};
-}
-
-void print_json_or(const Common& c, const json& j, const std::string& text) {
-  if (!c.json.empty() && c.json != "-") write_whole(c.json, j.dump(2) + "\n");
-  std::cout << (c.json == "-" ? j.dump(2) + "\n" : text);
 }
 
 std::string volts(const json& v) { return v.is_number() ? fmt::format("{:.6g} V", v.get<double>()) : "none"; }
@@ -172,75 +131,6 @@ void read_budget(const std::string& text, OptimizeOptions& options) {
     options.max_evaluations = static_cast<long>(q.value);
   }
 }
-
-// How far a study is, on standard error: a bar that is rewritten in place on a terminal, elsewhere a line every ten seconds.
-class Bar {
- public:
-  explicit Bar(bool quiet) : quiet_(quiet) {}
-
-  /// `state` gives the part that is done, 0 to 1, and words; it is asked only when something is printed.
-  using State = std::function<std::pair<double, std::string>(double elapsed)>;
-  void show(const State& state) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - shown_ < std::chrono::milliseconds(terminal_ ? 200 : 10000)) return;
-    shown_ = now;
-    print(state);
-  }
-  /// Leaves the last state of the bar on the screen.
-  void close(const State& state) {
-    if (!terminal_ || quiet_) return;
-    print(state);
-    fmt::print(stderr, "\n");
-  }
-
- private:
-  void print(const State& state) const {
-    if (quiet_) return;
-    const auto [part, words] = state(std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
-    if (terminal_) {
-      constexpr int cells = 24;
-      const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(part * cells), 0, cells));
-      fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(full, '#'), std::string(cells - full, '.'), words);
-    } else {
-      fmt::print(stderr, "softland: {}\n", words);
-    }
-    std::fflush(stderr);
-  }
-
-  bool terminal_ = isatty(2) != 0, quiet_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), shown_ = start_;
-};
-
-// How far a search is.
-class Progress {
- public:
-  Progress(bool quiet, const OptimizeOptions& options)
-      : bar_(quiet), budget_(options.max_evaluations), seconds_(options.max_seconds) {}
-
-  void show(const OptimizeProgress& progress) {
-    progress_ = progress;
-    bar_.show([this](double elapsed) { return state(elapsed); });
-  }
-  void close() {
-    bar_.close([this](double elapsed) { return state(elapsed); });
-  }
-
- private:
-  [[nodiscard]] std::pair<double, std::string> state(double elapsed) const {
-    const bool timed = std::isfinite(seconds_);
-    std::string state = timed ? fmt::format("{:.0f} of {:g} s, {} evaluations", elapsed, seconds_, progress_.evaluations)
-                              : fmt::format("{} of {} evaluations, {:.0f} s", progress_.evaluations, budget_, elapsed);
-    state += std::isfinite(progress_.best_cost)
-                 ? fmt::format(", cost {:.4f} (plain step {:.4f})", progress_.best_cost, progress_.baseline_cost)
-                 : ", no feasible waveform yet";
-    return {timed ? elapsed / seconds_ : static_cast<double>(progress_.evaluations) / static_cast<double>(budget_), state};
-  }
-
-  Bar bar_;
-  long budget_;
-  double seconds_;
-  OptimizeProgress progress_;
-};
 
 // Where the shipped scenes are: beside the sources, or beside the program in an unpacked tree.
 fs::path shipped_scene(const std::string& name) {
@@ -461,7 +351,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   if (request.budget) read_budget(*request.budget, options);
 
   const SceneFile file = load_scene(c);
-  Progress progress(c.quiet, options);
+  SearchProgress progress(c.quiet, options);
   std::optional<SearchFolder> folder;
   options.on_start = [&](const std::vector<std::string>& variables) {
     folder.emplace(c.out, variables);
