@@ -9,9 +9,9 @@
 #include <iterator>
 
 #include "base/engineering.h"
+#include "base/gauss.h"
 #include "base/require.h"
 #include "model/constants.h"
-#include "model/gauss.h"
 #include "model/surface.h"
 
 namespace softland {

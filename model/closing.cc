@@ -10,10 +10,11 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "integrators/modal_motion.h"
+#include "integrators/quintic.h"
+#include "integrators/roots.h"
+#include "integrators/stepper.h"
 #include "model/gas/gas_law.h"
-#include "model/modal_motion.h"
-#include "model/quintic.h"
-#include "model/stepper.h"
 
 namespace softland {
 namespace {
@@ -94,7 +95,7 @@ class Run {
       system_.jacobian = [this](double t, const double* y, double* j) { jacobian(t, y, law_at(y), j); };
     }
     out_.work.integrator = options.integrator == Integrator::automatic ? automatic_integrator(device) : options.integrator;
-    stepper_ = internal::make_stepper(out_.work.integrator, system_);
+    stepper_ = make_stepper(out_.work.integrator, system_);
     here_ = {.time = 0, .state = std::vector<double>(size_, 0.0), .rates = std::vector<double>(n_ + film_, 0.0)};
     if (device.rest()) std::copy_n(device.rest()->data(), n_, here_.state.begin());
     rest_energy_ = device.potential(here_.state.data(), volts_, false, work_);
@@ -281,7 +282,7 @@ class Run {
       return;
     }
     out_.work.integrator = Integrator::bdf;
-    stepper_ = internal::make_stepper(out_.work.integrator, system_);
+    stepper_ = make_stepper(out_.work.integrator, system_);
     tolerance_ *= implicit_care;
     set_tolerances();
     restart();
@@ -720,7 +721,7 @@ class Run {
       const double* q = middle_.data();
       return device_.dissipated_power(q, q + n_, work_, film_of(q)) + contact_power(q);
     };
-    const bool by_modes = careful_ && moves_by_modes_ && film_ == 0 && !is_implicit();
+    const bool by_modes = careful_ && moves_by_modes_ && film_ == 0 && !is_implicit(out_.work.integrator);
     if (!by_modes) {
       halve_step();
       return (power_ + 4 * inside() + last) / 6;
@@ -732,10 +733,6 @@ class Run {
       sum += inside();
     }
     return (power_ + 5 * sum + last) / 12;
-  }
-
-  [[nodiscard]] bool is_implicit() const {
-    return out_.work.integrator == Integrator::esdirk || out_.work.integrator == Integrator::bdf;
   }
 
   [[nodiscard]] const double* film_of(const double* y) const { return film_ > 0 ? y + 2 * n_ : nullptr; }
@@ -762,7 +759,7 @@ class Run {
   // errors times the stiffness, the cubic.
   void halve_step() {
     const double h = next_.time - here_.time;
-    const bool cubic = is_implicit();
+    const bool cubic = is_implicit(out_.work.integrator);
     for (std::size_t i = 0; i < n_; ++i) {
       const double p0 = here_.state[i], p1 = next_.state[i], v0 = here_.state[n_ + i], v1 = next_.state[n_ + i];
       const double a0 = here_.rates[i], a1 = next_.rates[i];
@@ -783,7 +780,7 @@ class Run {
   }
 
   // Where the modes stand after a share of the step: as if the forces on them stayed what they were, and a quintic that makes
-  // them right at the end (model/modal_motion.h).
+  // them right at the end (integrators/modal_motion.h).
   void move_to(double share) {
     const double h = next_.time - here_.time;
     const double *q = here_.state.data(), *q_end = next_.state.data();
@@ -862,8 +859,8 @@ class Run {
   std::vector<double> volts_;
   std::vector<std::size_t> pieces_;  // the signal piece of each drive in the present stretch
   double plane_;
-  internal::OdeSystem system_;
-  std::unique_ptr<internal::Stepper> stepper_;
+  OdeSystem system_;
+  std::unique_ptr<Stepper> stepper_;
   double tolerance_;
   std::vector<double> in_flight_, touching_;  // absolute tolerances
   double fastest_;                            // angular frequency of the last mode [rad/s]
@@ -905,24 +902,6 @@ class Run {
 };
 
 }  // namespace
-
-std::string_view to_string(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::automatic:
-      return "automatic";
-    case Integrator::lawson:
-      return "lawson";
-    case Integrator::arkode_erk:
-      return "arkode-erk";
-    case Integrator::esdirk:
-      return "esdirk";
-    case Integrator::bdf:
-      return "bdf";
-    case Integrator::adams:
-      return "adams";
-  }
-  return "unknown";
-}
 
 Integrator automatic_integrator(const Switch& device) {
   return device.film_states() > 0 ? Integrator::esdirk : Integrator::lawson;

@@ -3,12 +3,12 @@
 // The integrator restarts at waveform breakpoints, at make and break of contact, and, where the contact law has memory, where it
 // passes from one of its curves to another (turning points while loading among them) or is not smooth, so it only ever sees
 // smooth right-hand sides. At a rigid contact the velocity is reversed, or the plate rests and nothing is integrated until it is
-// pulled off. Within a step the contact point moves as the free modes do, plus a quintic (model/modal_motion.h); contact events
-// are the zeros between the extrema of that motion, looked for in pieces of a fraction of a radian of the fastest mode (grazing
-// touches do not hide between steps), and a step with an event is repeated until it ends there. The trajectory has a knot at the
-// end of every piece. Error weights: a mode's coordinate counts as the deflection it causes at the contact point, its velocity as
-// that times its frequency. In flight the tolerance is relative to the contact gap, in contact to the penetration, which is a
-// thousand times smaller.
+// pulled off. Within a step the contact point moves as the free modes do, plus a quintic (integrators/modal_motion.h); contact
+// events are the zeros between the extrema of that motion, looked for in pieces of a fraction of a radian of the fastest mode
+// (grazing touches do not hide between steps), and a step with an event is repeated until it ends there. The trajectory has a
+// knot at the end of every piece. Error weights: a mode's coordinate counts as the deflection it causes at the contact point, its
+// velocity as that times its frequency. In flight the tolerance is relative to the contact gap, in contact to the penetration,
+// which is a thousand times smaller.
 //
 // Steps that are short for the stability of the explicit method and not for the tolerance, as in a thick film in a gap that is
 // all but closed, a thousand of them and more, make an `automatic` run go over to BDF, with a hundredth of the tolerance.
@@ -36,11 +36,7 @@
 
 namespace softland {
 
-/// Those that can be chosen between.
-inline constexpr std::array all_integrators{Integrator::lawson, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf,
-                                            Integrator::adams};
-[[nodiscard]] std::string_view to_string(Integrator integrator);
-/// What `automatic` begins with.
+/// What `automatic` begins with: lawson, or esdirk where a gas film is compressible.
 [[nodiscard]] Integrator automatic_integrator(const Switch& device);
 
 struct ClosingOptions {

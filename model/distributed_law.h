@@ -7,12 +7,12 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "base/lanes.h"
 #include "model/dual.h"
-#include "model/lanes.h"
 
 namespace softland {
 
-/// The beam at the quadrature points, and at idle ones that fill the last lane (model/lanes.h): local gap h [m] and velocity
+/// The beam at the quadrature points, and at idle ones that fill the last lane (base/lanes.h): local gap h [m] and velocity
 /// towards the electrode [m/s].
 struct GapField {
   Eigen::ArrayXd gap;

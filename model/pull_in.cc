@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "integrators/roots.h"
 #include "model/closing.h"
 #include "model/constants.h"
-#include "model/quintic.h"
 
 namespace softland {
 namespace {

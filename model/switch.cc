@@ -5,11 +5,11 @@
 #include <cmath>
 #include <set>
 
+#include "base/gauss.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
-#include "model/gauss.h"
 #include "model/plate.h"
 
 namespace softland {

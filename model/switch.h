@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "base/lanes.h"
 #include "model/beam.h"
 #include "model/contact/contact_law.h"
 #include "model/contact/pad.h"
@@ -27,7 +28,6 @@
 #include "model/distributed_law.h"
 #include "model/gas/gas_law.h"
 #include "model/gas/reynolds_film.h"
-#include "model/lanes.h"
 #include "model/stretching.h"
 
 namespace softland {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "integrators/integrator.h"
 #include "model/status.h"
 
 namespace softland {
@@ -27,15 +28,6 @@ struct Touch {
   double impact_velocity = 0;  ///< [m/s] at begin
   double peak_force = 0;       ///< [N]; NaN for a rigid contact, which has an impulse instead
   double peak_energy = 0;      ///< largest energy stored in the contact law, of a rigid one the kinetic energy at impact [J]
-};
-
-enum class Integrator {
-  automatic,   ///< lawson, and bdf from where that is held back by stability; esdirk where a gas film is compressible
-  lawson,      ///< explicit Runge-Kutta 5(4) on top of the free motion of the modes, ours
-  arkode_erk,  ///< the same pair on the motion itself, ARKODE
-  esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
-  bdf,         ///< CVODE, exact Jacobian
-  adams,       ///< CVODE, functional iteration
 };
 
 struct Work {

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "model/quintic.h"
+#include "integrators/quintic.h"
+#include "integrators/roots.h"
 
 namespace softland {
 namespace {

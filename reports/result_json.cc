@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model/quintic.h"
+#include "integrators/quintic.h"
 #include "studies/certify.h"
 #include "studies/omissions.h"
 #include "version.h"

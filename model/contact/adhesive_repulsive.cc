@@ -1,6 +1,6 @@
 #include "model/contact/adhesive_repulsive.h"
 
-#include "model/quintic.h"
+#include "integrators/roots.h"
 
 namespace softland {
 

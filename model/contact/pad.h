@@ -20,7 +20,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "model/gauss.h"
+#include "base/gauss.h"
 
 namespace softland {
 

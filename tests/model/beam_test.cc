@@ -10,8 +10,8 @@
 
 #include "base/literals.h"
 #include "base/require.h"
+#include "integrators/roots.h"
 #include "model/constants.h"
-#include "model/quintic.h"
 #include "tests/model/expect_refused.h"
 #include "tests/support/devices.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/literals.h"
-#include "model/quintic.h"
+#include "integrators/quintic.h"
 #include "objectives/metrics.h"
 #include "tests/model/expect_refused.h"
 #include "tests/support/devices.h"

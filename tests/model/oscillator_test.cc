@@ -7,7 +7,6 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "model/constants.h"
-#include "model/stepper.h"
 #include "tests/support/devices.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
@@ -176,21 +175,6 @@ TEST(Touch, ThatGrazesThePlaneIsFoundAndItsNearMissIsNot) {
       EXPECT_NEAR(touch.impact_velocity, peak / 2 * w * std::sin(early * w), event_digits * touch.impact_velocity);
     }
   }
-}
-
-TEST(Lawson, KnowsWhenStabilityKeepsItsStepsShort) {
-  const auto last_stiffness = [](double friction) {
-    internal::OdeSystem system{.size = 2, .frequencies = {1}};
-    system.rates = [&](double, const double* y, double* rates) { rates[0] = -y[0] - friction * y[1]; };
-    const auto stepper = internal::make_stepper(Integrator::lawson, system);
-    const double begin[] = {1, 0}, acceleration = -1;
-    EXPECT_TRUE(stepper->restart(0, begin, &acceleration, {1e-6, 1e-6}, 1e-4, 1));
-    for (int i = 0; i < 500; ++i) EXPECT_TRUE(stepper->step(1e6));
-    return stepper->stiffness();
-  };
-  // The pair is stable for decays up to 3.3 of its steps.
-  EXPECT_NEAR(last_stiffness(1e3), 3.3, 0.7);
-  EXPECT_LT(last_stiffness(1e-2), 0.1);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/quintic.h"
+#include "integrators/quintic.h"
 
 namespace softland::test {
 namespace {

@@ -24,10 +24,10 @@
 
 #include <array>
 
-#include "model/phase.h"
-#include "model/stepper.h"
+#include "integrators/phase.h"
+#include "integrators/stepper.h"
 
-namespace softland::internal {
+namespace softland {
 
 class Lawson final : public Stepper {
  public:
@@ -71,4 +71,4 @@ class Lawson final : public Stepper {
   std::string message_;
 };
 
-}  // namespace softland::internal
+}  // namespace softland

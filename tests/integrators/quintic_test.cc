@@ -1,4 +1,4 @@
-#include "model/quintic.h"
+#include "integrators/quintic.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/gauss.h"
 #include "model/constants.h"
-#include "model/gauss.h"
 
 namespace softland {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "model/lanes.h"
+#include "base/lanes.h"
 
 namespace softland {
 

@@ -1,4 +1,4 @@
-#include "model/lawson.h"
+#include "integrators/lawson.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace softland::internal {
+namespace softland {
 namespace {
 
 constexpr double nodes[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
@@ -206,4 +206,4 @@ bool Lawson::step(double t_stop) {
   }
 }
 
-}  // namespace softland::internal
+}  // namespace softland

@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <vector>
 
-namespace softland::internal {
+namespace softland {
 
 class ArrowEquations {
  public:
@@ -51,4 +51,4 @@ class ArrowEquations {
   Eigen::PartialPivLU<Eigen::MatrixXd> core_equations_;
 };
 
-}  // namespace softland::internal
+}  // namespace softland

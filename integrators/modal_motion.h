@@ -1,12 +1,13 @@
 // Motion of one point of the beam within a step: every mode as if the force on it stayed what it is at the begin, which is exact
-// (model/phase.h), plus a quintic that makes position, velocity and acceleration right at the end. What the force changes in a
-// step is small, so this holds where the quintic through both ends does not: over steps of a radian and more of the fastest mode.
+// (integrators/phase.h), plus a quintic that makes position, velocity and acceleration right at the end. What the force changes
+// in a step is small, so this holds where the quintic through both ends does not: over steps of a radian and more of the fastest
+// mode.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "model/phase.h"
+#include "integrators/phase.h"
 
 namespace softland {
 

@@ -1,4 +1,4 @@
-#include "model/modal_motion.h"
+#include "integrators/modal_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <vector>
 
 namespace softland {

@@ -1,72 +1,13 @@
 // Quintic Hermite interpolation of a motion between two knots with position, velocity and acceleration: error of sixth order in
-// the step. Zeros of functions and of polynomials, to find what happens between the knots.
+// the step.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <boost/math/tools/toms748_solve.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numeric>
+
+#include "integrators/roots.h"
 
 namespace softland {
-
-/// A zero of f in [low, high] where f(low) and f(high) differ in sign, to rounding: TOMS algorithm 748 (Alefeld, Potra & Shi
-/// 1995). Where they do not differ, the end at which |f| is less.
-template <class F>
-double bracketed_zero(F&& f, double low, double high) {
-  const double f_low = f(low), f_high = f(high);
-  double zero = low, least = std::abs(f_low);
-  const auto keep = [&](double t, double value) {
-    if (std::abs(value) < least) zero = t, least = std::abs(value);
-    return value;
-  };
-  keep(high, f_high);
-  if (!(f_low < 0 && f_high > 0) && !(f_low > 0 && f_high < 0)) return zero;
-  const auto neighbours = [](double a, double b) {
-    const double middle = a + (b - a) / 2;
-    return !(middle > a && middle < b);
-  };
-  std::uintmax_t most = 200;  // evaluations
-  boost::math::tools::toms748_solve([&](double t) { return keep(t, f(t)); }, low, high, f_low, f_high, neighbours, most);
-  return zero;
-}
-
-/// Places in (0, 1) in order, at most N.
-template <std::size_t N>
-struct Places {
-  std::array<double, N> at{};
-  std::size_t count = 0;
-  [[nodiscard]] const double* begin() const { return at.data(); }
-  [[nodiscard]] const double* end() const { return at.data() + count; }
-};
-
-/// Where the polynomial c[0] + c[1] s + ... + c[N] s^N changes sign in 0 < s < 1: between the zeros of its derivative it is
-/// monotone.
-template <std::size_t M>
-[[nodiscard]] Places<M - 1> sign_changes(const std::array<double, M>& c) {
-  constexpr std::size_t degree = M - 1;
-  Places<degree> places;
-  if constexpr (degree > 0) {
-    const auto value = [&](double s) {
-      return std::accumulate(c.rbegin(), c.rend(), 0.0, [s](double v, double k) { return v * s + k; });
-    };
-    std::array<double, degree> slope;
-    for (std::size_t k = 0; k < degree; ++k) slope[k] = static_cast<double>(k + 1) * c[k + 1];
-    double low = 0;
-    const auto look = [&](double high) {
-      const double at_low = value(low), at_high = value(high);
-      if ((at_low < 0 && at_high > 0) || (at_low > 0 && at_high < 0)) {
-        places.at[places.count++] = bracketed_zero(value, low, high);
-      }
-      low = high;
-    };
-    for (const double turn : sign_changes(slope)) look(turn);
-    look(1);
-  }
-  return places;
-}
 
 class Quintic {
  public:

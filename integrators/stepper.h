@@ -1,4 +1,4 @@
-// One smooth stretch of an ordinary differential equation at a time: what the closing needs of an integrator library.
+// One smooth stretch of an ordinary differential equation at a time, whatever the method.
 #pragma once
 
 #include <functional>
@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "model/closing.h"
+#include "integrators/integrator.h"
 
-namespace softland::internal {
+namespace softland {
 
 /// y = (q, v, z) of dimension n: modes with q' = v, v' = -frequency^2 q + ..., and what follows them. The Jacobian of y' is
 /// needed by the implicit methods only (column-major n x n).
@@ -41,6 +41,7 @@ class Stepper {
   [[nodiscard]] virtual double stiffness() const { return 0; }
 };
 
+/// Keeps a reference to the system. Throws std::logic_error for `automatic`.
 [[nodiscard]] std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system);
 
-}  // namespace softland::internal
+}  // namespace softland

@@ -1,0 +1,52 @@
+// The integrators a closing can be run with, and what they are called.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace softland {
+
+enum class Integrator {
+  automatic,   ///< chosen by the caller for the equations at hand: a stepper cannot be made of it
+  lawson,      ///< explicit Runge-Kutta 5(4) on top of the free motion of the modes, ours
+  arkode_erk,  ///< the same pair on the motion itself, ARKODE
+  esdirk,      ///< diagonally implicit Runge-Kutta 5(4), ARKODE, exact Jacobian
+  bdf,         ///< CVODE, exact Jacobian
+  adams,       ///< CVODE, functional iteration
+};
+
+struct IntegratorDescriptor {
+  Integrator integrator;
+  std::string_view name;
+  bool implicit;  ///< solves equations with the Jacobian in every step
+};
+
+/// One line per integrator; `automatic` is none.
+inline constexpr std::array integrator_descriptors{
+    IntegratorDescriptor{Integrator::lawson, "lawson", false}, IntegratorDescriptor{Integrator::arkode_erk, "arkode-erk", false},
+    IntegratorDescriptor{Integrator::esdirk, "esdirk", true},  IntegratorDescriptor{Integrator::bdf, "bdf", true},
+    IntegratorDescriptor{Integrator::adams, "adams", false},
+};
+
+/// Those that can be chosen between.
+inline constexpr auto all_integrators = [] {
+  std::array<Integrator, integrator_descriptors.size()> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = integrator_descriptors[i].integrator;
+  return all;
+}();
+
+[[nodiscard]] constexpr std::string_view to_string(Integrator integrator) {
+  for (const IntegratorDescriptor& d : integrator_descriptors) {
+    if (d.integrator == integrator) return d.name;
+  }
+  return "automatic";
+}
+
+[[nodiscard]] constexpr bool is_implicit(Integrator integrator) {
+  for (const IntegratorDescriptor& d : integrator_descriptors) {
+    if (d.integrator == integrator) return d.implicit;
+  }
+  return false;
+}
+
+}  // namespace softland
