@@ -2,7 +2,6 @@
 include(CheckCXXSourceRuns)
 
 add_library(softland_options INTERFACE)
-target_include_directories(softland_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
 # Aggregates are filled with designated initializers and rely on the defaults of what is left out.
 target_compile_options(softland_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-missing-field-initializers)
 # GCC 12 takes assignments of literals to std::string for overlapping copies (GCC PR 105651).
@@ -32,9 +31,23 @@ if(SOFTLAND_COVERAGE)
   add_link_options(--coverage)
 endif()
 
-# softland_library(NAME SOURCES ... USES ...): a static library of one folder, linked only to what it names.
+# softland_offers(TARGET SCOPE FOLDER): lets TARGET include "FOLDER/...". The root is on no include path, so that a folder can be
+# included only by those who name its library: build/views/FOLDER holds a link to it and nothing else.
+function(softland_offers target scope folder)
+  set(view ${PROJECT_BINARY_DIR}/views/${folder})
+  file(MAKE_DIRECTORY ${view})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
+  target_include_directories(${target} ${scope} ${view})
+endfunction()
+
+# softland_library(NAME [FOLDER folder] SOURCES ... USES ...): a static library of the folder, NAME unless it is given, linked only
+# to what it names.
 function(softland_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "FOLDER" "SOURCES;USES" ${ARGN})
+  if(NOT ARG_FOLDER)
+    set(ARG_FOLDER ${name})
+  endif()
   add_library(softland_${name} STATIC ${ARG_SOURCES})
   target_link_libraries(softland_${name} PUBLIC softland_options ${ARG_USES})
+  softland_offers(softland_${name} PUBLIC ${ARG_FOLDER})
 endfunction()
