@@ -30,6 +30,7 @@
 #include <string>
 #include <string_view>
 
+#include "model/closing/observer.h"
 #include "model/switch.h"
 #include "model/trajectory.h"
 #include "waveforms/signal.h"
@@ -65,5 +66,9 @@ struct ClosingOptions {
 /// Never throws for numerical trouble: see Trajectory::status. Throws InvalidInput unless there is one signal per drive of the
 /// switch, duration and tolerance are positive and tolerance <= 0.1; or where restart_at_contact is false and cannot be.
 [[nodiscard]] Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options);
+
+/// The same for an observer, who alone receives points and touches: those of the result stay empty.
+[[nodiscard]] Trajectory observe_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options,
+                                         ClosingObserver& observer);
 
 }  // namespace softland

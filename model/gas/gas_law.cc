@@ -45,27 +45,26 @@ double squeeze_number(const Gas& gas, double width, double gap, double rate) {
   return 12 * viscosity(gas) * width * width * rate / (gas.pressure * gap * gap);
 }
 
-std::vector<std::string> gas_warnings(const Device& device, const Trajectory& trajectory) {
+double squeeze_number(const Device& device, const TrajectoryPoint& point) {
+  const double h = device.gap.electrode - point.position;
+  if (!device.gas || !std::isfinite(entry(device.gas->model).most_squeeze) || !(h > 0)) return 0;
+  return squeeze_number(*device.gas, device.structure.width, h, std::abs(point.velocity) / h);
+}
+
+std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze) {
   std::vector<std::string> warnings;
   if (!device.gas) return warnings;
-  const Gas& gas = *device.gas;
-  const GasModelEntry& law = entry(gas.model);
-  const double rest = device.gap.electrode;
-  const double lambda = mean_free_path(gas);
-  if (const double kn = lambda / trajectory.smallest_gap; kn > law.most_knudsen) {
+  const GasModelEntry& law = entry(device.gas->model);
+  const double lambda = mean_free_path(*device.gas);
+  if (const double kn = lambda / smallest_gap; kn > law.most_knudsen) {
     warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} exceeds {:.2g}", law.name, kn, law.most_knudsen));
   }
-  if (const double kn = lambda / rest; kn < law.least_knudsen) {
+  if (const double kn = lambda / device.gap.electrode; kn < law.least_knudsen) {
     warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} is below {:.2g}", law.name, kn, law.least_knudsen));
   }
-  if (!std::isfinite(law.most_squeeze)) return warnings;
-  double largest = 0;
-  for (const TrajectoryPoint& p : trajectory.points) {
-    const double h = rest - p.position;
-    if (h > 0) largest = std::max(largest, squeeze_number(gas, device.structure.width, h, std::abs(p.velocity) / h));
-  }
-  if (largest > law.most_squeeze) {
-    warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: {}", law.name, largest, law.most_squeeze,
+  if (largest_squeeze > law.most_squeeze) {
+    warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: {}", law.name, largest_squeeze,
+                                   law.most_squeeze,
                                    is_compressible(law.model) ? "its boundary layers are too thin to be resolved"
                                                               : "the film is compressed, not squeezed out"));
   }

@@ -69,8 +69,11 @@ inline constexpr std::array gas_models{
 /// 12 mu a^2 rate / (p h^2), with the rate [1/s] at which the gap h [m] changes.
 [[nodiscard]] double squeeze_number(const Gas& gas, double width, double gap, double rate);
 
-/// One line per limit of the gas law that the trajectory left, with law, limit and value. Knudsen numbers are taken between the
-/// rest gap and the smallest gap anywhere, squeeze numbers at the contact point with the rate |v| / h.
-[[nodiscard]] std::vector<std::string> gas_warnings(const Device& device, const Trajectory& trajectory);
+/// At the contact point, with the rate |v| / h; 0 where the device's law has no limit for it.
+[[nodiscard]] double squeeze_number(const Device& device, const TrajectoryPoint& point);
+
+/// One line per limit of the gas law that a closing left, with law, limit and value. Knudsen numbers are taken between the rest
+/// gap and the smallest gap anywhere [m].
+[[nodiscard]] std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze);
 
 }  // namespace softland

@@ -1,0 +1,75 @@
+// Where the contact point of a closing stands with respect to the contact law, and where that part of the law ends.
+//
+//   flight     above the plane of first touch, and above the reach of a law that acts beyond it
+//   near       above the plane, within the reach of the law                    (adhesive_repulsive.h)
+//   loading    in contact; all through a touch for a law without memory
+//   unloading  on the way back along the elastic curve of a law with memory    (memory.h)
+//   dent       below the plane, in the dent that a law with memory has left, where it carries nothing
+//   rest       a plate at rest on a rigid contact                              (rigid.h)
+//
+// A phase is entered at an edge of another one or, from loading to unloading, at the deepest point. A law that is not smooth at
+// some interferences has an edge there from loading to loading. The integrator is restarted at every edge, so that it only ever
+// sees smooth right-hand sides.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "model/switch.h"
+
+namespace softland {
+
+enum class Phase { flight, near, loading, unloading, dent, rest };
+
+/// An end of a phase: side * (position - level) is positive inside it.
+struct Edge {
+  double level = 0;  ///< [m]
+  double side = 0;   ///< 1: the phase lies beyond the level, towards the contact; -1: before it
+  Phase next = Phase::flight;
+  std::size_t zone = 0;  ///< of the next phase: between which kinks of the law, counted from the plane
+};
+
+class ContactPhase {
+ public:
+  /// In flight, never touched.
+  explicit ContactPhase(const Switch& model);
+
+  [[nodiscard]] Phase phase() const { return phase_; }
+  /// Whether the contact point is at or below the plane of first touch.
+  [[nodiscard]] bool in_contact() const { return phase_ != Phase::flight && phase_ != Phase::near; }
+  /// State of the contact law that belongs to the phase.
+  [[nodiscard]] const ContactState& law() const { return law_; }
+  [[nodiscard]] std::span<const Edge> edges() const { return {edges_.data(), edge_count_}; }
+  /// The phase on the other side of the plane of first touch.
+  [[nodiscard]] Phase above() const { return reach_ > 0 ? Phase::near : Phase::flight; }
+  /// Whether the phase ends where the contact point turns back: loading of a law with memory.
+  [[nodiscard]] bool ends_at_turn() const { return remembers_ && phase_ == Phase::loading; }
+  /// State of a law without memory at this position of the contact point [m], whatever the phase.
+  [[nodiscard]] ContactState law_at(double position) const {
+    return acts_along_pad_ || (has_contact_ && position > plane_ - reach_);
+  }
+  /// Energy lost to dents so far, with the contact point at this position [J].
+  [[nodiscard]] double lost(double position) const;
+
+  void enter(Phase phase, std::size_t zone = 0);
+  /// Turns from loading to unloading at this interference [m].
+  void turn(double deepest);
+
+ private:
+  const Switch& model_;
+  double plane_;  // of first touch [m]
+  double reach_;  // how far above the plane the law acts [m]
+  bool has_contact_, acts_along_pad_, remembers_;
+  std::vector<double> kinks_;  // interferences at which the law is not smooth [m]
+  Phase phase_ = Phase::flight;
+  ContactState law_;
+  std::array<Edge, 2> edges_;
+  std::size_t edge_count_ = 0;
+  double deepest_ = 0;  // interference that the law remembers [m]
+  Dent dent_;           // what it has left
+  double healed_ = 0;   // energy lost to dents that are forgotten [J]
+};
+
+}  // namespace softland

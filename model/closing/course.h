@@ -1,0 +1,46 @@
+// The course of the contact point as it is found: knots of the present step wait until nothing changes them any more.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "model/closing/observer.h"
+#include "model/device.h"
+#include "model/gas/gas_law.h"
+
+namespace softland {
+
+class Course {
+ public:
+  /// Keeps references.
+  Course(const Device& device, ClosingObserver& observer) : device_(device), observer_(observer) {}
+
+  void push(const TrajectoryPoint& point) { waiting_.push_back(point); }
+  /// Of those handed over and those that wait.
+  [[nodiscard]] const TrajectoryPoint& last() const { return waiting_.empty() ? handed_over_ : waiting_.back(); }
+  /// The last of those that wait, to be corrected.
+  [[nodiscard]] TrajectoryPoint& last_waiting() { return waiting_.back(); }
+  /// Takes back what waits from this time on.
+  void take_back(double from, double step_begin) {
+    while (!waiting_.empty() && waiting_.back().time >= from && waiting_.back().time > step_begin) waiting_.pop_back();
+  }
+  void hand_over() {
+    for (const TrajectoryPoint& p : waiting_) {
+      observer_.knot(p);
+      largest_squeeze_ = std::max(largest_squeeze_, squeeze_number(device_, p));
+    }
+    if (!waiting_.empty()) handed_over_ = waiting_.back();
+    waiting_.clear();
+  }
+  /// Of the gas film at the contact point so far; 0 where the gas law has no limit for it.
+  [[nodiscard]] double largest_squeeze() const { return largest_squeeze_; }
+
+ private:
+  const Device& device_;
+  ClosingObserver& observer_;
+  std::vector<TrajectoryPoint> waiting_;
+  TrajectoryPoint handed_over_;
+  double largest_squeeze_ = 0;
+};
+
+}  // namespace softland

@@ -1,0 +1,62 @@
+// The drives of a closing, stretch by stretch: between two breakpoints every drive is on one smooth piece of its signal.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "waveforms/signal.h"
+
+namespace softland {
+
+class DriveCourse {
+ public:
+  explicit DriveCourse(std::span<const Signal> signals)
+      : signals_(signals), pieces_(signals.size(), 0), values_(signals.size(), 0.0) {}
+
+  [[nodiscard]] std::size_t size() const { return signals_.size(); }
+  /// Begin and end of every stretch within [0, duration], in order [s].
+  [[nodiscard]] std::vector<double> stretches(double duration) const {
+    std::vector<double> stops{0, duration};
+    for (const Signal& signal : signals_) {
+      for (const double t : signal.breakpoints()) {
+        if (t > 0 && t < duration) stops.push_back(t);
+      }
+    }
+    std::sort(stops.begin(), stops.end());
+    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    return stops;
+  }
+
+  /// Goes on to the piece of drive k that begins at, or holds after, time t.
+  void enter(std::size_t k, double t) { pieces_[k] = signals_[k].piece_at(t); }
+  [[nodiscard]] const SignalPiece& piece(std::size_t k) const { return signals_[k].pieces()[pieces_[k]]; }
+  /// Of drive k by the formula of its present piece, also beyond its ends.
+  [[nodiscard]] double value(std::size_t k, double t) const { return piece(k).voltage(t); }
+  /// Of all drives; valid until the next call.
+  std::span<const double> values(double t) {
+    for (std::size_t k = 0; k < size(); ++k) values_[k] = value(k, t);
+    return values_;
+  }
+  /// Whether every drive is on its last piece.
+  [[nodiscard]] bool at_hold() const {
+    for (std::size_t k = 0; k < size(); ++k) {
+      if (pieces_[k] + 1 < signals_[k].pieces().size()) return false;
+    }
+    return true;
+  }
+  /// A step length that resolves every drive after t; infinity where none oscillates [s].
+  [[nodiscard]] double resolving_step(double t) const {
+    double step = std::numeric_limits<double>::infinity();
+    for (const Signal& signal : signals_) step = std::min(step, signal.resolving_step(t));
+    return step;
+  }
+
+ private:
+  std::span<const Signal> signals_;
+  std::vector<std::size_t> pieces_;
+  std::vector<double> values_;
+};
+
+}  // namespace softland

@@ -1,0 +1,118 @@
+#include "model/closing/energy_audit.h"
+
+#include <cmath>
+#include <vector>
+
+namespace softland {
+namespace {
+
+constexpr double worth_care = 1e-4;  // of the bending energy: from there on dissipation is added up with more points
+
+}  // namespace
+
+EnergyAudit::EnergyAudit(const Switch& model, DriveCourse& drives, const ContactPhase& phase, ClosingEquations& equations,
+                         const Knot& start)
+    : model_(model),
+      drives_(drives),
+      phase_(phase),
+      equations_(equations),
+      modes_(static_cast<std::size_t>(model.modes())),
+      rest_energy_(model.potential(start.state.data(), std::vector<double>(drives.size(), 0.0), false, equations.workspace())) {}
+
+void EnergyAudit::enter_stretch(const Knot& here, bool first) {
+  if (!first) add_charges(here, +1);
+  for (std::size_t k = 0; k < drives_.size(); ++k) {
+    const double before = first ? 0 : drives_.value(k, here.time);
+    drives_.enter(k, here.time);
+    const double after = drives_.value(k, here.time);
+    if (before == after) continue;
+    const double work = (model_.strength(k, after) - model_.strength(k, before)) *
+                        model_.law_potential(k, here.state.data(), equations_.workspace());
+    source_work_ += holds_charge(k) ? -work : work;
+  }
+  add_charges(here, -1);
+}
+
+void EnergyAudit::add_charges(const Knot& here, double sign) {
+  for (std::size_t k = 0; k < drives_.size(); ++k) {
+    const double v = drives_.value(k, here.time);
+    if (v != 0 && holds_charge(k)) source_work_ += sign * v * charge(k, v, here.state.data());
+  }
+}
+
+double EnergyAudit::contact_dissipation(const double* state) const {
+  return phase_.law().active && model_.has_damped_contact() ? model_.contact_dissipation(state, state + modes_) : 0;
+}
+
+void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit) {
+  const double t0 = here.time, t1 = next.time;
+  if (model_.damped()) {
+    const double power = dissipation_at_end + contact_dissipation(next.state.data());
+    dissipated_ += (t1 - t0) * mean_dissipation(power, motion, implicit);
+    dissipation_ = power;
+  }
+  for (std::size_t k = 0; k < drives_.size(); ++k) {
+    const SignalPiece& piece = drives_.piece(k);
+    if (piece.slope == 0 && piece.amplitude == 0 && piece.amplitude_slope == 0) continue;
+    const auto flow = [&](double t, const std::vector<double>& state) {
+      return piece.rate(t) * charge(k, piece.voltage(t), state.data());
+    };
+    source_work_ -= (t1 - t0) / 6 * (flow(t0, here.state) + 4 * flow((t0 + t1) / 2, motion.halfway()) + flow(t1, next.state));
+  }
+}
+
+// Mean power over a step at whose end it is `at_end`. The modes may turn by two radians in it, their power by four. A
+// compressible film has no motion that is exact for the modes.
+double EnergyAudit::mean_dissipation(double at_end, StepMotion& motion, bool implicit) {
+  const auto power = [&](const std::vector<double>& state) {
+    return equations_.dissipation(state.data()) + contact_dissipation(state.data());
+  };
+  const bool by_modes = careful_ && motion.moves_by_modes() && model_.film_states() == 0 && !implicit;
+  if (!by_modes) return (dissipation_ + 4 * power(motion.halfway()) + at_end) / 6;
+  const double place = 0.5 - 0.5 / std::sqrt(5.0);
+  double sum = 0;
+  for (const double share : {place, 1 - place}) sum += power(motion.state_at(share));
+  return (dissipation_ + 5 * sum + at_end) / 12;
+}
+
+void EnergyAudit::rest(const Knot& here, double until) {
+  for (std::size_t k = 0; k < drives_.size(); ++k) {
+    source_work_ += (model_.strength(k, drives_.value(k, until)) - model_.strength(k, drives_.value(k, here.time))) *
+                    model_.law_potential(k, here.state.data(), equations_.workspace());
+  }
+}
+
+void EnergyAudit::impact(double lost, double dissipation) {
+  impacts_ += lost;
+  dissipation_ = dissipation;
+}
+
+double EnergyAudit::above_rest(const Knot& here) {
+  const double* q = here.state.data();
+  const std::span<const double> values = drives_.values(here.time);
+  return model_.kinetic_energy(q + modes_) + model_.potential(q, values, phase_.law(), equations_.workspace()) + impacts_ +
+         model_.film_energy(q, equations_.workspace());
+}
+
+// What is stored is the potential and, where a source holds a charge at its voltage, V Q.
+void EnergyAudit::settle(const Knot& here) {
+  const double* q = here.state.data();
+  const std::span<const double> values = drives_.values(here.time);
+  Switch::Workspace& work = equations_.workspace();
+  balance_ = {.source_work = source_work_,
+              .stored = model_.kinetic_energy(q + modes_) + model_.potential(q, values, false, work) - rest_energy_ +
+                        model_.film_energy(q, work),
+              .dissipated = dissipated_ + impacts_};
+  for (std::size_t k = 0; k < drives_.size(); ++k) {
+    if (values[k] == 0 || !holds_charge(k)) continue;
+    const double work_of_charge = values[k] * charge(k, values[k], q);
+    balance_.source_work += work_of_charge;
+    balance_.stored += work_of_charge;
+  }
+  if (phase_.law().active) balance_.stored += model_.contact_stored(q, phase_.law());
+  balance_.dissipated += phase_.lost(model_.contact_deflection(q));
+  if (!(std::abs(balance_.residual()) <= error_)) error_ = std::abs(balance_.residual());  // keeps what is not a number
+  careful_ = careful_ || error_ > worth_care * model_.bending_energy();
+}
+
+}  // namespace softland

@@ -1,0 +1,67 @@
+// The energy balance of a closing: what the sources put in, what is stored, what is dissipated. An integrator that loses the
+// contact between two steps, or a tolerance too loose for a stiff contact, shows as a residual.
+//
+//   work of the sources = integral of V dQ = [V Q] - integral of Q dV     dissipated = integral of the power taken out
+//
+// The bracket over each stretch between breakpoints, the integral of Q dV by Simpson's rule where a voltage changes. Changing a
+// force factor moves no charge: its work is that integral alone. Dissipation by Simpson's rule over each step, or, once the
+// residual exceeds 1e-4 of the bending energy, by that of Lobatto with four points over a motion that is exact for the modes.
+#pragma once
+
+#include "model/closing/contact_phase.h"
+#include "model/closing/drive_course.h"
+#include "model/closing/equations.h"
+#include "model/closing/step_motion.h"
+#include "model/trajectory.h"
+
+namespace softland {
+
+class EnergyAudit {
+ public:
+  /// Keeps references. The switch is at rest at `start` under drives of 0.
+  EnergyAudit(const Switch& model, DriveCourse& drives, const ContactPhase& phase, ClosingEquations& equations,
+              const Knot& start);
+
+  /// All drives go on to the pieces that hold after `here`; a jump charges its electrode at fixed deflection, the limit of ever
+  /// steeper edges.
+  void enter_stretch(const Knot& here, bool first);
+  /// A step between two knots.
+  void step(const Knot& here, const Knot& next, double dissipation_at_end, StepMotion& motion, bool implicit);
+  /// The drives change while nothing moves.
+  void rest(const Knot& here, double until);
+  /// An impact on a rigid contact that has left the switch in a state of this dissipation [W].
+  void impact(double lost, double dissipation);
+
+  /// Settles the balance at a knot.
+  void settle(const Knot& here);
+  [[nodiscard]] const EnergyBalance& balance() const { return balance_; }
+  /// Largest residual of all settled balances [J]; NaN once one was.
+  [[nodiscard]] double error() const { return error_; }
+  /// Energy of the moving switch and what impacts on a rigid contact have taken [J].
+  [[nodiscard]] double above_rest(const Knot& here);
+
+ private:
+  [[nodiscard]] bool holds_charge(std::size_t k) const { return model_.drive_kind(k) != DriveKind::dispersion; }
+  [[nodiscard]] double charge(std::size_t k, double value, const double* q) {
+    return model_.charge(k, value, q, equations_.workspace());
+  }
+  [[nodiscard]] double contact_dissipation(const double* state) const;
+  void add_charges(const Knot& here, double sign);
+  [[nodiscard]] double mean_dissipation(double at_end, StepMotion& motion, bool implicit);
+
+  const Switch& model_;
+  DriveCourse& drives_;
+  const ContactPhase& phase_;
+  ClosingEquations& equations_;
+  std::size_t modes_;
+  double rest_energy_;      // potential at the start [J]
+  double source_work_ = 0;  // without the charges that stand on the drives now [J]
+  double dissipated_ = 0;   // [J]
+  double dissipation_ = 0;  // at the last knot [W]
+  double impacts_ = 0;      // [J]
+  bool careful_ = false;    // with dissipated_
+  double error_ = 0;
+  EnergyBalance balance_;
+};
+
+}  // namespace softland

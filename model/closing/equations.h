@@ -1,0 +1,50 @@
+// The switch under its drives and in its contact phase, as an integrator sees it.
+#pragma once
+
+#include "integrators/stepper.h"
+#include "model/closing/contact_phase.h"
+#include "model/closing/drive_course.h"
+#include "model/closing/knot.h"
+#include "model/switch.h"
+
+namespace softland {
+
+class ClosingEquations {
+ public:
+  /// Keeps references. `phase_decides`: the contact law's state is that of the phase, else that of the position, whatever the
+  /// phase.
+  ClosingEquations(const Switch& model, DriveCourse& drives, const ContactPhase& phase, bool phase_decides);
+  ClosingEquations(const ClosingEquations&) = delete;
+  ClosingEquations& operator=(const ClosingEquations&) = delete;
+
+  [[nodiscard]] const OdeSystem& system() const { return system_; }
+  /// All rates but q' of a state at time t, with the contact law in the state of the phase.
+  void rates(double t, const double* state, double* result) { rates(t, state, phase_.law(), result); }
+  void rates(Knot& knot) { rates(knot.time, knot.state.data(), knot.rates.data()); }
+  /// In the field of the last evaluation, which must have been at this state but for a shift by rounding.
+  [[nodiscard]] FieldFigures field(const double* state);
+  /// By gas, film and modal damping in any state [W]; overwrites the field.
+  [[nodiscard]] double dissipation(const double* state) {
+    return model_.dissipated_power(state, state + modes_, work_, film_of(state));
+  }
+  /// What the electrical and elastic energies of a state are computed with; they overwrite the field.
+  [[nodiscard]] Switch::Workspace& workspace() { return work_; }
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+
+ private:
+  void rates(double t, const double* state, const ContactState& law, double* result);
+  void jacobian(double t, const double* state, const ContactState& law, double* result);
+  [[nodiscard]] const double* film_of(const double* state) const {
+    return model_.film_states() > 0 ? state + 2 * modes_ : nullptr;
+  }
+
+  const Switch& model_;
+  DriveCourse& drives_;
+  const ContactPhase& phase_;
+  std::size_t modes_;
+  Switch::Workspace work_;
+  OdeSystem system_;
+  long evaluations_ = 0;
+};
+
+}  // namespace softland

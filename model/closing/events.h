@@ -1,0 +1,21 @@
+// What happens to the contact point within a step at which the equations change.
+#pragma once
+
+#include <optional>
+
+#include "model/closing/contact_phase.h"
+#include "model/closing/step_motion.h"
+
+namespace softland {
+
+/// The contact point leaves its phase through an edge, or, without edge, turns back while it loads a contact with memory.
+struct Event {
+  double time = 0;  ///< [s]
+  std::optional<Edge> edge;
+};
+
+/// The first event in (from, to] of a piece of a step.
+[[nodiscard]] std::optional<Event> first_event(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to,
+                                               const ContactPhase& phase);
+
+}  // namespace softland

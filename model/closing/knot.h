@@ -1,0 +1,23 @@
+// A state of the switch during a closing, with what the right-hand side found there.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace softland {
+
+struct Knot {
+  double time = 0;            ///< [s]
+  std::vector<double> state;  ///< q, v, then the film where it is compressible
+  std::vector<double> rates;  ///< of all but q: q'', then those of the film
+};
+
+/// What the closing asks of the gap field at a knot. It is taken from the workspace as soon as the knot is known, since the next
+/// use of the workspace overwrites the field.
+struct FieldFigures {
+  double smallest_gap = 0;   ///< [m]
+  bool at_far_side = false;  ///< see Switch::at_far_side()
+  double dissipation = 0;    ///< by gas, film and modal damping [W]; 0 where nothing is damped
+};
+
+}  // namespace softland

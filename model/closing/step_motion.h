@@ -1,0 +1,79 @@
+// Motion of the switch within one step of the integrator: of the contact point, in pieces short enough for one quintic each, and
+// of all coordinates at single instants.
+//
+// Explicit methods take steps of up to two radians of the fastest mode: within them the modes move freely and a quintic makes up
+// for what the force changes (integrators/modal_motion.h). Longer steps are an implicit method's: one Hermite polynomial.
+#pragma once
+
+#include <vector>
+
+#include "integrators/modal_motion.h"
+#include "integrators/quintic.h"
+#include "model/closing/knot.h"
+#include "model/switch.h"
+#include "model/trajectory.h"
+
+namespace softland {
+
+class StepMotion {
+ public:
+  /// `tolerance`: of the integrator; the quintic of a piece errs by as much of the fastest mode's amplitude, at most by 1e-5.
+  StepMotion(const Switch& model, double tolerance);
+
+  /// Considers the step between two knots; `end` is the contact point at its end. Keeps references to the knots.
+  /// `accurate_rates`: whether accelerations at the knots may be used, which may be an implicit method's errors times the
+  /// stiffness.
+  void set(const Knot& begin, const Knot& end_knot, const TrajectoryPoint& end, bool accurate_rates);
+
+  [[nodiscard]] bool moves_by_modes() const { return moves_by_modes_; }
+  [[nodiscard]] int pieces() const { return pieces_; }
+  [[nodiscard]] double begin_time() const { return begin_->time; }
+  [[nodiscard]] double length() const { return end_->time - begin_->time; }
+  /// The contact point after k pieces, 1 <= k < pieces().
+  [[nodiscard]] const ModalMotion::Sample& knot(int k) { return motion().knot(k); }
+  /// The contact point at a time in the step [s]. Only where moves_by_modes().
+  [[nodiscard]] ModalMotion::Sample at(double time) { return motion().at(time - begin_->time); }
+
+  /// q, v and film halfway through the step by Hermite interpolation; valid until the next call of this or state_at().
+  const std::vector<double>& halfway();
+  /// q and v after a share of the step as the modes move. Only where moves_by_modes(), and without a compressible film.
+  const std::vector<double>& state_at(double share);
+
+ private:
+  const ModalMotion& motion();
+
+  std::size_t modes_, film_;
+  double fastest_;             // angular frequency of the last mode [rad/s]
+  double knot_phase_;          // of the fastest mode in a piece, at the most
+  std::vector<double> omega_;  // in whole lanes [rad/s]
+  ModalMotion motion_;
+  bool motion_known_ = false;
+  const Knot* begin_ = nullptr;
+  const Knot* end_ = nullptr;
+  TrajectoryPoint tip_end_;
+  bool accurate_rates_ = true, moves_by_modes_ = true;
+  int pieces_ = 1;
+  std::vector<double> between_;
+};
+
+/// The contact point in a piece of a step.
+class TipMotion : public Quintic {
+ public:
+  TipMotion(StepMotion& step, const TrajectoryPoint& from, const TrajectoryPoint& to)
+      : Quintic(from.time, from.position, from.velocity, from.acceleration, to.time, to.position, to.velocity, to.acceleration),
+        step_(step) {}
+  [[nodiscard]] double position(double t) const { return step_.moves_by_modes() ? step_.at(t).position : Quintic::position(t); }
+  [[nodiscard]] double velocity(double t) const { return step_.moves_by_modes() ? step_.at(t).velocity : Quintic::velocity(t); }
+  [[nodiscard]] double acceleration(double t) const {
+    return step_.moves_by_modes() ? step_.at(t).acceleration : Quintic::acceleration(t);
+  }
+  /// Where the velocity changes sign in the piece [s].
+  [[nodiscard]] double turn() const {
+    return bracketed_zero([&](double t) { return velocity(t); }, begin(), end());
+  }
+
+ private:
+  StepMotion& step_;
+};
+
+}  // namespace softland

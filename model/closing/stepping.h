@@ -1,0 +1,106 @@
+// Steps of the integrator through a closing, each up to the next event of the contact point.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "integrators/stepper.h"
+#include "model/closing.h"
+#include "model/closing/course.h"
+#include "model/closing/energy_audit.h"
+#include "model/closing/equations.h"
+#include "model/closing/events.h"
+#include "model/closing/resting_plate.h"
+#include "model/closing/step_motion.h"
+#include "model/closing/tolerances.h"
+#include "model/closing/touch_record.h"
+
+namespace softland {
+
+/// What a closing is made of; the parts keep references to each other.
+struct ClosingParts {
+  const Switch& model;
+  const ClosingOptions& options;
+  DriveCourse drives;
+  ContactPhase phase;
+  ClosingEquations equations;
+  RestingPlate plate;
+  TouchRecord touches;
+  Course course;
+
+  ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
+               ClosingObserver& observer)
+      : model(switch_model),
+        options(closing_options),
+        drives(signals),
+        phase(model),
+        equations(model, drives, phase, options.restart_at_contact),
+        plate(model, drives, equations),
+        touches(model, phase, observer),
+        course(model.device(), observer) {}
+  ClosingParts(const ClosingParts&) = delete;
+  ClosingParts& operator=(const ClosingParts&) = delete;
+
+  /// The contact point at a knot.
+  [[nodiscard]] TrajectoryPoint point(const Knot& knot) const;
+};
+
+class Stepping {
+ public:
+  /// At rest under drives of 0. Keeps a reference.
+  explicit Stepping(ClosingParts& parts);
+
+  [[nodiscard]] Knot& here() { return here_; }
+  [[nodiscard]] const Work& work() const { return work_; }
+  /// Counts an evaluation of the drives over a resting plate as a step.
+  void count_step() { ++work_.steps; }
+  /// Why the last call failed.
+  [[nodiscard]] const std::string& message() const { return message_; }
+
+  /// The integrator starts anew from here(), in its present phase. False: failed.
+  bool restart();
+  /// Whether the work is within its bound; now and then also whether it is done with the right method, and if not goes over to
+  /// the other. False: failed.
+  bool check_work();
+
+  struct Step {
+    FieldFigures field;  ///< at its end
+    std::optional<Event> event;
+  };
+  /// From here() to the end of a step, no further than `stop` and the next event at which to start anew. Peaks and energies of
+  /// the step are recorded, its knots wait in the course. None: failed.
+  std::optional<Step> advance(double stop, EnergyAudit& audit);
+
+ private:
+  [[nodiscard]] const std::vector<double>& tolerances() const;
+  [[nodiscard]] bool implicit() const { return is_implicit(work_.integrator); }
+  bool fail(const std::string& why);
+  void take_state();
+  void consider_step();
+  bool follow(std::optional<Event>& event);
+  bool go_through(const Event& event, const TipMotion& tip);
+  bool step_again(const Event& event);
+  bool meet(const Edge& edge);
+  [[nodiscard]] TrajectoryPoint knot(int k);
+  [[nodiscard]] double force_on_line(double time) const;
+  void account(const FieldFigures& field, EnergyAudit& audit);
+
+  ClosingParts& parts_;
+  std::size_t n_;   // modes
+  double plane_;    // of first touch [m]
+  double fastest_;  // angular frequency of the last mode [rad/s]
+  Tolerances tolerances_;
+  StepMotion motion_;  // of the step from here_ to next_
+  Knot here_, next_;
+  TrajectoryPoint end_;  // of that step
+  Work work_;
+  std::unique_ptr<Stepper> stepper_;
+  double last_step_ = 0;  // that no stop cut short [s]
+  long next_look_ = 0;    // at the work, in steps
+  int stiff_looks_ = 0;
+  std::string message_;
+};
+
+}  // namespace softland

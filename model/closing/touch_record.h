@@ -1,0 +1,48 @@
+// The touches of a closing as they come: when each begins and ends, and its peaks.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "model/closing/contact_phase.h"
+#include "model/closing/events.h"
+#include "model/closing/observer.h"
+#include "model/closing/step_motion.h"
+
+namespace softland {
+
+class TouchRecord {
+ public:
+  /// Keeps references; hands every touch to the observer when it is over.
+  TouchRecord(const Switch& model, const ContactPhase& phase, ClosingObserver& observer);
+
+  [[nodiscard]] long count() const { return count_; }
+  [[nodiscard]] double first_begin() const { return first_begin_; }      ///< [s]; NaN before the first touch
+  [[nodiscard]] double deepest_penetration() const { return deepest_; }  ///< [m]
+  /// The touch under way, or the last one.
+  [[nodiscard]] Touch& last() { return touch_; }
+
+  /// Enters an event that the contact point has reached, before its next phase begins; true when a touch begins.
+  bool note(const Event& event, const TrajectoryPoint& at);
+  void end(double time) { touch_.end = time; }
+  /// Takes the peaks of a piece of a step; nothing outside of contact.
+  void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
+  /// Takes the peaks of a whole step of a damped contact, whose largest force comes before the deepest point, or of one along a
+  /// pad, where it comes anywhere about it. Nothing for other contacts.
+  void take(const Knot& begin, const Knot& end, StepMotion& step);
+  /// Hands over the touch that holds at the end of the run.
+  void finish();
+
+ private:
+  void begin(double time, double velocity);
+
+  const Switch& model_;
+  const ContactPhase& phase_;
+  ClosingObserver& observer_;
+  double plane_;
+  Touch touch_;
+  long count_ = 0;
+  double first_begin_, deepest_ = 0;
+};
+
+}  // namespace softland
