@@ -66,7 +66,7 @@ class PageInBrowser : public ::testing::Test {
  protected:
   void SetUp() override {
     program = browser();
-    if (program.empty()) GTEST_SKIP() << "no Chromium here";
+    if (program.empty()) GTEST_SKIP() << "no Chromium here (apt-get install chromium)";
   }
   std::string program;
 };
