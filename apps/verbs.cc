@@ -27,6 +27,7 @@
 #include "reports/effects_report.h"
 #include "reports/files.h"
 #include "reports/result_json.h"
+#include "reports/result_reader.h"
 #include "reports/text.h"
 #include "studies/certify.h"
 #include "studies/omissions.h"
@@ -143,12 +144,7 @@ fs::path shipped_scene(const std::string& name) {
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
 }
 
-json read_result(const fs::path& path) {
-  json j = json::parse(read_text(path), nullptr, false);
-  require(j.is_object() && j.contains("kind") && (j["kind"] == "simulate" || j["kind"] == "optimize"),
-          fmt::format("{}: is not a result.json of softland", path.string()));
-  return j;
-}
+json read_result(const fs::path& path) { return parse_result(read_text(path), path.string()); }
 
 // The scene of a result: a folder that --out named, a result.json, or a scene file itself.
 SceneFile scene_of_result(const std::string& result) {

@@ -129,12 +129,14 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+constexpr int largest_power = 9;
+
 int parse_power(std::string_view text, std::string_view factor) {
-  constexpr int largest = 9;
   int power = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), power);
-  if (error != std::errc() || end != text.data() + text.size() || power == 0 || std::abs(power) > largest) {
-    throw InvalidInput(fmt::format("'{}' needs an integer power between -{} and {}, not 0", factor, largest, largest));
+  if (error != std::errc() || end != text.data() + text.size() || power == 0 || std::abs(power) > largest_power) {
+    throw InvalidInput(
+        fmt::format("'{}' needs an integer power between -{} and {}, not 0", factor, largest_power, largest_power));
   }
   return power;
 }
@@ -147,7 +149,14 @@ void apply_factor(Scale& scale, std::string_view factor, int sign) {
   if (name == "degC") throw InvalidInput("'degC' has an offset and can only stand alone; use K here");
   const auto unit = look_up(name);
   if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", name));
-  for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) scale.dimension.powers[i] += power * unit->dimension.powers[i];
+  for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) {
+    scale.dimension.powers[i] += power * unit->dimension.powers[i];
+    // A quantity is written in base units, with powers that can be read again.
+    if (std::abs(scale.dimension.powers[i]) > largest_power) {
+      throw InvalidInput(fmt::format("with '{}' the power of {} in the unit is {}; it must lie between -{} and {}", factor,
+                                     base_units[i], scale.dimension.powers[i], largest_power, largest_power));
+    }
+  }
   scale.exponent += power * unit->exponent;
   if (unit->factor != 1) scale.factor *= std::pow(unit->factor, power);
 }

@@ -135,6 +135,8 @@ INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(
     Bad{"2 m^0", "'m^0' needs an integer power between -9 and 9, not 0"},
     Bad{"2 m^2.5", "'m^2.5' needs an integer power between -9 and 9, not 0"},
     Bad{"2 m^10", "'m^10' needs an integer power between -9 and 9, not 0"},
+    Bad{"2 m^9 m^9", "with 'm^9' the power of m in the unit is 18; it must lie between -9 and 9"},
+    Bad{"2 1/N^5", "with 'N^5' the power of s in the unit is 10; it must lie between -9 and 9"},
     Bad{"2 m^99999999999", "'m^99999999999' needs an integer power between -9 and 9, not 0"},
     Bad{"2 m ^2", "unknown unit ''"},
     Bad{"2 m/s/s", "more than one '/' in the unit 'm/s/s'"},
