@@ -26,6 +26,7 @@
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
 #include "reports/files.h"
+#include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/result_reader.h"
 #include "reports/text.h"
@@ -39,6 +40,11 @@ namespace softland::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using internal::given_quantity;
+using internal::percent;
+using internal::plain_number;
+using internal::quantity;
+using internal::scientific;
 using nlohmann::json;
 
 SceneFile load_scene(const Common& c) {
@@ -81,7 +87,9 @@ json pull_in_of(const Prepared& p, std::size_t k) {
             {"release_V", number(release_voltage(p.device, k))}}}};
 }
 
-std::string volts(const json& v) { return v.is_number() ? fmt::format("{:.6g} V", v.get<double>()) : "none"; }
+constexpr int pull_in_digits = 5;
+
+std::string volts(const json& v) { return v.is_number() ? quantity(v.get<double>(), "V", pull_in_digits) : "none"; }
 
 int status_code(Status s) {
   switch (s) {
@@ -168,8 +176,8 @@ void log_time_saved(const Prepared& chosen) {
   whole.device = Switch(whole.scene.device, whole.quadrature);
   const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.device, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
-  fmt::print(stderr, "softland: effects = \"auto\": a right-hand side takes {:.0f} ns instead of {:.0f} ns, {:.0f} % less\n",
-             without * 1e9, with * 1e9, 100 * (1 - without / with));
+  fmt::print(stderr, "softland: effects = \"auto\": a right-hand side takes {} instead of {}, {} less\n", quantity(without, "s"),
+             quantity(with, "s"), percent(std::max(0.0, 1 - without / with)));
 }
 
 }  // namespace
@@ -220,10 +228,12 @@ int pull_in_verb(const Common& c) {
 int modes_verb(const Common& c) {
   const Prepared prepared = prepare(load_scene(c));
   json list = json::array();
-  std::string text = "mode  angular frequency      frequency\n";
+  constexpr int digits = 6;
+  std::string text = "mode  angular frequency    frequency\n";
   for (const double omega : prepared.device.angular_frequencies()) {
     list.push_back(omega);
-    text += fmt::format("{:>4}  {:>12.8g} rad/s  {:>10.6g} kHz\n", list.size(), omega, omega / (2e3 * pi));
+    text += fmt::format("{:>4}  {:>17}  {:>11}\n", list.size(), quantity(omega, "rad/s", digits),
+                        quantity(omega / (2 * pi), "Hz", digits));
   }
   print_json_or(c, {{"natural_frequencies_rad_s", list}}, text);
   return exit_done;
@@ -235,9 +245,9 @@ int check_verb(const Common& c) {
   std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + p.scene.title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
   std::vector<std::string> frequencies;
-  for (const double omega : p.device.angular_frequencies()) frequencies.push_back(fmt::format("{:.6g} kHz", omega / (2e3 * pi)));
+  for (const double omega : p.device.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
-  add("in-contact period", fmt::format("{:.4g} us", p.device.in_contact_period() * 1e6));
+  add("in-contact period", quantity(p.device.in_contact_period(), "s", 4));
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     if (!pulls_in(p.scene.device, k)) {
       add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
@@ -252,36 +262,36 @@ int check_verb(const Common& c) {
     const std::size_t k = p.scene.device.electrodes.size();
     const StaticPullIn statically = static_pull_in(p.device, k);
     const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically);
-    const auto factor = [](double value) {
-      return std::isfinite(value) ? fmt::format("{:.6g}", 1 + value) : std::string("none");
-    };
-    add("dispersion force", fmt::format("{}; closes by itself at {} (static) or a step to {} (dynamic) of its nominal strength",
-                                        p.device.rest() ? fmt::format("tip at rest {:.4g} nm down",
-                                                                      1e9 * p.device.contact_deflection(p.device.rest()->data()))
-                                                        : std::string("no open state at rest"),
-                                        factor(statically.voltage), factor(dynamically.voltage)));
-    add("drive dispersion", fmt::format("hold factor {:.6g}", 1 + p.signals()[k].hold_level()));
+    const auto factor = [](double value) { return std::isfinite(value) ? plain_number(1 + value, 4) : std::string("none"); };
+    add("dispersion force",
+        fmt::format("{}; closes by itself at {} (static) or a step to {} (dynamic) of its nominal strength",
+                    p.device.rest()
+                        ? fmt::format("tip at rest {} down", quantity(p.device.contact_deflection(p.device.rest()->data()), "m"))
+                        : std::string("no open state at rest"),
+                    factor(statically.voltage), factor(dynamically.voltage)));
+    add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[k].hold_level(), 5));
   }
   if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
     const Gas& gas = *p.scene.device.gas;
     const double g = p.scene.device.gap.electrode;
     const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
     const double omega = p.device.angular_frequencies()[0];
-    add("squeeze number",
-        fmt::format("{:.3g} at the rest gap, {:.3g} closed (first mode; the film laws hold below about {:g})",
-                    squeeze_number(gas, s.width, g, omega), squeeze_number(gas, s.width, closed, omega), incompressible));
-    add("Knudsen number", fmt::format("{:.3g} at the rest gap, {:.3g} closed (mean free path {:.3g} nm)", lambda / g,
-                                      lambda / closed, lambda * 1e9));
+    add("squeeze number", fmt::format("{} at the rest gap, {} closed (first mode; the film laws hold below about {})",
+                                      plain_number(squeeze_number(gas, s.width, g, omega)),
+                                      plain_number(squeeze_number(gas, s.width, closed, omega)), plain_number(incompressible)));
+    add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
+                                      plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }
   for (const auto& [name, signal] : named_signals(p)) {
     const auto limits = p.drives.limits.find(name);
     add("drive " + name,
-        fmt::format("hold {:.6g} V, peak {:.6g} V, {}", signal.hold_level(), signal.peak(),
+        fmt::format("hold {}, peak {}, {}", given_quantity(signal.hold_level(), "V"), given_quantity(signal.peak(), "V"),
                     limits == p.drives.limits.end()
                         ? "driver without limits"
-                        : fmt::format("driver {:.6g} V to {:.6g} V", limits->second.min_voltage, limits->second.max_voltage)));
+                        : fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
+                                      given_quantity(limits->second.max_voltage, "V"))));
   }
-  add("window", fmt::format("{:.4g} us, integrator tolerance {:.3g}", p.duration * 1e6, p.tolerance));
+  add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   std::cout << text;
   return exit_done;

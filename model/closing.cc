@@ -832,24 +832,25 @@ class Run {
 
   void fail(const std::string& why) {
     end(Status::numerical_failure);
-    out_.message = fmt::format("at t = {:.6g} s: {}", here_.time, why);
+    out_.message = fmt::format("at t = {}: {}", engineering(here_.time, "s", 4), why);
   }
 
   void finish() {
     balance();
     const double error = out_.energy_error / device_.bending_energy();
     if (!(error <= not_credible) && out_.status != Status::numerical_failure) {
-      fail(fmt::format("{:.3g} of the bending energy came from nowhere: the tolerance {:g} is too loose for this closing", error,
-                       options_.tolerance));
+      fail(fmt::format("{:.3g} of the bending energy came from nowhere: the tolerance {} is too loose for this closing", error,
+                       engineering(options_.tolerance, "")));
     } else if (error > worth_warning) {
       out_.warnings.push_back(fmt::format(
-          "energy balance: {:.2g} % of the bending energy came from nowhere: the tolerance {:g} is too loose for this closing",
-          100 * error, options_.tolerance));
+          "energy balance: {:.2g} % of the bending energy came from nowhere: the tolerance {} is too loose for this closing",
+          100 * error, engineering(options_.tolerance, "")));
     }
     for (std::string& warning : gas_warnings(device_.device(), out_)) out_.warnings.push_back(std::move(warning));
     if (const auto& contact = device_.device().contact; contact && out_.deepest_penetration > largest_interference(*contact)) {
-      out_.warnings.push_back(fmt::format("contact law {}: interference {:.3g} m exceeds the asperity height {:.3g} m",
-                                          to_string(contact->model), out_.deepest_penetration, largest_interference(*contact)));
+      out_.warnings.push_back(fmt::format("contact law {}: interference {} exceeds the asperity height {}",
+                                          to_string(contact->model), engineering(out_.deepest_penetration, "m", 3),
+                                          engineering(largest_interference(*contact), "m", 3)));
     }
   }
 

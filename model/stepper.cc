@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "base/engineering.h"
 #include "model/arrow.h"
 #include "model/lawson.h"
 
@@ -110,7 +111,7 @@ class SundialsStepper : public Stepper {
   bool report(const char* library, int flag, char* (*name)(long)) {
     if (flag >= 0) return true;
     char* why = name(flag);
-    message_ = fmt::format("{} stopped with {} ({}) at t = {:.9g} s", library, why, flag, t_);
+    message_ = fmt::format("{} stopped with {} ({}) at t = {}", library, why, flag, engineering(t_, "s", 4));
     std::free(why);  // NOLINT: the library's own malloc
     return false;
   }

@@ -63,18 +63,7 @@ json spread_json(const Spread& s) {
   return {{"low", number(s.low)}, {"median", number(s.median)}, {"high", number(s.high)}, {"runs", s.runs}};
 }
 
-// "1e-4"
-std::string power(double value) {
-  std::string text = fmt::format("{:.1e}", value);
-  if (const auto tenths = text.find(".0e"); tenths != std::string::npos) text.erase(tenths, 2);
-  if (const auto zero = text.find("-0"); zero != std::string::npos) text.erase(zero + 1, 1);
-  return text;
-}
-
-std::string error_cell(double error) {
-  if (std::isnan(error)) return "-";
-  return std::isinf(error) ? "missing" : error == 0 ? "0" : fmt::format("{:.1e}", error);
-}
+std::string error_cell(double error) { return std::isinf(error) ? "missing" : internal::relative_error(error); }
 
 // Columns of words and numbers: the first to the left, the others to the right.
 std::string aligned(const std::vector<std::string>& cells) {
@@ -87,7 +76,7 @@ std::string aligned(const std::vector<std::string>& cells) {
 std::vector<std::string> head(const std::vector<std::string>& setting) {
   std::vector<std::string> cells = setting;
   for (const StudiedFigure& f : studied_figures) cells.emplace_back(f.symbol);
-  cells.insert(cells.end(), {"rhs", "ms"});
+  cells.insert(cells.end(), {"rhs", "time"});
   return cells;
 }
 
@@ -99,15 +88,11 @@ std::string line(std::vector<std::string> cells, const AccuracyRow& row) {
   }
   for (const double error : row.errors) cells.push_back(error_cell(error));
   cells.push_back(fmt::format("{}", row.work.rhs_evaluations));
-  cells.push_back(fmt::format("{:.3g}", 1e3 * row.seconds));
+  cells.push_back(internal::quantity(row.seconds, "s"));
   return aligned(cells);
 }
 
-std::string figure_text(double value, std::string_view unit) {
-  std::string text = internal::quantity(value, unit, 5);
-  for (auto at = text.find("\u00a0"); at != std::string::npos; at = text.find("\u00a0")) text.replace(at, 2, " ");
-  return text;
-}
+std::string figure_text(double value, std::string_view unit) { return internal::quantity(value, unit, 4); }
 
 std::string symbols(const AccuracyStudy& study, bool conditioned) {
   std::vector<std::string_view> names;
@@ -122,14 +107,14 @@ std::string symbols(const AccuracyStudy& study, bool conditioned) {
 }
 
 std::string setting_text(const AccuracyRow& row) {
-  return fmt::format("{}, tolerance {}, {:g} points per length", to_string(row.integrator), power(row.tolerance),
+  return fmt::format("{}, tolerance {}, {:g} points per length", to_string(row.integrator), internal::scientific(row.tolerance),
                      row.points_per_length);
 }
 
 std::string recommended(const AccuracyStudy& study, const Recommendation& r) {
   if (!r.row) return "nothing that was tried";
   const AccuracyRow& row = study.rows[*r.row];
-  return fmt::format("{}: {} ms", setting_text(row), internal::plain_number(1e3 * row.seconds, 2));
+  return fmt::format("{}: {}", setting_text(row), internal::quantity(row.seconds, "s", 2));
 }
 
 std::string restart_text(const AccuracyStudy& study) {
@@ -145,7 +130,7 @@ std::vector<std::string> recommendations(const AccuracyStudy& study) {
   const std::string figures = symbols(study, true);
   if (figures.empty()) return {"No figure is well-conditioned here: no setting can be recommended."};
   for (const Recommendation& r : study.recommendations) {
-    lines.push_back(fmt::format("for {} in {}: {}", power(r.accuracy), figures, recommended(study, r)));
+    lines.push_back(fmt::format("for {} in {}: {}", internal::scientific(r.accuracy), figures, recommended(study, r)));
   }
   return lines;
 }
@@ -252,7 +237,7 @@ Picture picture(const AccuracyStudy& study) {
     for (Mark& mark : work.marks) {  // which tolerance is where, said once
       for (const AccuracyRow& row : study.rows) {
         const bool shown = row.integrator == own && row.points_per_length == own_points(study) && row.seconds == mark.x;
-        if (shown && mark.role == pens[i % pens.size()]) mark.text = power(row.tolerance);
+        if (shown && mark.role == pens[i % pens.size()]) mark.text = internal::scientific(row.tolerance);
       }
     }
   }
@@ -344,13 +329,13 @@ std::string recommendations_html(const AccuracyStudy& study) {
   if (symbols(study, true).empty()) return "<p>" + recommendations(study).front() + "</p>\n";
   std::string rows;
   for (const Recommendation& r : study.recommendations) {
-    const std::string accuracy = power(r.accuracy);
+    const std::string accuracy = internal::scientific(r.accuracy);
     if (!r.row) {
       rows += table_row("td", {accuracy, "nothing that was tried", "", "", ""});
       continue;
     }
     const AccuracyRow& row = study.rows[*r.row];
-    rows += table_row("td", {accuracy, std::string(to_string(row.integrator)), power(row.tolerance),
+    rows += table_row("td", {accuracy, std::string(to_string(row.integrator)), internal::scientific(row.tolerance),
                              fmt::format("{:g}", row.points_per_length), internal::quantity(row.seconds, "s", 2)});
   }
   const std::string ill = symbols(study, false);
@@ -364,7 +349,7 @@ std::string recommendations_html(const AccuracyStudy& study) {
 std::string clouds_html(const AccuracyStudy& study) {
   std::string rows;
   const auto add = [&](std::string_view symbol, std::string_view unit, const Spread& s, const char* note) {
-    const auto value = [&](double v) { return s.runs > 0 ? internal::quantity(v, unit, 5) : std::string("—"); };
+    const auto value = [&](double v) { return s.runs > 0 ? figure_text(v, unit) : std::string("—"); };
     rows += table_row("td", {symbol_html(symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
                              fmt::format("<span class=\"note\">{}</span>", note)});
   };
@@ -418,11 +403,11 @@ std::pair<std::string, std::string> headline(const Prepared& prepared, const Acc
       *std::min_element(study.recommendations.begin(), study.recommendations.end(), [&](const auto& a, const auto& b) {
         return std::abs(std::log(a.accuracy) - asked) < std::abs(std::log(b.accuracy) - asked);
       });
-  if (!r.row) return {fmt::format("Nothing that was tried has {} within {}.", figures, power(r.accuracy)), ""};
+  if (!r.row) return {fmt::format("Nothing that was tried has {} within {}.", figures, internal::scientific(r.accuracy)), ""};
   const AccuracyRow& row = study.rows[*r.row];
-  return {
-      fmt::format("A closing with {} within {} takes {}", figures, power(r.accuracy), internal::quantity(row.seconds, "s", 2)),
-      fmt::format(", with {}.", setting_text(row))};
+  return {fmt::format("A closing with {} within {} takes {}", figures, internal::scientific(r.accuracy),
+                      internal::quantity(row.seconds, "s", 2)),
+          fmt::format(", with {}.", setting_text(row))};
 }
 
 }  // namespace
@@ -482,11 +467,11 @@ std::string accuracy_text(const AccuracyStudy& study) {
   text += aligned(head({"integrator", "tolerance"}));
   for (const AccuracyRow& row : study.rows) {
     if (row.points_per_length != own_points(study)) continue;
-    text += line({std::string(to_string(row.integrator)), power(row.tolerance)}, row);
+    text += line({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row);
   }
   if (!study.through.empty()) text += "\n" + aligned(head({"no restart", "tolerance"}));
   for (const AccuracyRow& row : study.through) {
-    text += line({std::string(to_string(row.integrator)), power(row.tolerance)}, row);
+    text += line({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row);
   }
   text += "\n" + aligned(head({"points", "per length"}));
   for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", row->points_per_length)}, *row);
@@ -499,8 +484,8 @@ std::string accuracy_text(const AccuracyStudy& study) {
               "Relative errors of the delivered figures against the reference; times are medians of processor time. Integrators "
               "with {:g} points per length, points and modes with {}, tolerance {}. What another number "
               "of modes changes is no error of the integration. {}",
-              own_points(study), to_string(study.reference.integrator), power(quadrature_rows(study).front()->tolerance),
-              restart_text(study))) +
+              own_points(study), to_string(study.reference.integrator),
+              internal::scientific(quadrature_rows(study).front()->tolerance), restart_text(study))) +
           "\n\n";
   text += cloud_text(study) + "\n" +
           wrapped(
@@ -515,7 +500,7 @@ std::string accuracy_text(const AccuracyStudy& study) {
 
 std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
   const auto integrator = [](const AccuracyRow& row) {
-    return std::vector<std::string>{std::string(to_string(row.integrator)), power(row.tolerance)};
+    return std::vector<std::string>{std::string(to_string(row.integrator)), internal::scientific(row.tolerance)};
   };
   std::vector<const AccuracyRow*> own;
   for (const AccuracyRow& row : study.rows) {
@@ -533,8 +518,8 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
                   : "<details><summary>" + restart_text(study) + "</summary>\n" +
                         errors_table({"Integrator", "Tolerance"}, all_of(study.through), integrator) + "</details>\n";
   const std::vector<const AccuracyRow*> quadrature = quadrature_rows(study);
-  const std::string tightest =
-      fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator), power(quadrature.front()->tolerance));
+  const std::string tightest = fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator),
+                                           internal::scientific(quadrature.front()->tolerance));
   settings += fmt::format("<h3>Quadrature, with {}</h3>\n", tightest) +
               errors_table({"Points per length"}, quadrature,
                            [](const AccuracyRow& row) { return std::vector{fmt::format("{:g}", row.points_per_length)}; });
@@ -562,7 +547,8 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
 std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {
   std::string words = "Dots are tolerances, a factor of ten apart. Quickest within";
   for (const Recommendation& r : study.recommendations)
-    words += fmt::format(" {}: {}{}", power(r.accuracy), recommended(study, r), &r == &study.recommendations.back() ? "." : ";");
+    words += fmt::format(" {}: {}{}", internal::scientific(r.accuracy), recommended(study, r),
+                         &r == &study.recommendations.back() ? "." : ";");
   return svg_page(title.empty() ? "What accuracy costs" : title + ": what accuracy costs", words, picture(study));
 }
 

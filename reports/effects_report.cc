@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "reports/quantity.h"
 #include "reports/text.h"
 #include "version.h"
 
@@ -28,37 +29,26 @@ json number(double value) { return std::isfinite(value) ? json(value) : json(nul
 
 json named(const NamedNumber& n) { return {{"name", n.name}, {"unit", n.unit}, {"value", number(n.value)}}; }
 
-std::string percent(double change) {
-  return std::isfinite(change) ? fmt::format("{:+.{}f} %", 100 * change, std::abs(change) < 10 ? 1 : 0) : "-";
-}
-
-std::string nanoseconds(double seconds) { return std::isfinite(seconds) ? fmt::format("{:.0f}", seconds * 1e9) : "-"; }
-
-std::string cell(double value, double unit, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value / unit, digits) : "-";
-}
-
 std::string size_of(const NamedNumber& n) {
-  if (!std::isfinite(n.value)) return {};
-  return fmt::format("{} {:.3g}{}{}", n.name, n.value, n.unit.empty() ? "" : " ", n.unit);
+  return std::isfinite(n.value) ? fmt::format("{} {}", n.name, internal::quantity(n.value, n.unit)) : std::string();
 }
 
 // Each effect of the scene, left out.
 std::string omissions_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
-  std::string text =
-      fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}  {}\n", "left out", "", "t_i", "v_i", "B_H", "ns/rhs", "size");
+  std::string text = fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}  {}\n", "left out", "", "t_i", "v_i", "B_H", "rhs", "size");
   for (const Omission& o : effects.omissions) {
     const auto change = [&](double Metrics::*figure) {
-      return percent((o.metrics.*figure - own.metrics.*figure) / (own.metrics.*figure));
+      return internal::relative_change((o.metrics.*figure - own.metrics.*figure) / (own.metrics.*figure));
     };
     const std::string group = size_of(o.what.group);
-    text += fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}  {}{}{}\n", o.what.effect, o.what.choice,
+    text += fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}  {}{}{}\n", o.what.effect, internal::with_true_minus(o.what.choice),
                         change(influences[0].figure), change(influences[1].figure), change(influences[2].figure),
-                        nanoseconds(o.rhs_seconds), size_of(o.what.magnitude), group.empty() ? "" : "; ", group);
+                        internal::quantity(o.rhs_seconds, "s"), size_of(o.what.magnitude), group.empty() ? "" : "; ", group);
   }
   if (effects.omissions.empty()) text += "nothing: the scene describes no effect that it could do without\n";
-  text += fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}\n", "nothing", "", "", "", "", nanoseconds(own.rhs_seconds));
+  text +=
+      fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}\n", "nothing", "", "", "", "", internal::quantity(own.rhs_seconds, "s"));
   return text + "\n" +
          wrapped(
              "How the figures change when one effect is left out, under the same voltages, and what a right-hand side then "
@@ -113,14 +103,19 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
 std::string effects_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
   std::string text = omissions_text(effects);
-  text += fmt::format("{:<20}{:>14}{:>12}{:>12}{:>10}{:>12}{:>10}{:>10}{:>10}{:>9}\n", "gas", "c [N s/m^2]", "Kn", "t_i [us]", "",
-                      "v_i [m/s]", "", "B_H [nm]", "", "ns/rhs");
+  const auto row = [](const auto&... cells) {
+    return fmt::format("{:<20}{:>16}{:>8}{:>10}{:>9}{:>12}{:>9}{:>10}{:>9}{:>9}\n", cells...);
+  };
+  text += row("gas", "c", "Kn", "t_i", "", "v_i", "", "B_H", "", "rhs");
   for (const Effect& e : effects.list) {
-    const auto change = [&](const Influence& i) { return e.in_scene ? "" : percent(relative_change(e, own, i.figure)); };
-    text += fmt::format("{:<20}{:>14}{:>12}{:>12}{:>10}{:>12}{:>10}{:>10}{:>10}{:>9}\n", (e.in_scene ? "* " : "  ") + e.choice,
-                        cell(e.magnitude.value, 1, 3), cell(e.group.value, 1, 3), cell(e.metrics.initial_contact_time, 1e-6, 5),
-                        change(influences[0]), cell(e.metrics.impact_velocity, 1, 4), change(influences[1]),
-                        cell(e.metrics.major_bounce_height, 1e-9, 4), change(influences[2]), nanoseconds(e.rhs_seconds));
+    const auto change = [&](const Influence& i) {
+      return e.in_scene ? "" : internal::relative_change(relative_change(e, own, i.figure));
+    };
+    text += row((e.in_scene ? "* " : "  ") + e.choice, internal::quantity(e.magnitude.value, e.magnitude.unit),
+                internal::quantity(e.group.value, e.group.unit), internal::quantity(e.metrics.initial_contact_time, "s", 4),
+                change(influences[0]), internal::quantity(e.metrics.impact_velocity, "m/s", 4), change(influences[1]),
+                internal::quantity(e.metrics.major_bounce_height, "m", 4), change(influences[2]),
+                internal::quantity(e.rhs_seconds, "s"));
   }
   text += "\n" +
           wrapped(
@@ -130,8 +125,8 @@ std::string effects_text(const Effects& effects) {
   std::string words;
   for (const Influence& i : influences) {
     const double spread = effects.spread("gas", i.figure);
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", i.name,
-                         std::isfinite(spread) ? fmt::format("{:.1f} %", 100 * spread) : "unknown");
+    words +=
+        fmt::format("{}{} {}", words.empty() ? "" : ", ", i.name, std::isfinite(spread) ? internal::percent(spread) : "unknown");
   }
   text += wrapped("The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".") + "\n";
   // One line per warning, with the laws it is about.

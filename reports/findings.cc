@@ -23,9 +23,17 @@ struct Actor {
 constexpr double doubtful_count = 0.5;
 constexpr double doubtful_time = 0.01;
 
+constexpr int figure_digits = 4;  // of the tables, where the error does not allow fewer
+
 std::string times_word(double count) { return count == 1 ? "once" : fmt::format("{:.0f} times", count); }
 
 std::string within(double window) { return std::isfinite(window) ? " within " + quantity(window, "s") : std::string(); }
+
+/// The highest rebound [m], 0 where it is too low to be told from none.
+double rebound_height(const json& metrics) {
+  const double height = number(metrics, {"major_bounce_height_m"});
+  return height < resolution("m") ? 0 : height;
+}
 
 bool touches(const json& metrics) { return std::isfinite(number(metrics, {"initial_contact_time_s"})); }
 
@@ -49,8 +57,8 @@ std::string bounces(const json& metrics, const json& errors) {
 /// The settling time, with "about" where it is doubtful.
 std::string settling(const json& metrics, const json& errors) {
   const double settled = number(metrics, {"permanent_contact_time_s"});
-  const bool doubtful = number(errors, {"permanent_contact_time_s"}) > doubtful_time * settled;
-  return (doubtful ? "about " : "") + quantity(settled, "s");
+  const double error = number(errors, {"permanent_contact_time_s"});
+  return (error > doubtful_time * settled ? "about " : "") + quantity_within(settled, error, "s");
 }
 
 /// What one closing does, as a clause without full stop.
@@ -63,7 +71,7 @@ std::string clause(const Actor& actor, const json& metrics, const json& errors, 
   }
   const double first = number(metrics, {"initial_contact_time_s"});
   const double count = number(metrics, {"bounce_count"});
-  const double height = number(metrics, {"major_bounce_height_m"});
+  const double height = rebound_height(metrics);
   if (clean(metrics)) {
     std::string words = closes(actor, "at " + quantity(first, "s")) + " with no rebound";
     if (height > 0) words += " above " + quantity(height, "m");
@@ -105,7 +113,7 @@ std::string course(const std::string& subject, const json& result, const char* r
     const double least = closest(result, run);
     return subject + " never touches" + (std::isfinite(least) ? " (no nearer than " + quantity(least, "m") + ")" : "");
   }
-  const double height = number(metrics, {"major_bounce_height_m"});
+  const double height = rebound_height(metrics);
   if (clean(metrics)) {
     const std::string above = height > 0 ? fmt::format(" but for rebounds of {} at most", quantity(height, "m")) : "";
     return fmt::format("{} lands at {} with {} and stays closed{}", subject,
@@ -175,8 +183,7 @@ Change change(double before, double after, bool lower_is_better, Kind kind) {
   if (!(before > 0) || !(after > 0)) return {word, verdict};
   const double ratio = lower ? before / after : after / before;
   if (ratio < 1.095) return {fmt::format("{:.1f} % {}", 100 * std::abs(after / before - 1), word), verdict};
-  return {fmt::format("{} times {}", ratio < 9.95 ? fmt::format("{:.1f}", ratio) : plain_number(std::round(ratio), 3), word),
-          verdict};
+  return {times(ratio) + " " + word, verdict};
 }
 
 const std::vector<Figure>& figures() {
@@ -196,21 +203,25 @@ const std::vector<Figure>& figures() {
   return all;
 }
 
-std::string figure_text(const json& metrics, const json& beside, const Figure& figure) {
+std::string figure_text(const json& metrics, const json& errors, const json& beside, const Figure& figure) {
   if (figure.unit == "bool") {
     const auto value = truth(metrics, {figure.key});
     return value ? (*value ? "yes" : "no") : "—";
   }
-  constexpr int digits = 4;
-  return quantity_beside(number(metrics, {figure.key}), number(beside, {figure.key}), figure.unit, digits);
+  const double value = number(metrics, {figure.key}), error = number(errors, {figure.key});
+  return value == 0 ? quantity_beside(value, number(beside, {figure.key}), figure.unit, figure_digits)
+                    : quantity_within(value, error, figure.unit, figure_digits);
+}
+
+std::string error_text(const json& metrics, const json& errors, const Figure& figure) {
+  return error_of(number(metrics, {figure.key}), number(errors, {figure.key}), figure.unit, figure_digits);
 }
 
 std::string cloud_text(const json& result, const Figure& figure) {
   const json& cloud = at(result, {"certified", figure.key});
   if (!cloud.is_object()) return {};
-  constexpr int digits = 4;
   const auto value = [&](const char* key) {
-    return quantity_beside(number(cloud, {key}), number(cloud, {"high"}), figure.unit, digits);
+    return quantity_beside(number(cloud, {key}), number(cloud, {"high"}), figure.unit, figure_digits);
   };
   return fmt::format("median {}, {} to {} in {:.0f} runs", value("median"), value("low"), value("high"), number(cloud, {"runs"}));
 }
@@ -275,7 +286,7 @@ std::string gap_caption(const json& result) {
 std::string landing_caption(const json& result) {
   const auto reach = [&](const char* subject, const json& metrics) -> std::string {
     if (!touches(metrics)) return {};
-    const double height = number(metrics, {"major_bounce_height_m"});
+    const double height = rebound_height(metrics);
     const std::string after = height > 0 ? "rises " + quantity(height, "m") + " above it again" : "does not rise above it again";
     return fmt::format("{} reaches the plane with {} and {}", subject, quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"),
                        after);
@@ -389,7 +400,7 @@ std::string checks_caption(const json& result) {
       ++clean_runs;
       continue;
     }
-    const double height = number(metrics, {"major_bounce_height_m"});
+    const double height = rebound_height(metrics);
     if (std::isfinite(height) && height > worst_height) {
       worst_height = height;
       worst = text(check, {"name"});

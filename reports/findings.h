@@ -49,8 +49,12 @@ struct Figure {
   [[nodiscard]] Kind kind() const { return unit == "s" ? Kind::time : unit.empty() ? Kind::count : Kind::size; }
 };
 [[nodiscard]] const std::vector<Figure>& figures();
-/// The value of a figure as text, an em dash when not available; `beside` are the metrics shown next to it.
-[[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& beside, const Figure& figure);
+/// The value of a figure as text, rounded to its error where that is known; an em dash when not available; `beside` are the
+/// metrics shown next to it.
+[[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& errors, const nlohmann::json& beside,
+                                      const Figure& figure);
+/// Its error beside that text; an em dash when not known.
+[[nodiscard]] std::string error_text(const nlohmann::json& metrics, const nlohmann::json& errors, const Figure& figure);
 /// The same in words when a number is not available but the reason is: "no contact", "not settled"; else empty.
 [[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, std::string_view key);
 /// Of an ill-conditioned figure of a certified result: "median 305.5 µs, 280.5 µs to 336.1 µs in 16 runs"; else empty.

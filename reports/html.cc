@@ -86,8 +86,10 @@ std::string figures_table(const json& result) {
   for (const Figure& one : figures()) {
     if (at(own, {one.key}).is_null() && at(step, {one.key}).is_null()) continue;
     out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label);
-    if (pair) out += fmt::format("<td>{}</td><td>{}</td>", figure_text(step, own, one), goal_text(result, one.key));
-    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, step, one));
+    if (pair)
+      out += fmt::format("<td>{}</td><td>{}</td>", figure_text(step, at(result, {"baseline", "errors"}), own, one),
+                         goal_text(result, one.key));
+    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, errors, step, one));
     if (pair) {
       const Change changed = figure_change(step, own, one);
       out += fmt::format("<td class=\"change {}\">{}</td>", verdict_class(changed.verdict), changed.words);
@@ -97,10 +99,7 @@ std::string figures_table(const json& result) {
       const double value = number(own, {one.key});
       constexpr double ill = 0.1;  // an error above a tenth of the figure
       const std::string cloud = cloud_text(result, one);
-      out += fmt::format("<td>{}{}</td>",
-                         !cloud.empty()         ? cloud
-                         : std::isfinite(error) ? "± " + quantity(error, one.unit, 2)
-                                                : "—",
+      out += fmt::format("<td>{}{}</td>", !cloud.empty() ? cloud : error_text(own, errors, one),
                          !cloud.empty() || error > ill * std::abs(value) ? " <span class=\"note\">ill-conditioned</span>" : "");
     }
     out += "</tr>\n";
@@ -164,7 +163,7 @@ std::string checks_table(const json& result) {
   const auto row = [&](const std::string& name, const json& metrics) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(name));
     for (const std::string_view key : keys)
-      out += fmt::format("<td>{}</td>", figure_text(metrics, baseline_metrics(result), figure(key)));
+      out += fmt::format("<td>{}</td>", figure_text(metrics, json(), baseline_metrics(result), figure(key)));
     out += "</tr>\n";
   };
   row("as searched", best_metrics(result));
@@ -192,7 +191,7 @@ std::string parameters_table(const json& result) {
   for (const auto& [name, value] : parameters.items()) {
     if (shown++ == most_lines) break;
     const auto [plain, unit] = without_unit(name);
-    const std::string words = value.is_number()   ? quantity(value.get<double>(), unit, 6)
+    const std::string words = value.is_number()   ? quantity(value.get<double>(), unit, 5)
                               : value.is_string() ? value.get<std::string>()
                                                   : value.dump();
     out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(plain), escaped(words));

@@ -48,21 +48,21 @@ std::string text_report(const json& result) {
   const bool compares = internal::is_optimize(result);
   const json& best = internal::best_metrics(result);
   const json& baseline = internal::baseline_metrics(result);
+  const json& errors = internal::at(result, {"errors"});
+  const json& baseline_errors = internal::at(result, {"baseline", "errors"});
   out += compares ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
                   : fmt::format("{:<36}{:>16}   {}\n", "", "value", "estimated error");
   for (const internal::Figure& f : internal::figures()) {
     const auto right = [](const std::string& text) { return std::string(width(text) < 16 ? 16 - width(text) : 0, ' ') + text; };
     if (compares) {
       const internal::Change change = internal::figure_change(baseline, best, f);
-      out += padded(f.label, 36) + right(internal::figure_text(baseline, best, f)) +
-             right(internal::figure_text(best, baseline, f)) + "   " + change.words;
+      out += padded(f.label, 36) + right(internal::figure_text(baseline, baseline_errors, best, f)) +
+             right(internal::figure_text(best, errors, baseline, f)) + "   " + change.words;
     } else {
-      const double error = internal::number(result, {"errors", f.key});
+      const bool known = std::isfinite(internal::number(errors, {f.key}));
       const std::string cloud = internal::cloud_text(result, f);
-      const std::string shown = !cloud.empty()         ? cloud
-                                : std::isfinite(error) ? internal::quantity(error, f.unit, 2)
-                                                       : std::string();
-      out += padded(f.label, 36) + right(internal::figure_text(best, json::object(), f)) + "   " + shown;
+      const std::string shown = !cloud.empty() ? cloud : known ? internal::error_text(best, errors, f) : std::string();
+      out += padded(f.label, 36) + right(internal::figure_text(best, errors, json::object(), f)) + "   " + shown;
     }
     while (!out.empty() && out.back() == ' ') out.pop_back();
     out += "\n";

@@ -57,10 +57,12 @@ double change(const std::vector<Figure>& from, const std::vector<Figure>& to) {
 }  // namespace
 
 std::string AutoModes::note() const {
-  return settled() ? fmt::format(R"(structure.modes = "auto": {} modes; further ones move no figure by more than {:.2g} %)",
-                                 modes, 100 * moved)
-                   : fmt::format(R"(structure.modes = "auto": {} modes, but further ones still move a figure by {:.2g} %)", modes,
-                                 100 * moved);
+  const std::string judged = "t_i, v_i, the highest rebound of the first period after contact and the pull-in voltages";
+  const std::string not_judged = "later rebounds, and with them B_H, N_B and t_p, are not judged and may move more";
+  return settled() ? fmt::format(R"(structure.modes = "auto": {} modes; further ones move {} by at most {:.2g} %; {})", modes,
+                                 judged, 100 * moved, not_judged)
+                   : fmt::format(R"(structure.modes = "auto": {} modes, but further ones still move one of {} by {:.2g} %; {})",
+                                 modes, judged, 100 * moved, not_judged);
 }
 
 AutoModes choose_modes(const SceneFile& file) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
 
@@ -63,7 +64,7 @@ std::vector<ConfirmingRun> confirm(const Prepared& winner) {
     return metrics(simulate_closing(device, signals, {.duration = winner.duration, .tolerance = tolerance}),
                    winner.scene.metrics);
   };
-  std::vector<ConfirmingRun> runs{{fmt::format("tolerance {:g}", tight_tolerance), run(winner.device, tight_tolerance)}};
+  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.device, tight_tolerance)}};
   Device richer = winner.scene.device;
   if (richer.structure.kind != StructureKind::plate) {
     richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
@@ -140,8 +141,8 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
   run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.device.in_contact_period());
   require(run.no_contact_before > 0,
-          fmt::format("simulate.duration = {:.3g} s is too short to judge a landing: it needs more than {:.3g} s", given.duration,
-                      2 * given.device.in_contact_period()));
+          fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
+                      engineering(given.duration, "s", 3), engineering(2 * given.device.in_contact_period(), "s", 3)));
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
 
   const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);

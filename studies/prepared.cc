@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
 #include "studies/auto_modes.h"
@@ -80,11 +81,13 @@ Prepared as_described(const SceneFile& given, bool default_limits) {
 
 std::string left_out_note(const EffectsChoice& choice, double tolerance) {
   if (choice.left_out.empty())
-    return fmt::format("effects = \"auto\": nothing is left out, every effect changes a figure by more than {:g}", tolerance);
+    return fmt::format("effects = \"auto\": nothing is left out, every effect changes a figure by more than {}",
+                       engineering(tolerance, ""));
   std::vector<std::string> names;
-  for (const Omission& o : choice.left_out) names.push_back(fmt::format("{} ({:.1g})", o.what.effect, o.influence));
-  return fmt::format("effects = \"auto\" leaves out {}: t_i, v_i and B_H change by {:.1g} together", fmt::join(names, ", "),
-                     choice.influence);
+  for (const Omission& o : choice.left_out)
+    names.push_back(fmt::format("{} ({})", o.what.effect, engineering(o.influence, "", 1)));
+  return fmt::format("effects = \"auto\" leaves out {}: t_i, v_i and B_H change by {} together", fmt::join(names, ", "),
+                     engineering(choice.influence, "", 1));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
 
@@ -52,9 +53,8 @@ void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
 
 void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
   const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
-  require(room > 0,
-          fmt::format("driver.{}: the hold level {:.6g} V stands at the driver's limit, which leaves no room for a dither",
-                      s.drive, s.hold));
+  require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
+                                s.drive, engineering(s.hold, "V", 5)));
   const Eigen::VectorXd& omega = p.device.angular_frequencies();
   const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
   const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];

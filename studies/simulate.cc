@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/engineering.h"
+
 namespace softland {
 namespace {
 
@@ -100,10 +102,10 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
     if (tighter.trajectory.status == Status::done) {
       c.errors = difference(best.metrics, tighter.metrics);
       if (may_tighten && e > asked.accuracy) {
-        c.warnings.push_back(fmt::format(
-            "accuracy {:g} is not reached: at an integrator tolerance of {:.0e} t_i, v_i, B_H or the peak force is still "
-            "known to {:.1g} only, for so small a change decides it",
-            asked.accuracy, best.tolerance, e));
+        c.warnings.push_back(
+            fmt::format("accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is still "
+                        "known to {} only, for so small a change decides it",
+                        engineering(asked.accuracy, ""), engineering(best.tolerance, "", 1), engineering(e, "", 1)));
       }
       if (c.errors.bounce_count > 0 || c.errors.bounce_time > 0.01 * std::abs(best.metrics.bounce_time)) {
         c.warnings.push_back(

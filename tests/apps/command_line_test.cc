@@ -6,6 +6,7 @@
 #include <set>
 
 #include "program.h"
+#include "tests/support/printed.h"
 
 namespace softland {
 namespace {
@@ -194,6 +195,39 @@ TEST(Modes, PrintsTheAgreedJson) {
   EXPECT_TRUE(std::is_sorted(omega.begin(), omega.end()));
 }
 
+TEST(EveryVerb, PrintsNumbersThatPeopleRead) {
+  const Workplace here;
+  for (const char* scene : {"nem-tin.toml", "nem-casimir.toml", "two-electrodes.toml", "hung-senturia.toml"})
+    write(here.path() / scene, shipped(scene));
+  const std::vector<std::vector<std::string>> calls{
+      {"check", "gold.toml"},
+      {"check", "pzt.toml"},
+      {"check", "nem-tin.toml"},
+      {"check", "nem-casimir.toml"},
+      {"check", "two-electrodes.toml"},
+      {"check", "hung-senturia.toml"},
+      {"modes", "gold.toml"},
+      {"modes", "nem-tin.toml"},
+      {"modes", "two-electrodes.toml"},
+      {"pull-in", "gold.toml"},
+      {"pull-in", "nem-tin.toml"},
+      {"simulate", "pzt.toml"},
+      {"simulate", "nem-tin.toml"},
+      {"simulate", "nem-casimir.toml"},
+      {"simulate", "two-electrodes.toml"},
+      {"simulate", "gold.toml", "--set", "structure.damping_ratio=1e-9", "--set", "simulate.effects=auto", "--set",
+       "simulate.duration=60 us"},
+      {"simulate", "gold.toml", "--set", "simulate.accuracy=1e-10", "--set", "simulate.duration=60 us"},
+      {"effects", "hung-senturia.toml"},
+      {"effects", "gold.toml", "--set", "simulate.duration=60 us"},
+      {"accuracy", "gold.toml", "--quiet", "--set", "simulate.duration=40 us"}};
+  for (const std::vector<std::string>& words : calls) {
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.status, 0) << words[0] << " " << words[1] << ": " << o.err;
+    EXPECT_EQ(absurd_number(o.out + o.err), "") << words[0] << " " << words[1] << ":\n" << o.out << o.err;
+  }
+}
+
 TEST(New, WritesScenesThatCheckAccepts) {
   const Workplace here;
   for (const char* kind :
@@ -213,9 +247,9 @@ TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas) {
   const Workplace here;
   const auto check = [&](const char* setting) { return here.run({"check", "gold.toml", "--set", setting}).out; };
   EXPECT_THAT(check("gas.mean_free_path=\"70 nm\""),
-              HasSubstr("Knudsen number       0.02 at the rest gap, 0.0467 closed (mean free path 70 nm)"));
+              HasSubstr("Knudsen number       0.02 at the rest gap, 0.0467 closed (mean free path 70\u00a0nm)"));
   // mu / p sqrt(pi R_g T / 2) with the scene's viscosity.
-  EXPECT_THAT(check("gas.pressure=\"1 kPa\""), HasSubstr("(mean free path 6.84e+03 nm)"));
+  EXPECT_THAT(check("gas.pressure=\"1 kPa\""), HasSubstr("(mean free path 6.84\u00a0µm)"));
 }
 
 TEST(Effects, PrintATableAndTheAgreedJson) {

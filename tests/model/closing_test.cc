@@ -305,7 +305,7 @@ TEST(Closing, WarnsWhenTheAsperitiesAreCrushed) {
   const Trajectory t = simulate_closing(Switch(d), step(), {.duration = 60_us});
   ASSERT_EQ(t.warnings.size(), 1u);
   EXPECT_EQ(t.warnings[0].rfind("contact law asperity-uniform: interference ", 0), 0u) << t.warnings[0];
-  EXPECT_NE(t.warnings[0].find("exceeds the asperity height 2e-09 m"), std::string::npos) << t.warnings[0];
+  EXPECT_NE(t.warnings[0].find("exceeds the asperity height 2 nm"), std::string::npos) << t.warnings[0];
 }
 
 TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {

@@ -54,17 +54,16 @@ AccuracyStudy sample() {
 TEST(AccuracyText, ListsEverySettingAndRecommendsInOneLine) {
   const std::string text = accuracy_text(sample());
   const std::string own(to_string(all_integrators[0]));
-  EXPECT_THAT(text, HasSubstr("\nfor 1e-3 in t_i and v_i: " + own + ", tolerance 1e-3, 8 points per length: 0.15 ms\n"));
+  EXPECT_THAT(text, HasSubstr("\nfor 1e-3 in t_i and v_i: " + own + ", tolerance 1e-3, 8 points per length: 150\u00a0µs\n"));
   EXPECT_THAT(text, HasSubstr("\nfor 1e-9 in t_i and v_i: nothing that was tried\n"));
   EXPECT_THAT(text, HasSubstr("1e-4    cut after 2 s\n"));
-  EXPECT_THAT(text, HasSubstr("1.0e-06    1.0e-05    1.0e-05          -        600        0.3\n"));
-  EXPECT_THAT(text, HasSubstr("230\n")) << "milliseconds without an exponent";
+  EXPECT_THAT(text, HasSubstr("1e-6       1e-5       1e-5          —        600     300\u00a0µs\n"));
   EXPECT_THAT(text, HasSubstr("Reference: " + own + ", tolerance 1e-8, 48 points per length, 4 modes:"));
 }
 
 TEST(AccuracyText, ShowsIllConditionedFiguresAsClouds) {
   const std::string text = accuracy_text(sample());
-  EXPECT_THAT(text, ::testing::ContainsRegex("B_H +400.00 nm +480.00 nm +600.00 nm +8  ill-conditioned\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("B_H +400.0\u00a0nm +480.0\u00a0nm +600.0\u00a0nm +8  ill-conditioned\n"));
   EXPECT_THAT(text, ::testing::ContainsRegex("N_B +44 +54 +60 +8\n"));
   EXPECT_THAT(text, ::testing::ContainsRegex("t_p +none\n"));
   EXPECT_THAT(text, HasSubstr("Ill-conditioned here, and left out of what follows: B_H.\n"));
@@ -76,7 +75,7 @@ TEST(AccuracyText, ShowsIllConditionedFiguresAsClouds) {
 TEST(AccuracyText, ListsWhatWasTriedWithoutARestartOrWhyNothingWas) {
   const std::string own(to_string(all_integrators[0]));
   EXPECT_THAT(accuracy_text(sample()), ::testing::ContainsRegex("no restart +tolerance [^\n]+\n" + own +
-                                                                " +1e-3 +2.0e-04 +2.0e-03 +2.0e-03 +- +600 +0.16\n"));
+                                                                " +1e-3 +2e-4 +2e-3 +2e-3 +— +600 +160\u00a0µs\n"));
   AccuracyStudy none = sample();
   none.through.clear();
   none.why_always_restarted = "there is no contact";
@@ -106,8 +105,7 @@ TEST(AccuracyPage, HoldsRecommendationsDiagramsTablesAndClouds) {
   EXPECT_THAT(page, HasSubstr("id=\"figure-work-precision\""));
   EXPECT_THAT(page, HasSubstr("id=\"figure-contact\""));
   EXPECT_THAT(page, HasSubstr("cut &lt;early&gt;"));
-  EXPECT_THAT(page,
-              HasSubstr("B<sub>H</sub></th><td>400.00\u00a0nm</td><td>480.00\u00a0nm</td><td>600.00\u00a0nm</td><td>8</td>"));
+  EXPECT_THAT(page, HasSubstr("B<sub>H</sub></th><td>400.0\u00a0nm</td><td>480.0\u00a0nm</td><td>600.0\u00a0nm</td><td>8</td>"));
   EXPECT_THAT(page, HasSubstr("softland accuracy &#39;a &amp; b.toml&#39;"));
   EXPECT_THAT(page, Not(HasSubstr("<script"))) << "nothing here needs one";
   EXPECT_THAT(page, Not(HasSubstr("nan")));

@@ -70,7 +70,7 @@ TEST(Headline, SaysWhenASwitchHasNotSettled) {
 
 TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
   EXPECT_EQ(sentence(sample_simulate_result(few_rows)),
-            "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and settles after about 374 µs.");
+            "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and settles after about 370 µs.");
 }
 
 TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
@@ -172,7 +172,7 @@ TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
   const json result = sample_simulate_result(few_rows);
   EXPECT_EQ(plain(gap_caption(result)),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
-            "bounces about 57 times, up to 803 nm, until about 374 µs.");
+            "bounces about 57 times, up to 803 nm, until about 370 µs.");
   EXPECT_EQ(plain(force_caption(result)),
             "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
 }

@@ -94,7 +94,7 @@ TEST(HtmlReport, SaysEverythingWithoutAScript) {
           "<h1>Softland&#39;s waveform closes the switch at 44.5\u00a0µs with no rebound<span class=\"rest\">; the plain step"));
   EXPECT_EQ(occurrences(page, "<svg class=\"still\""), 7u);
   for (const char* words :
-       {"8.4 times shorter", "803.1\u00a0nm", "ill-conditioned", "tolerance 1e-9", "piezo.level_1</th><td>173.270\u00a0mV",
+       {"8.4 times shorter", "803.1\u00a0nm", "ill-conditioned", "tolerance 1e-9", "piezo.level_1</th><td>173.27\u00a0mV",
         "<p>The goal is met.</p>", "<td>57</td><td>0</td>", "With softland 0.1.0, seed 1:", "multi-start Nelder-Mead", "0.1.0",
         "youngs_modulus = &quot;78 GPa&quot;", "softland simulate out/best.toml", "plate_strain is off", "15.46\u00a0kHz"}) {
     EXPECT_THAT(page, HasSubstr(words));

@@ -42,9 +42,11 @@ TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
   const int modes = p.scene.device.structure.modes;
   EXPECT_EQ(p.device.modes(), modes);
   EXPECT_FALSE(p.scene.auto_modes);
-  const std::string note =
-      R"(structure.modes = "auto": )" + std::to_string(modes) + " modes; further ones move no figure by more than ";
+  const std::string note = R"(structure.modes = "auto": )" + std::to_string(modes) +
+                           " modes; further ones move t_i, v_i, the highest rebound of the first period after contact and the "
+                           "pull-in voltages by at most ";
   EXPECT_THAT(p.scene.warnings, Contains(HasSubstr(note)));
+  EXPECT_THAT(p.scene.warnings, Contains(HasSubstr("B_H, N_B and t_p, are not judged and may move more")));
   EXPECT_THAT(resolved(p.scene, p.voltage_units()).text(), HasSubstr("modes = " + std::to_string(modes) + "\n"));
 }
 

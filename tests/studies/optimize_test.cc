@@ -122,7 +122,7 @@ TEST(Optimize, VerifiesItsWinnerAsSimulateWill) {
 
 TEST(Optimize, RefusesAWindowTooShortToJudgeALanding) {
   const std::string said = refusal([] { (void)search(gold({"simulate.duration=2 us"}), {}); });
-  EXPECT_EQ(said.rfind("simulate.duration = 2e-06 s is too short to judge a landing: it needs more than ", 0), 0U) << said;
+  EXPECT_EQ(said.rfind("simulate.duration = 2 us is too short to judge a landing: it needs more than ", 0), 0U) << said;
 }
 
 TEST(Optimize, RefusesASceneWithoutContact) {
