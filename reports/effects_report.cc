@@ -92,6 +92,7 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
   json spread = json::object();
   for (const Influence& i : influences) spread[i.key] = number(effects.spread("gas", i.figure));
   return {{"kind", "effects"},
+          {"status", to_string(effects.interrupted ? Status::interrupted : effects.own("gas").metrics.status)},
           {"left_out", left_out},
           {"effects", list},
           {"relative_spread", {{"gas", spread}}},
@@ -102,7 +103,8 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
 
 std::string effects_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
-  std::string text = omissions_text(effects);
+  std::string text = effects.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
+  text += omissions_text(effects);
   const auto row = [](const auto&... cells) {
     return fmt::format("{:<20}{:>16}{:>8}{:>10}{:>9}{:>12}{:>9}{:>10}{:>9}{:>9}\n", cells...);
   };

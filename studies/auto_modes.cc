@@ -22,15 +22,18 @@ struct Figure {
   double value, scale;
 };
 
-std::vector<Figure> figures(const SceneFile& file, int modes) {
+std::vector<Figure> figures(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
   with.set(fmt::format("structure.modes={}", modes));
   with.set("simulate.effects=all");  // every number of modes is judged on the same effects; they are chosen after
-  const Prepared p = prepare(with);
+  const Prepared p = prepare(with, false, watch);
   const double omega = p.device.angular_frequencies()[0], gap = p.scene.device.gap.contact;
-  const Trajectory t = simulate_closing(
-      p.device, p.signals(),
-      {.duration = p.duration, .tolerance = std::max(run_tolerance, p.tolerance), .after_contact = 2 * pi / omega});
+  const Trajectory t = simulate_closing(p.device, p.signals(),
+                                        {.duration = p.duration,
+                                         .tolerance = std::max(run_tolerance, p.tolerance),
+                                         .after_contact = 2 * pi / omega,
+                                         .stop = watch.stop});
+  watch.throw_if_stopped();
   const Metrics m = metrics(t, p.scene.metrics);
   std::vector<Figure> list{{m.initial_contact_time, 1 / omega}, {m.impact_velocity, gap * omega}, {m.major_bounce_height, gap}};
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
@@ -65,15 +68,17 @@ std::string AutoModes::note() const {
                                  modes, judged, 100 * moved, not_judged);
 }
 
-AutoModes choose_modes(const SceneFile& file) {
+AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   const bool both_clamped = read_scene(file).device.structure.kind == StructureKind::clamped_clamped;
   const int further = both_clamped ? 6 : 3;
   std::vector<std::vector<Figure>> known;
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
+    watch.tell("number of modes", static_cast<double>(modes) / most_modes);
     found = {.modes = modes};
     for (int more = 1; more <= further && found.settled(); ++more) {
-      while (static_cast<int>(known.size()) < modes + more) known.push_back(figures(file, static_cast<int>(known.size()) + 1));
+      while (static_cast<int>(known.size()) < modes + more)
+        known.push_back(figures(file, static_cast<int>(known.size()) + 1, watch));
       found.moved = std::max(
           found.moved, change(known[static_cast<std::size_t>(modes - 1)], known[static_cast<std::size_t>(modes + more - 1)]));
     }

@@ -10,6 +10,7 @@
 
 #include <string>
 
+#include "base/watch.h"
 #include "config/scene.h"
 
 namespace softland {
@@ -25,6 +26,6 @@ struct AutoModes {
 };
 
 /// Where nothing settles up to the most modes there are, the largest number that can be judged. Throws as prepare() does.
-[[nodiscard]] AutoModes choose_modes(const SceneFile& file);
+[[nodiscard]] AutoModes choose_modes(const SceneFile& file, const Watch& watch = {});
 
 }  // namespace softland

@@ -112,8 +112,8 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
   return gentlest(first.rebounds.size());
 }
 
-Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
-  Closing c = simulate(prepared, true, stop);
+Closing certify(const Prepared& prepared, const Watch& watch) {
+  Closing c = simulate(prepared, true, watch);
   if (!c.judge) return c;
   if (c.judge->status != Status::done) {
     c.warnings.push_back(fmt::format("the figures could not be certified: a hundredfold tighter run ended with {}{}{}",
@@ -122,10 +122,15 @@ Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
   }
   const std::vector<Signal> signals = prepared.signals();
   const Switch fine(prepared.scene.device, c.judge->quadrature);
-  const ClosingOptions options{.duration = prepared.duration, .tolerance = c.judge->tolerance, .stop = stop};
+  const ClosingOptions options{.duration = prepared.duration, .tolerance = c.judge->tolerance, .stop = watch.stop};
   Metrics better = c.judge->metrics;
   better.hold_force = hold_force(fine, signals);
-  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options);
+  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {}, watch);
+  if (watch.stopped()) {
+    c.metrics.status = Status::interrupted;
+    c.warnings.insert(c.warnings.begin(), "interrupted before the figures were certified");
+    return c;
+  }
   std::erase_if(cloud, [](const Trajectory& t) { return t.status != Status::done; });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {

@@ -94,7 +94,8 @@ bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
-  Prepared given = prepare(file, true);
+  const Watch before{.stop = options.stop, .progress = options.on_preparation}, after{.progress = options.on_preparation};
+  Prepared given = prepare(file, true, before);
   require(given.device.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
 
   // The baseline: plain steps to the hold levels the scene describes, as steep as the driver permits.
@@ -112,7 +113,8 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   }
   if (given.device.has_piezo()) plain[std::string(piezo_drive)] = Step{.level = 0};
   Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml", given);
-  OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true)};
+  OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true, before)};
+  before.throw_if_stopped();
 
   // How candidates are scored.
   const double period = 2 * pi / given.device.angular_frequencies()[0];
@@ -191,7 +193,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
     const Evaluation& candidate = found[found.size() - 1 - i];
     if (!(candidate.value < never_touched)) break;
     Prepared scene = read_back(with_waveforms(baseline_scene, space.waveforms(candidate.x)), "best.toml", given);
-    Closing closing = simulate(scene, true);
+    Closing closing = simulate(scene, true, after);
     const bool met = goal_met(options.target, closing.metrics, result.baseline.metrics);
     if (!met && belief >= Belief::feasible) continue;
     std::vector<ConfirmingRun> checks = confirm(scene);

@@ -44,8 +44,11 @@ struct OptimizeOptions {
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
   int jobs = 1;
-  /// Set from outside (Ctrl-C): ends the search. Baseline, verification and confirming runs are short and always run to the end.
+  /// Set from outside (Ctrl-C): ends the search. The runs that verify and confirm what it found by then are run to their end.
   const std::atomic<bool>* stop = nullptr;
+  /// Told before and after the search itself, of the pull-in voltages, the baseline and the runs that verify the winner: see
+  /// Watch.
+  std::function<void(std::string_view what, double part)> on_preparation = {};
   /// Called once, when scene and options have been found valid and before the first evaluation, with the names of the searched
   /// parameters in the order of Evaluation::x.
   std::function<void(const std::vector<std::string>&)> on_start = {};

@@ -48,11 +48,11 @@ SwitchOptions quadrature_for(double accuracy, int modes) {
 
 namespace {
 
-Prepared as_described(const SceneFile& given, bool default_limits) {
+Prepared as_described(const SceneFile& given, bool default_limits, const Watch& watch) {
   SceneFile file = given;
   Scene scene = read_scene(file);
   if (scene.auto_modes) {
-    const AutoModes chosen = choose_modes(file);
+    const AutoModes chosen = choose_modes(file, watch);
     file.set(fmt::format("structure.modes={}", chosen.modes));
     scene = read_scene(file);
     scene.warnings.push_back(chosen.note());
@@ -65,7 +65,8 @@ Prepared as_described(const SceneFile& given, bool default_limits) {
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
     if (!needed && !default_limits) continue;
     ElectrodePullIn found{.statically = static_pull_in(p.device, k)};
-    found.dynamically = dynamic_pull_in(p.device, k, found.statically);
+    found.dynamically = dynamic_pull_in(p.device, k, found.statically, watch);
+    watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
     require(ok || !needed,
             fmt::format("{}: electrode.{}: its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found",
@@ -92,11 +93,11 @@ std::string left_out_note(const EffectsChoice& choice, double tolerance) {
 
 }  // namespace
 
-Prepared prepare(const SceneFile& file, bool default_limits) {
-  Prepared p = as_described(file, default_limits);
+Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch) {
+  Prepared p = as_described(file, default_limits, watch);
   const SimulateOptions& options = p.scene.simulate;
   if (!options.automatic_effects) return p;
-  EffectsChoice choice = negligible_effects(p, options.effects_tolerance);
+  EffectsChoice choice = negligible_effects(p, options.effects_tolerance, watch);
   std::vector<Omissible> effects;
   for (const Omission& o : choice.left_out) effects.push_back(o.what);
   Prepared chosen = without(p, effects);

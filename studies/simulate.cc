@@ -61,12 +61,23 @@ double least_peak_force(const Prepared& prepared) {
   return share * 2 * prepared.device.bending_energy() / prepared.scene.device.gap.contact;
 }
 
-Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atomic<bool>* stop) {
+Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch) {
   const std::vector<Signal> signals = prepared.signals();
+  int runs = 0;
+  bool interrupted = false;
   const auto run = [&](const Switch& device, double tolerance, const SwitchOptions& quadrature, long max_steps) {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
-    r.trajectory = simulate_closing(
-        device, signals, {.duration = prepared.duration, .tolerance = tolerance, .max_steps = max_steps, .stop = stop});
+    ClosingOptions options{.duration = prepared.duration, .tolerance = tolerance, .max_steps = max_steps, .stop = watch.stop};
+    if (watch.progress) {
+      const std::string what =
+          runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {:.0e}, for its errors", tolerance);
+      options.observer = [&watch, what, &options](double time, const double*, const double*) {
+        watch.tell(what, time / options.duration);
+        return false;
+      };
+    }
+    r.trajectory = simulate_closing(device, signals, options);
+    interrupted = interrupted || r.trajectory.status == Status::interrupted;
     r.metrics = metrics(r.trajectory, prepared.scene.metrics);
     return r;
   };
@@ -122,6 +133,16 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
   for (const Signal& signal : signals) hold.push_back(signal.hold_level());
   if (const auto closed = closed_equilibrium(prepared.device, hold)) c.trajectory.hold_force = closed->contact_force;
   c.metrics = metrics(c.trajectory, prepared.scene.metrics);
+  if (interrupted) {
+    const bool complete = c.trajectory.status != Status::interrupted;
+    c.metrics.status = Status::interrupted;
+    c.errors = {};
+    c.judge.reset();
+    c.warnings = {complete ? fmt::format("interrupted: the figures are those of a complete closing at tolerance {:.0e}, but how "
+                                         "far they are from the truth was not found out",
+                                         c.tolerance)
+                           : std::string("interrupted: the figures are those of the part of the closing that was simulated")};
+  }
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
   const bool piezo_only = prepared.scene.device.electrodes.empty();

@@ -1,12 +1,12 @@
 // One closing, with figures of merit and their errors, as accurate as the scene asks for.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/watch.h"
 #include "model/closing.h"
 #include "objectives/metrics.h"
 #include "studies/prepared.h"
@@ -44,7 +44,8 @@ struct Closing {
 /// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure; where a scene
 /// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
 /// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
-/// helps.
-[[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atomic<bool>* stop = nullptr);
+/// helps. Asked to stop, the status of the figures is interrupted: they are those of the last run that was complete, without
+/// errors, or of the part of the first one that was run.
+[[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

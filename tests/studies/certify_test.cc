@@ -131,9 +131,24 @@ TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
 TEST(Certify, SaysNothingOfARunThatIsNotDone) {
   const Prepared p = gold_at_17_volts("60 us");
   const std::atomic<bool> stop{true};
-  const Closing c = certify(p, &stop);
+  const Closing c = certify(p, {.stop = &stop});
   EXPECT_EQ(c.certificate, nullptr);
   EXPECT_TRUE(std::isnan(c.errors.impact_velocity));
+}
+
+TEST(Simulate, AskedToStopWhileItEstimatesErrorsKeepsTheFiguresWithoutThem) {
+  const Prepared p = gold_at_17_volts("60 us");
+  std::atomic<bool> stop{false};
+  const Watch watch{.stop = &stop, .progress = [&](std::string_view what, double part) {
+                      EXPECT_TRUE(part >= 0 && part <= 1) << what;
+                      stop = stop || what.starts_with("closing again");
+                    }};
+  const Closing c = simulate(p, true, watch), first = simulate(p, false);
+  EXPECT_TRUE(stop);
+  EXPECT_EQ(c.metrics.status, Status::interrupted);
+  EXPECT_EQ(c.metrics.impact_velocity, first.metrics.impact_velocity);
+  EXPECT_TRUE(std::isnan(c.errors.impact_velocity));
+  for (const std::string& warning : c.warnings) EXPECT_EQ(warning.find("is not reached"), std::string::npos) << warning;
 }
 
 // Touches of 1 us between ballistic rebounds of these heights [m].
