@@ -3,13 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -17,15 +12,17 @@
 #include <thread>
 #include <utility>
 
+#include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
-#include "apps/search_folder.h"
+#include "apps/search_log.h"
+#include "apps/streams.h"
+#include "base/read_file.h"
 #include "base/require.h"
 #include "config/units.h"
 #include "model/constants.h"
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
-#include "reports/files.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/result_reader.h"
@@ -53,16 +50,6 @@ SceneFile load_scene(const Common& c) {
   return file;
 }
 
-std::string read_text(const fs::path& path) {
-  std::error_code ignored;
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  const int reason = fs::is_directory(path, ignored) ? EISDIR : errno;
-  require(in.is_open() && reason != EISDIR,
-          fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(reason)));
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 // Voltages of the scene, for generators and simulators of circuits: the factor of the dispersion force is none.
 std::map<std::string, Signal> named_signals(const Prepared& p) {
   std::map<std::string, Signal> all;
@@ -75,9 +62,9 @@ std::map<std::string, Signal> named_signals(const Prepared& p) {
 }
 
 // Pull-in of every electrode, without any waveform of the scene.
-json pull_in_of(const Prepared& p, std::size_t k) {
+json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
   const StaticPullIn s = static_pull_in(p.device, k);
-  const DynamicPullIn d = dynamic_pull_in(p.device, k, s);
+  const DynamicPullIn d = dynamic_pull_in(p.device, k, s, watch);
   const auto number = [](double v) { return std::isfinite(v) ? json(v) : json(nullptr); };
   return {{"status", to_string(s.status == Status::done ? d.status : s.status)},
           {"pull_in",
@@ -152,13 +139,21 @@ fs::path shipped_scene(const std::string& name) {
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
 }
 
-json read_result(const fs::path& path) { return parse_result(read_text(path), path.string()); }
+json read_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
 
 // The scene of a result: a folder that --out named, a result.json, or a scene file itself.
 SceneFile scene_of_result(const std::string& result) {
   fs::path path = result;
-  if (fs::is_directory(path)) {
-    const auto here = [&](const char* name) { return fs::exists(fs::path(result) / name); };
+  if (is_folder(path)) {
+    const auto here = [&](const char* name) {
+      std::error_code ignored;
+      return fs::exists(fs::path(result) / name, ignored);
+    };
     require(here("best.toml") || here("result.json"), fmt::format("{}: holds neither best.toml nor result.json", result));
     path /= here("best.toml") ? "best.toml" : "result.json";
   }
@@ -176,33 +171,47 @@ void log_time_saved(const Prepared& chosen) {
   whole.device = Switch(whole.scene.device, whole.quadrature);
   const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.device, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
-  fmt::print(stderr, "softland: effects = \"auto\": a right-hand side takes {} instead of {}, {} less\n", quantity(without, "s"),
-             quantity(with, "s"), percent(std::max(0.0, 1 - without / with)));
+  say(fmt::format("effects = \"auto\": a right-hand side takes {} instead of {}, {} less", quantity(without, "s"),
+                  quantity(with, "s"), percent(std::max(0.0, 1 - without / with))));
 }
 
 }  // namespace
 
 int simulate_verb(const Common& c, bool certified) {
-  const Prepared prepared = prepare(load_scene(c));
-  if (!c.out.empty()) make_folder(c.out);
-  const Closing closing = certified ? certify(prepared, c.stop) : simulate(prepared, true, c.stop);
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared prepared = prepare(file, false, work->watch());
+  const std::vector<std::string> files{"report.html", "gap.svg", "result.json", "trajectory.csv"};
+  std::optional<ResultFolder> folder = claim_places(c, files);
+  const Closing closing = certified ? certify(prepared, work->watch()) : simulate(prepared, true, work->watch());
+  work.reset();
   const json result = result_json(prepared, closing, {.command = c.command});
-  write_outputs(c, result);
-  if (prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);
+  const bool interrupted = closing.metrics.status == Status::interrupted;
+  std::string left;
+  if (folder) {
+    write_result(*folder, result);
+    left = left_in(folder->destination(interrupted), files);
+    folder->publish(interrupted);
+  }
+  print_result(c, result, left);
+  if (!interrupted && prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);
   if (!closing.trajectory.message.empty())
-    fmt::print(stderr, "softland: {} ({})\n", closing.trajectory.message, to_string(closing.metrics.status));
+    say(fmt::format("{} ({})", closing.trajectory.message, to_string(closing.metrics.status)));
   return status_code(closing.metrics.status);
 }
 
 int pull_in_verb(const Common& c) {
-  const Prepared prepared = prepare(load_scene(c));
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared prepared = prepare(file, false, work->watch());
+  static_cast<void>(claim_places(c, {}));
   const auto& electrodes = prepared.scene.device.electrodes;
   require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
   json all = json::object();
   std::string text;
   bool failed = false;
-  for (std::size_t k = 0; k < electrodes.size(); ++k) {
-    json one = pull_in_of(prepared, k);
+  for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
+    json one = pull_in_of(prepared, k, work->watch());
     const json& p = one["pull_in"];
     if (!pulls_in(prepared.scene.device, k)) {
       text += fmt::format("electrode {}\n  on the far side: pulls away from the contact\n", electrodes[k].name);
@@ -221,12 +230,16 @@ int pull_in_verb(const Common& c) {
       all[electrodes[k].name] = std::move(one);
     }
   }
+  const bool interrupted = work->watch().stopped();
+  work.reset();
   print_json_or(c, all, text);
-  return failed ? exit_numerical_failure : exit_done;
+  return interrupted ? exit_interrupted : failed ? exit_numerical_failure : exit_done;
 }
 
 int modes_verb(const Common& c) {
-  const Prepared prepared = prepare(load_scene(c));
+  const SceneFile file = load_scene(c);
+  const Prepared prepared = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
+  static_cast<void>(claim_places(c, {}));
   json list = json::array();
   constexpr int digits = 6;
   std::string text = "mode  angular frequency    frequency\n";
@@ -240,7 +253,9 @@ int modes_verb(const Common& c) {
 }
 
 int check_verb(const Common& c) {
-  const Prepared p = prepare(load_scene(c), true);
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared p = prepare(file, true, work->watch());
   const Structure& s = p.scene.device.structure;
   std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + p.scene.title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
@@ -253,7 +268,7 @@ int check_verb(const Common& c) {
       add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
       continue;
     }
-    const auto found = pull_in_of(p, k);
+    const auto found = pull_in_of(p, k, work->watch());
     const json& v = found["pull_in"];
     add("electrode " + p.scene.device.electrodes[k].name,
         fmt::format("Vsp {}, Vdp {}, release {}", volts(v["static_V"]), volts(v["dynamic_V"]), volts(v["release_V"])));
@@ -261,7 +276,7 @@ int check_verb(const Common& c) {
   if (p.scene.device.dispersion) {
     const std::size_t k = p.scene.device.electrodes.size();
     const StaticPullIn statically = static_pull_in(p.device, k);
-    const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically);
+    const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically, work->watch());
     const auto factor = [](double value) { return std::isfinite(value) ? plain_number(1 + value, 4) : std::string("none"); };
     add("dispersion force",
         fmt::format("{}; closes by itself at {} (static) or a step to {} (dynamic) of its nominal strength",
@@ -293,20 +308,27 @@ int check_verb(const Common& c) {
   }
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
-  std::cout << text;
+  work->watch().throw_if_stopped();
+  work.reset();
+  print(text);
   return exit_done;
 }
 
 int effects_verb(const Common& c) {
-  const Prepared p = prepare(load_scene(c));
-  const Effects effects = compare_effects(p, c.stop);
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared p = prepare(file, false, work->watch());
+  static_cast<void>(claim_places(c, {}));
+  const Effects effects = compare_effects(p, work->watch());
+  work.reset();
   print_json_or(c, effects_json(p, effects, {.command = c.command}), effects_text(effects));
-  return status_code(effects.own("gas").metrics.status);
+  return effects.interrupted ? exit_interrupted : status_code(effects.own("gas").metrics.status);
 }
 
 int accuracy_verb(const Common& c) {
-  const Prepared p = prepare(load_scene(c));
-  if (!c.out.empty()) make_folder(c.out);
+  const SceneFile file = load_scene(c);
+  const Prepared p = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
+  std::optional<ResultFolder> folder = claim_places(c, {"report.html", "accuracy.svg", "accuracy.json"});
   Bar bar(c.quiet);
   AccuracyOptions options{.stop = c.stop};
   std::size_t done = 0, of = 0;
@@ -323,12 +345,13 @@ int accuracy_verb(const Common& c) {
   bar.close(state);
   const json j = accuracy_json(p, study, {.command = c.command});
   std::string text = accuracy_text(study);
-  if (!c.out.empty() && !study.rows.empty()) {
-    const fs::path folder = c.out;
-    write_whole(folder / "report.html", accuracy_html(p, study, {.command = c.command}));
-    write_whole(folder / "accuracy.svg", accuracy_svg(p.scene.title, study));
-    write_whole(folder / "accuracy.json", j.dump(2) + "\n");
-    text += fmt::format("\nIn {}: report.html, accuracy.svg, accuracy.json\n", c.out);
+  if (folder && !study.rows.empty()) {
+    folder->write("report.html", accuracy_html(p, study, {.command = c.command}));
+    folder->write("accuracy.svg", accuracy_svg(p.scene.title, study));
+    folder->write("accuracy.json", json_text(j, 2));
+    const bool interrupted = study.status == Status::interrupted;
+    text += left_in(folder->destination(interrupted), {"report.html", "accuracy.svg", "accuracy.json"});
+    folder->publish(interrupted);
   }
   print_json_or(c, j, text);
   return status_code(study.status);
@@ -357,36 +380,49 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   if (request.budget) read_budget(*request.budget, options);
 
   const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> preparation(std::in_place, c.quiet, c.stop);
+  options.on_preparation = [&](std::string_view what, double part) { preparation->watch().tell(what, part); };
   SearchProgress progress(c.quiet, options);
-  std::optional<SearchFolder> folder;
+  std::optional<ResultFolder> folder;
+  std::optional<SearchLog> log;
   options.on_start = [&](const std::vector<std::string>& variables) {
-    folder.emplace(c.out, variables);
-    if (!c.quiet)
-      fmt::print(stderr, "softland: {}: searching a {} waveform, actuator {}, target {}; results go to {}\n", c.scene,
-                 request.waveform, request.actuator, request.target, c.out);
+    preparation.emplace(c.quiet, c.stop);
+    folder =
+        claim_places(c, {"best.toml", "best.csv", "report.html", "gap.svg", "result.json", "trajectory.csv", "evaluations.csv"});
+    log.emplace(*folder, variables);
+    if (!c.quiet) {
+      say(fmt::format("{}: searching a {} waveform, actuator {}, target {}; results go to {}", c.scene, request.waveform,
+                      request.actuator, request.target, c.out));
+    }
   };
   options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress& p) {
-    folder->evaluated(e);
+    log->evaluated(e);
     progress.show(p);
   };
-  options.on_improvement = [&](const Evaluation&, const SceneFile& best) { folder->improved(best); };
+  options.on_improvement = [&](const Evaluation&, const SceneFile& best) { log->improved(best); };
   const OptimizeResult result = optimize(file, options);
+  preparation.reset();
   progress.close();
-  folder->flush();
+  log->flush();
 
   json j = result_json(result, options, {.command = c.command});
-  for (const auto& [index, e] : folder->evaluations()) {
+  for (const auto& [index, e] : log->evaluations()) {
     j["search"]["evaluations"].push_back({index, std::isfinite(e.value) ? json(e.value) : json(nullptr)});
   }
-  j["reproduce"] = {c.command, fmt::format("softland simulate {}", (fs::path(c.out) / "best.toml").string())};
-  std::vector<std::string> left{"evaluations.csv"};
+  const bool interrupted = result.search.termination == Termination::interrupted;
+  const fs::path place = folder->destination(interrupted);
+  j["reproduce"] = {c.command, fmt::format("softland simulate {}", (place / "best.toml").string())};
+  std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
   if (result.best_scene) {
-    write_whole(folder->path() / "best.toml", result.best_scene->scene.file.text());
-    write_whole(folder->path() / "best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
-    left.insert(left.begin(), {"best.toml (run it with `softland simulate`)", "best.csv"});
+    folder->write("best.toml", result.best_scene->scene.file.text());
+    folder->write("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
+    left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
-  write_outputs(c, j, left);
-  if (result.search.termination == Termination::interrupted) return exit_interrupted;
+  left.emplace_back("evaluations.csv");
+  write_result(*folder, j);
+  folder->publish(interrupted);
+  print_result(c, j, left_in(place, left));
+  if (interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }
 
@@ -400,24 +436,28 @@ int new_verb(const std::string& kind) {
   std::vector<std::string> kinds;
   for (const auto& [name, scene] : scenes) kinds.push_back(name);
   require(found != scenes.end(), fmt::format("new {}: must be one of {}", kind, fmt::join(kinds, ", ")));
-  std::cout << read_text(shipped_scene(found->second));
+  print(read_file(shipped_scene(found->second)));
   return exit_done;
 }
 
-int export_verb(const std::string& result, const std::string& format) {
-  const Prepared p = prepare(scene_of_result(result));
+int export_verb(const Common& c, const std::string& result, const std::string& format) {
+  const SceneFile file = scene_of_result(result);
+  const Prepared p = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
   require(format == "csv" || format == "spice-pwl", fmt::format("--format {}: must be csv or spice-pwl", format));
-  std::cout << (format == "csv" ? csv(named_signals(p), p.duration) : spice_pwl(named_signals(p), p.duration));
+  print(format == "csv" ? csv(named_signals(p), p.duration) : spice_pwl(named_signals(p), p.duration));
   return exit_done;
 }
 
-int report_verb(const std::string& result, const std::string& out) {
-  const fs::path path = fs::is_directory(result) ? fs::path(result) / "result.json" : fs::path(result);
+int report_verb(const Common& given, const std::string& result) {
+  const fs::path path = is_folder(result) ? fs::path(result) / "result.json" : fs::path(result);
   const json j = read_result(path);
-  const fs::path folder = out.empty() ? path.parent_path() : fs::path(out);
-  if (!out.empty()) make_folder(out);
+  Common c = given;
+  if (c.out.empty()) c.out = path.has_parent_path() ? path.parent_path().string() : ".";
+  const std::vector<std::string> files{"report.html", "gap.svg"};
+  ResultFolder folder = *claim_places(c, files);
   write_report(folder, j);
-  std::cout << text_report(j) << fmt::format("\nIn {}: report.html, gap.svg\n", folder.empty() ? "." : folder.string());
+  folder.publish(false);
+  print(text_report(j) + left_in(c.out, files));
   return exit_done;
 }
 

@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
+#include "base/printable.h"
+#include "base/read_file.h"
 #include "base/require.h"
 #include "config/drives.h"
 #include "config/scene.h"
@@ -270,22 +268,6 @@ void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::
   }
 }
 
-/// Control characters and broken UTF-8 stay out of messages.
-std::string printable(std::string_view text) {
-  bool is_utf8 = true;
-  try {
-    static_cast<void>(internal::parse_value(internal::toml_string(text)));
-  } catch (const InvalidInput&) {
-    is_utf8 = false;
-  }
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !is_utf8) ? '?' : c;
-  }
-  return out;
-}
-
 bool is_below(std::string_view path, std::string_view ancestor) {
   return path.size() > ancestor.size() && path.starts_with(ancestor) && path[ancestor.size()] == '.';
 }
@@ -369,22 +351,7 @@ SceneFile::SceneFile(SceneFile&&) noexcept = default;
 SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
 SceneFile::~SceneFile() = default;
 
-SceneFile SceneFile::load(const std::filesystem::path& path) {
-  constexpr std::size_t largest = std::size_t{64} << 20;  // [byte]; a scene with a measured waveform inside stays far below
-  const std::string name = path.string();
-  std::error_code ignored;
-  require(!std::filesystem::is_directory(path, ignored), name + ": is a directory, not a scene file");
-  std::ifstream stream(path, std::ios::binary);
-  require(stream.is_open(), fmt::format("{}: cannot be opened: {}", name, std::generic_category().message(errno)));
-  std::string text;
-  std::array<char, 1 << 16> block;
-  while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-    require(text.size() <= largest, name + ": is larger than 64 MiB, so it is not a scene file");
-  }
-  require(!stream.bad(), name + ": cannot be read to its end");
-  return parse(text, name, path.parent_path());
-}
+SceneFile SceneFile::load(const std::filesystem::path& path) { return parse(read_file(path), path.string(), path.parent_path()); }
 
 SceneFile SceneFile::parse(std::string_view text, std::string name, std::filesystem::path directory) {
   auto impl = std::make_unique<Impl>();
@@ -396,7 +363,7 @@ SceneFile SceneFile::parse(std::string_view text, std::string name, std::filesys
 }
 
 void SceneFile::set(std::string_view assignment) {
-  const std::string option = "--set " + printable(assignment);
+  const std::string option = "--set " + printable_line(assignment);
   const auto equals = assignment.find('=');
   require(equals != std::string_view::npos, option + ": not of the form key.path=value");
   const std::string_view value = assignment.substr(equals + 1);
@@ -418,7 +385,7 @@ void SceneFile::set(std::string_view assignment) {
     try {
       parsed = internal::parse_value(internal::toml_string(value));
     } catch (const InvalidInput&) {
-      throw InvalidInput(fmt::format("--set {}: the value is not UTF-8 text", printable(assignment.substr(0, equals))));
+      throw InvalidInput(fmt::format("--set {}: the value is not UTF-8 text", printable_line(assignment.substr(0, equals))));
     }
   }
 

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "base/read_file.h"
 #include "base/require.h"
 
 namespace softland {
@@ -75,14 +74,7 @@ Signal signal(const Table& table) {
   return Signal::piecewise_linear(points);
 }
 
-Table read_table(const std::string& file, const std::string& drive) {
-  std::ifstream stream(file, std::ios::binary);
-  require(stream.is_open(), fmt::format("{}: the file cannot be opened for reading", file));
-  std::ostringstream content;
-  if (stream.peek() != std::ifstream::traits_type::eof()) content << stream.rdbuf();
-  require(!stream.bad() && !content.bad(), fmt::format("{}: the file cannot be read", file));
-  return parse_table(content.view(), file, drive);
-}
+Table read_table(const std::string& file, const std::string& drive) { return parse_table(read_file(file), file, drive); }
 
 Table parse_table(std::string_view content, const std::string& file, const std::string& drive) {
   Table table;

@@ -60,7 +60,11 @@ class Workplace {
 
   [[nodiscard]] const fs::path& path() const { return path_; }
 
-  [[nodiscard]] pid_t start(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM) const {
+  static constexpr int to_file = -1, closed = -2;
+
+  /// `out` is what the program gets as standard output: a descriptor, `to_file`, or `closed`; `err` likewise.
+  [[nodiscard]] pid_t start(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM,
+                            int out = to_file, int err = to_file) const {
     std::vector<char*> arguments{const_cast<char*>(program.c_str())};
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
@@ -68,11 +72,28 @@ class Workplace {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addchdir_np(&actions, path_.c_str());
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, "stdout.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, 2, "stderr.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const auto connect = [&](int stream, int to, const char* file) {
+      if (to == to_file) {
+        posix_spawn_file_actions_addopen(&actions, stream, file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+      } else if (to == closed) {
+        posix_spawn_file_actions_addclose(&actions, stream);
+      } else {
+        posix_spawn_file_actions_adddup2(&actions, to, stream);
+      }
+    };
+    connect(1, out, "stdout.txt");
+    connect(2, err, "stderr.txt");
+    // As from a terminal, whatever the tests were started to ignore.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t all;
+    sigfillset(&all);
+    posix_spawnattr_setsigdefault(&attributes, &all);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     pid_t child = 0;
-    const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+    const int error = posix_spawn(&child, program.c_str(), &actions, &attributes, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
     if (error != 0) throw std::runtime_error("cannot start " + program);
     return child;
   }
@@ -81,8 +102,9 @@ class Workplace {
     waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read(path_ / "stdout.txt"), read(path_ / "stderr.txt")};
   }
-  [[nodiscard]] Outcome run(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM) const {
-    return finish(start(words, program));
+  [[nodiscard]] Outcome run(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM,
+                            int out = to_file) const {
+    return finish(start(words, program, out));
   }
 
  private:

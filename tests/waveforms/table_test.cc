@@ -84,8 +84,8 @@ TEST(Table, BadFilesAreNamedWithLineAndRule) {
   refused("time_s,main\n0,1\n2,1\n\n1,1\n", {":5:", "1 s", "2 s"});
   refused("time_s,main\n0,1e308\n1e-3,-1e308\n",
           {":3:", "main is -1e+308 V, 0.001 s after", "the slope between them must be finite"});
-  expect_invalid([&] { (void)read_table(folder.path("absent.csv"), "main"); }, {"absent.csv", "cannot be opened"});
-  expect_invalid([&] { (void)read_table(folder.path(""), "main"); }, {"cannot be"});
+  expect_invalid([&] { (void)read_table(folder.path("absent.csv"), "main"); }, {"absent.csv", "cannot be read"});
+  expect_invalid([&] { (void)read_table(folder.path(""), "main"); }, {"is a folder"});
 }
 
 }  // namespace
