@@ -260,11 +260,16 @@ namespace {
 
 using internal::join_path;
 
-void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::string& path) {
+void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::string& path, std::size_t parts = 1) {
   for (const auto& [key, node] : table) {
     const std::string key_path = join_path(path, key.str());
-    impl.origins[key_path] = {fmt::format("{}:{}", impl.name, node.source().begin.line)};
-    if (const auto* inner = node.as_table()) record_origins(impl, *inner, key_path);
+    const std::string place = fmt::format("{}:{}", impl.name, node.source().begin.line);
+    impl.origins[key_path] = {place};
+    const auto* inner = node.as_table();
+    if (!inner) continue;
+    // A section and a dotted key in it, each short enough, may make a path that could be written but not read again.
+    require(parts < internal::deepest_path, fmt::format("{}: a key has more than {} parts", place, internal::deepest_path));
+    record_origins(impl, *inner, key_path, parts + 1);
   }
 }
 

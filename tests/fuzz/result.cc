@@ -1,5 +1,4 @@
 #include "reports/html.h"
-#include "reports/result_json.h"
 #include "reports/result_reader.h"
 #include "reports/svg.h"
 #include "reports/text.h"
@@ -30,7 +29,6 @@ void result(std::string_view input) {
   const std::string fault = testing::xml_fault(svg_gap_chart(read));
   check(fault.empty(), "the picture of a result is not XML: " + fault);
   static_cast<void>(text_report(read));
-  static_cast<void>(summary_json(read));
 
   const auto scene = read.find("scene_toml");
   if (scene == read.end() || !scene->is_string()) return;
