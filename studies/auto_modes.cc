@@ -10,6 +10,7 @@
 #include "model/constants.h"
 #include "objectives/metrics.h"
 #include "studies/prepared.h"
+#include "studies/watched.h"
 
 namespace softland {
 namespace {
@@ -32,7 +33,8 @@ std::vector<Figure> figures(const SceneFile& file, int modes, const Watch& watch
                                         {.duration = p.duration,
                                          .tolerance = std::max(run_tolerance, p.tolerance),
                                          .after_contact = 2 * pi / omega,
-                                         .stop = watch.stop});
+                                         .stop = watch.stop,
+                                         .observer = observer(watch, fmt::format("closing with {} modes", modes), p.duration)});
   watch.throw_if_stopped();
   const Metrics m = metrics(t, p.scene.metrics);
   std::vector<Figure> list{{m.initial_contact_time, 1 / omega}, {m.impact_velocity, gap * omega}, {m.major_bounce_height, gap}};
@@ -74,7 +76,6 @@ AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   std::vector<std::vector<Figure>> known;
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
-    watch.tell("number of modes", static_cast<double>(modes) / most_modes);
     found = {.modes = modes};
     for (int more = 1; more <= further && found.settled(); ++more) {
       while (static_cast<int>(known.size()) < modes + more)

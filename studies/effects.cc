@@ -6,17 +6,22 @@
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/timing.h"
+#include "studies/watched.h"
 
 namespace softland {
 namespace {
 
-Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const Watch& watch) {
+Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
   Device described = prepared.scene.device;
   described.gas = gas;
   const Switch device(described, prepared.quadrature);
   const std::vector<Signal> signals = prepared.signals();
   const Trajectory t =
-      simulate_closing(device, signals, {.duration = prepared.duration, .tolerance = prepared.tolerance, .stop = watch.stop});
+      simulate_closing(device, signals,
+                       {.duration = prepared.duration,
+                        .tolerance = prepared.tolerance,
+                        .stop = watch.stop,
+                        .observer = observer(watch, "closings with every gas law", prepared.duration, done, share)});
   Effect e{.section = "gas",
            .choice = "none",
            .magnitude = {.name = "damping per length, closed", .unit = "N s/m^2", .value = 0},
@@ -69,8 +74,8 @@ Effects compare_effects(const Prepared& prepared, const Watch& watch) {
   }
   Effects found;
   for (const std::optional<Gas>& law : laws) {
-    watch.tell("closings with every gas law", static_cast<double>(found.list.size()) / static_cast<double>(laws.size()));
-    Effect e = closing_with(prepared, law, watch);
+    const double share = 1.0 / static_cast<double>(laws.size());
+    Effect e = closing_with(prepared, law, watch, static_cast<double>(found.list.size()) * share, share);
     if (watch.stopped()) break;
     e.in_scene = law.has_value() == own.has_value() && (!own || law->model == own->model);
     found.list.push_back(std::move(e));

@@ -8,6 +8,7 @@
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/timing.h"
+#include "studies/watched.h"
 
 namespace softland {
 namespace {
@@ -39,8 +40,12 @@ double force_at_rest(const Device& described, std::size_t electrode) {
 
 double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
 
-Metrics figures(const Prepared& p, const Watch& watch) {
-  return metrics(simulate_closing(p.device, p.signals(), {.duration = p.duration, .tolerance = p.tolerance, .stop = watch.stop}),
+Metrics figures(const Prepared& p, const Watch& watch, double done = 0, double share = 1) {
+  return metrics(simulate_closing(p.device, p.signals(),
+                                  {.duration = p.duration,
+                                   .tolerance = p.tolerance,
+                                   .stop = watch.stop,
+                                   .observer = observer(watch, "closings without each effect", p.duration, done, share)}),
                  p.scene.metrics);
 }
 
@@ -189,9 +194,12 @@ std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics&
   std::vector<Omission> list;
   std::vector<Omissible> effects = omissible_effects(prepared);
   for (Omissible& effect : effects) {
-    watch.tell("closings without each effect", static_cast<double>(list.size()) / static_cast<double>(effects.size()));
+    const double share = 1.0 / static_cast<double>(effects.size());
     const Prepared p = without(prepared, {effect});
-    Omission o{.what = std::move(effect), .metrics = figures(p, watch), .influence = 0, .rhs_seconds = Metrics::unset};
+    Omission o{.what = std::move(effect),
+               .metrics = figures(p, watch, static_cast<double>(list.size()) * share, share),
+               .influence = 0,
+               .rhs_seconds = Metrics::unset};
     o.influence = influence(own, o.metrics, prepared.scene.metrics);
     if (watch.stopped()) break;
     if (timed) o.rhs_seconds = right_hand_side_seconds(p.device, p.signals(), p.duration);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/engineering.h"
+#include "studies/watched.h"
 
 namespace softland {
 namespace {
@@ -67,16 +68,14 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   bool interrupted = false;
   const auto run = [&](const Switch& device, double tolerance, const SwitchOptions& quadrature, long max_steps) {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
-    ClosingOptions options{.duration = prepared.duration, .tolerance = tolerance, .max_steps = max_steps, .stop = watch.stop};
-    if (watch.progress) {
-      const std::string what =
-          runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {:.0e}, for its errors", tolerance);
-      options.observer = [&watch, what, &options](double time, const double*, const double*) {
-        watch.tell(what, time / options.duration);
-        return false;
-      };
-    }
-    r.trajectory = simulate_closing(device, signals, options);
+    const std::string what =
+        runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {:.0e}, for its errors", tolerance);
+    r.trajectory = simulate_closing(device, signals,
+                                    {.duration = prepared.duration,
+                                     .tolerance = tolerance,
+                                     .max_steps = max_steps,
+                                     .stop = watch.stop,
+                                     .observer = observer(watch, what, prepared.duration)});
     interrupted = interrupted || r.trajectory.status == Status::interrupted;
     r.metrics = metrics(r.trajectory, prepared.scene.metrics);
     return r;

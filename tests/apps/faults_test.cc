@@ -218,6 +218,41 @@ TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo) {
   }
 }
 
+// A bar on a terminal, which goes away when the verb has ended; nothing with --quiet.
+TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs) {
+  for (const bool quiet : {false, true}) {
+    std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;
+    std::vector<pid_t> children;
+    std::vector<int> terminals;
+    for (const std::string& verb : verbs) {
+      if (calls()[verb].slow.empty() || (quiet && !takes(verb, "--quiet"))) continue;
+      const int terminal = terminals.emplace_back(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC));
+      ASSERT_TRUE(grantpt(terminal) == 0 && unlockpt(terminal) == 0);
+      const int screen = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
+      const auto& place = places.emplace_back(verb, workplace()).second;
+      std::vector<std::string> more = calls()[verb].slow;
+      if (quiet) more.emplace_back("--quiet");
+      children.push_back(place->start(words(verb, more), SOFTLAND_PROGRAM, Workplace::to_file, screen));
+      close(screen);
+    }
+    std::this_thread::sleep_for(1500ms);
+    for (std::size_t k = 0; k < children.size(); ++k) {
+      kill(children[k], SIGTERM);
+      EXPECT_EQ(places[k].second->finish(children[k]).status, interrupted) << places[k].first;
+      std::string shown;
+      std::array<char, 4096> block{};
+      for (ssize_t n = 0; (n = ::read(terminals[k], block.data(), block.size())) > 0;)
+        shown.append(block.data(), static_cast<std::size_t>(n));
+      close(terminals[k]);
+      if (quiet) {
+        EXPECT_THAT(shown, testing::AnyOf("", "softland: interrupted\r\n")) << places[k].first;
+      } else {
+        EXPECT_THAT(shown, testing::ContainsRegex("\r\\[[#.]{24}\\] [^\r]*[0-9] s[^\r]*\033\\[K")) << places[k].first;
+      }
+    }
+  }
+}
+
 // What is ignored from the start, as under nohup, stays ignored.
 TEST_F(Faults, AnIgnoredSignalStaysIgnored) {
   const pid_t child = here->start({"-c", "trap '' HUP; exec \"$0\" simulate gold.toml", SOFTLAND_PROGRAM}, "/bin/sh");
