@@ -12,7 +12,7 @@ namespace softland {
 
 /// `value` [unit] with the prefix, femto to giga, that leaves one to three digits before the point: 6e-05, "m" -> "60 um". At
 /// most `digits` significant digits; twelve do not show what arithmetic leaves behind in a number that was typed. No prefix for
-/// 0, for values beyond the prefixes, and for a unit that takes none: "kg/m^3", "1/m^2", "".
+/// 0, for values beyond the prefixes, and for a unit that takes none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
 [[nodiscard]] inline std::string engineering(double value, std::string_view unit, int digits = 12) {
   constexpr std::array<std::pair<int, std::string_view>, 9> prefixes{
       {{9, "G"}, {6, "M"}, {3, "k"}, {0, ""}, {-3, "m"}, {-6, "u"}, {-9, "n"}, {-12, "p"}, {-15, "f"}}};
@@ -29,7 +29,10 @@ namespace softland {
   if (unit.empty()) return text(value);
   std::string_view chosen;
   double number = value;
-  if (!unit.starts_with("kg") && !unit.starts_with("1/")) {
+  const std::string_view first = unit.substr(0, unit.find_first_of(" */"));
+  const bool takes_prefix = first != "kg" && first != "1" && first != "Vsp" && first != "Vdp" && !first.ends_with('%') &&
+                            first.find('^') == std::string_view::npos;
+  if (takes_prefix) {
     for (const auto& [exponent, prefix] : prefixes) {
       const double scaled = value / std::pow(10, exponent), size = std::abs(scaled) * (1 + 1e-12);  // 999.999... counts as 1000
       if (size >= 1 && size < 1000) {

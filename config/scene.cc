@@ -254,6 +254,11 @@ Device read_device(const SceneFile::Impl& file) {
     device.electrodes.push_back(
         {.name = name, .begin = begin, .end = end, .fringing = law, .side = at, .gap = at == Side::near ? 0 : in.number("gap")});
   }
+  if (const auto conflict = electrode_conflict(device.structure, device.electrodes)) {
+    const SectionReader in(file, "electrode", device.electrodes[conflict->electrode].name);
+    for (const std::string_view key : {"span", "area"}) in.require(!in.is_given(key), key, conflict->why);
+    file.fail_section(in.path(), conflict->why);
+  }
   if (const SectionReader in(file, "gas"); in.is_present()) {
     if (!in.is_given("quality_factor")) require_of_plate(in, "model", structure, "width");
     if (in.text("model") == "guo-alexeenko") require_of_plate(in, "model", structure, "thickness");

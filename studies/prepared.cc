@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/engineering.h"
-#include "base/require.h"
 #include "model/constants.h"
 #include "studies/auto_modes.h"
 #include "studies/omissions.h"
@@ -48,6 +47,30 @@ SwitchOptions quadrature_for(double accuracy, int modes) {
 
 namespace {
 
+/// Windows and waveforms that no computer would see the end of.
+void check_window(const Prepared& p) {
+  constexpr double longest = 1e3;  // [s], as the longest simulate.duration
+  const SceneFile& file = p.scene.file;
+  if (!(p.duration <= longest)) {
+    file.refuse("structure.kind",
+                fmt::format("the window, where simulate.duration is absent six periods of the first mode, is {} "
+                            "and must be at most {}: what moves is too soft or too heavy",
+                            engineering(p.duration, "s"), engineering(longest, "s")));
+  }
+  constexpr double most_periods = 1e5;
+  for (const auto& [name, waveform] : p.drives.waveforms) {
+    const auto* sine = std::get_if<Harmonic>(&waveform);
+    if (sine == nullptr || sine->amplitude == 0) continue;
+    const double periods = sine->angular_frequency / (2 * pi) * (std::min(sine->end, p.duration) - sine->start);
+    if (!(periods > most_periods)) continue;
+    const std::string section = "waveform." + name + ".";
+    const bool in_hertz = file.json()["waveform"][name].contains("frequency");
+    file.refuse(section + (in_hertz ? "frequency" : "angular_frequency"),
+                fmt::format("makes {:.3g} periods in the window of {}; there may be {:g}", periods, engineering(p.duration, "s"),
+                            most_periods));
+  }
+}
+
 Prepared as_described(const SceneFile& given, bool default_limits, const Watch& watch) {
   SceneFile file = given;
   Scene scene = read_scene(file);
@@ -68,13 +91,15 @@ Prepared as_described(const SceneFile& given, bool default_limits, const Watch& 
     found.dynamically = dynamic_pull_in(p.device, k, found.statically, watch);
     watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
-    require(ok || !needed,
-            fmt::format("{}: electrode.{}: its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found",
-                        file.name(), name));
+    if (needed && !ok) {
+      file.refuse("electrode." + name + ".span",
+                  "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found");
+    }
     if (ok) p.pull_in.emplace(name, found);
   }
   p.drives = scene.drives(p.voltage_units());
   p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.device.angular_frequencies()[0];
+  check_window(p);
   p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance
                                              : tolerance_for(scene.simulate.accuracy, p.device.film_states() > 0);
   return p;

@@ -104,7 +104,7 @@ TEST_F(BadInput, Assignments) {
       {set("gap.contct=1 um"), "--set gap.contct=1 um: unknown key (did you mean 'contact'?)"},
       {set("gap.contact=1 V"), "--set gap.contact=1 V: expected a length [m], got a voltage [V]"},
       {set("gap.contact=-1"), "--set gap.contact=-1: no unit (expected a length such as \"2 um\")"},
-      {set("gap.contact=-1 um"), "--set gap.contact=-1 um: must be greater than 0 m"},
+      {set("gap.contact=-1 um"), "--set gap.contact=-1 um: must be in [1 pm, 1 m]"},
       {set("gap.contact=9 um"), "--set gap.contact=9 um: must be less than gap.electrode = \"3.5 um\""},
   });
 }

@@ -35,6 +35,9 @@ TEST(Engineering, LeavesOutWhatDoesNotSuit) {
   EXPECT_EQ(engineering(1e15, "m"), "1e15 m");
   EXPECT_EQ(engineering(19300, "kg/m^3"), "19300 kg/m^3");
   EXPECT_EQ(engineering(1e11, "1/m^2"), "100000000000 1/m^2");
+  EXPECT_EQ(engineering(1e-8, "m^2"), "1e-8 m^2") << "nm^2 would be a square nanometre";
+  EXPECT_EQ(engineering(1500, "Vdp"), "1500 Vdp");
+  EXPECT_EQ(engineering(0.015, "%"), "0.015 %");
   EXPECT_EQ(engineering(0.05, ""), "0.05");
   EXPECT_EQ(engineering(1e-6, ""), "1e-6");
 }
