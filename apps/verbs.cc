@@ -218,11 +218,12 @@ int pull_in_verb(const Common& c) {
       if (electrodes.size() > 1) all[electrodes[k].name] = std::move(one);
       continue;
     }
-    text += fmt::format("electrode {}\n  static pull-in   {} ({})\n  dynamic pull-in  {}\n  release          {}\n",
-                        electrodes[k].name, volts(p["static_V"]),
-                        p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
-                                                                      : "the contact point reaches the contact first",
-                        volts(p["dynamic_V"]), volts(p["release_V"]));
+    text +=
+        fmt::format("electrode {}\n  static pull-in   {} ({})\n  dynamic pull-in  {}\n", electrodes[k].name, volts(p["static_V"]),
+                    p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
+                                                                  : "the contact point reaches the contact first",
+                    volts(p["dynamic_V"]));
+    if (prepared.device.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
     failed = failed || one["status"] != "done";
     if (electrodes.size() == 1) {
       all = std::move(one);
@@ -262,7 +263,7 @@ int check_verb(const Common& c) {
   std::vector<std::string> frequencies;
   for (const double omega : p.device.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
-  add("in-contact period", quantity(p.device.in_contact_period(), "s", 4));
+  if (p.device.has_contact()) add("in-contact period", quantity(p.device.in_contact_period(), "s", 4));
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     if (!pulls_in(p.scene.device, k)) {
       add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
@@ -271,7 +272,8 @@ int check_verb(const Common& c) {
     const auto found = pull_in_of(p, k, work->watch());
     const json& v = found["pull_in"];
     add("electrode " + p.scene.device.electrodes[k].name,
-        fmt::format("Vsp {}, Vdp {}, release {}", volts(v["static_V"]), volts(v["dynamic_V"]), volts(v["release_V"])));
+        fmt::format("Vsp {}, Vdp {}{}", volts(v["static_V"]), volts(v["dynamic_V"]),
+                    p.device.has_contact() ? ", release " + volts(v["release_V"]) : ""));
   }
   if (p.scene.device.dispersion) {
     const std::size_t k = p.scene.device.electrodes.size();
@@ -306,6 +308,7 @@ int check_verb(const Common& c) {
                         : fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
                                       given_quantity(limits->second.max_voltage, "V"))));
   }
+  if (!p.device.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();

@@ -517,6 +517,7 @@ class Run {
     if (note(event)) {
       if (!device_.has_contact()) {
         out_.warnings.push_back("no [contact] section: the run ends at first touch");
+        out_.ends_at_touch = true;
         return end(Status::done);
       }
       if (rigid_ != nullptr) return strike();
@@ -938,7 +939,8 @@ std::string why_always_restarted(const Switch& device) {
 Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options) {
   require(drives.size() == device.drives(),
           fmt::format("{} signals for a switch with {} drives", drives.size(), device.drives()));
-  require(options.duration > 0 && options.duration < 1e6, fmt::format("duration = {} s: must be positive", options.duration));
+  require(options.duration > 0 && options.duration < 1e6,
+          fmt::format("duration = {} s: must be greater than 0 s and below 1e6 s", options.duration));
   require(options.tolerance > 0 && options.tolerance <= 0.1,
           fmt::format("tolerance = {}: must be in (0, 0.1]", options.tolerance));
   require(options.restart_at_contact || why_always_restarted(device).empty(),

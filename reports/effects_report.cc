@@ -126,11 +126,15 @@ std::string effects_text(const Effects& effects) {
           "\n\n";
   std::string words;
   for (const Influence& i : influences) {
+    if (!std::isfinite(own.metrics.*i.figure)) continue;
     const double spread = effects.spread("gas", i.figure);
     words +=
         fmt::format("{}{} {}", words.empty() ? "" : ", ", i.name, std::isfinite(spread) ? internal::percent(spread) : "unknown");
   }
-  text += wrapped("The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".") + "\n";
+  text += wrapped(words.empty()
+                      ? "The gas laws cannot be compared: the switch does not close in the scene's own."
+                      : "The gas laws differ on this scene, largest less smallest over the scene's own, by: " + words + ".") +
+          "\n";
   // One line per warning, with the laws it is about.
   std::vector<std::pair<std::string, std::string>> warnings;  // laws, what
   for (const Effect& e : effects.list) {

@@ -43,6 +43,9 @@ bool settles(const json& metrics) {
 
 bool clean(const json& metrics) { return touches(metrics) && settles(metrics) && number(metrics, {"bounce_count"}) == 0; }
 
+/// Touched, and nothing is known of what followed: the scene has no contact, or the run stopped.
+bool ends_at_touch(const json& metrics) { return touches(metrics) && !std::isfinite(number(metrics, {"bounce_count"})); }
+
 std::string closes(const Actor& actor, const std::string& when) {
   return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, when)
                               : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
@@ -70,6 +73,10 @@ std::string clause(const Actor& actor, const json& metrics, const json& errors, 
     return fmt::format("{} does not close{}{}", actor.subject, actor.object.empty() ? "" : " " + actor.object, within(window));
   }
   const double first = number(metrics, {"initial_contact_time_s"});
+  if (ends_at_touch(metrics)) {
+    return fmt::format("{} reaches the contact plane at {} with {}; without a [contact] section the run ends there",
+                       actor.subject, quantity(first, "s"), quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"));
+  }
   const double count = number(metrics, {"bounce_count"});
   const double height = rebound_height(metrics);
   if (clean(metrics)) {
@@ -112,6 +119,10 @@ std::string course(const std::string& subject, const json& result, const char* r
   if (!touches(metrics)) {
     const double least = closest(result, run);
     return subject + " never touches" + (std::isfinite(least) ? " (no nearer than " + quantity(least, "m") + ")" : "");
+  }
+  if (ends_at_touch(metrics)) {
+    return fmt::format("{} first touches at {} with {}", subject, quantity(number(metrics, {"initial_contact_time_s"}), "s"),
+                       quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"));
   }
   const double height = rebound_height(metrics);
   if (clean(metrics)) {
@@ -248,6 +259,7 @@ std::string certificate_caption(const json& result) {
 std::string missing_reason(const json& metrics, std::string_view key) {
   if (!metrics.is_object() || std::isfinite(number(metrics, {key}))) return {};
   if (!touches(metrics)) return "no contact";
+  if (ends_at_touch(metrics)) return "not known";
   return key == "permanent_contact_time_s" && !settles(metrics) ? "not settled" : "";
 }
 
@@ -287,9 +299,10 @@ std::string landing_caption(const json& result) {
   const auto reach = [&](const char* subject, const json& metrics) -> std::string {
     if (!touches(metrics)) return {};
     const double height = rebound_height(metrics);
+    const std::string speed = quantity(number(metrics, {"impact_velocity_m_s"}), "m/s");
+    if (ends_at_touch(metrics)) return fmt::format("{} reaches the plane with {}", subject, speed);
     const std::string after = height > 0 ? "rises " + quantity(height, "m") + " above it again" : "does not rise above it again";
-    return fmt::format("{} reaches the plane with {} and {}", subject, quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"),
-                       after);
+    return fmt::format("{} reaches the plane with {} and {}", subject, speed, after);
   };
   const std::string found = is_optimize(result)
                                 ? joined(reach(step_subject, baseline_metrics(result)), reach(own_subject, best_metrics(result)))

@@ -94,7 +94,6 @@ json errors_json(const Closing& c) {
   json e = metrics_json(c.errors);
   e.erase("settled");
   e.erase("status");
-  if (!std::isfinite(c.errors.initial_contact_time)) e["bounce_count"] = nullptr;
   e["peak_voltage_V"] = e["peak_slew_V_s"] = nullptr;
   return e;
 }
@@ -159,19 +158,20 @@ std::string_view to_string(Actuator actuator) {
 }
 
 json metrics_json(const Metrics& m) {
-  const bool touched = std::isfinite(m.initial_contact_time);
+  const bool seen = std::isfinite(m.major_bounce_height);  // what the switch does after its first touch
+  const bool unknown = !seen && std::isfinite(m.initial_contact_time);
   return {{"status", to_string(m.status)},
           {"initial_contact_time_s", number(m.initial_contact_time)},
           {"permanent_contact_time_s", number(m.permanent_contact_time)},
           {"bounce_time_s", number(m.bounce_time)},
-          {"bounce_count", touched ? json(m.bounce_count) : json(nullptr)},
+          {"bounce_count", seen ? json(m.bounce_count) : json(nullptr)},
           {"major_bounce_height_m", number(m.major_bounce_height)},
           {"impact_velocity_m_s", number(m.impact_velocity)},
           {"peak_contact_force_N", number(m.peak_contact_force)},
           {"impact_energy_J", number(m.impact_energy)},
           {"hold_force_N", number(m.hold_force)},
           {"drive_energy_J", number(m.drive_energy)},
-          {"settled", m.settled}};
+          {"settled", unknown ? json(nullptr) : json(m.settled)}};
 }
 
 json result_json(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {

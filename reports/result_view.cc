@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
+#include "base/require.h"
+#include "config/units.h"
 #include "studies/prepared.h"
 
 namespace softland::internal {
@@ -92,14 +93,12 @@ double significant_rebound(const json& result) {
   const json& given = at(result, {"scene", "metrics", "significant_rebound"});
   if (given.is_number() && given.get<double>() > 0) return given.get<double>();
   if (!given.is_string()) return usual;
-  const std::string words = given.get<std::string>();
-  char* unit = nullptr;
-  const double value = std::strtod(words.c_str(), &unit);
-  const std::string_view rest = unit;
-  for (const auto& [name, factor] : {std::pair{" m", 1.0}, {" um", 1e-6}, {" nm", 1e-9}, {" pm", 1e-12}}) {
-    if (rest == name && value > 0) return value * factor;
+  try {
+    const Quantity q = parse_quantity(given.get<std::string>());
+    return q.dimension == dimension::length && q.value > 0 ? q.value : usual;
+  } catch (const InvalidInput&) {
+    return usual;
   }
-  return usual;
 }
 
 }  // namespace softland::internal

@@ -223,7 +223,8 @@ class Study {
           std::isfinite(own) && in_all && relative_errors(high, low, prepared_.scene.metrics)[i] <= ill_conditioned_range;
     }
     found_.permanent_contact_time = over([](const Metrics& m) { return m.permanent_contact_time; });
-    found_.bounce_count = over([](const Metrics& m) { return touched(m) ? m.bounce_count : Metrics::unset; });
+    found_.bounce_count =
+        over([](const Metrics& m) { return std::isfinite(m.major_bounce_height) ? m.bounce_count : Metrics::unset; });
     progress();
   }
 

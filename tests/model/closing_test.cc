@@ -292,6 +292,7 @@ TEST(Closing, WithoutAContactLawEndsAtFirstTouch) {
   d.contact.reset();
   const Trajectory t = simulate_closing(Switch(d), step(), {.duration = 100_us});
   EXPECT_EQ(t.status, Status::done);
+  EXPECT_TRUE(t.ends_at_touch);
   ASSERT_EQ(t.touches.size(), 1u);
   EXPECT_EQ(t.points.back().time, t.touches[0].begin);
   EXPECT_EQ(t.points.back().position, 2_um);
@@ -414,9 +415,10 @@ TEST(Closing, RefusesBadArguments) {
   using test::expect_refused;
   expect_refused(run({}, 1e-4, 1e-6), "0 signals for a switch with 1 drives");
   expect_refused(run({Signal(), Signal()}, 1e-4, 1e-6), "2 signals for a switch with 1 drives");
-  expect_refused(run(step(), 0, 1e-6), "duration = 0 s: must be positive");
-  expect_refused(run(step(), -1, 1e-6), "duration = -1 s: must be positive");
-  expect_refused(run(step(), std::nan(""), 1e-6), "duration = nan s: must be positive");
+  expect_refused(run(step(), 0, 1e-6), "duration = 0 s: must be greater than 0 s and below 1e6 s");
+  expect_refused(run(step(), -1, 1e-6), "duration = -1 s: must be greater than 0 s and below 1e6 s");
+  expect_refused(run(step(), 1e9, 1e-6), "duration = 1000000000 s: must be greater than 0 s and below 1e6 s");
+  expect_refused(run(step(), std::nan(""), 1e-6), "duration = nan s: must be greater than 0 s and below 1e6 s");
   expect_refused(run(step(), 1e-4, 0), "tolerance = 0: must be in (0, 0.1]");
   expect_refused(run(step(), 1e-4, 0.2), "tolerance = 0.2: must be in (0, 0.1]");
   expect_refused(run(step(), 1e-4, std::nan("")), "tolerance = nan: must be in (0, 0.1]");

@@ -373,6 +373,26 @@ TEST(Metrics, NoContactLeavesTheContactFiguresUnset) {
   EXPECT_TRUE(rebounds(trajectory).empty());
 }
 
+TEST(Metrics, OfARunThatEndsAtItsTouchSayNothingOfWhatFollows) {
+  Trajectory trajectory = BouncingBall{}.trajectory(0, 0, 3);
+  const double touch = metrics(trajectory).initial_contact_time;
+  std::erase_if(trajectory.points, [&](const TrajectoryPoint& p) { return p.time > touch; });
+  trajectory.touches = {{.begin = touch, .end = kNaN, .impact_velocity = 1}};
+  trajectory.energy.source_work = 1e-12;
+  trajectory.hold_force = 1e-6;
+  trajectory.ends_at_touch = true;
+  const Metrics m = metrics(trajectory);
+  EXPECT_EQ(m.status, Status::done);
+  EXPECT_FALSE(m.settled);
+  EXPECT_EQ(m.initial_contact_time, touch);
+  EXPECT_GT(m.impact_velocity, 0);
+  EXPECT_EQ(m.drive_energy, 1e-12);
+  for (const double figure :
+       {m.permanent_contact_time, m.bounce_time, m.major_bounce_height, m.peak_contact_force, m.impact_energy, m.hold_force}) {
+    EXPECT_TRUE(std::isnan(figure));
+  }
+}
+
 TEST(Metrics, EmptyTrajectoriesAndSingleKnotsAreAnswered) {
   EXPECT_EQ(metrics(Trajectory{}).status, Status::not_run);
   EXPECT_EQ(metrics(Trajectory{.status = Status::done, .contact_gap = kGap}).status, Status::no_contact);
