@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/quintic.h"
+#include "reports/made_with.h"
 #include "studies/certify.h"
 #include "studies/omissions.h"
 #include "version.h"
@@ -94,7 +95,7 @@ json errors_json(const Closing& c) {
   json e = metrics_json(c.errors);
   e.erase("settled");
   e.erase("status");
-  if (!std::isfinite(c.errors.initial_contact_time)) e["bounce_count"] = nullptr;
+  e["bounce_count"] = c.bounce_count_error ? json(*c.bounce_count_error) : json(nullptr);
   e["peak_voltage_V"] = e["peak_slew_V_s"] = nullptr;
   return e;
 }
@@ -141,7 +142,7 @@ void add_scene(json& j, const Prepared& p) {
 }
 
 json started(std::string_view kind, const Provenance& provenance) {
-  return {{"kind", kind}, {"version", version}, {"command", provenance.command}};
+  return {{"kind", kind}, {"version", version}, {"command", provenance.command}, {"made_with", made_with()}};
 }
 
 }  // namespace
