@@ -167,7 +167,7 @@ SceneFile scene_of_result(const std::string& result) {
 // effects = "auto": what leaving effects out has saved.
 void log_time_saved(const Prepared& chosen) {
   Prepared whole = chosen;
-  whole.scene.device = chosen.effects->described;
+  whole.scene.device = chosen.effects->described.device;
   whole.device = Switch(whole.scene.device, whole.quadrature);
   const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.device, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
@@ -249,7 +249,8 @@ int modes_verb(const Common& c) {
     text += fmt::format("{:>4}  {:>17}  {:>11}\n", list.size(), quantity(omega, "rad/s", digits),
                         quantity(omega / (2 * pi), "Hz", digits));
   }
-  print_json_or(c, {{"natural_frequencies_rad_s", list}}, text);
+  for (const std::string& w : prepared.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
+  print_json_or(c, {{"natural_frequencies_rad_s", list}, {"warnings", prepared.scene.warnings}}, text);
   return exit_done;
 }
 

@@ -15,6 +15,7 @@ namespace softland {
 namespace {
 
 void positive(double value, const char* unit, const char* name) {
+  require(!std::isnan(value), fmt::format("{}: is needed here and not given", name));
   require(value > 0 && value < 1e30,
           fmt::format("{} = {}: must be greater than 0 and below 1e30", name, engineering(value, unit)));
 }

@@ -325,8 +325,7 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     return {plane, held ? statics.potential(held->q, all) : nan};
   };
 
-  constexpr double precision = 1e-7;
-  const double halvings = std::log2(0.5 / precision);  // of the bracket
+  const double halvings = std::log2(0.5 / dynamic_pull_in_precision);  // of the bracket
   double done = 0;
   const auto reaches = [&](double value) {
     std::vector<double> all(device.drives(), 0.0);
@@ -357,7 +356,7 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     low /= 2;
     if (low < 1e-9 * static_result.voltage) return {.status = Status::numerical_failure};
   }
-  while (high - low > precision * high && !watch.stopped()) {
+  while (high - low > dynamic_pull_in_precision * high && !watch.stopped()) {
     const double middle = (low + high) / 2;
     (reaches(middle) ? high : low) = middle;
     ++done;

@@ -12,6 +12,7 @@
 #include "reports/chart.h"
 #include "reports/escape.h"
 #include "reports/findings.h"
+#include "reports/made_with.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
@@ -34,7 +35,7 @@ json errors_json(const FigureErrors& errors) {
 json setting_json(const AccuracyRow& row) {
   return {{"integrator", to_string(row.integrator)},
           {"tolerance", row.tolerance},
-          {"points_per_length", row.points_per_length},
+          {"points_per_length", row.points_per_length ? json(*row.points_per_length) : json(nullptr)},
           {"modes", row.modes}};
 }
 
@@ -106,10 +107,21 @@ std::string symbols(const AccuracyStudy& study, bool conditioned) {
   return fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
-std::string setting_text(const AccuracyRow& row) {
-  return fmt::format("{}, tolerance {}, {:g} points per length", to_string(row.integrator), internal::scientific(row.tolerance),
-                     row.points_per_length);
+// "24 points per length"; empty for a plate.
+std::string points_text(const AccuracyRow& row) {
+  return row.points_per_length ? fmt::format("{:g} points per length", *row.points_per_length) : std::string();
 }
+
+std::string setting_text(const AccuracyRow& row) {
+  const std::string points = points_text(row);
+  return fmt::format("{}, tolerance {}{}{}", to_string(row.integrator), internal::scientific(row.tolerance),
+                     points.empty() ? "" : ", ", points);
+}
+
+constexpr const char* no_quadrature =
+    "A rigid plate has the same gap everywhere: the number of quadrature points does not matter, and none were tried.";
+
+std::string modes_text(const AccuracyRow& row) { return fmt::format("{} mode{}", row.modes, row.modes == 1 ? "" : "s"); }
 
 std::string recommended(const AccuracyStudy& study, const Recommendation& r) {
   if (!r.row) return "nothing that was tried";
@@ -135,19 +147,23 @@ std::vector<std::string> recommendations(const AccuracyStudy& study) {
   return lines;
 }
 
-// The rows with the integrator that simulate takes at its tightest tolerance, one per number of points.
+std::optional<double> own_points(const AccuracyStudy& study) { return study.rows.front().points_per_length; }
+
+// The rows with the integrator that simulate takes at the tightest tolerance that ran, one per number of points.
 std::vector<const AccuracyRow*> quadrature_rows(const AccuracyStudy& study) {
   std::vector<const AccuracyRow*> rows;
   double tightest = std::numeric_limits<double>::infinity();
-  for (const AccuracyRow& row : study.rows) tightest = std::min(tightest, row.tolerance);
+  for (const AccuracyRow& row : study.rows) {
+    const bool tried = row.missing.empty() && row.integrator == study.reference.integrator;
+    if (tried && row.points_per_length == own_points(study)) tightest = std::min(tightest, row.tolerance);
+  }
+  if (std::isinf(tightest)) tightest = study.rows.front().tolerance;
   for (const AccuracyRow& row : study.rows) {
     if (row.integrator == study.reference.integrator && row.tolerance == tightest) rows.push_back(&row);
   }
   std::sort(rows.begin(), rows.end(), [](auto* a, auto* b) { return a->points_per_length < b->points_per_length; });
   return rows;
 }
-
-double own_points(const AccuracyStudy& study) { return study.rows.front().points_per_length; }
 
 std::string cloud_text(const AccuracyStudy& study) {
   std::string text = fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}\n", "cloud", "low", "median", "high", "runs");
@@ -260,10 +276,10 @@ Picture picture(const AccuracyStudy& study) {
                                    "Quadrature points per length", "", 260);
   points.caption = "What too few points leave, however tight the tolerance.";
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    if (!study.conditioned[i]) continue;
+    if (!study.conditioned[i] || !own_points(study)) continue;
     Points errors;
     for (const AccuracyRow* row : quadrature_rows(study)) {
-      if (row->missing.empty()) errors.push_back({row->points_per_length, row->errors[i]});
+      if (row->missing.empty()) errors.push_back({*row->points_per_length, row->errors[i]});
     }
     add_curve(drawn, points, std::string(studied_figures[i].symbol), pens[i % pens.size()], std::move(errors));
   }
@@ -327,19 +343,23 @@ std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
 
 std::string recommendations_html(const AccuracyStudy& study) {
   if (symbols(study, true).empty()) return "<p>" + recommendations(study).front() + "</p>\n";
+  const bool has_points = own_points(study).has_value();
   std::string rows;
   for (const Recommendation& r : study.recommendations) {
     const std::string accuracy = internal::scientific(r.accuracy);
-    if (!r.row) {
-      rows += table_row("td", {accuracy, "nothing that was tried", "", "", ""});
-      continue;
+    std::vector<std::string> cells{accuracy, "nothing that was tried", "", ""};
+    if (r.row) {
+      const AccuracyRow& row = study.rows[*r.row];
+      cells = {accuracy, std::string(to_string(row.integrator)), internal::scientific(row.tolerance),
+               internal::quantity(row.seconds, "s", 2)};
     }
-    const AccuracyRow& row = study.rows[*r.row];
-    rows += table_row("td", {accuracy, std::string(to_string(row.integrator)), internal::scientific(row.tolerance),
-                             fmt::format("{:g}", row.points_per_length), internal::quantity(row.seconds, "s", 2)});
+    if (has_points) cells.insert(cells.end() - 1, r.row ? fmt::format("{:g}", *study.rows[*r.row].points_per_length) : "");
+    rows += table_row("td", cells);
   }
+  std::vector<std::string> head{"Accuracy wanted", "Integrator", "Tolerance", "Time of a closing"};
+  if (has_points) head.insert(head.end() - 1, "Points per length");
   const std::string ill = symbols(study, false);
-  return table({"Accuracy wanted", "Integrator", "Tolerance", "Points per length", "Time of a closing"}, rows) +
+  return table(head, rows) +
          fmt::format(
              "<p class=\"below\">The quickest setting with which {} are that accurate, there and at every tighter tolerance "
              "tried.{}</p>\n",
@@ -417,6 +437,7 @@ json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const P
          {"status", to_string(study.status)},
          {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
          {"version", version},
+         {"made_with", made_with()},
          {"command", provenance.command}};
   if (!study.message.empty()) j["message"] = study.message;
   if (study.rows.empty()) return j;
@@ -461,9 +482,10 @@ std::string accuracy_text(const AccuracyStudy& study) {
                                    error_cell(study.resolution[i])));
     }
   }
-  std::string text = wrapped(fmt::format("Reference: {}, {} modes: {}. In brackets what a second reference differs by.",
-                                         setting_text(study.reference), study.reference.modes, fmt::join(values, ", "))) +
+  std::string text = wrapped(fmt::format("Reference: {}, {}: {}. In brackets what a second reference differs by.",
+                                         setting_text(study.reference), modes_text(study.reference), fmt::join(values, ", "))) +
                      "\n\n";
+  if (!study.message.empty()) text += wrapped("The reference: " + study.message + ".") + "\n\n";
   text += aligned(head({"integrator", "tolerance"}));
   for (const AccuracyRow& row : study.rows) {
     if (row.points_per_length != own_points(study)) continue;
@@ -473,20 +495,25 @@ std::string accuracy_text(const AccuracyStudy& study) {
   for (const AccuracyRow& row : study.through) {
     text += line({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row);
   }
-  text += "\n" + aligned(head({"points", "per length"}));
-  for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", row->points_per_length)}, *row);
+  if (own_points(study)) {
+    text += "\n" + aligned(head({"points", "per length"}));
+    for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", *row->points_per_length)}, *row);
+  }
   if (!study.modes.empty()) {
     text += "\n" + aligned(head({"modes", ""}));
     for (const AccuracyRow& row : study.modes) text += line({"", fmt::format("{}", row.modes)}, row);
   }
-  text += "\n" +
-          wrapped(fmt::format(
-              "Relative errors of the delivered figures against the reference; times are medians of processor time. Integrators "
-              "with {:g} points per length, points and modes with {}, tolerance {}. What another number "
-              "of modes changes is no error of the integration. {}",
-              own_points(study), to_string(study.reference.integrator),
-              internal::scientific(quadrature_rows(study).front()->tolerance), restart_text(study))) +
-          "\n\n";
+  text +=
+      "\n" +
+      wrapped(fmt::format(
+          "Relative errors of the delivered figures against the reference; times are medians of processor time. {} {}",
+          own_points(study) ? fmt::format("Integrators with {}, points and modes with {}, tolerance {}. What another number of "
+                                          "modes changes is no error of the integration.",
+                                          points_text(study.rows.front()), to_string(study.reference.integrator),
+                                          internal::scientific(quadrature_rows(study).front()->tolerance))
+                            : no_quadrature,
+          restart_text(study))) +
+      "\n\n";
   text += cloud_text(study) + "\n" +
           wrapped(
               "The cloud: runs whose drives differ by one part in 1e9 to 1e7. Permanent contact time and bounce count are "
@@ -507,10 +534,11 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
     if (row.points_per_length == own_points(study)) own.push_back(&row);
   }
   std::string settings = fmt::format(
-      "<p>Relative errors of the delivered figures against the reference: {}, {} modes. Times are medians of processor "
-      "time.</p>\n",
-      setting_text(study.reference), study.reference.modes);
-  settings += fmt::format("<h3>Integrator and tolerance, with {:g} points per length</h3>\n", own_points(study)) +
+      "<p>Relative errors of the delivered figures against the reference: {}, {}. {}Times are medians of processor time.</p>\n",
+      setting_text(study.reference), modes_text(study.reference),
+      study.message.empty() ? "" : "The reference: " + internal::escaped(study.message) + ". ");
+  const std::string points = points_text(study.rows.front());
+  settings += fmt::format("<h3>Integrator and tolerance{}{}</h3>\n", points.empty() ? "" : ", with ", points) +
               errors_table({"Integrator", "Tolerance"}, own, integrator);
   settings += "<h3>The same without a restart at make and break of contact</h3>\n";
   settings += study.through.empty()
@@ -520,9 +548,11 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
   const std::vector<const AccuracyRow*> quadrature = quadrature_rows(study);
   const std::string tightest = fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator),
                                            internal::scientific(quadrature.front()->tolerance));
-  settings += fmt::format("<h3>Quadrature, with {}</h3>\n", tightest) +
-              errors_table({"Points per length"}, quadrature,
-                           [](const AccuracyRow& row) { return std::vector{fmt::format("{:g}", row.points_per_length)}; });
+  settings += fmt::format("<h3>Quadrature, with {}</h3>\n", tightest);
+  settings += points.empty() ? fmt::format("<p>{}</p>\n", no_quadrature)
+                             : errors_table({"Points per length"}, quadrature, [](const AccuracyRow& row) {
+                                 return std::vector{fmt::format("{:g}", *row.points_per_length)};
+                               });
   if (!study.modes.empty()) {
     settings += fmt::format("<h3>Another number of modes, with {}: another model, not an error</h3>\n", tightest) +
                 errors_table({"Modes"}, all_of(study.modes),
@@ -531,6 +561,7 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
   const auto [main, rest] = headline(prepared, study);
   const json result{{"command", provenance.command},
                     {"version", version},
+                    {"made_with", made_with()},
                     {"scene_toml", resolved(prepared.scene, prepared.voltage_units()).text()}};
   return internal::page({.title = prepared.scene.title,
                          .origin = "accuracy",

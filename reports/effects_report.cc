@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "reports/made_with.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
 #include "version.h"
@@ -75,6 +76,8 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
                     {"rhs_s", number(e.rhs_seconds)},
                     {"warnings", e.warnings}});
   }
+  json not_compared = json::array();
+  for (const NotCompared& n : effects.not_compared) not_compared.push_back({{"choice", n.choice}, {"reason", n.reason}});
   json left_out = json::array();
   for (const Omission& o : effects.omissions) {
     json change = json::object();
@@ -95,9 +98,11 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
           {"status", to_string(effects.interrupted ? Status::interrupted : effects.own("gas").metrics.status)},
           {"left_out", left_out},
           {"effects", list},
+          {"not_compared", not_compared},
           {"relative_spread", {{"gas", spread}}},
           {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
           {"version", version},
+          {"made_with", made_with()},
           {"command", provenance.command}};
 }
 
@@ -147,6 +152,7 @@ std::string effects_text(const Effects& effects) {
       }
     }
   }
+  for (const NotCompared& n : effects.not_compared) text += "\n" + wrapped(n.choice + " is not compared: " + n.reason) + "\n";
   for (const auto& [laws, what] : warnings) text += "\n" + wrapped(laws + ": " + what) + "\n";
   return text;
 }

@@ -19,9 +19,11 @@ struct Actor {
   std::string object;  ///< empty: the subject is the switch itself
 };
 
-/// An estimated error beyond which a figure is quoted with "about": half a bounce, one per cent of a time.
+/// An estimated error beyond which a figure is quoted with "about": half a bounce, one per cent of a time. One that is not known
+/// counts as beyond after more than a few rebounds.
 constexpr double doubtful_count = 0.5;
 constexpr double doubtful_time = 0.01;
+constexpr double few_rebounds = 5;
 
 constexpr int figure_digits = 4;  // of the tables, where the error does not allow fewer
 
@@ -51,17 +53,21 @@ std::string closes(const Actor& actor, const std::string& when) {
                               : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
 }
 
+bool doubtful(const json& metrics, double error, double limit) {
+  return std::isfinite(error) ? error > limit : number(metrics, {"bounce_count"}) > few_rebounds;
+}
+
 /// "bounces about 79 times"; `errors` may be null.
 std::string bounces(const json& metrics, const json& errors) {
-  const bool doubtful = number(errors, {"bounce_count"}) > doubtful_count;
-  return fmt::format("bounces {}{}", doubtful ? "about " : "", times_word(number(metrics, {"bounce_count"})));
+  const bool about = doubtful(metrics, number(errors, {"bounce_count"}), doubtful_count);
+  return fmt::format("bounces {}{}", about ? "about " : "", times_word(number(metrics, {"bounce_count"})));
 }
 
 /// The settling time, with "about" where it is doubtful.
 std::string settling(const json& metrics, const json& errors) {
   const double settled = number(metrics, {"permanent_contact_time_s"});
   const double error = number(errors, {"permanent_contact_time_s"});
-  return (error > doubtful_time * settled ? "about " : "") + quantity_within(settled, error, "s");
+  return (doubtful(metrics, error, doubtful_time * settled) ? "about " : "") + quantity_within(settled, error, "s");
 }
 
 /// What one closing does, as a clause without full stop.
@@ -239,9 +245,14 @@ std::string cloud_text(const json& result, const Figure& figure) {
 
 std::string certificate_caption(const json& result) {
   const json& certified = at(result, {"certified"});
-  if (!certified.is_object()) return {};
+  if (!certified.is_object()) {
+    return number(best_metrics(result), {"bounce_count"}) > 0
+               ? "The settling time and the number of rebounds have no error here: past the first large rebound a closing is "
+                 "chaotic. softland simulate --certify gives their range."
+               : "";
+  }
   if (certified.empty())
-    return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance and quadrature.";
+    return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance, quadrature and pull-in voltages.";
   std::string words = fmt::format(
       "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {:.0f} runs whose drives "
       "differ by one part in 1e9 to 1e7.",

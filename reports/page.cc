@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "reports/escape.h"
+#include "reports/made_with.h"
 #include "reports/page_files.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
@@ -65,8 +66,13 @@ std::string reproduce(const json& result) {
     if (const std::string value = any(result, {key}); !value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
   }
   if (commands.empty() && with.empty()) return {};
-  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre></section>\n",
-                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)));
+  const std::string made = made_with_text(result);
+  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",
+                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)),
+                     made.empty() ? ""
+                                  : "<p>Made with " + escaped(made) +
+                                        ". The same bits are to be expected of the same program on the same kind of processor; "
+                                        "elsewhere rounding differs, and a search may end elsewhere.</p>\n");
 }
 
 std::string scene(const json& result) {

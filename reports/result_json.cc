@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/quintic.h"
+#include "reports/made_with.h"
 #include "studies/certify.h"
 #include "studies/omissions.h"
 #include "version.h"
@@ -94,6 +95,7 @@ json errors_json(const Closing& c) {
   json e = metrics_json(c.errors);
   e.erase("settled");
   e.erase("status");
+  e["bounce_count"] = c.bounce_count_error ? json(*c.bounce_count_error) : json(nullptr);
   e["peak_voltage_V"] = e["peak_slew_V_s"] = nullptr;
   return e;
 }
@@ -140,7 +142,7 @@ void add_scene(json& j, const Prepared& p) {
 }
 
 json started(std::string_view kind, const Provenance& provenance) {
-  return {{"kind", kind}, {"version", version}, {"command", provenance.command}};
+  return {{"kind", kind}, {"version", version}, {"command", provenance.command}, {"made_with", made_with()}};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/require.h"
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/timing.h"
@@ -10,6 +11,17 @@
 
 namespace softland {
 namespace {
+
+// Why this gas cannot surround the device; empty when it can.
+std::string refusal(Device device, const Gas& gas) {
+  device.gas = gas;
+  try {
+    validate(device);
+  } catch (const InvalidInput& wrong) {
+    return wrong.what();
+  }
+  return {};
+}
 
 Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
   Device described = prepared.scene.device;
@@ -61,18 +73,20 @@ double relative_change(const Effect& effect, const Effect& own, double Metrics::
 
 Effects compare_effects(const Prepared& prepared, const Watch& watch) {
   const std::optional<Gas>& own = prepared.scene.device.gas;
+  Effects found;
   std::vector<std::optional<Gas>> laws{std::nullopt};
   for (const GasModelEntry& e : gas_models) {
     Gas gas = own.value_or(Gas{});
     const bool in_scene = own && own->model == e.model;
     // A damper and a slit are not there for the taking: only where the scene describes them.
     if ((e.model == GasModel::linear || e.model == GasModel::strip_slit) && !in_scene) continue;
-    // A rigid contact takes no film with states of its own; that film has none on the far side.
-    if (is_compressible(e.model) && (prepared.device.rigid_contact() != nullptr || !std::isnan(gas.far_gap))) continue;
     gas.model = e.model;
+    if (const std::string reason = refusal(prepared.scene.device, gas); !reason.empty()) {
+      found.not_compared.push_back({.choice = std::string(e.name), .reason = reason});
+      continue;
+    }
     laws.emplace_back(gas);
   }
-  Effects found;
   for (const std::optional<Gas>& law : laws) {
     const double share = 1.0 / static_cast<double>(laws.size());
     Effect e = closing_with(prepared, law, watch, static_cast<double>(found.list.size()) * share, share);

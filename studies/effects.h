@@ -25,8 +25,15 @@ struct Effect {
   std::vector<std::string> warnings;  ///< of this closing
 };
 
+/// A law that cannot take the place of the scene's own.
+struct NotCompared {
+  std::string choice;
+  std::string reason;
+};
+
 struct Effects {
-  std::vector<Effect> list;  ///< the laws of the gas
+  std::vector<Effect> list;               ///< the laws of the gas
+  std::vector<NotCompared> not_compared;  ///< those that the scene cannot have
   std::vector<Omission> omissions;
   bool interrupted = false;  ///< asked to stop: the lists hold only what was complete by then, the scene's own closing at least
 

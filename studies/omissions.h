@@ -60,7 +60,7 @@ struct EffectsChoice {
 };
 
 struct DescribedEffects {
-  Device described;
+  Scene described;  ///< with every effect, its drives as written
   EffectsChoice choice;
 };
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/engineering.h"
 #include "model/constants.h"
+#include "model/timoshenko.h"
 #include "studies/auto_modes.h"
 #include "studies/omissions.h"
 
@@ -83,6 +85,9 @@ Prepared as_described(const SceneFile& given, bool default_limits, const Watch& 
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
   const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
   Prepared p{.scene = scene, .device = Switch(scene.device, quadrature), .quadrature = quadrature};
+  if (std::string warning = slenderness_warning(scene.device.structure); !warning.empty()) {
+    p.scene.warnings.push_back(std::move(warning));
+  }
   for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) {
     const std::string& name = scene.device.electrodes[k].name;
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
@@ -127,8 +132,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch)
   for (const Omission& o : choice.left_out) effects.push_back(o.what);
   Prepared chosen = without(p, effects);
   chosen.scene.warnings.push_back(left_out_note(choice, options.effects_tolerance));
-  chosen.effects =
-      std::make_shared<const DescribedEffects>(DescribedEffects{.described = p.scene.device, .choice = std::move(choice)});
+  chosen.effects = std::make_shared<const DescribedEffects>(DescribedEffects{.described = p.scene, .choice = std::move(choice)});
   return chosen;
 }
 

@@ -83,6 +83,31 @@ TEST(AccuracyText, ListsWhatWasTriedWithoutARestartOrWhyNothingWas) {
   EXPECT_THAT(accuracy_svg("", none), Not(HasSubstr("not restarted")));
 }
 
+TEST(AccuracyText, OfAPlateSaysThatPointsDoNotMatterAndListsNone) {
+  AccuracyStudy plate = sample();
+  std::erase_if(plate.rows, [](const AccuracyRow& r) { return r.points_per_length != 24; });
+  for (AccuracyRow& r : plate.rows) r.points_per_length.reset();
+  plate.reference.points_per_length.reset();
+  plate.reference.modes = 1;
+  plate.modes.clear();
+  plate.recommendations = {{.accuracy = 1e-3, .row = 0}};
+  const Prepared prepared = prepare(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/two-electrodes.toml"));
+  const std::string page = accuracy_html(prepared, plate, {}), text = accuracy_text(plate), svg = accuracy_svg("", plate);
+  EXPECT_THAT(text, HasSubstr("tolerance 1e-8, 1 mode: "));
+  for (const std::string& shown : {page, text, svg}) {
+    EXPECT_THAT(shown, Not(HasSubstr("per length")));
+    EXPECT_THAT(shown, Not(HasSubstr("Points per")));
+  }
+  for (const std::string& shown : {page, text}) EXPECT_THAT(shown, HasSubstr("A rigid plate has the same gap"));
+  EXPECT_TRUE(accuracy_json(prepared, plate, {})["rows"][0]["points_per_length"].is_null());
+}
+
+TEST(AccuracyText, SaysWhenTheReferenceIsLooserThanPlanned) {
+  AccuracyStudy study = sample();
+  study.message = "too slow";
+  EXPECT_THAT(accuracy_text(study), HasSubstr("\nThe reference: too slow.\n"));
+}
+
 TEST(AccuracyText, OfNoStudySaysWhy) {
   AccuracyStudy none;
   none.status = Status::no_contact;

@@ -81,6 +81,16 @@ TEST(TextReport, PassesOverWhatIsNotThere) {
     EXPECT_NO_THROW((void)text_report(json::parse(text))) << text;
 }
 
+TEST(TextReport, SaysWhoGivesTheRangeOfTheSettlingTimeAndTheCount) {
+  json result = softland::testing::sample_simulate_result(few_rows);
+  EXPECT_THAT(text_report(result), HasSubstr("softland simulate --certify"));
+  result["certified"] = json::object();
+  EXPECT_THAT(text_report(result), Not(HasSubstr("--certify")));
+  result.erase("certified");
+  result["metrics"]["bounce_count"] = 0;
+  EXPECT_THAT(text_report(result), Not(HasSubstr("--certify"))) << "a landing without rebounds is not chaotic";
+}
+
 TEST(TextReport, GivesIllConditionedFiguresAsMedianAndRange) {
   json result = softland::testing::sample_simulate_result(few_rows);
   EXPECT_THAT(text_report(result), Not(HasSubstr("Certified")));

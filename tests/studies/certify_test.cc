@@ -44,7 +44,7 @@ std::pair<int, int> coverage(const Prepared& p, const Closing& c) {
   for (const CertifiedFigure& f : certified_figures()) {
     const double own = f.value(c.metrics), best = f.value(truth);
     if (f.key == "hold_force_N" || !std::isfinite(own) || std::find(ill.begin(), ill.end(), f.key) != ill.end()) continue;
-    const double error = f.error != nullptr ? f.error(errors) : errors.bounce_count;
+    const double error = f.error != nullptr ? f.error(errors) : c.bounce_count_error.value_or(-1);
     const bool covered = std::abs(own - best) <= std::max(error, rounding * std::abs(best));
     ++(covered ? counts.first : counts.second);
   }
@@ -126,6 +126,65 @@ TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
   EXPECT_GT(c.certificate->grazing->number, 1);
   EXPECT_GT(c.certificate->grazing->time, c.metrics.initial_contact_time);
   EXPECT_LT(c.certificate->grazing->impact_velocity, c.metrics.impact_velocity);
+}
+
+// The same scene with tight and loose pull-in voltages: what these differ by is in the errors.
+TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn) {
+  const auto driven = [](const char* accuracy, const char* level) {
+    return prepare(gold({fmt::format("waveform.main.level={}", level), "simulate.duration=60 us",
+                         fmt::format("simulate.accuracy={}", accuracy)}));
+  };
+  for (const char* level : {"1.25 Vdp", "1.05 Vdp"}) {
+    const Closing truth = simulate(driven("1e-9", level), false);
+    for (const char* accuracy : {"1e-2", "1e-4"}) {
+      const Closing c = certify(driven(accuracy, level));
+      Metrics errors = c.errors;
+      for (const CertifiedFigure& f : certified_figures()) {
+        if (f.error == nullptr || !std::isfinite(f.value(c.metrics))) continue;
+        const double off = std::abs(f.value(c.metrics) - f.value(truth.metrics));
+        EXPECT_LE(off, f.error(errors)) << f.key << ' ' << level << ' ' << accuracy;
+      }
+      EXPECT_LT(errors.impact_velocity, 0.05 * c.metrics.impact_velocity) << "not by naming any number";
+    }
+  }
+  SceneFile file = gold({"simulate.duration=60 us", "simulate.accuracy=1e-4"});
+  const double all = certify(prepare(file)).errors.impact_velocity;
+  file.set("structure.damping_ratio=1e-9");
+  file.set("simulate.effects=auto");  // the voltages are those of the whole scene, and so are their errors
+  EXPECT_NEAR(certify(prepare(file)).errors.impact_velocity, all, 0.5 * all);
+}
+
+Prepared far_electrode(std::string_view setting) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/far_electrode.toml");
+  file.set(std::string(setting));
+  return prepare(file);
+}
+
+// However tight: a run that leaves no room for a tighter one is judged by a looser one.
+TEST(Simulate, IsNeverItsOwnJudge) {
+  for (const char* setting : {"simulate.accuracy=1e-8", "simulate.accuracy=1e-12", "simulate.tolerance=1e-13"}) {
+    const Closing c = simulate(far_electrode(setting), true);
+    ASSERT_EQ(c.judge->status, Status::done) << setting;
+    EXPECT_NE(c.judge->tolerance, c.tolerance) << setting;
+    EXPECT_NE(c.judge->quadrature.points_per_length, c.quadrature.points_per_length) << setting;
+    for (double Metrics::*error : {&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height}) {
+      EXPECT_GT(c.errors.*error, 0) << setting;
+    }
+    for (double Metrics::*chance : {&Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
+      EXPECT_TRUE(std::isnan(c.errors.*chance)) << setting << ": what comes after the runs part";
+    }
+    for (double Metrics::*none : {&Metrics::permanent_contact_time, &Metrics::bounce_time})
+      EXPECT_TRUE(std::isnan(c.errors.*none));
+    EXPECT_FALSE(c.bounce_count_error);
+  }
+  const Closing asked = simulate(far_electrode("simulate.accuracy=1e-12"), true);
+  EXPECT_THAT(asked.warnings, Contains(testing::HasSubstr("accuracy 1e-12 is not reached")));
+}
+
+TEST(Certify, GivesTheRangeOfAChaoticCount) {
+  const Closing c = certify(far_electrode("simulate.accuracy=1e-8"));
+  EXPECT_THAT(ill_conditioned(c), Contains("bounce_count"));
+  EXPECT_GE(c.bounce_count_error.value_or(0), 2);
 }
 
 TEST(Certify, SaysNothingOfARunThatIsNotDone) {

@@ -121,7 +121,7 @@ TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   EXPECT_LE(p.effects->choice.influence, 1e-3);
   EXPECT_FALSE(p.scene.device.dispersion);
   EXPECT_TRUE(p.scene.device.gas) << "the film matters here";
-  EXPECT_TRUE(p.effects->described.dispersion);
+  EXPECT_TRUE(p.effects->described.device.dispersion);
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("effects = \"auto\" leaves out "));
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("dispersion ("));
   EXPECT_EQ(own(p).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
