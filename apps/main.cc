@@ -152,20 +152,23 @@ int run(int argc, char** argv) {
   CLI::App* optimize = add_verb("optimize", "search the drive waveform that closes without bounce");
   with_scene(optimize, false);
   with_json(optimize);
-  option(optimize, "--target", request.target, "NAME", "bounce (default), settling, rebound, count, impact or energy");
+  option(optimize, "--target", request.target, "NAME",
+         "bounce (default), settling, rebound, count, impact or energy; the goal of each asks for no significant rebound");
   option(optimize, "--actuator", request.actuator, "NAME",
          "drives that the search may shape: electrostatic (default), pzt or both");
   option(optimize, "--waveform", request.waveform, "NAME", "family to search: pulse (default), harmonic or step");
   option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
   optional(optimize, "--budget", request.budget, "N|TIME",
-           "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both");
+           "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both, half as much again for "
+           "settling, impact and energy");
   optional(optimize, "--seed", request.seed, "N",
            "whole number from 0 on (default 1): same seed, same result, whatever --jobs is");
   optional(optimize, "--jobs", request.jobs, "N", "threads (default: one per core)");
   option(optimize, "--out", common.out, "FOLDER",
          "folder for the report, the waveform found and all data (default: softland-out)");
   optimize->footer(
-      "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n" +
+      "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n"
+      "A scene that holds a landing already (best.toml of an earlier search) is refined and never ends worse.\n" +
       optimizer_help() +
       "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
       "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3");

@@ -380,7 +380,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (request.jobs) options.jobs = whole_number("--jobs", *request.jobs, 1);
   if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
-  options.max_evaluations = default_budget(options.actuator);
+  options.max_evaluations = default_budget(options.target, options.actuator);
   if (request.budget) read_budget(*request.budget, options);
 
   const SceneFile file = load_scene(c);
