@@ -386,13 +386,9 @@ std::string clouds_html(const AccuracyStudy& study) {
          "bounce count are properties of such a cloud, not of one run.</p>\n";
 }
 
-std::string charts_html(const AccuracyStudy& study) {
-  const Picture drawn = picture(study);
+std::string charts_html(const Picture& drawn) {
   std::string out;
-  for (const Chart& chart : drawn.charts) {
-    out += fmt::format("<figure id=\"figure-{}\">{}<figcaption>{}</figcaption></figure>\n", chart.id,
-                       internal::still_picture(drawn.tables, chart), internal::escaped(chart.caption));
-  }
+  for (const Chart& chart : drawn.charts) out += internal::figure_html(drawn.tables, chart);
   return out;
 }
 
@@ -558,6 +554,7 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
                 errors_table({"Modes"}, all_of(study.modes),
                              [](const AccuracyRow& row) { return std::vector{fmt::format("{}", row.modes)}; });
   }
+  const Picture drawn = picture(study);
   const auto [main, rest] = headline(prepared, study);
   const json result{{"command", provenance.command},
                     {"version", version},
@@ -569,10 +566,12 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
                          .headline_rest = rest,
                          .keys = reference_keys(study),
                          .body = section("recommendations", "Quickest settings", recommendations_html(study)) +
-                                 section("charts", "What accuracy costs", charts_html(study)) +
+                                 section("charts", "What accuracy costs", charts_html(drawn)) +
                                  section("settings", "Every setting that was tried", settings) +
                                  section("cloud", "What no setting can tell", clouds_html(study)) + internal::reproduce(result) +
-                                 internal::scene(result)});
+                                 internal::scene(result),
+                         .style = internal::chart_style(),
+                         .scripts = internal::chart_scripts(drawn)});
 }
 
 std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {

@@ -243,6 +243,10 @@ std::string cloud_text(const json& result, const Figure& figure) {
   return fmt::format("median {}, {} to {} in {:.0f} runs", value("median"), value("low"), value("high"), number(cloud, {"runs"}));
 }
 
+std::string error_heading(const json& result) {
+  return at(result, {"certified"}).is_object() ? "± certified" : "± integration only";
+}
+
 std::string certificate_caption(const json& result) {
   const json& certified = at(result, {"certified"});
   if (!certified.is_object()) {
@@ -354,25 +358,32 @@ std::string waveform_caption(const json& result, const std::string& drive) {
   const bool equal = is_optimize(result) && !shape.is_null() && shape == at(result, {"baseline", "waveforms", drive});
   const DriveScale scale = drive_scale(drive);
   const auto range = [&](const char* run) -> std::string {
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    for (const json& point : at(result, {run, "waveforms", drive})) {
-      if (!point.is_array() || point.size() != 2 || !std::isfinite(number(point[1]))) continue;
-      lowest = std::min(lowest, number(point[1]));
-      highest = std::max(highest, number(point[1]));
-    }
-    if (lowest > highest) return {};
-    if (lowest == highest) return fmt::format("{} at {}", equal ? "stay" : "stays", quantity(lowest, scale.unit));
-    return fmt::format("{} between {} and {}", equal ? "run" : "runs", quantity_beside(lowest, highest, scale.unit),
-                       quantity_beside(highest, lowest, scale.unit));
+    const json& waveform = at(result, {run, "waveforms", drive});
+    const DriveDemand demand = drive_demand(waveform, scale.rest);
+    if (!std::isfinite(demand.lowest)) return {};
+    if (demand.lowest == demand.highest)
+      return fmt::format("{} at {}", equal ? "stay" : "stays", quantity(demand.lowest, scale.unit));
+    const std::string slew = scale.unit.empty()        ? ""
+                             : std::isinf(demand.slew) ? ", with a jump"
+                                                       : ", at most " + quantity(demand.slew, "V/s");
+    return fmt::format("{} between {} and {}{}", equal ? "run" : "runs",
+                       quantity_beside(demand.lowest, demand.highest, scale.unit),
+                       quantity_beside(demand.highest, demand.lowest, scale.unit), slew);
   };
+  const DriveLimits limits = drive_limits(result, drive);
+  const std::string driver =
+      !std::isfinite(limits.highest) || scale.unit.empty()
+          ? ""
+          : fmt::format(" The driver gives {} to {}{}.", given_quantity(std::isfinite(limits.lowest) ? limits.lowest : 0, "V"),
+                        given_quantity(limits.highest, "V"),
+                        std::isfinite(limits.slew) ? ", at most " + given_quantity(limits.slew, "V/s") : "");
   const std::string own = range("best");
-  if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.", scale.name, drive, own);
+  if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.{}", scale.name, drive, own, driver);
   const std::string step = range("baseline");
   const std::string name = is_optimize(result) ? own_subject : "the waveform";
   const std::string found =
       joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
-  return fmt::format("{} of the drive “{}”.{}", scale.name, drive, found.empty() ? "" : " " + found);
+  return fmt::format("{} of the drive “{}”.{}{}", scale.name, drive, found.empty() ? "" : " " + found, driver);
 }
 
 std::string search_caption(const json& result) {

@@ -59,6 +59,8 @@ struct Figure {
 [[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, std::string_view key);
 /// Of an ill-conditioned figure of a certified result: "median 305.5 µs, 280.5 µs to 336.1 µs in 16 runs"; else empty.
 [[nodiscard]] std::string cloud_text(const nlohmann::json& result, const Figure& figure);
+/// What the errors of the figures are errors of.
+[[nodiscard]] std::string error_heading(const nlohmann::json& result);
 /// What a certificate says of the figures and of the rebound at which the runs part, in a sentence or two; empty without one.
 [[nodiscard]] std::string certificate_caption(const nlohmann::json& result);
 /// What the search wanted of a figure: "0", "yes", "below 323.1 µs"; empty where it wanted nothing.

@@ -17,6 +17,8 @@ using nlohmann::json;
 
 /// Bytes of text shown per block; more is cut.
 constexpr std::size_t most_text = 100'000;
+/// Rows per curve in the page: several times the pixels of a wide screen, so that zooming shows more, at about 100 kB a curve.
+constexpr std::size_t rows_per_curve = 6000;
 
 }  // namespace
 
@@ -50,6 +52,21 @@ std::string still_picture(const Tables& tables, const Chart& chart) {
   constexpr double width = 960;
   return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
                      chart_svg_height(chart), escaped(chart.title + ". " + chart.caption), chart_svg(tables, chart, width, 0));
+}
+
+std::string figure_html(const Tables& tables, const Chart& chart) {
+  return fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n", chart.id,
+                     escaped(chart.title)) +
+         still_picture(tables, chart) + fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(chart.caption));
+}
+
+std::string chart_style() { return std::string(page_file("uplot/uPlot.min.css")); }
+
+std::string chart_scripts(const Picture& drawn) {
+  return filled(page_file("page/scripts.html"), {{"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
+                                                 {"chart_licence", std::string(page_file("uplot/LICENSE"))},
+                                                 {"js", std::string(page_file("page/page.js"))},
+                                                 {"data", script_json(chart_json(drawn, rows_per_curve))}});
 }
 
 std::string reproduce(const json& result) {

@@ -141,6 +141,13 @@ void add_scene(json& j, const Prepared& p) {
   j["tolerance"] = p.tolerance;
 }
 
+// The box that every parameter was searched in.
+json bounds_json(const OptimizeResult& r) {
+  json all = json::object();
+  for (const Variable& v : r.variables) all[v.name] = {v.lower, v.upper};
+  return all;
+}
+
 json started(std::string_view kind, const Provenance& provenance) {
   return {{"kind", kind}, {"version", version}, {"command", provenance.command}, {"made_with", made_with()}};
 }
@@ -234,6 +241,7 @@ json result_json(const OptimizeResult& r, const OptimizeOptions& options, const 
   j["errors"] = errors_json(*r.best);
   j["work"] = work_json(r.best->trajectory.work);
   j["best"] = {{"parameters", r.parameters},
+               {"bounds", bounds_json(r)},
                {"metrics", figures_json(*r.best)},
                {"waveforms", waveforms_json(*r.best_scene, r.best_scene->duration)},
                {"cost", number(r.best_cost)}};

@@ -51,7 +51,7 @@ std::string text_report(const json& result) {
   const json& errors = internal::at(result, {"errors"});
   const json& baseline_errors = internal::at(result, {"baseline", "errors"});
   out += compares ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
-                  : fmt::format("{:<36}{:>16}   {}\n", "", "value", "estimated error");
+                  : fmt::format("{:<36}{:>16}   {}\n", "", "value", internal::error_heading(result));
   for (const internal::Figure& f : internal::figures()) {
     if (internal::at(best, {f.key}).is_null() && internal::at(baseline, {f.key}).is_null()) continue;  // as on the page
     const auto right = [](const std::string& text) { return std::string(width(text) < 16 ? 16 - width(text) : 0, ' ') + text; };

@@ -180,6 +180,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);
   const std::vector<std::string> names = given.drive_names();
   const std::vector<Signal> standing = baseline_scene.signals();
+  result.variables = space.variables();
   const auto price = [&](const std::vector<Signal>& signals) {
     const Trajectory closing = simulate_closing(given.device, signals, run);
     const auto by = [&](Target target) { return cost(target, closing, scale, metrics_options); };

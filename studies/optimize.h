@@ -78,6 +78,7 @@ struct OptimizeResult {
   std::optional<Closing> best;
   std::vector<ConfirmingRun> checks;
   std::map<std::string, double> parameters;  ///< of the winner, by drive.name
+  std::vector<Variable> variables;           ///< what was searched, and within which bounds
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   OptimizerResult search;

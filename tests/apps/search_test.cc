@@ -157,7 +157,7 @@ TEST_F(Search, PrintsItsResultAsJsonAndNothingElse) {
                                                   "target",      "termination_message",
                                                   "title",       "tolerance",
                                                   "waveform",    "made_with"}));
-  EXPECT_EQ(keys(printed["best"]), (std::set<std::string>{"cost", "metrics", "parameters", "waveforms"}));
+  EXPECT_EQ(keys(printed["best"]), (std::set<std::string>{"bounds", "cost", "metrics", "parameters", "waveforms"}));
   EXPECT_EQ(keys(printed["baseline"]), (std::set<std::string>{"cost", "errors", "metrics"}));
   for (const char* key : {"metrics", "errors", "best", "scene", "checks"}) EXPECT_EQ(printed[key], whole[key]) << key;
 }

@@ -120,7 +120,8 @@ TEST(Captions, StateWhatTheNumbersSay) {
             "Closed and at rest, the contact "
             "carries 2.10 µN.");
   EXPECT_EQ(plain(waveform_caption(result, "piezo")),
-            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV; the plain step stays at 0 V.");
+            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, at most 121 kV/s; the plain step "
+            "stays at 0 V.");
   EXPECT_EQ(plain(waveform_caption(result, "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
   EXPECT_EQ(plain(checks_caption(result)),
             "1 of 2 confirmations of the winner closes without a rebound; the highest rebound is 3.20 nm (“6 modes”).");

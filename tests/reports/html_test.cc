@@ -102,6 +102,40 @@ TEST(HtmlReport, SaysEverythingWithoutAScript) {
   EXPECT_THAT(page, Not(HasSubstr("{{")));
 }
 
+TEST(HtmlReport, ListsParametersInTheOrderOfTimeWithTheirBounds) {
+  json result = testing::sample_optimize_result(300);
+  result["best"]["bounds"] = {
+      {"piezo.level_1_V", {-1, 1}}, {"piezo.level_2_V", {-1, 0.603}}, {"piezo.time_1_s", {19.7e-6, 90e-6}}};
+  const std::string page = html_report(result);
+  std::size_t before = 0;
+  for (const char* name : {"piezo.level_1<", "piezo.time_1<", "piezo.level_2<", "piezo.time_2<"}) {
+    const std::size_t at = page.find(std::string("<th scope=\"row\">") + name);
+    ASSERT_NE(at, std::string::npos) << name;
+    EXPECT_GT(at, before) << name;
+    before = at;
+  }
+  EXPECT_THAT(page, HasSubstr("<td>−1\u00a0V to 1\u00a0V</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>−1\u00a0V to 603\u00a0mV <span class=\"bound\">at its upper bound</span></td>"));
+  EXPECT_THAT(page, HasSubstr("<td>19.7\u00a0µs to 90\u00a0µs <span class=\"bound\">at its lower bound</span></td>"));
+}
+
+TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
+  json result = testing::sample_optimize_result(300);
+  EXPECT_THAT(html_report(result), Not(HasSubstr("id=\"sketch\"")));
+  result["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
+  result["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};
+  result["scene"]["electrode"]["main"] = {{"span", {"60 um", "240 um"}}};
+  result["scene"]["driver"]["piezo"] = {{"min_voltage", "-1 V"}, {"max_voltage", "1 V"}, {"max_slew", "1e6 V/s"}};
+  const std::string page = html_report(result);
+  for (const char* words : {"id=\"sketch\"", "length 250\u00a0µm", "to the contact 2\u00a0µm", "to the electrode 3.5\u00a0µm",
+                            "electrode main", "Peak voltage, piezo</th>", "121\u00a0kV/s", "most the driver gives",
+                            "least the driver gives", "The driver gives −1\u00a0V to 1\u00a0V, at most 1\u00a0MV/s."})
+    EXPECT_THAT(page, HasSubstr(words)) << words;
+  EXPECT_THAT(page, HasSubstr("± integration only"));
+  result["certified"] = json::object();
+  EXPECT_THAT(html_report(result), HasSubstr("± certified"));
+}
+
 TEST(HtmlReport, OfASingleRunHasNoBaselineAndNoSearch) {
   const std::string page = html_report(testing::sample_simulate_result(600));
   EXPECT_THAT(page, HasSubstr("<h1>The switch first touches at 23.2\u00a0µs"));
