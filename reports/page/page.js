@@ -145,7 +145,7 @@
     const u = drawn.get(chart.id);
     const width = u.bbox.width / uPlot.pxRatio;
     const from = u.cursor.left >= 0 ? u.cursor.left : direction > 0 ? 0 : width;
-    u.setCursor({left: Math.min(width, Math.max(0, from + 4 * direction)), top: u.bbox.height / uPlot.pxRatio / 2}, true);
+    u.setCursor({left: Math.min(width, Math.max(0, from + 4 * direction)), top: u.bbox.height / uPlot.pxRatio / 2}, true, true);
   };
 
   // Words on a halo of the paper's colour, so that no curve runs through them, within the picture.
