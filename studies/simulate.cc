@@ -47,15 +47,13 @@ double parting_time(const Run& a, const Run& b, const MetricsOptions& options) {
   return std::numeric_limits<double>::infinity();
 }
 
-// What two runs say of anything beyond the point where they part is chance, and so it is where they differ by a thousand times
-// the tolerance: it has no error but a cloud's.
+// What two runs say of anything beyond the point where they part is chance: it has no error but a cloud's. Nor have figures that
+// hang on every touch where the runs differ by a thousand times the tolerance.
 void forget_what_is_chaotic(Metrics& errors, const Run& best, const Run& other, const MetricsOptions& options) {
   constexpr double magnified = 1000;
   const double visible = magnified * std::max(best.tolerance, other.tolerance);
-  for (double Metrics::*figure :
-       {&Metrics::major_bounce_height, &Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
-    const double least = figure == &Metrics::major_bounce_height ? options.significant_rebound : 0;
-    if (errors.*figure > visible * std::max(least, std::abs(best.metrics.*figure))) errors.*figure = Metrics::unset;
+  for (double Metrics::*figure : {&Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
+    if (errors.*figure > visible * std::abs(best.metrics.*figure)) errors.*figure = Metrics::unset;
   }
   const double parting = parting_time(best, other, options);
   if (std::isinf(parting)) return;
