@@ -175,7 +175,7 @@ TEST(HtmlReport, SaysWhyAFigureIsMissing) {
   EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">no contact</span>"));
   result["best"]["metrics"] = json::object();
   result["best"]["metrics"]["initial_contact_time_s"] = 1e-6;
-  EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after\">—</span>"));
+  EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">not known</span>"));
 }
 
 TEST(HtmlReport, OfARunWithoutContactRepeatsNoFourTimes) {
