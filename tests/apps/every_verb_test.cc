@@ -138,6 +138,14 @@ TEST_P(EveryVerb, Compares) {
   EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
 }
 
+TEST_P(EveryVerb, Measures) {
+  // A beam with a contact takes some seconds; tests/apps/command_line_test.cc has one.
+  if (!scene().has("kind = \"plate\"") && scene().has("\\[contact\\]")) return;
+  (void)done(scene().quickly({"accuracy", scene().name, "--quiet", "--json", "accuracy.json"}));
+  const std::string written = read(here.path() / "accuracy.json");
+  EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
+}
+
 TEST_P(EveryVerb, Searches) {
   for (const char* actuator : {"electrostatic", "pzt", "both"}) {
     const std::vector<std::string> words = scene().quickly(

@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "config/units.h"
 #include "tests/support/printed.h"
 
 namespace softland::internal {
@@ -195,6 +196,24 @@ TEST(Scientific, IsWrittenAsInAScene) {
   EXPECT_EQ(relative_error(0), "0");
   EXPECT_EQ(relative_error(9e-12), "< 1e-9");
   EXPECT_EQ(relative_error(nan), "—");
+}
+
+TEST(Quantity, IsReadAgainByAScene) {
+  for (const char* unit : {"m", "s", "V", "m/s", "N", "J", "V/s", "Hz", "rad/s", "rad", "Pa", "N/m", "N s/m^2"}) {
+    for (int exponent = -24; exponent <= 14; ++exponent) {
+      for (const double digits : {1.0, -2.5, 9.87654}) {
+        const double value = digits * std::pow(10, exponent);
+        for (const std::string& text : {quantity(value, unit), given_quantity(value, unit)}) {
+          if (text.starts_with("<")) continue;  // no number, but a bound
+          Quantity read;
+          ASSERT_NO_THROW(read = parse_quantity(text)) << text;
+          const double shown = std::abs(value) < resolution(unit) ? 0 : value;
+          EXPECT_NEAR(read.value, shown, 0.006 * std::abs(value) + resolution(unit)) << text;
+          EXPECT_EQ(read.dimension, parse_quantity(std::string("1 ") + unit).dimension) << text;
+        }
+      }
+    }
+  }
 }
 
 TEST(Times, EndAtAThousand) {
