@@ -8,6 +8,7 @@
 #include "apps/exit_status.h"
 #include "base/output_lost.h"
 #include "base/require.h"
+#include "base/shortened.h"
 #include "base/watch.h"
 #include "version.h"
 
@@ -26,7 +27,7 @@ Failure failure_of(const std::exception_ptr& exception) {
   try {
     std::rethrow_exception(exception);
   } catch (const InvalidInput& error) {
-    return {exit_bad_input, error.what()};
+    return {exit_bad_input, with_words_shortened(error.what())};
   } catch (const Interrupted& error) {
     return {exit_interrupted, error.what()};
   } catch (const OutputLost& error) {

@@ -19,6 +19,7 @@
 #include "apps/streams.h"
 #include "base/read_file.h"
 #include "base/require.h"
+#include "base/shortened.h"
 #include "config/units.h"
 #include "model/constants.h"
 #include "reports/accuracy_report.h"
@@ -259,7 +260,7 @@ int check_verb(const Common& c) {
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Prepared p = prepare(file, true, work->watch());
   const Structure& s = p.scene.device.structure;
-  std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + p.scene.title + ")");
+  std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + shortened(p.scene.title) + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
   std::vector<std::string> frequencies;
   for (const double omega : p.device.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));

@@ -63,6 +63,26 @@ TEST_F(BadInput, Verbs) {
   });
 }
 
+TEST_F(BadInput, LongWordsAreCut) {
+  const std::string word(10'000, 'x');
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{word},
+                                                                                     {"check", word},
+                                                                                     {"new", word},
+                                                                                     {"check", "gold.toml", word},
+                                                                                     {"check", "gold.toml", "--set", word},
+                                                                                     {"optimize", "gold.toml", "--target", word},
+                                                                                     {"optimize", "gold.toml", "--seed", word},
+                                                                                     {"export", "gold.toml", "--format", word}}) {
+    const Outcome o = here->run(words);
+    EXPECT_EQ(o.status, 2);
+    EXPECT_LT(o.err.size(), 500U) << o.err;
+    EXPECT_NE(o.err.find("xxx…"), std::string::npos) << o.err;
+  }
+  const Outcome check = here->run({"check", "gold.toml", "--set", "title=" + word});
+  EXPECT_EQ(check.status, 0);
+  EXPECT_LT(check.out.find('\n'), 200U) << check.out;
+}
+
 TEST_F(BadInput, Options) {
   expect_refused({
       {{"simulate", "gold.toml", "--frob"}, "The following argument was not expected: --frob (see softland simulate --help)"},

@@ -20,5 +20,14 @@ TEST(Shortened, NeverCutsACharacter) {
   EXPECT_EQ(shortened("\x80\x80\x80", 2), "…") << "broken UTF-8";
 }
 
+TEST(Shortened, WordsLeaveTheRestOfAMessage) {
+  EXPECT_EQ(with_words_shortened(""), "");
+  EXPECT_EQ(with_words_shortened(" a  b "), " a  b ");
+  EXPECT_EQ(with_words_shortened("--target " + std::string(10'000, 'x') + " must be one"),
+            "--target " + std::string(80, 'x') + "… must be one");
+  const std::string path(900, '/');
+  EXPECT_EQ(with_words_shortened(path), path);
+}
+
 }  // namespace
 }  // namespace softland
