@@ -8,6 +8,7 @@
 #include "apps/failure.h"
 #include "apps/interrupt.h"
 #include "apps/output.h"
+#include "apps/shell_word.h"
 #include "apps/streams.h"
 #include "apps/verbs.h"
 #include "base/require.h"
@@ -22,15 +23,7 @@ using namespace softland::apps;
 // Quoted so that the line can be pasted into a shell.
 std::string command_line(int argc, char** argv) {
   std::string line = "softland";
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool plain =
-        !word.empty() &&
-        word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+%") == std::string::npos;
-    std::string quoted;
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += " " + (plain ? word : "'" + quoted + "'");
-  }
+  for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
   return line;
 }
 

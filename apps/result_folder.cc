@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* lock_name = "softland.lock";
+constexpr std::string_view word = "process ";  // that a lock begins with
 constexpr int most_stages = 100;
 
 std::string reason(int error) { return std::generic_category().message(error); }
@@ -33,7 +34,7 @@ std::string reason(int error) { return std::generic_category().message(error); }
 std::string owner(const std::string& command) {
   std::array<char, 256> host{};
   if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
-  return fmt::format("process {} on {} since {:%Y-%m-%d %H:%M:%S} UTC: {}", ::getpid(), host.data(),
+  return fmt::format("{}{} on {} since {:%Y-%m-%d %H:%M:%S} UTC: {}", word, ::getpid(), host.data(),
                      fmt::gmtime(std::time(nullptr)), command);
 }
 
@@ -61,12 +62,15 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& place, const s
                               : fmt::format("{}: the folder cannot be locked: {}", place, reason(error)));
     }
     // Whoever held it may have removed the file between our opening and locking it.
-    struct stat ours {
-    }, there{};
-    if (::fstat(descriptor_, &ours) == 0 && ::stat(file_.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
-        ours.st_dev == there.st_dev)
-      break;
+    if (held()) break;
     ::close(descriptor_);
+  }
+  // A file of that name that no run has made is somebody else's.
+  std::array<char, word.size()> begin{};
+  const ssize_t there = ::pread(descriptor_, begin.data(), begin.size(), 0);
+  if (there != 0 && (there < 0 || std::string_view(begin.data(), static_cast<std::size_t>(there)) != word)) {
+    ::close(descriptor_);
+    throw InvalidInput(fmt::format("{}: {} is no lock of softland; move it or name another folder", place, file_.string()));
   }
   const std::string text = owner(command);
   const bool written = ::ftruncate(descriptor_, 0) == 0 && ::pwrite(descriptor_, text.data(), text.size(), 0) >= 0;
@@ -74,13 +78,23 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& place, const s
 }
 
 FolderLock::~FolderLock() {
-  ::unlink(file_.c_str());
+  if (held()) ::unlink(file_.c_str());
   ::close(descriptor_);
+}
+
+bool FolderLock::held() const {
+  struct stat ours {
+  }, there{};
+  return ::fstat(descriptor_, &ours) == 0 && ::stat(file_.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
+         ours.st_dev == there.st_dev;
 }
 
 ResultFolder::ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files)
     : folder_(created(folder)), files_(files), lock_(std::make_unique<FolderLock>(folder_, "--out " + folder, command)) {
   for (const std::string& name : files_) {
+    std::error_code ignored;
+    require(!fs::is_directory(folder_ / name, ignored),
+            fmt::format("--out {}: {} is a folder, where a result would be written", folder, (folder_ / name).string()));
     require(!was_read(folder_ / name), fmt::format("--out {}: {} would be replaced, which this run reads; name another folder",
                                                    folder, (folder_ / name).string()));
   }
@@ -104,12 +118,17 @@ void ResultFolder::remove_abandoned() const {
     // Only what this kind of run leaves: a search is not given up for a simulation in the same folder.
     bool ours = true;
     for (const auto& entry : fs::directory_iterator(stage, error))
-      ours = ours && std::find(files_.begin(), files_.end(), entry.path().filename()) != files_.end();
+      ours = ours && std::find(files_.begin(), files_.end(), entry.path().filename()) != files_.end() && !was_read(entry.path());
     if (ours) fs::remove_all(stage, error);
   }
 }
 
+void ResultFolder::check_lock() const {
+  if (!lock_->held()) throw OutputLost(fmt::format("{}: the folder was removed or replaced during this run", folder_.string()));
+}
+
 void ResultFolder::write(const std::string& name, std::string_view content) {
+  check_lock();
   std::error_code error;
   // Results of a run that was killed are all there is of it: they stay until these are finished.
   for (int k = 1; stage_.empty(); ++k) {
@@ -124,9 +143,13 @@ void ResultFolder::write(const std::string& name, std::string_view content) {
 }
 
 void ResultFolder::publish(bool interrupted) {
+  check_lock();
   if (destination(interrupted) != folder_) return;
   std::error_code error;
   for (const std::string& name : written_) {
+    if (const fs::file_status old = fs::status(folder_ / name, error); fs::is_regular_file(old)) {
+      fs::permissions(stage_ / name, old.permissions(), error);  // what replaces a file gets its access rights
+    }
     fs::rename(stage_ / name, folder_ / name, error);
     if (error)
       throw OutputLost(

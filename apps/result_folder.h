@@ -19,6 +19,8 @@ class FolderLock {
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
+  /// Whether the lock still stands in the folder: somebody may have removed or renamed that.
+  [[nodiscard]] bool held() const;
 
  private:
   std::filesystem::path file_;
@@ -45,6 +47,7 @@ class ResultFolder {
  private:
   [[nodiscard]] std::filesystem::path staged(int k) const;
   void remove_abandoned() const;
+  void check_lock() const;
 
   std::filesystem::path folder_;
   std::vector<std::string> files_, written_;

@@ -16,6 +16,7 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/search_log.h"
+#include "apps/shell_word.h"
 #include "apps/streams.h"
 #include "base/read_file.h"
 #include "base/require.h"
@@ -416,7 +417,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   }
   const bool interrupted = result.search.termination == Termination::interrupted;
   const fs::path place = folder->destination(interrupted);
-  j["reproduce"] = {c.command, fmt::format("softland simulate {}", (place / "best.toml").string())};
+  j["reproduce"] = {c.command, "softland simulate " + shell_word((place / "best.toml").string())};
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
   if (result.best_scene) {
     folder->write("best.toml", result.best_scene->scene.file.text());

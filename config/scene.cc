@@ -91,6 +91,11 @@ Structure read_structure(const SectionReader& in) {
 Gap read_gap(const SectionReader& in) {
   const Gap gap{.electrode = in.number("electrode"), .contact = in.number("contact")};
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
+  // A run that comes within a hundredth of the electrode gap of the electrode has failed: see Switch::gap_floor().
+  constexpr double most = 0.99;
+  in.require(gap.contact < most * gap.electrode, "contact",
+             fmt::format("must be less than {:g} times {}: nearer than a hundredth of that gap no force law holds", most,
+                         in.written("electrode")));
   return gap;
 }
 

@@ -90,6 +90,7 @@ std::string slenderness_warning(const Structure& s) {
   const std::vector<double> excess = frequency_excess(s);
   if (std::none_of(excess.begin(), excess.end(), [](double e) { return e >= worth_saying; })) return {};
   for (std::size_t i = 0; i < excess.size(); ++i) {
+    if (excess[i] < worth_saying) continue;
     words.push_back(fmt::format("{:.{}f} % (mode {})", 100 * excess[i], excess[i] < 0.1 ? 1 : 0, i + 1));
   }
   return fmt::format(

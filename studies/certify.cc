@@ -169,7 +169,8 @@ Closing certify(const Prepared& prepared, const Watch& watch) {
   const ClosingOptions options{
       .duration = prepared.duration, .tolerance = std::min(c.judge->tolerance, c.tolerance), .stop = watch.stop};
   Metrics better = c.judge->metrics;
-  better.hold_force = hold_force(Switch(prepared.scene.device, c.judge->quadrature), signals);
+  if (std::isfinite(c.metrics.hold_force))
+    better.hold_force = hold_force(Switch(prepared.scene.device, c.judge->quadrature), signals);
   const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);
   std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {}, watch);
   if (watch.stopped()) {

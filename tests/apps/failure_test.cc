@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "apps/exit_status.h"
+#include "apps/shell_word.h"
 #include "base/output_lost.h"
 #include "base/require.h"
 #include "base/watch.h"
@@ -55,6 +56,13 @@ TEST(ExitStatus, IsListedInReadmeAndHelp) {
     EXPECT_THAT(readme, HasSubstr("\n| " + std::to_string(status) + " | "));
     EXPECT_THAT(help.substr(help.find("Exit status: ")), testing::ContainsRegex("[ \n]" + std::to_string(status) + " [a-z]"));
   }
+}
+
+TEST(ShellWord, IsQuotedWhereAShellWouldNotLeaveIt) {
+  EXPECT_EQ(shell_word("run-1/best.toml"), "run-1/best.toml");
+  EXPECT_EQ(shell_word("my out; ls/best.toml"), "'my out; ls/best.toml'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word(""), "''");
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr int bad_input = 2, output_lost = 74, interrupted = 130;
-constexpr std::array stopping_signals{SIGINT, SIGTERM, SIGHUP};
+constexpr std::array stopping_signals{SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
 struct Call {
   std::vector<std::string> quick;  ///< prints something within a moment
@@ -406,6 +406,64 @@ TEST_F(Faults, TwoRunsDoNotWorkInOneFolder) {
   EXPECT_EQ(place.run({"report", "out"}).status, 0);
   EXPECT_FALSE(fs::exists(place.path() / "out/softland.lock"));
   EXPECT_TRUE(fs::exists(place.path() / "out/unfinished/best.toml")) << "what the killed search had found";
+}
+
+// ---- what happens to the folder of a run
+
+TEST_F(Faults, WhatAKilledSearchLeftMayBeRefinedInPlace) {
+  const Workplace place;
+  fs::create_directories(place.path() / "out/unfinished");
+  fs::copy(place.path() / "gold.toml", place.path() / "out/unfinished/best.toml");
+  const std::string before = read(place.path() / "out/unfinished/best.toml");
+  const Outcome o = place.run(
+      words("optimize", std::vector<std::string>{"out/unfinished/best.toml"} + in_volts +
+                            std::vector<std::string>{"--budget", "6", "--set", "simulate.duration=150 us", "--out", "out"}));
+  EXPECT_NE(o.status, bad_input) << o.err;
+  EXPECT_EQ(read(place.path() / "out/unfinished/best.toml"), before) << "the scene that it read";
+}
+
+TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost) {
+  const Workplace place;
+  const pid_t child = place.start(words("optimize", std::vector<std::string>{"gold.toml"} + in_volts +
+                                                        std::vector<std::string>{"--budget", "2 s", "--out", "out"}));
+  for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(20ms);
+  fs::remove_all(place.path() / "out");
+  // Somebody else works there now.
+  fs::create_directories(place.path() / "out");
+  write(place.path() / "out/softland.lock", "process 1 on elsewhere");
+  const Outcome o = place.finish(child);
+  EXPECT_EQ(o.status, output_lost) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("out: the folder was removed or replaced during this run"));
+  EXPECT_EQ(read(place.path() / "out/softland.lock"), "process 1 on elsewhere");
+}
+
+TEST_F(Faults, NothingInTheFolderIsTakenForWhatItIsNot) {
+  const Workplace place;
+  const auto into = [&](const std::string& folder) {
+    return place.run(words("simulate", calls()["simulate"].quick + std::vector<std::string>{"--out", folder}));
+  };
+  fs::create_directories(place.path() / "notes");
+  write(place.path() / "notes/softland.lock", "my notes");
+  const Outcome notes = into("notes");
+  EXPECT_EQ(notes.status, bad_input);
+  EXPECT_THAT(notes.err, HasSubstr("is no lock of softland"));
+  EXPECT_EQ(read(place.path() / "notes/softland.lock"), "my notes");
+  fs::create_directories(place.path() / "taken/result.json");
+  const Outcome taken = into("taken");
+  EXPECT_EQ(taken.status, bad_input);
+  EXPECT_THAT(taken.err, HasSubstr("result.json is a folder"));
+}
+
+TEST_F(Faults, ResultsKeepTheAccessRightsOfThoseTheyReplace) {
+  const Workplace place;
+  const auto run = [&] {
+    return place.run(words("simulate", calls()["simulate"].quick + std::vector<std::string>{"--out", "out"})).status;
+  };
+  ASSERT_EQ(run(), 0);
+  const auto mine = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(place.path() / "out/result.json", mine);
+  ASSERT_EQ(run(), 0);
+  EXPECT_EQ(fs::status(place.path() / "out/result.json").permissions(), mine);
 }
 
 }  // namespace

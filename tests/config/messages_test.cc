@@ -125,6 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     structure_line("plate_strain = true", "x.toml:9: structure.plate_strain = true: needs structure.poissons_ratio"),
     structure_line(R"(plate_strain = "yes")", R"(x.toml:9: structure.plate_strain = "yes": expected true or false)"),
     structure_line("poissons_ratio = 0.5", "x.toml:9: structure.poissons_ratio = 0.5: must be in (-1, 0.5)"),
+    Edit{R"(contact = "2 um")", R"(contact = "3.47 um")", R"(x.toml:11: gap.contact = "3.47 um": must be less than 0.99 times gap.electrode = "3.5 um": nearer than a hundredth of that gap no force law holds)"},
     Edit{R"(contact = "2 um")", R"(contact = "3.5 um")", R"(x.toml:11: gap.contact = "3.5 um": must be less than gap.electrode = "3.5 um")"},
     Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", "251 um"])", R"(x.toml:13: electrode.main.span = ["60 um", "251 um"]: must end on the beam: structure.length = "250 um")"},
     Edit{R"(span = ["60 um", "240 um"])", R"(span = ["60 um", "60 um"])", R"(x.toml:13: electrode.main.span = ["60 um", "60 um"]: the end must lie beyond the begin)"},

@@ -93,7 +93,7 @@ TEST(Timoshenko, ExcessOfSlenderBeamsGoesWithTheSquareOfThickness) {
 TEST(Timoshenko, WarnsByModeWhereTheBeamIsNotSlender) {
   EXPECT_THAT(slenderness_warning(beam(StructureKind::cantilever, 0.1, 4)),
               HasSubstr("length / thickness = 10: shear and rotary inertia are left out, which makes the natural frequencies too "
-                        "high by about 0.8 % (mode 1), 5.4 % (mode 2), 12 % (mode 3), 21 % (mode 4)"));
+                        "high by about 5.4 % (mode 2), 12 % (mode 3), 21 % (mode 4)"));
   EXPECT_THAT(slenderness_warning(beam(StructureKind::cantilever, 0.1, 1)), IsEmpty()) << "the first mode alone is nearly right";
   EXPECT_THAT(slenderness_warning(beam(StructureKind::cantilever, 0.008, 4)), IsEmpty());
   EXPECT_THAT(slenderness_warning(beam(StructureKind::clamped_clamped, 0.1, 1)), HasSubstr("6.7 % (mode 1)"));

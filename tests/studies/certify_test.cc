@@ -285,5 +285,14 @@ TEST(GrazingRebound, IsSeenWhereSomeRunsGoOn) {
   EXPECT_EQ(grazing_rebound(more, {})->number, 3);
 }
 
+TEST(Certify, FindsNothingIllConditionedWhereNothingTouches) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
+  file.set("simulate.duration=20 us");
+  const Closing c = certify(prepare(file));
+  ASSERT_EQ(c.metrics.status, Status::no_contact);
+  ASSERT_TRUE(c.certificate);
+  EXPECT_TRUE(c.certificate->ill_conditioned.empty()) << c.certificate->ill_conditioned.front().key;
+}
+
 }  // namespace
 }  // namespace softland
