@@ -1,6 +1,8 @@
 #include "apps/output.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -21,11 +23,29 @@ std::string json_text(const json& data, int indent) {
   return data.dump(indent, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
+// Besides what every output must keep off: standard output, which may be the same file, and what a run keeps in its folder while
+// it works.
+void check_json_place(const std::string& file, const fs::path& folder) {
+  if (!folder.empty()) {
+    const fs::path inside =
+        fs::weakly_canonical(fs::absolute(file)).lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
+    const std::string first = inside.empty() ? std::string() : inside.begin()->string();
+    require(first != "softland.lock" && !first.starts_with("unfinished"),
+            fmt::format("--json {}: lies where a run keeps its unfinished results; name another file", file));
+  }
+  check_writable(file);
+  struct stat out {
+  }, there{};
+  const bool is_output = ::fstat(STDOUT_FILENO, &out) == 0 && ::stat(file.c_str(), &there) == 0 && out.st_dev == there.st_dev &&
+                         out.st_ino == there.st_ino;
+  require(!is_output, fmt::format("--json {}: is this run's standard output; use --json -", file));
+}
+
 std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std::string>& files) {
   const bool has_file = !c.json.empty() && c.json != "-";
   std::optional<ResultFolder> folder;
   if (!c.out.empty()) folder.emplace(c.out, c.command, files);
-  if (has_file) check_writable(c.json);
+  if (has_file) check_json_place(c.json, folder ? folder->path() : fs::path());
   for (const std::string& name : folder ? files : std::vector<std::string>()) {
     const fs::path file = folder->path() / name;
     require(!has_file || fs::weakly_canonical(c.json) != fs::weakly_canonical(file),

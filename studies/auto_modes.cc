@@ -62,12 +62,14 @@ double change(const std::vector<Figure>& from, const std::vector<Figure>& to) {
 }  // namespace
 
 std::string AutoModes::note() const {
-  const std::string judged = "t_i, v_i, the highest rebound of the first period after contact and the pull-in voltages";
+  const std::string judged =
+      touches ? "t_i, v_i, the highest rebound of the first period after contact and the pull-in voltages"
+              : "the pull-in voltages, the only figures that are judged since the closing does not touch in its window,";
   const std::string not_judged = "later rebounds, and with them B_H, N_B and t_p, are not judged and may move more";
-  return settled() ? fmt::format(R"(structure.modes = "auto": {} modes; further ones move {} by at most {:.2g} %; {})", modes,
-                                 judged, 100 * moved, not_judged)
-                   : fmt::format(R"(structure.modes = "auto": {} modes, but further ones still move one of {} by {:.2g} %; {})",
-                                 modes, judged, 100 * moved, not_judged);
+  return settled() ? fmt::format(R"(structure.modes = "auto": {} mode{}; further ones move {} by at most {:.2g} %; {})", modes,
+                                 modes == 1 ? "" : "s", judged, 100 * moved, not_judged)
+                   : fmt::format(R"(structure.modes = "auto": {} mode{}, but further ones still move one of {} by {:.2g} %; {})",
+                                 modes, modes == 1 ? "" : "s", judged, 100 * moved, not_judged);
 }
 
 AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
@@ -83,6 +85,7 @@ AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
       found.moved = std::max(
           found.moved, change(known[static_cast<std::size_t>(modes - 1)], known[static_cast<std::size_t>(modes + more - 1)]));
     }
+    found.touches = std::isfinite(known[static_cast<std::size_t>(modes - 1)].front().value);
     if (found.settled()) break;
   }
   return found;

@@ -19,7 +19,8 @@ inline constexpr double auto_modes_tolerance = 0.03;
 
 struct AutoModes {
   int modes = 0;
-  double moved = 0;  ///< the most that further modes move a figure, relative
+  bool touches = true;  ///< the closing that is judged
+  double moved = 0;     ///< the most that further modes move a figure, relative
   [[nodiscard]] bool settled() const { return moved <= auto_modes_tolerance; }
   /// What a result says about it.
   [[nodiscard]] std::string note() const;

@@ -112,8 +112,9 @@ Prepared as_described(const SceneFile& given, bool default_limits, const Watch& 
 
 std::string left_out_note(const EffectsChoice& choice, double tolerance) {
   if (choice.left_out.empty())
-    return fmt::format("effects = \"auto\": nothing is left out, every effect changes a figure by more than {}",
-                       engineering(tolerance, ""));
+    return fmt::format(
+        "effects = \"auto\": nothing is left out: no effect was found without which t_i, v_i and B_H change by less than {}",
+        engineering(tolerance, ""));
   std::vector<std::string> names;
   for (const Omission& o : choice.left_out)
     names.push_back(fmt::format("{} ({})", o.what.effect, engineering(o.influence, "", 1)));

@@ -454,6 +454,18 @@ TEST_F(Faults, NothingInTheFolderIsTakenForWhatItIsNot) {
   EXPECT_THAT(taken.err, HasSubstr("result.json is a folder"));
 }
 
+TEST_F(Faults, JsonKeepsOffStandardOutputAndUnfinishedResults) {
+  const Workplace place;  // where standard output is stdout.txt
+  fs::create_directories(place.path() / "out");
+  for (const std::string file :
+       {"out/softland.lock", "out/unfinished", "out/unfinished/result.json", "out/unfinished-2", "stdout.txt"}) {
+    const Outcome o =
+        place.run(words("simulate", calls()["simulate"].quick + std::vector<std::string>{"--out", "out", "--json", file}));
+    EXPECT_EQ(o.status, bad_input) << file;
+    EXPECT_THAT(o.err, HasSubstr("--json " + file + ": ")) << file;
+  }
+}
+
 TEST_F(Faults, ResultsKeepTheAccessRightsOfThoseTheyReplace) {
   const Workplace place;
   const auto run = [&] {

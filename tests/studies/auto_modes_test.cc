@@ -37,6 +37,15 @@ TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
   EXPECT_NEAR(rebound(std::to_string(found.modes).c_str()), converged, 2 * auto_modes_tolerance * converged);
 }
 
+TEST(AutoModes, SayWhenNoClosingCouldBeJudged) {
+  SceneFile file = gold_at_17_volts("auto");
+  file.set("simulate.duration=20 us");
+  const AutoModes found = choose_modes(file);
+  EXPECT_FALSE(found.touches);
+  EXPECT_THAT(found.note(), HasSubstr("the pull-in voltages, the only figures that are judged"));
+  EXPECT_THAT(found.note(), testing::Not(HasSubstr("t_i, v_i, the highest rebound")));
+}
+
 TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
   const Prepared p = prepare(gold_at_17_volts("auto"));
   const int modes = p.scene.device.structure.modes;
