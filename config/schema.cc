@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/engineering.h"
+#include "model/device.h"
 
 namespace softland::internal {
 namespace {
@@ -232,7 +233,7 @@ std::vector<Section> make_schema() {
                 .about = "of the beam"},
                {.name = "modes",
                 .type = integer,
-                .range = {.least = 1, .most = 20},
+                .range = {.least = 1, .most = most_modes},
                 .words = {"auto"},
                 .fallback = "4",
                 .only_for = beams,

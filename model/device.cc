@@ -142,7 +142,7 @@ void validate(const Device& d) {
     positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
     positive(s.density, "kg/m^3", "structure.density");
   }
-  require(s.modes >= 1 && s.modes <= 20, fmt::format("structure.modes = {}: must be from 1 to 20", s.modes));
+  require(s.modes >= 1 && s.modes <= most_modes, fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes));
   require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
           fmt::format("structure.damping_ratio = {}: must be in [0, 1000)", s.damping_ratio));
   require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),

@@ -13,6 +13,9 @@
 
 namespace softland {
 
+/// Of a beam: the formulas of higher mode shapes lose their digits.
+inline constexpr int most_modes = 20;
+
 enum class StructureKind { cantilever, clamped_clamped, plate };
 
 /// What moves: a beam of rectangular section (Euler-Bernoulli), clamped at one end or both, or a rigid plate on springs.

@@ -131,9 +131,9 @@ class Statics {
 };
 
 // The static branch of one drive as a function of the contact point's deflection.
-class Branch {
+class EquilibriumBranch {
  public:
-  Branch(const Switch& device, std::size_t drive) : statics_(device), drive_(drive) {}
+  EquilibriumBranch(const Switch& device, std::size_t drive) : statics_(device), drive_(drive) {}
 
   // Strength at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
   double operator()(double s) {
@@ -213,7 +213,7 @@ StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
   // V.
   const bool from_straight = device.drive_kind(drive) == DriveKind::dispersion;
   if (!from_straight && !device.rest()) return {.status = Status::collapsed_at_rest};
-  Branch branch(device, drive);
+  EquilibriumBranch branch(device, drive);
   const double end = device.device().gap.contact;
   const double begin = from_straight ? 0 : device.contact_deflection(device.rest()->data());
   const auto place = [&](double k) { return begin + (end - begin) * k / branch_steps; };
@@ -239,7 +239,7 @@ StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
 
 double release_voltage(const Switch& device, std::size_t drive) {
   if (!device.has_contact() || !pulls_in(device.device(), drive)) return nan;
-  Branch branch(device, drive);
+  EquilibriumBranch branch(device, drive);
   const double plane = device.device().gap.contact;
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
   if (device.rigid_contact() != nullptr) {
@@ -303,7 +303,7 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
   if (static_result.status != Status::done) return {.status = static_result.status};
   if (!device.rest()) return {.status = Status::collapsed_at_rest};
   Statics statics(device);
-  Branch branch(device, drive);
+  EquilibriumBranch branch(device, drive);
   const double plane = device.device().gap.contact;
   const Eigen::VectorXd& rest = *device.rest();
   Switch::Workspace work = device.workspace();

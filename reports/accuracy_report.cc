@@ -12,6 +12,7 @@
 #include "reports/chart.h"
 #include "reports/escape.h"
 #include "reports/findings.h"
+#include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
@@ -22,13 +23,12 @@
 namespace softland {
 namespace {
 
+using internal::json_number;
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json errors_json(const FigureErrors& errors) {
   json all = json::object();
-  for (std::size_t i = 0; i < errors.size(); ++i) all[std::string(studied_figures[i].key)] = number(errors[i]);
+  for (std::size_t i = 0; i < errors.size(); ++i) all[std::string(studied_figures[i].key)] = json_number(errors[i]);
   return all;
 }
 
@@ -49,7 +49,7 @@ json row_json(const AccuracyRow& row) {
   j["metrics"] = metrics_json(row.figures);
   j["steps"] = row.work.steps;
   j["rhs_evaluations"] = row.work.rhs_evaluations;
-  j["cpu_s"] = number(row.seconds);
+  j["cpu_s"] = json_number(row.seconds);
   j["runs"] = row.runs;
   return j;
 }
@@ -61,7 +61,7 @@ json rows_json(const std::vector<AccuracyRow>& rows) {
 }
 
 json spread_json(const Spread& s) {
-  return {{"low", number(s.low)}, {"median", number(s.median)}, {"high", number(s.high)}, {"runs", s.runs}};
+  return {{"low", json_number(s.low)}, {"median", json_number(s.median)}, {"high", json_number(s.high)}, {"runs", s.runs}};
 }
 
 std::string error_cell(double error) { return std::isinf(error) ? "missing" : internal::relative_error(error); }

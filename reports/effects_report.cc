@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
@@ -15,6 +16,7 @@
 namespace softland {
 namespace {
 
+using internal::json_number;
 using nlohmann::json;
 
 struct Influence {
@@ -26,9 +28,7 @@ constexpr Influence influences[] = {{"initial_contact_time", "t_i", &Metrics::in
                                     {"impact_velocity", "v_i", &Metrics::impact_velocity},
                                     {"major_bounce_height", "B_H", &Metrics::major_bounce_height}};
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-json named(const NamedNumber& n) { return {{"name", n.name}, {"unit", n.unit}, {"value", number(n.value)}}; }
+json named(const NamedNumber& n) { return {{"name", n.name}, {"unit", n.unit}, {"value", json_number(n.value)}}; }
 
 std::string size_of(const NamedNumber& n) {
   return std::isfinite(n.value) ? fmt::format("{} {}", n.name, internal::quantity(n.value, n.unit)) : std::string();
@@ -64,7 +64,7 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
   json list = json::array();
   for (const Effect& e : effects.list) {
     json change = json::object();
-    for (const Influence& i : influences) change[i.key] = number(relative_change(e, effects.own(e.section), i.figure));
+    for (const Influence& i : influences) change[i.key] = json_number(relative_change(e, effects.own(e.section), i.figure));
     list.push_back({{"section", e.section},
                     {"choice", e.choice},
                     {"in_scene", e.in_scene},
@@ -73,7 +73,7 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
                     {"dimensionless_group", named(e.group)},
                     {"metrics", metrics_json(e.metrics)},
                     {"relative_change", change},
-                    {"rhs_s", number(e.rhs_seconds)},
+                    {"rhs_s", json_number(e.rhs_seconds)},
                     {"warnings", e.warnings}});
   }
   json not_compared = json::array();
@@ -82,18 +82,18 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
   for (const Omission& o : effects.omissions) {
     json change = json::object();
     const Metrics& own = effects.own("gas").metrics;
-    for (const Influence& i : influences) change[i.key] = number((o.metrics.*i.figure - own.*i.figure) / (own.*i.figure));
+    for (const Influence& i : influences) change[i.key] = json_number((o.metrics.*i.figure - own.*i.figure) / (own.*i.figure));
     left_out.push_back({{"effect", o.what.effect},
                         {"choice", o.what.choice},
                         {"magnitude", named(o.what.magnitude)},
                         {"dimensionless_group", named(o.what.group)},
                         {"metrics", metrics_json(o.metrics)},
                         {"relative_change", change},
-                        {"influence", number(o.influence)},
-                        {"rhs_s", number(o.rhs_seconds)}});
+                        {"influence", json_number(o.influence)},
+                        {"rhs_s", json_number(o.rhs_seconds)}});
   }
   json spread = json::object();
-  for (const Influence& i : influences) spread[i.key] = number(effects.spread("gas", i.figure));
+  for (const Influence& i : influences) spread[i.key] = json_number(effects.spread("gas", i.figure));
   return {{"kind", "effects"},
           {"status", to_string(effects.interrupted ? Status::interrupted : effects.own("gas").metrics.status)},
           {"left_out", left_out},

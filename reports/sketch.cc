@@ -24,7 +24,7 @@ std::string rectangle(double left, double top, double wide, double high, const c
                      what);
 }
 
-std::string line(double x1, double y1, double x2, double y2, const char* what) {
+std::string drawn_line(double x1, double y1, double x2, double y2, const char* what) {
   return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"{}\"/>\n", x1, y1, x2, y2, what);
 }
 
@@ -34,8 +34,8 @@ std::string words(double x, double y, const char* anchor, const std::string& tex
 
 /// A measure between two heights, with its words to the right.
 std::string height_measure(double x, double top, double bottom, const std::string& text) {
-  return line(x, top, x, bottom, "measure") + line(x - 4, top, x + 4, top, "measure") +
-         line(x - 4, bottom, x + 4, bottom, "measure") + words(x + 8, (top + bottom) / 2 + 4, "start", text);
+  return drawn_line(x, top, x, bottom, "measure") + drawn_line(x - 4, top, x + 4, top, "measure") +
+         drawn_line(x - 4, bottom, x + 4, bottom, "measure") + words(x + 8, (top + bottom) / 2 + 4, "start", text);
 }
 
 std::string spring(double left, double right, double y) {
@@ -87,8 +87,8 @@ std::string sketch(const json& result) {
   out += words((left + right) / 2, top + 11, "middle", plate ? "plate" : "beam");
   if (!plate && given_length > 0) {
     const double above = top - (at(scene, {"piezo"}).is_object() ? 22 : 12);
-    out += line(left, above, right, above, "measure") + line(left, above - 4, left, above + 4, "measure") +
-           line(right, above - 4, right, above + 4, "measure") +
+    out += drawn_line(left, above, right, above, "measure") + drawn_line(left, above - 4, left, above + 4, "measure") +
+           drawn_line(right, above - 4, right, above + 4, "measure") +
            words((left + right) / 2, above - 6, "middle", "length " + given_quantity(given_length, "m"));
   }
   if (const json& piezo = at(scene, {"piezo"}); piezo.is_object()) {
@@ -118,8 +118,8 @@ std::string sketch(const json& result) {
   const double contact_left = std::min(x_at(contact_at) - contact_wide / 2, plate || both_ends ? right : right - contact_wide);
   out += rectangle(contact_left, plane, contact_wide, floor + electrode - plane, "contact");
   const double measure = both_ends || plate ? right + 64 : right + 16;
-  out +=
-      line(contact_left + contact_wide, plane, measure + 6, plane, "guide") + line(right, bottom, measure + 6, bottom, "guide");
+  out += drawn_line(contact_left + contact_wide, plane, measure + 6, plane, "guide") +
+         drawn_line(right, bottom, measure + 6, bottom, "guide");
   out += height_measure(measure, bottom, plane, "to the contact " + given_quantity(contact_gap, "m"));
   out += words(measure + 8, floor + electrode, "start", "to the electrode " + given_quantity(electrode_gap, "m"));
   const double height = floor + electrode + 26;
@@ -172,12 +172,12 @@ std::string parameter_drawing(const json& result, const std::string& drive) {
   const auto y = [&](double level) { return bottom - (level - lowest) / (highest - lowest) * (bottom - top); };
   std::string path;
   for (const auto& [time, level] : points) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x(time), y(level));
-  std::string out = line(left, y(0), right, y(0), "guide") + words(left - 6, y(0) + 4, "end", "0");
+  std::string out = drawn_line(left, y(0), right, y(0), "guide") + words(left - 6, y(0) + 4, "end", "0");
   double below = bottom + row;
   for (const auto& [name, from, to] : spans) {
-    for (const double time : {from, to}) out += line(x(time), top, x(time), below + 4, "guide");
-    out += line(x(from), below, x(to), below, "measure") + line(x(from), below - 4, x(from), below + 4, "measure") +
-           line(x(to), below - 4, x(to), below + 4, "measure") + words(x(to) + 8, below + 4, "start", name);
+    for (const double time : {from, to}) out += drawn_line(x(time), top, x(time), below + 4, "guide");
+    out += drawn_line(x(from), below, x(to), below, "measure") + drawn_line(x(from), below - 4, x(from), below + 4, "measure") +
+           drawn_line(x(to), below - 4, x(to), below + 4, "measure") + words(x(to) + 8, below + 4, "start", name);
     below += row;
   }
   out += fmt::format("<path d=\"{}\" class=\"wave\"/>\n", path);

@@ -19,7 +19,6 @@ constexpr double reference_tighter = 1e-4;  // than the tightest tolerance
 constexpr double reference_looser = 100;    // the second reference, than the first; and every reference tried than the next
 constexpr double reference_growth = 2.5;    // of the time from one to the next, of a fifth-order method
 constexpr double told_apart = 9.9;          // times the reference's tolerance, less what rounding takes: errors show from here on
-constexpr int most_modes = 20;              // of a scene
 constexpr CloudOptions cloud_options{.runs = 8};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }

@@ -15,7 +15,6 @@
 namespace softland {
 namespace {
 
-constexpr int most_modes = 20;          // of a scene
 constexpr double run_tolerance = 1e-6;  // of the integrator: errors far below auto_modes_tolerance
 constexpr double least_share = 0.01;    // of what a closing is like, below which a figure is as good as zero
 

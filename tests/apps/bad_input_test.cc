@@ -229,7 +229,7 @@ TEST_F(BadInput, Results) {
 TEST_F(BadInput, ResultsThatMayNotBeRead) {
   write(here->path() / "secret.json", "{}");
   fs::permissions(here->path() / "secret.json", fs::perms::none);
-  testing::expect_where_access_rights_bind([] {
+  test::expect_where_access_rights_bind([] {
     expect_refused({{{"report", "secret.json"}, "secret.json: cannot be read: Permission denied"},
                     {{"export", "secret.json"}, "secret.json: cannot be read: Permission denied"}});
   });

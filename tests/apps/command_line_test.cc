@@ -15,12 +15,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-std::set<std::string> keys(const json& object) {
-  std::set<std::string> all;
-  for (const auto& [key, value] : object.items()) all.insert(key);
-  return all;
-}
-
 TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
   const Workplace here;
   for (const char* verb :

@@ -186,7 +186,7 @@ TEST_F(Faults, EverySignalEndsEveryVerbThatWaitsForItsReader) {
       fs::copy(here->path() / "run", place->path() / "run", fs::copy_options::recursive);
       children.push_back(place->start(words(verb, calls()[verb].quick), SOFTLAND_PROGRAM, pipe.end()));
     }
-    std::this_thread::sleep_for(1500ms);
+    for (const pid_t child : children) wait_until_it_waits(child);
     for (const pid_t child : children) EXPECT_EQ(kill(child, signal), 0);
     for (std::size_t k = 0; k < children.size(); ++k)
       EXPECT_EQ(places[k].second->finish(children[k]).status, interrupted) << places[k].first << ", signal " << signal;
@@ -202,7 +202,7 @@ TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo) {
       const auto& place = places.emplace_back(verb, workplace()).second;
       children.push_back(place->start(words(verb, calls()[verb].slow)));
     }
-    std::this_thread::sleep_for(1000ms);
+    for (const pid_t child : children) wait_until_it_computes(child);
     const auto sent = std::chrono::steady_clock::now();
     for (const pid_t child : children) EXPECT_EQ(kill(child, signal), 0);
     for (std::size_t k = 0; k < children.size(); ++k) {
@@ -235,6 +235,7 @@ TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs) {
       children.push_back(place->start(words(verb, more), SOFTLAND_PROGRAM, Workplace::to_file, screen));
       close(screen);
     }
+    for (const pid_t child : children) wait_until_it_computes(child);
     std::this_thread::sleep_for(1500ms);
     for (std::size_t k = 0; k < children.size(); ++k) {
       kill(children[k], SIGTERM);

@@ -6,14 +6,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 extern char** environ;
@@ -40,6 +45,48 @@ struct Outcome {
   int status = -1;  ///< exit status, or minus the signal that ended the program
   std::string out, err;
 };
+
+/// What /proc/PID/stat tells of a process (proc(5)).
+struct ProcessState {
+  char state = 'X';     ///< R: runs or could, S: sleeps, Z: has ended, X: there is none
+  long cpu_ticks = -1;  ///< used so far, by all of its threads
+};
+inline ProcessState process_state(pid_t child) {
+  const std::string stat = read("/proc/" + std::to_string(child) + "/stat");
+  const std::size_t name_end = stat.rfind(')');  // the name before may hold anything
+  if (name_end == std::string::npos) return {};
+  std::istringstream fields(stat.substr(name_end + 1));
+  ProcessState process;
+  long user = 0, system = 0;
+  std::string skipped;
+  fields >> process.state;
+  for (int field = 4; field < 14; ++field) fields >> skipped;
+  fields >> user >> system;
+  process.cpu_ticks = user + system;
+  return process;
+}
+
+/// Waits until the process has computed for a while, however busy the machine is; at most a minute.
+inline void wait_until_it_computes(pid_t child) {
+  const long enough = sysconf(_SC_CLK_TCK) / 2;
+  for (int i = 0; i < 1200; ++i) {
+    const ProcessState process = process_state(child);
+    if (process.cpu_ticks >= enough || process.state == 'Z' || process.state == 'X') return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+/// Waits until the process waits for something itself; at most a minute.
+inline void wait_until_it_waits(pid_t child) {
+  long ticks = -1;
+  for (int i = 0, quiet = 0; i < 1200 && quiet < 10; ++i) {
+    const ProcessState process = process_state(child);
+    if (process.state == 'Z' || process.state == 'X') return;
+    quiet = process.state == 'S' && process.cpu_ticks == ticks ? quiet + 1 : 0;
+    ticks = process.cpu_ticks;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
 
 /// A temporary folder that the program works in.
 class Workplace {
@@ -110,5 +157,12 @@ class Workplace {
  private:
   fs::path path_;
 };
+
+/// Of a JSON object.
+inline std::set<std::string> keys(const nlohmann::json& object) {
+  std::set<std::string> all;
+  for (const auto& [key, value] : object.items()) all.insert(key);
+  return all;
+}
 
 }  // namespace softland

@@ -49,12 +49,6 @@ std::vector<std::string> lines(const std::string& text) {
   return all;
 }
 
-std::set<std::string> keys(const json& object) {
-  std::set<std::string> all;
-  for (const auto& [key, value] : object.items()) all.insert(key);
-  return all;
-}
-
 void expect_complete_log(const std::string& log) {
   ASSERT_FALSE(log.empty());
   EXPECT_EQ(log.back(), '\n');

@@ -30,7 +30,7 @@ TEST_P(BadFile, IsRefusedWithThisMessage) {
   EXPECT_EQ(message(edited(small_scene, GetParam().from, GetParam().to)), GetParam().expected);
 }
 
-const std::string main_waveform = "family = \"step\"\nlevel = \"1.25 Vdp\"";
+const std::string main_step = "family = \"step\"\nlevel = \"1.25 Vdp\"";
 const std::string harmonic = "family = \"harmonic\"\n";
 const std::string table = "family = \"table\"\n";
 
@@ -189,20 +189,20 @@ INSTANTIATE_TEST_SUITE_P(Drives, BadFile, testing::Values(
     Edit{"[piezo]\nspan = [\"5 um\", \"240 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n", "", "x.toml:24: [waveform.piezo]: there is no [piezo] layer to drive"}));
 
 INSTANTIATE_TEST_SUITE_P(Families, BadFile, testing::Values(
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"", "x.toml:27: [waveform.main]: missing key 'angular_frequency' or 'frequency'"},
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nfrequency = \"30 kHz\"\nangular_frequency = \"180543 rad/s\"", R"(x.toml:32: waveform.main.angular_frequency = "180543 rad/s": cannot stand beside waveform.main.frequency = "30 kHz": give one of them)"},
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nfrequency = \"180543 rad/s\"", R"(x.toml:31: waveform.main.frequency = "180543 rad/s": expected a frequency [Hz], got an angular frequency [rad/s])"},
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 kHz\"", R"(x.toml:31: waveform.main.angular_frequency = "30 kHz": expected an angular frequency [rad/s], got a frequency [Hz])"},
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = 0.15\nangular_frequency = \"30 krad/s\"", R"(x.toml:30: waveform.main.amplitude = 0.15: no unit (expected a voltage such as "45 V" or "1.1 Vsp" or "1.25 Vdp" or "15 %"))"},
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"0.15\"\nangular_frequency = \"30 krad/s\"", R"(x.toml:30: waveform.main.amplitude = "0.15": no unit (expected a voltage such as "45 V" or "1.1 Vsp" or "1.25 Vdp" or "15 %"))"},
-    Edit{main_waveform, harmonic + "amplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"", R"(x.toml:29: waveform.main.amplitude = "15 %": is a percentage of the base, which is 0 V)"},
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"\nstart = \"2 us\"\nend = \"1 us\"", R"(x.toml:33: waveform.main.end = "1 us": end of a harmonic is 1e-06 s; it must be after its start, 2e-06 s)"},
-    Edit{main_waveform, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"\nend = \"1 us\"\nfade = \"1 us\"", R"(x.toml:33: waveform.main.fade = "1 us": fade of a harmonic is 1e-06 s; it must be at most half of end - start, 1e-06 s)"},
-    Edit{main_waveform, table, "x.toml:27: [waveform.main]: missing key 'file' or 'times' or 'voltages'"},
-    Edit{main_waveform, table + "times = [\"0 s\"]", "x.toml:27: [waveform.main]: missing key 'voltages' or 'file'"},
-    Edit{main_waveform, table + "file = \"absent.csv\"\ntimes = [\"0 s\"]\nvoltages = [\"1 V\"]", R"(x.toml:29: waveform.main.file = "absent.csv": cannot stand beside waveform.main.times = ["0 s"]: give one of them)"},
-    Edit{main_waveform, table + "file = \"absent.csv\"", R"(x.toml:29: waveform.main.file = "absent.csv": ./absent.csv: cannot be read: No such file or directory)"},
-    Edit{main_waveform, table + "times = [\"0 s\", \"1 s\"]\nvoltages = [\"1 V\"]", "x.toml:27: [waveform.main]: a table has 2 times and 1 voltages; there must be as many of both"}));
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = \"15 %\"", "x.toml:27: [waveform.main]: missing key 'angular_frequency' or 'frequency'"},
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nfrequency = \"30 kHz\"\nangular_frequency = \"180543 rad/s\"", R"(x.toml:32: waveform.main.angular_frequency = "180543 rad/s": cannot stand beside waveform.main.frequency = "30 kHz": give one of them)"},
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nfrequency = \"180543 rad/s\"", R"(x.toml:31: waveform.main.frequency = "180543 rad/s": expected a frequency [Hz], got an angular frequency [rad/s])"},
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 kHz\"", R"(x.toml:31: waveform.main.angular_frequency = "30 kHz": expected an angular frequency [rad/s], got a frequency [Hz])"},
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = 0.15\nangular_frequency = \"30 krad/s\"", R"(x.toml:30: waveform.main.amplitude = 0.15: no unit (expected a voltage such as "45 V" or "1.1 Vsp" or "1.25 Vdp" or "15 %"))"},
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = \"0.15\"\nangular_frequency = \"30 krad/s\"", R"(x.toml:30: waveform.main.amplitude = "0.15": no unit (expected a voltage such as "45 V" or "1.1 Vsp" or "1.25 Vdp" or "15 %"))"},
+    Edit{main_step, harmonic + "amplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"", R"(x.toml:29: waveform.main.amplitude = "15 %": is a percentage of the base, which is 0 V)"},
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"\nstart = \"2 us\"\nend = \"1 us\"", R"(x.toml:33: waveform.main.end = "1 us": end of a harmonic is 1e-06 s; it must be after its start, 2e-06 s)"},
+    Edit{main_step, harmonic + "base = \"40 V\"\namplitude = \"15 %\"\nangular_frequency = \"30 krad/s\"\nend = \"1 us\"\nfade = \"1 us\"", R"(x.toml:33: waveform.main.fade = "1 us": fade of a harmonic is 1e-06 s; it must be at most half of end - start, 1e-06 s)"},
+    Edit{main_step, table, "x.toml:27: [waveform.main]: missing key 'file' or 'times' or 'voltages'"},
+    Edit{main_step, table + "times = [\"0 s\"]", "x.toml:27: [waveform.main]: missing key 'voltages' or 'file'"},
+    Edit{main_step, table + "file = \"absent.csv\"\ntimes = [\"0 s\"]\nvoltages = [\"1 V\"]", R"(x.toml:29: waveform.main.file = "absent.csv": cannot stand beside waveform.main.times = ["0 s"]: give one of them)"},
+    Edit{main_step, table + "file = \"absent.csv\"", R"(x.toml:29: waveform.main.file = "absent.csv": ./absent.csv: cannot be read: No such file or directory)"},
+    Edit{main_step, table + "times = [\"0 s\", \"1 s\"]\nvoltages = [\"1 V\"]", "x.toml:27: [waveform.main]: a table has 2 times and 1 voltages; there must be as many of both"}));
 
 INSTANTIATE_TEST_SUITE_P(Spread, BadFile, testing::Values(
     spread_line(R"("structure.thicknes" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."structure.thicknes"]: 'structure.thicknes' is not a key of this scene that holds one number of the device (did you mean 'thickness'?))"),

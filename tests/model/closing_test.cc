@@ -14,6 +14,7 @@
 #include "model/quintic.h"
 #include "objectives/metrics.h"
 #include "tests/model/expect_refused.h"
+#include "tests/model/gold.h"
 #include "tests/support/devices.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
@@ -22,17 +23,12 @@ namespace softland {
 namespace {
 
 using namespace literals;
-
-constexpr double step_level = 17.771;  // [V], about 1.25 Vdp
+using test::gold;
+using test::step_level;
 
 const std::vector<Signal>& step() {
   static const std::vector<Signal> drives{Signal::constant(step_level)};
   return drives;
-}
-
-const Switch& gold() {
-  static const Switch device(test::gold_cantilever());
-  return device;
 }
 
 TEST(Closing, BeginsAtRestAndKeepsItsKnotsInOrder) {

@@ -12,6 +12,7 @@
 #include "model/closing.h"
 #include "model/constants.h"
 #include "model/pull_in.h"
+#include "tests/model/gold.h"
 #include "tests/support/devices.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
@@ -20,8 +21,7 @@ namespace softland {
 namespace {
 
 using namespace literals;
-
-constexpr double step_level = 17.771;  // [V], about 1.25 Vdp
+using test::step_level;
 
 struct Loss {
   std::string name;

@@ -8,13 +8,13 @@
 #include <numbers>
 
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
 
 namespace softland {
 namespace {
 
 using namespace literals;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGap = 2e-6;
 // Positions and times carry the rounding of 2 um and of the window; every figure that the interpolant holds exactly agrees this
 // well, relative to the largest number that enters it.

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "xml.h"
 
 namespace softland {
@@ -144,7 +142,7 @@ TEST(AccuracyPage, HoldsRecommendationsDiagramsTablesAndClouds) {
 
 TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
   const std::string svg = accuracy_svg("Gold & more", sample());
-  EXPECT_EQ(softland::testing::xml_fault(svg), "");
+  EXPECT_EQ(softland::test::xml_fault(svg), "");
   EXPECT_THAT(svg, HasSubstr("Gold &amp; more: what accuracy costs"));
   EXPECT_THAT(svg, HasSubstr("Largest relative error of t_i and v_i"));
   for (std::size_t i = 0; i < 2; ++i) EXPECT_THAT(svg, HasSubstr(">" + std::string(to_string(all_integrators[i])) + "<"));
@@ -154,7 +152,7 @@ TEST(AccuracyPicture, IsWellFormedAndHasACurveForWhateverHasErrors) {
   EXPECT_THAT(svg, HasSubstr(">1e-4</text>")) << "the tolerances along the curve of the own integrator";
   AccuracyStudy none = sample();
   none.conditioned = {};
-  EXPECT_EQ(softland::testing::xml_fault(accuracy_svg("", none)), "");
+  EXPECT_EQ(softland::test::xml_fault(accuracy_svg("", none)), "");
 }
 
 }  // namespace

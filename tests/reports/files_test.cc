@@ -11,15 +11,15 @@
 #include "base/output_lost.h"
 #include "base/read_file.h"
 #include "base/require.h"
-#include "temporary_folder.h"
 #include "tests/support/access_rights.h"
+#include "tests/support/temporary_folder.h"
 
 namespace softland {
 namespace {
 
 using nlohmann::json;
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
-using testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
 std::string content(const fs::path& path) {
@@ -90,7 +90,7 @@ TEST(WriteWhole, KeepsTheOldFileWhenTheFolderIsReadOnly) {
   const fs::path file = folder.path() / "kept";
   write_whole(file, "old");
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
-  testing::expect_where_access_rights_bind([&] { EXPECT_THAT(refusal(file, "new"), HasSubstr("Permission denied")); });
+  test::expect_where_access_rights_bind([&] { EXPECT_THAT(refusal(file, "new"), HasSubstr("Permission denied")); });
   fs::permissions(folder.path(), fs::perms::owner_all);
   EXPECT_EQ(content(file), "old");
 }

@@ -8,8 +8,8 @@ namespace softland::internal {
 namespace {
 
 using nlohmann::json;
-using softland::testing::sample_optimize_result;
-using softland::testing::sample_simulate_result;
+using softland::test::sample_optimize_result;
+using softland::test::sample_simulate_result;
 
 constexpr std::size_t few_rows = 601;
 
@@ -107,7 +107,8 @@ TEST(Captions, StateWhatTheNumbersSay) {
   const json result = sample_optimize_result(few_rows);
   EXPECT_EQ(plain(gap_caption(result)),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The plain step "
-            "bounces about 57 times, up to 803 nm, until about 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and stays closed.");
+            "bounces about 57 times, up to 803 nm, until about 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and "
+            "stays closed.");
   EXPECT_EQ(plain(landing_caption(result)),
             "The same gap in a narrow band around the contact plane; below it the contact is pressed. The plain step reaches the "
             "plane with 133 mm/s and rises 803 nm above it again; softland's waveform reaches the plane with 900 µm/s and does "

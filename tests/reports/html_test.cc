@@ -37,7 +37,7 @@ std::vector<std::string> loads(const std::string& page) {
 }
 
 TEST(HtmlReport, LoadsNothing) {
-  EXPECT_THAT(loads(html_report(testing::sample_optimize_result(2000))), ::testing::IsEmpty());
+  EXPECT_THAT(loads(html_report(test::sample_optimize_result(2000))), ::testing::IsEmpty());
   EXPECT_THAT(loads("<img src=\"https://a\"> <p style='background:url(x.png)'>"), ::testing::ElementsAre("https://a", "x.png"));
 }
 
@@ -47,7 +47,7 @@ TEST(HtmlReport, ForbidsTheBrowserToLoadAnything) {
 }
 
 TEST(HtmlReport, StaysBelowAMegabyteForTwentyThousandRowsPerCurveAndALongScene) {
-  json result = testing::sample_optimize_result(20000);
+  json result = test::sample_optimize_result(20000);
   // Noise on every column, so that no row looks dispensable.
   for (const char* run : {"best", "baseline"}) {
     for (const char* column : {"tip_gap_m", "tip_velocity_m_s", "contact_force_N"}) {
@@ -68,7 +68,7 @@ TEST(HtmlReport, StaysBelowAMegabyteForTwentyThousandRowsPerCurveAndALongScene) 
 
 TEST(HtmlReport, EscapesHostileText) {
   const std::string hostile = "</title></script><script>alert(1)</script><img src=x onerror='alert(2)'>\" {{data}} <!--";
-  json result = testing::sample_optimize_result(600);
+  json result = test::sample_optimize_result(600);
   for (const char* key :
        {"title", "command", "version", "target", "actuator", "optimizer", "termination", "budget", "scene_toml"})
     result[key] = hostile;
@@ -80,14 +80,14 @@ TEST(HtmlReport, EscapesHostileText) {
   result["best"]["waveforms"][hostile] = {{0, 0}, {1e-6, 1}};
   result["search"]["value_name"] = hostile;
   const std::string page = html_report(result);
-  const std::string tame = html_report(testing::sample_optimize_result(600));
+  const std::string tame = html_report(test::sample_optimize_result(600));
   for (const char* tag : {"<script", "</script", "<img", "<title", "</title", "<!--"})
     EXPECT_EQ(occurrences(page, tag), occurrences(tame, tag)) << tag;
   EXPECT_THAT(page, HasSubstr("&lt;/title&gt;&lt;/script&gt;&lt;script&gt;alert(1)"));
 }
 
 TEST(HtmlReport, SaysEverythingWithoutAScript) {
-  const std::string page = html_report(testing::sample_optimize_result(600));
+  const std::string page = html_report(test::sample_optimize_result(600));
   EXPECT_THAT(
       page,
       HasSubstr(
@@ -103,7 +103,7 @@ TEST(HtmlReport, SaysEverythingWithoutAScript) {
 }
 
 TEST(HtmlReport, ListsParametersInTheOrderOfTimeWithTheirBounds) {
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   result["best"]["bounds"] = {
       {"piezo.level_1_V", {-1, 1}}, {"piezo.level_2_V", {-1, 0.603}}, {"piezo.time_1_s", {19.7e-6, 90e-6}}};
   const std::string page = html_report(result);
@@ -120,7 +120,7 @@ TEST(HtmlReport, ListsParametersInTheOrderOfTimeWithTheirBounds) {
 }
 
 TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   EXPECT_THAT(html_report(result), Not(HasSubstr("id=\"sketch\"")));
   result["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
   result["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};
@@ -137,14 +137,14 @@ TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
 }
 
 TEST(HtmlReport, OfASingleRunHasNoBaselineAndNoSearch) {
-  const std::string page = html_report(testing::sample_simulate_result(600));
+  const std::string page = html_report(test::sample_simulate_result(600));
   EXPECT_THAT(page, HasSubstr("<h1>The switch first touches at 23.2\u00a0µs"));
   for (const char* words : {"id=\"figure-search\"", "Plain step</th>", "class=\"before\"", "<h2>Confirmations"})
     EXPECT_THAT(page, Not(HasSubstr(words)));
 }
 
 TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
-  const json whole = testing::sample_optimize_result(300);
+  const json whole = test::sample_optimize_result(300);
   for (const auto& [key, value] : whole.items()) {
     for (const json& stand_in : {json(), json("text"), json(3.5), json::array(), json::object(), json{{1, 2}, "x", nullptr}}) {
       json result = whole;
@@ -167,7 +167,7 @@ TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
 }
 
 TEST(HtmlReport, SaysWhyAFigureIsMissing) {
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   result["best"]["metrics"]["permanent_contact_time_s"] = nullptr;
   result["best"]["metrics"]["settled"] = false;
   EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">not settled</span>"));
@@ -179,14 +179,14 @@ TEST(HtmlReport, SaysWhyAFigureIsMissing) {
 }
 
 TEST(HtmlReport, OfARunWithoutContactRepeatsNoFourTimes) {
-  json result = testing::sample_simulate_result(300);
+  json result = test::sample_simulate_result(300);
   EXPECT_THAT(html_report(result), HasSubstr("<div class=\"key\">"));
   result["metrics"] = {{"initial_contact_time_s", nullptr}, {"settled", false}};
   EXPECT_THAT(html_report(result), Not(HasSubstr("<div class=\"key\">")));
 }
 
 TEST(HtmlReport, BearsTextThatIsNotUtf8) {
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   result["title"] = "\xff\xfe";
   result["best"]["waveforms"]["\xff"] = {{0, 1}};
   result["scene_toml"] = nullptr;
@@ -210,7 +210,7 @@ TEST(PageFiles, AreTheFilesOfTheSourceTree) {
 }
 
 TEST(HtmlReport, GivesIllConditionedFiguresAsMedianAndRange) {
-  json result = softland::testing::sample_simulate_result(600);
+  json result = softland::test::sample_simulate_result(600);
   result["certified"]["bounce_count"] = {{"median", 54.5}, {"low", 44}, {"high", 60}, {"runs", 16}};
   result["cloud"] = {{"runs", 16}, {"grazing_rebound", nullptr}};
   const std::string page = html_report(result);

@@ -10,15 +10,15 @@
 #include "reports/files.h"
 #include "reports/html.h"
 #include "sample_result.h"
-#include "temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace softland {
 namespace {
 
 using nlohmann::json;
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::TemporaryFolder;
 
 /// Standard output of a command.
 std::string output(const std::string& command) {
@@ -73,21 +73,21 @@ class PageInBrowser : public ::testing::Test {
 };
 
 TEST_F(PageInBrowser, DrawsEveryChartOfASearchInSilence) {
-  const Visit seen = visit(program, html_report(testing::sample_optimize_result(20000)));
+  const Visit seen = visit(program, html_report(test::sample_optimize_result(20000)));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 7u);
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
 }
 
 TEST_F(PageInBrowser, DrawsASingleRunInSilence) {
-  const Visit seen = visit(program, html_report(testing::sample_simulate_result(3000)));
+  const Visit seen = visit(program, html_report(test::sample_simulate_result(3000)));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 6u);
 }
 
 TEST_F(PageInBrowser, BearsAResultWithoutCurvesAndOneFullOfNulls) {
   EXPECT_EQ(visit(program, html_report(json::object())).console, "");
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   for (json& value : result["curves"]["best"]["tip_gap_m"]) value = nullptr;
   for (std::size_t row = 100; row < 200; ++row) result["curves"]["baseline"]["contact_force_N"][row] = nullptr;
   const Visit seen = visit(program, html_report(result));
@@ -96,7 +96,7 @@ TEST_F(PageInBrowser, BearsAResultWithoutCurvesAndOneFullOfNulls) {
 }
 
 TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle) {
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   const std::string hostile =
       "</script><script>document.body.className='owned'</script><img src=x onerror=\"document.body.className='owned'\">";
   result["title"] = hostile;
@@ -125,7 +125,7 @@ std::string said(const std::string& dom) {
 
 /// A search of the scene with the sketch, the limits and the drawing of its parameters.
 json searched() {
-  json result = testing::sample_optimize_result(3000);
+  json result = test::sample_optimize_result(3000);
   result["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
   result["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};
   result["scene"]["electrode"]["main"] = {{"span", {"60 um", "240 um"}}};

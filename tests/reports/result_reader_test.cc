@@ -19,7 +19,7 @@ std::string refusal(const std::string& content) {
 }
 
 TEST(ParseResult, ReadsWhatTheVerbsWrite) {
-  const nlohmann::json result = testing::sample_optimize_result(10);
+  const nlohmann::json result = test::sample_optimize_result(10);
   EXPECT_EQ(parse_result(result.dump(), "x.json"), result);
 }
 

@@ -14,7 +14,7 @@ namespace softland {
 namespace {
 
 using nlohmann::json;
-using softland::testing::sample_optimize_result;
+using softland::test::sample_optimize_result;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -46,7 +46,7 @@ std::string read_aloud(const std::string& page) {
 }
 
 TEST(EveryReport, SaysNoMoreThanIsKnown) {
-  for (json result : {sample_optimize_result(few_rows), softland::testing::sample_simulate_result(few_rows)}) {
+  for (json result : {sample_optimize_result(few_rows), softland::test::sample_simulate_result(few_rows)}) {
     EXPECT_EQ(absurd_number(text_report(result)), "");
     // Figures of a landing so soft that its remainders are those of arithmetic, and errors of a run judged by one like it.
     for (const char* part : {"metrics", "errors"}) {
@@ -82,7 +82,7 @@ TEST(TextReport, PassesOverWhatIsNotThere) {
 }
 
 TEST(TextReport, SaysWhoGivesTheRangeOfTheSettlingTimeAndTheCount) {
-  json result = softland::testing::sample_simulate_result(few_rows);
+  json result = softland::test::sample_simulate_result(few_rows);
   EXPECT_THAT(text_report(result), HasSubstr("softland simulate --certify"));
   result["certified"] = json::object();
   EXPECT_THAT(text_report(result), Not(HasSubstr("--certify")));
@@ -92,7 +92,7 @@ TEST(TextReport, SaysWhoGivesTheRangeOfTheSettlingTimeAndTheCount) {
 }
 
 TEST(TextReport, GivesIllConditionedFiguresAsMedianAndRange) {
-  json result = softland::testing::sample_simulate_result(few_rows);
+  json result = softland::test::sample_simulate_result(few_rows);
   EXPECT_THAT(text_report(result), Not(HasSubstr("Certified")));
   result["certified"] = json::object();
   EXPECT_THAT(text_report(result), HasSubstr("no figure is ill-conditioned"));

@@ -20,7 +20,7 @@ using testing::Contains;
 using testing::IsEmpty;
 using testing::Not;
 
-Prepared gold_at_17_volts(std::string_view duration, std::string_view accuracy = "1e-6") {
+Prepared prepared_gold(std::string_view duration, std::string_view accuracy = "1e-6") {
   return prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
                        fmt::format("simulate.duration={}", duration), fmt::format("simulate.accuracy={}", accuracy)}));
 }
@@ -65,7 +65,7 @@ TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
     }
     tightened += plain.tolerance < p.tolerance;
   };
-  expect_same(gold_at_17_volts("60 us"));
+  expect_same(prepared_gold("60 us"));
   for (const std::uint64_t index : {18, 69, 120, 185}) {
     SCOPED_TRACE(index);
     SceneFile file = test::random_scene(3, index);
@@ -77,7 +77,7 @@ TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
 
 TEST(Certify, CoversTheTrueErrorsOfAWellConditionedClosing) {
   for (const char* accuracy : {"1e-2", "1e-4", "1e-6"}) {
-    const Prepared p = gold_at_17_volts("60 us", accuracy);
+    const Prepared p = prepared_gold("60 us", accuracy);
     const Closing c = certify(p);
     EXPECT_THAT(ill_conditioned(c), IsEmpty()) << accuracy << ": a loose tolerance is an error, not a condition";
     EXPECT_FALSE(c.certificate->grazing);
@@ -110,7 +110,7 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
 }
 
 TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
-  const Prepared p = gold_at_17_volts("600 us", "1e-3");
+  const Prepared p = prepared_gold("600 us", "1e-3");
   const Closing c = certify(p);
   EXPECT_THAT(ill_conditioned(c), Contains("permanent_contact_time_s"));
   EXPECT_THAT(ill_conditioned(c), Not(Contains("major_bounce_height_m"))) << "the first large rebound";
@@ -205,7 +205,7 @@ TEST(Certify, GivesTheRangeOfAChaoticCount) {
 }
 
 TEST(Certify, SaysNothingOfARunThatIsNotDone) {
-  const Prepared p = gold_at_17_volts("60 us");
+  const Prepared p = prepared_gold("60 us");
   const std::atomic<bool> stop{true};
   const Closing c = certify(p, {.stop = &stop});
   EXPECT_EQ(c.certificate, nullptr);
@@ -213,7 +213,7 @@ TEST(Certify, SaysNothingOfARunThatIsNotDone) {
 }
 
 TEST(Simulate, AskedToStopWhileItEstimatesErrorsKeepsTheFiguresWithoutThem) {
-  const Prepared p = gold_at_17_volts("60 us");
+  const Prepared p = prepared_gold("60 us");
   std::atomic<bool> stop{false};
   const Watch watch{.stop = &stop, .progress = [&](std::string_view what, double part) {
                       EXPECT_TRUE(part >= 0 && part <= 1) << what;

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes.h"
+
 namespace softland {
 namespace {
 
-constexpr Target every_target[] = {Target::bounce, Target::settling, Target::rebound,
-                                   Target::count,  Target::impact,   Target::energy};
 constexpr double gap = 2e-6, score_window = 100e-6;
 const MetricsOptions options;
 

@@ -27,13 +27,6 @@ const Effect& find(const Effects& effects, const std::string& choice) {
   return *std::find_if(effects.list.begin(), effects.list.end(), [&](const Effect& e) { return e.choice == choice; });
 }
 
-SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
-  SceneFile file = gold(
-      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
-  for (const std::string_view change : changes) file.set(change);
-  return file;
-}
-
 TEST(Effects, CompareEveryGasLawWithTheScenesOwn) {
   const Prepared p = prepare(gold_at_17_volts());
   const Effects effects = compare_effects(p);

@@ -1,6 +1,7 @@
 // When a search may say that it has reached its goal.
 #include <gtest/gtest.h>
 
+#include "scenes.h"
 #include "studies/optimize.h"
 
 namespace softland {
@@ -19,8 +20,6 @@ Metrics closing(bool settled, int bounces, double settling_time, double velocity
   return m;
 }
 
-constexpr Target every_target[] = {Target::bounce, Target::settling, Target::rebound,
-                                   Target::count,  Target::impact,   Target::energy};
 const Metrics baseline = closing(true, 7, 40e-6, 0.3, 2e-12);
 
 TEST(GoalMet, NothingUnsettledMeetsAnyGoal) {

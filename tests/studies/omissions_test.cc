@@ -17,13 +17,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
-  SceneFile file = gold(
-      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
-  for (const std::string_view change : changes) file.set(change);
-  return file;
-}
-
 constexpr std::string_view weak_dispersion = R"(dispersion={ model = "van-der-waals", hamaker_constant = "4e-19 J" })";
 
 std::vector<std::string> names(const std::vector<Omissible>& effects) {

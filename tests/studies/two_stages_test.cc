@@ -17,27 +17,27 @@ Prices prices(std::span<const double> x) {
   return {.leading = leading, .own = own};
 }
 
-struct Log {
+struct StagesLog {
   std::map<long, Evaluation> evaluations;
   OptimizerResult result;
 };
 
-Log search(OptimizerOptions options, bool own_cost_differs = true,
-           const std::function<Prices(std::span<const double>)>& f = prices) {
-  Log log;
+StagesLog search_in_stages(OptimizerOptions options, bool own_cost_differs = true,
+                           const std::function<Prices(std::span<const double>)>& f = prices) {
+  StagesLog log;
   TwoStages stages(f, [&](const Evaluation& e) { EXPECT_TRUE(log.evaluations.emplace(e.index, e).second) << e.index; });
   log.result = stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, options, own_cost_differs);
   return log;
 }
 
 TEST(TwoStages, FollowTheLeadingCostFirstAndTheirOwnToItsMinimum) {
-  const Log log = search({.max_evaluations = 1500});
+  const StagesLog log = search_in_stages({.max_evaluations = 1500});
   EXPECT_NEAR(log.result.value, -1, 1e-3);
   EXPECT_NEAR(log.result.x[0], 0.65, 1e-3);
 }
 
 TEST(TwoStages, LogTheOwnCostOfEveryEvaluation) {
-  const Log log = search({.max_evaluations = 100});
+  const StagesLog log = search_in_stages({.max_evaluations = 100});
   EXPECT_EQ(log.result.evaluations, 100);
   EXPECT_EQ(log.evaluations.size(), 100U);
   for (const auto& [index, e] : log.evaluations) EXPECT_EQ(e.value, prices(e.x).own) << index;
@@ -54,7 +54,7 @@ TEST(TwoStages, LogTheOwnCostOfEveryEvaluation) {
 }
 
 TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs) {
-  const Log one = search({.max_evaluations = 200}), three = search({.max_evaluations = 200, .jobs = 3});
+  const StagesLog one = search_in_stages({.max_evaluations = 200}), three = search_in_stages({.max_evaluations = 200, .jobs = 3});
   ASSERT_EQ(one.evaluations.size(), three.evaluations.size());
   for (const auto& [index, e] : one.evaluations) {
     ASSERT_TRUE(three.evaluations.contains(index)) << index;
@@ -65,7 +65,7 @@ TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs) {
 
 TEST(TwoStages, AreOneWhereTheCostsAreTheSame) {
   const auto bowl = [](std::span<const double> x) { return Prices{.leading = x[0] * x[0] + x[1], .own = x[0] * x[0] + x[1]}; };
-  const Log log = search({.max_evaluations = 80}, false, bowl);
+  const StagesLog log = search_in_stages({.max_evaluations = 80}, false, bowl);
   const OptimizerResult alone = minimize({.variables = {{"a", -1, 1}, {"b", -1, 1}},
                                           .objective = [&](std::span<const double> x) { return bowl(x).own; },
                                           .starts = {{-0.6, 0.9}}},
@@ -83,7 +83,7 @@ TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
     if (++calls == 12) stop = true;
     return prices(x);
   };
-  const Log log = search({.max_evaluations = 1000, .stop = &stop}, true, counting);
+  const StagesLog log = search_in_stages({.max_evaluations = 1000, .stop = &stop}, true, counting);
   EXPECT_EQ(log.result.termination, Termination::interrupted);
   EXPECT_EQ(log.result.evaluations, 12);
 }
@@ -94,14 +94,14 @@ TEST(TwoStages, KeepAnInfeasiblePointAndOneThatThrows) {
     if (x[0] > 0.2) return {};
     return {.leading = x[0] * x[0], .own = x[1] * x[1]};
   };
-  const Log log = search({.max_evaluations = 60}, true, failing);
+  const StagesLog log = search_in_stages({.max_evaluations = 60}, true, failing);
   EXPECT_EQ(log.result.first_exception, "too far");
   EXPECT_TRUE(std::isfinite(log.result.value));
   for (const auto& [index, e] : log.evaluations) EXPECT_EQ(std::isfinite(e.value), e.x[0] <= 0.2) << index;
 }
 
 TEST(TwoStages, WithoutAFeasiblePointSaySo) {
-  const Log log = search({.max_evaluations = 20}, true, [](std::span<const double>) { return Prices{}; });
+  const StagesLog log = search_in_stages({.max_evaluations = 20}, true, [](std::span<const double>) { return Prices{}; });
   EXPECT_EQ(log.result.termination, Termination::no_feasible_point);
   EXPECT_TRUE(log.result.x.empty());
 }

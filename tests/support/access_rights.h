@@ -16,7 +16,7 @@
 #include <cstdio>
 #include <functional>
 
-namespace softland::testing {
+namespace softland::test {
 
 /// Whether the calling thread, and every program that it starts, obeys access rights from now on.
 inline bool give_up_ignoring_access_rights() {
@@ -59,4 +59,4 @@ inline void expect_where_access_rights_bind(const std::function<void()>& body) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "see the failures above; wait status " << status;
 }
 
-}  // namespace softland::testing
+}  // namespace softland::test

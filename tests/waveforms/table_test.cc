@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/waveforms/expect_invalid.h"
-#include "tests/waveforms/temporary_folder.h"
 
 namespace softland {
 namespace {
@@ -14,8 +13,6 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 using test::TemporaryFolder;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Table, IsLinearBetweenRowsAndHoldsItsLast) {
   const Signal table = signal(Table{.time = {0, 1, 3}, .voltage = {2, 4, -4}});
