@@ -1,12 +1,15 @@
 // The command line: what is asked, and nothing else.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <filesystem>
-#include <iostream>
 #include <optional>
 
+#include "apps/exit_status.h"
+#include "apps/failure.h"
+#include "apps/interrupt.h"
+#include "apps/output.h"
+#include "apps/shell_word.h"
+#include "apps/streams.h"
 #include "apps/verbs.h"
 #include "base/require.h"
 #include "optimizers/problem.h"
@@ -17,27 +20,10 @@ namespace {
 using namespace softland;
 using namespace softland::apps;
 
-std::atomic<bool> stop_requested{false};
-
-extern "C" void on_signal(int number) {
-  // The second Ctrl-C ends the program at once.
-  if (!stop_requested.exchange(true)) return;
-  std::signal(number, SIG_DFL);
-  std::raise(number);
-}
-
 // Quoted so that the line can be pasted into a shell.
 std::string command_line(int argc, char** argv) {
   std::string line = "softland";
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool plain =
-        !word.empty() &&
-        word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./=:,+%") == std::string::npos;
-    std::string quoted;
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += " " + (plain ? word : "'" + quoted + "'");
-  }
+  for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
   return line;
 }
 
@@ -53,9 +39,9 @@ std::string optimizer_help() {
 const std::vector<std::string> coming{"explore", "robustness"};
 
 int run(int argc, char** argv) {
-  Common common{.command = command_line(argc, argv), .stop = &stop_requested};
+  Common common{.command = command_line(argc, argv), .stop = &stop_requested()};
   OptimizeRequest request;
-  std::string kind = "cantilever", result, format = "csv", report_out;
+  std::string kind = "cantilever", result, format = "csv";
 
   // Called by the name `optimize`, the program is that verb.
   std::vector<std::string> words(argv + 1, argv + argc);
@@ -89,8 +75,8 @@ int run(int argc, char** argv) {
       "  softland check my-switch.toml\n"
       "  softland simulate my-switch.toml --set gap.contact=\"1.8 um\" --out closing\n"
       "  softland optimize my-switch.toml --actuator electrostatic --waveform pulse --budget \"90 s\"\n"
-      "\nExit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 130 interrupted (best so far is "
-      "written).");
+      "\nExit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 70 internal error (please report),\n"
+      "71 no memory or threads, 74 output lost (disk full, pipe closed), 130 interrupted (what there is is written).");
 
   // `word` stands for the value in --help. Empty text is never meant: it comes from an unset shell variable.
   const auto option = [](CLI::App* verb, const char* name, std::string& value, const char* word, const char* about) {
@@ -159,20 +145,23 @@ int run(int argc, char** argv) {
   CLI::App* optimize = add_verb("optimize", "search the drive waveform that closes without bounce");
   with_scene(optimize, false);
   with_json(optimize);
-  option(optimize, "--target", request.target, "NAME", "bounce (default), settling, rebound, count, impact or energy");
+  option(optimize, "--target", request.target, "NAME",
+         "bounce (default), settling, rebound, count, impact or energy; the goal of each asks for no significant rebound");
   option(optimize, "--actuator", request.actuator, "NAME",
          "drives that the search may shape: electrostatic (default), pzt or both");
   option(optimize, "--waveform", request.waveform, "NAME", "family to search: pulse (default), harmonic or step");
   option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
   optional(optimize, "--budget", request.budget, "N|TIME",
-           "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both");
+           "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both, half as much again for "
+           "settling, impact and energy");
   optional(optimize, "--seed", request.seed, "N",
            "whole number from 0 on (default 1): same seed, same result, whatever --jobs is");
   optional(optimize, "--jobs", request.jobs, "N", "threads (default: one per core)");
   option(optimize, "--out", common.out, "FOLDER",
          "folder for the report, the waveform found and all data (default: softland-out)");
   optimize->footer(
-      "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n" +
+      "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n"
+      "A scene that holds a landing already (best.toml of an earlier search) is refined and never ends worse.\n" +
       optimizer_help() +
       "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
       "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3");
@@ -189,7 +178,7 @@ int run(int argc, char** argv) {
 
   CLI::App* report = add_verb("report", "make report.html and gap.svg of a result.json again");
   positional(report, "RESULT", result, "folder that --out named, or its result.json")->required();
-  option(report, "--out", report_out, "FOLDER", "folder to write them to (default: beside the result)");
+  option(report, "--out", common.out, "FOLDER", "folder to write them to (default: beside the result)");
   report->footer("Example:\n  softland report softland-out");
 
   if (!words.empty() && !words.front().starts_with("-")) {
@@ -202,10 +191,10 @@ int run(int argc, char** argv) {
     std::reverse(words.begin(), words.end());  // CLI11 takes the words from the back
     app.parse(words);
   } catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
+    print(app.help());
     return exit_done;
   } catch (const CLI::CallForVersion&) {
-    std::cout << app.version() << "\n";
+    print(app.version() + "\n");
     return exit_done;
   } catch (const CLI::ParseError& error) {
     const auto chosen = app.get_subcommands();
@@ -218,30 +207,37 @@ int run(int argc, char** argv) {
                        "--help)");
   }
 
-  if (*simulate) return simulate_verb(common, certified);
-  if (*pull_in) return pull_in_verb(common);
-  if (*modes) return modes_verb(common);
-  if (*check) return check_verb(common);
-  if (*effects) return effects_verb(common);
-  if (*accuracy) return accuracy_verb(common);
-  if (*optimize) return optimize_verb(common, request);
-  if (*fresh) return new_verb(kind);
-  if (*exporting) return export_verb(result, format);
-  return report_verb(result, report_out);
+  try {
+    if (*simulate) return simulate_verb(common, certified);
+    if (*pull_in) return pull_in_verb(common);
+    if (*modes) return modes_verb(common);
+    if (*check) return check_verb(common);
+    if (*effects) return effects_verb(common);
+    if (*accuracy) return accuracy_verb(common);
+    if (*optimize) return optimize_verb(common, request);
+    if (*fresh) return new_verb(kind);
+    if (*exporting) return export_verb(common, result, format);
+    return report_verb(common, result);
+  } catch (const OutputInterrupted&) {
+    throw;
+  } catch (const Interrupted&) {
+    // Nothing was found yet: that is what the JSON says.
+    if (!common.json.empty())
+      print_json_or(common, {{"status", "interrupted"}, {"version", version}, {"command", common.command}}, "");
+    throw;
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  open_standard_streams();
+  catch_signals();
   try {
     return run(argc, argv);
-  } catch (const InvalidInput& error) {
-    std::cerr << "softland: " << error.what() << "\n";
-    return exit_bad_input;
-  } catch (const std::exception& error) {
-    std::cerr << "softland: internal error: " << error.what() << "\n";
-    return exit_numerical_failure;
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    say(failure.message);
+    return failure.status;
   }
 }

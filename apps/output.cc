@@ -1,10 +1,12 @@
 #include "apps/output.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include <iostream>
-#include <system_error>
+#include <filesystem>
 
+#include "apps/streams.h"
 #include "base/require.h"
 #include "reports/files.h"
 #include "reports/html.h"
@@ -17,41 +19,64 @@ namespace softland::apps {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-void make_folder(const std::string& out) {
-  std::error_code error;
-  fs::create_directories(out, error);
-  require(!error, fmt::format("--out {}: the folder cannot be created: {}", out, error.message()));
+std::string json_text(const json& data, int indent) {
+  return data.dump(indent, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
-void write_report(const fs::path& folder, const json& result) {
-  write_whole(folder / "report.html", html_report(result));
-  write_whole(folder / "gap.svg", svg_gap_chart(result));
-}
-
-void write_outputs(const Common& c, const json& result, std::vector<std::string> left) {
-  if (!c.out.empty()) {
-    const fs::path folder = c.out;
-    write_whole(folder / "result.json", result.dump() + "\n");
-    write_report(folder, result);
-    left.insert(left.begin(), {"report.html", "gap.svg", "result.json"});
-    const auto curves = result.at("curves").find("best");
-    if (curves != result.at("curves").end()) {
-      write_whole(folder / "trajectory.csv", trajectory_csv(*curves));
-      left.emplace_back("trajectory.csv");
-    }
+// Besides what every output must keep off: standard output, which may be the same file, and what a run keeps in its folder while
+// it works.
+void check_json_place(const std::string& file, const fs::path& folder) {
+  if (!folder.empty()) {
+    const fs::path inside =
+        fs::weakly_canonical(fs::absolute(file)).lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
+    const std::string first = inside.empty() ? std::string() : inside.begin()->string();
+    require(first != "softland.lock" && !first.starts_with("unfinished"),
+            fmt::format("--json {}: lies where a run keeps its unfinished results; name another file", file));
   }
-  if (!c.json.empty() && c.json != "-") write_whole(c.json, summary_json(result).dump(2) + "\n");
-  if (c.json == "-") {
-    std::cout << summary_json(result).dump(2) << "\n";
-    return;
-  }
-  std::cout << text_report(result);
-  if (!left.empty()) std::cout << "\n" << wrapped(fmt::format("In {}: {}", c.out, fmt::join(left, ", "))) << "\n";
+  check_writable(file);
+  struct stat out {
+  }, there{};
+  const bool is_output = ::fstat(STDOUT_FILENO, &out) == 0 && ::stat(file.c_str(), &there) == 0 && out.st_dev == there.st_dev &&
+                         out.st_ino == there.st_ino;
+  require(!is_output, fmt::format("--json {}: is this run's standard output; use --json -", file));
 }
 
-void print_json_or(const Common& c, const json& j, const std::string& text) {
-  if (!c.json.empty() && c.json != "-") write_whole(c.json, j.dump(2) + "\n");
-  std::cout << (c.json == "-" ? j.dump(2) + "\n" : text);
+std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std::string>& files) {
+  const bool has_file = !c.json.empty() && c.json != "-";
+  std::optional<ResultFolder> folder;
+  if (!c.out.empty()) folder.emplace(c.out, c.command, files);
+  if (has_file) check_json_place(c.json, folder ? folder->path() : fs::path());
+  for (const std::string& name : folder ? files : std::vector<std::string>()) {
+    const fs::path file = folder->path() / name;
+    require(!has_file || fs::weakly_canonical(c.json) != fs::weakly_canonical(file),
+            fmt::format("--json {}: is the {} that --out writes; name another file", c.json, name));
+  }
+  return folder;
+}
+
+void write_report(ResultFolder& folder, const json& result) {
+  folder.write("report.html", html_report(result));
+  folder.write("gap.svg", svg_gap_chart(result));
+}
+
+void write_result(ResultFolder& folder, const json& result) {
+  folder.write("result.json", json_text(result));
+  write_report(folder, result);
+  const auto curves = result.at("curves").find("best");
+  if (curves != result.at("curves").end()) folder.write("trajectory.csv", trajectory_csv(*curves));
+}
+
+void print_result(const Common& c, const json& result, const std::string& left) {
+  print_json_or(c, summary_json(result), text_report(result) + left);
+}
+
+std::string left_in(const fs::path& folder, const std::vector<std::string>& files) {
+  return "\n" + wrapped(fmt::format("In {}: {}", folder.string(), fmt::join(files, ", "))) + "\n";
+}
+
+void print_json_or(const Common& c, const json& data, const std::string& text) {
+  if (!c.json.empty() && c.json != "-") write_whole(c.json, json_text(data, 2));
+  print(c.json == "-" ? json_text(data, 2) : text);
 }
 
 }  // namespace softland::apps

@@ -3,21 +3,32 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/result_folder.h"
 #include "apps/verbs.h"
 
 namespace softland::apps {
 
-/// The folder of --out. Throws InvalidInput when it cannot be created.
-void make_folder(const std::string& out);
+/// JSON on one line, or with `indent` blanks per level; what is not UTF-8 (a path may not be) becomes U+FFFD.
+[[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
-/// report.html and gap.svg.
-void write_report(const std::filesystem::path& folder, const nlohmann::json& result);
+/// Takes the places that --json and --out name, for the run's output alone: to be called when the scene has been read and before
+/// anything long is computed. The folder, where there is one, will hold `files`. Throws InvalidInput where one cannot be written
+/// to, or would replace an input of this run or another of its outputs.
+[[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files);
 
-/// Everything a result of simulate or optimize leaves behind. `left` names what stands in the folder already.
-void write_outputs(const Common& common, const nlohmann::json& result, std::vector<std::string> left = {});
+/// The files of a result: result.json, report.html, gap.svg, trajectory.csv where there is a trajectory.
+void write_result(ResultFolder& folder, const nlohmann::json& result);
+void write_report(ResultFolder& folder, const nlohmann::json& result);
+
+/// The whole result as --json asks for, or else as text on standard output, with what `left` says about files.
+void print_result(const Common& common, const nlohmann::json& result, const std::string& left);
+
+/// "In FOLDER: these files".
+[[nodiscard]] std::string left_in(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 /// Data as --json asks for, or else `text` on standard output.
 void print_json_or(const Common& common, const nlohmann::json& data, const std::string& text);

@@ -5,23 +5,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "apps/streams.h"
 
 namespace softland::apps {
 
 Bar::Bar(bool quiet) : terminal_(isatty(2) != 0), quiet_(quiet), start_(std::chrono::steady_clock::now()), shown_(start_) {}
 
+bool Bar::due() const {
+  return !quiet_ && std::chrono::steady_clock::now() - shown_ >= std::chrono::milliseconds(terminal_ ? 200 : 10000);
+}
+
 void Bar::show(const State& state) {
-  const auto now = std::chrono::steady_clock::now();
-  if (now - shown_ < std::chrono::milliseconds(terminal_ ? 200 : 10000)) return;
-  shown_ = now;
+  if (!due()) return;
+  shown_ = std::chrono::steady_clock::now();
   print(state);
 }
 
 void Bar::close(const State& state) {
   if (!terminal_ || quiet_) return;
   print(state);
-  fmt::print(stderr, "\n");
+  end_bar();
 }
 
 void Bar::print(const State& state) const {
@@ -30,11 +34,23 @@ void Bar::print(const State& state) const {
   if (terminal_) {
     constexpr int cells = 24;
     const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(part * cells), 0, cells));
-    fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(full, '#'), std::string(cells - full, '.'), words);
+    show_bar(fmt::format("[{}{}] {}", std::string(full, '#'), std::string(cells - full, '.'), words));
   } else {
-    fmt::print(stderr, "softland: {}\n", words);
+    say(words);
   }
-  std::fflush(stderr);
+}
+
+WatchedWork::WatchedWork(bool quiet, const std::atomic<bool>* stop) : bar_(quiet) {
+  watch_.stop = stop;
+  watch_.progress = [this](std::string_view what, double part) {
+    if (!bar_.due()) return;
+    bar_.show([&](double elapsed) { return std::pair(part, fmt::format("{}, {:.0f} s", what, elapsed)); });
+    shown_ = true;
+  };
+}
+
+WatchedWork::~WatchedWork() {
+  if (shown_ && bar_.terminal_) show_bar("");
 }
 
 SearchProgress::SearchProgress(bool quiet, const OptimizeOptions& options)

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/watch.h"
 #include "studies/optimize.h"
 
 namespace softland::apps {
@@ -22,10 +23,28 @@ class Bar {
   void close(const State& state);
 
  private:
+  friend class WatchedWork;
+  [[nodiscard]] bool due() const;
   void print(const State& state) const;
 
   bool terminal_, quiet_;
   std::chrono::steady_clock::time_point start_, shown_;
+};
+
+/// A computation that ends when the program is asked to stop and shows how far it is; the bar goes with it.
+class WatchedWork {
+ public:
+  WatchedWork(bool quiet, const std::atomic<bool>* stop);
+  ~WatchedWork();
+  WatchedWork(const WatchedWork&) = delete;
+  WatchedWork& operator=(const WatchedWork&) = delete;
+
+  [[nodiscard]] const Watch& watch() const { return watch_; }
+
+ private:
+  Bar bar_;
+  bool shown_ = false;
+  Watch watch_;
 };
 
 /// How far a search is.

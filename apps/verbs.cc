@@ -3,13 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iostream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -17,16 +12,22 @@
 #include <thread>
 #include <utility>
 
+#include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
-#include "apps/search_folder.h"
+#include "apps/search_log.h"
+#include "apps/shell_word.h"
+#include "apps/streams.h"
+#include "base/read_file.h"
 #include "base/require.h"
+#include "base/shortened.h"
 #include "config/units.h"
 #include "model/constants.h"
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
-#include "reports/files.h"
+#include "reports/quantity.h"
 #include "reports/result_json.h"
+#include "reports/result_reader.h"
 #include "reports/text.h"
 #include "studies/certify.h"
 #include "studies/omissions.h"
@@ -38,22 +39,17 @@ namespace softland::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using internal::given_quantity;
+using internal::percent;
+using internal::plain_number;
+using internal::quantity;
+using internal::scientific;
 using nlohmann::json;
 
 SceneFile load_scene(const Common& c) {
   SceneFile file = SceneFile::load(c.scene);
   for (const std::string& assignment : c.set) file.set(assignment);
   return file;
-}
-
-std::string read_text(const fs::path& path) {
-  std::error_code ignored;
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  const int reason = fs::is_directory(path, ignored) ? EISDIR : errno;
-  require(in.is_open() && reason != EISDIR,
-          fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(reason)));
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 // Voltages of the scene, for generators and simulators of circuits: the factor of the dispersion force is none.
@@ -68,9 +64,9 @@ std::map<std::string, Signal> named_signals(const Prepared& p) {
 }
 
 // Pull-in of every electrode, without any waveform of the scene.
-json pull_in_of(const Prepared& p, std::size_t k) {
+json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
   const StaticPullIn s = static_pull_in(p.device, k);
-  const DynamicPullIn d = dynamic_pull_in(p.device, k, s);
+  const DynamicPullIn d = dynamic_pull_in(p.device, k, s, watch);
   const auto number = [](double v) { return std::isfinite(v) ? json(v) : json(nullptr); };
   return {{"status", to_string(s.status == Status::done ? d.status : s.status)},
           {"pull_in",
@@ -80,7 +76,9 @@ json pull_in_of(const Prepared& p, std::size_t k) {
             {"release_V", number(release_voltage(p.device, k))}}}};
 }
 
-std::string volts(const json& v) { return v.is_number() ? fmt::format("{:.6g} V", v.get<double>()) : "none"; }
+constexpr int pull_in_digits = 5;
+
+std::string volts(const json& v) { return v.is_number() ? quantity(v.get<double>(), "V", pull_in_digits) : "none"; }
 
 int status_code(Status s) {
   switch (s) {
@@ -143,18 +141,21 @@ fs::path shipped_scene(const std::string& name) {
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
 }
 
-json read_result(const fs::path& path) {
-  json j = json::parse(read_text(path), nullptr, false);
-  require(j.is_object() && j.contains("kind") && (j["kind"] == "simulate" || j["kind"] == "optimize"),
-          fmt::format("{}: is not a result.json of softland", path.string()));
-  return j;
+json read_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
 }
 
 // The scene of a result: a folder that --out named, a result.json, or a scene file itself.
 SceneFile scene_of_result(const std::string& result) {
   fs::path path = result;
-  if (fs::is_directory(path)) {
-    const auto here = [&](const char* name) { return fs::exists(fs::path(result) / name); };
+  if (is_folder(path)) {
+    const auto here = [&](const char* name) {
+      std::error_code ignored;
+      return fs::exists(fs::path(result) / name, ignored);
+    };
     require(here("best.toml") || here("result.json"), fmt::format("{}: holds neither best.toml nor result.json", result));
     path /= here("best.toml") ? "best.toml" : "result.json";
   }
@@ -168,48 +169,63 @@ SceneFile scene_of_result(const std::string& result) {
 // effects = "auto": what leaving effects out has saved.
 void log_time_saved(const Prepared& chosen) {
   Prepared whole = chosen;
-  whole.scene.device = chosen.effects->described;
+  whole.scene.device = chosen.effects->described.device;
   whole.device = Switch(whole.scene.device, whole.quadrature);
   const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.device, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
-  fmt::print(stderr, "softland: effects = \"auto\": a right-hand side takes {:.0f} ns instead of {:.0f} ns, {:.0f} % less\n",
-             without * 1e9, with * 1e9, 100 * (1 - without / with));
+  say(fmt::format("effects = \"auto\": a right-hand side takes {} instead of {}, {} less", quantity(without, "s"),
+                  quantity(with, "s"), percent(std::max(0.0, 1 - without / with))));
 }
 
 }  // namespace
 
 int simulate_verb(const Common& c, bool certified) {
-  const Prepared prepared = prepare(load_scene(c));
-  if (!c.out.empty()) make_folder(c.out);
-  const Closing closing = certified ? certify(prepared, c.stop) : simulate(prepared, true, c.stop);
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared prepared = prepare(file, false, work->watch());
+  const std::vector<std::string> files{"report.html", "gap.svg", "result.json", "trajectory.csv"};
+  std::optional<ResultFolder> folder = claim_places(c, files);
+  const Closing closing = certified ? certify(prepared, work->watch()) : simulate(prepared, true, work->watch());
+  work.reset();
   const json result = result_json(prepared, closing, {.command = c.command});
-  write_outputs(c, result);
-  if (prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);
+  const bool interrupted = closing.metrics.status == Status::interrupted;
+  std::string left;
+  if (folder) {
+    write_result(*folder, result);
+    left = left_in(folder->destination(interrupted), files);
+    folder->publish(interrupted);
+  }
+  print_result(c, result, left);
+  if (!interrupted && prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);
   if (!closing.trajectory.message.empty())
-    fmt::print(stderr, "softland: {} ({})\n", closing.trajectory.message, to_string(closing.metrics.status));
+    say(fmt::format("{} ({})", closing.trajectory.message, to_string(closing.metrics.status)));
   return status_code(closing.metrics.status);
 }
 
 int pull_in_verb(const Common& c) {
-  const Prepared prepared = prepare(load_scene(c));
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared prepared = prepare(file, false, work->watch());
+  static_cast<void>(claim_places(c, {}));
   const auto& electrodes = prepared.scene.device.electrodes;
   require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
   json all = json::object();
   std::string text;
   bool failed = false;
-  for (std::size_t k = 0; k < electrodes.size(); ++k) {
-    json one = pull_in_of(prepared, k);
+  for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
+    json one = pull_in_of(prepared, k, work->watch());
     const json& p = one["pull_in"];
     if (!pulls_in(prepared.scene.device, k)) {
       text += fmt::format("electrode {}\n  on the far side: pulls away from the contact\n", electrodes[k].name);
       if (electrodes.size() > 1) all[electrodes[k].name] = std::move(one);
       continue;
     }
-    text += fmt::format("electrode {}\n  static pull-in   {} ({})\n  dynamic pull-in  {}\n  release          {}\n",
-                        electrodes[k].name, volts(p["static_V"]),
-                        p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
-                                                                      : "the contact point reaches the contact first",
-                        volts(p["dynamic_V"]), volts(p["release_V"]));
+    text +=
+        fmt::format("electrode {}\n  static pull-in   {} ({})\n  dynamic pull-in  {}\n", electrodes[k].name, volts(p["static_V"]),
+                    p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
+                                                                  : "the contact point reaches the contact first",
+                    volts(p["dynamic_V"]));
+    if (prepared.device.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
     failed = failed || one["status"] != "done";
     if (electrodes.size() == 1) {
       all = std::move(one);
@@ -217,90 +233,108 @@ int pull_in_verb(const Common& c) {
       all[electrodes[k].name] = std::move(one);
     }
   }
+  const bool interrupted = work->watch().stopped();
+  work.reset();
   print_json_or(c, all, text);
-  return failed ? exit_numerical_failure : exit_done;
+  return interrupted ? exit_interrupted : failed ? exit_numerical_failure : exit_done;
 }
 
 int modes_verb(const Common& c) {
-  const Prepared prepared = prepare(load_scene(c));
+  const SceneFile file = load_scene(c);
+  const Prepared prepared = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
+  static_cast<void>(claim_places(c, {}));
   json list = json::array();
-  std::string text = "mode  angular frequency      frequency\n";
+  constexpr int digits = 6;
+  std::string text = "mode  angular frequency    frequency\n";
   for (const double omega : prepared.device.angular_frequencies()) {
     list.push_back(omega);
-    text += fmt::format("{:>4}  {:>12.8g} rad/s  {:>10.6g} kHz\n", list.size(), omega, omega / (2e3 * pi));
+    text += fmt::format("{:>4}  {:>17}  {:>11}\n", list.size(), quantity(omega, "rad/s", digits),
+                        quantity(omega / (2 * pi), "Hz", digits));
   }
-  print_json_or(c, {{"natural_frequencies_rad_s", list}}, text);
+  for (const std::string& w : prepared.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
+  print_json_or(c, {{"natural_frequencies_rad_s", list}, {"warnings", prepared.scene.warnings}}, text);
   return exit_done;
 }
 
 int check_verb(const Common& c) {
-  const Prepared p = prepare(load_scene(c), true);
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared p = prepare(file, true, work->watch());
   const Structure& s = p.scene.device.structure;
-  std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + p.scene.title + ")");
+  std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + shortened(p.scene.title) + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
   std::vector<std::string> frequencies;
-  for (const double omega : p.device.angular_frequencies()) frequencies.push_back(fmt::format("{:.6g} kHz", omega / (2e3 * pi)));
+  for (const double omega : p.device.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
-  add("in-contact period", fmt::format("{:.4g} us", p.device.in_contact_period() * 1e6));
+  if (p.device.has_contact()) add("in-contact period", quantity(p.device.in_contact_period(), "s", 4));
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     if (!pulls_in(p.scene.device, k)) {
       add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
       continue;
     }
-    const auto found = pull_in_of(p, k);
+    const auto found = pull_in_of(p, k, work->watch());
     const json& v = found["pull_in"];
     add("electrode " + p.scene.device.electrodes[k].name,
-        fmt::format("Vsp {}, Vdp {}, release {}", volts(v["static_V"]), volts(v["dynamic_V"]), volts(v["release_V"])));
+        fmt::format("Vsp {}, Vdp {}{}", volts(v["static_V"]), volts(v["dynamic_V"]),
+                    p.device.has_contact() ? ", release " + volts(v["release_V"]) : ""));
   }
   if (p.scene.device.dispersion) {
     const std::size_t k = p.scene.device.electrodes.size();
     const StaticPullIn statically = static_pull_in(p.device, k);
-    const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically);
-    const auto factor = [](double value) {
-      return std::isfinite(value) ? fmt::format("{:.6g}", 1 + value) : std::string("none");
-    };
-    add("dispersion force", fmt::format("{}; closes by itself at {} (static) or a step to {} (dynamic) of its nominal strength",
-                                        p.device.rest() ? fmt::format("tip at rest {:.4g} nm down",
-                                                                      1e9 * p.device.contact_deflection(p.device.rest()->data()))
-                                                        : std::string("no open state at rest"),
-                                        factor(statically.voltage), factor(dynamically.voltage)));
-    add("drive dispersion", fmt::format("hold factor {:.6g}", 1 + p.signals()[k].hold_level()));
+    const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically, work->watch());
+    const auto factor = [](double value) { return std::isfinite(value) ? plain_number(1 + value, 4) : std::string("none"); };
+    add("dispersion force",
+        fmt::format("{}; closes by itself at {} (static) or a step to {} (dynamic) of its nominal strength",
+                    p.device.rest()
+                        ? fmt::format("tip at rest {} down", quantity(p.device.contact_deflection(p.device.rest()->data()), "m"))
+                        : std::string("no open state at rest"),
+                    factor(statically.voltage), factor(dynamically.voltage)));
+    add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[k].hold_level(), 5));
   }
   if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
     const Gas& gas = *p.scene.device.gas;
     const double g = p.scene.device.gap.electrode;
     const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
     const double omega = p.device.angular_frequencies()[0];
-    add("squeeze number",
-        fmt::format("{:.3g} at the rest gap, {:.3g} closed (first mode; the film laws hold below about {:g})",
-                    squeeze_number(gas, s.width, g, omega), squeeze_number(gas, s.width, closed, omega), incompressible));
-    add("Knudsen number", fmt::format("{:.3g} at the rest gap, {:.3g} closed (mean free path {:.3g} nm)", lambda / g,
-                                      lambda / closed, lambda * 1e9));
+    add("squeeze number", fmt::format("{} at the rest gap, {} closed (first mode; the film laws hold below about {})",
+                                      plain_number(squeeze_number(gas, s.width, g, omega)),
+                                      plain_number(squeeze_number(gas, s.width, closed, omega)), plain_number(incompressible)));
+    add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
+                                      plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }
   for (const auto& [name, signal] : named_signals(p)) {
     const auto limits = p.drives.limits.find(name);
     add("drive " + name,
-        fmt::format("hold {:.6g} V, peak {:.6g} V, {}", signal.hold_level(), signal.peak(),
+        fmt::format("hold {}, peak {}, {}", given_quantity(signal.hold_level(), "V"), given_quantity(signal.peak(), "V"),
                     limits == p.drives.limits.end()
                         ? "driver without limits"
-                        : fmt::format("driver {:.6g} V to {:.6g} V", limits->second.min_voltage, limits->second.max_voltage)));
+                        : fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
+                                      given_quantity(limits->second.max_voltage, "V"))));
   }
-  add("window", fmt::format("{:.4g} us, integrator tolerance {:.3g}", p.duration * 1e6, p.tolerance));
+  if (!p.device.has_contact()) add("contact", "none: a run ends at first touch");
+  add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
-  std::cout << text;
+  work->watch().throw_if_stopped();
+  work.reset();
+  print(text);
   return exit_done;
 }
 
 int effects_verb(const Common& c) {
-  const Prepared p = prepare(load_scene(c));
-  const Effects effects = compare_effects(p, c.stop);
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared p = prepare(file, false, work->watch());
+  static_cast<void>(claim_places(c, {}));
+  const Effects effects = compare_effects(p, work->watch());
+  work.reset();
   print_json_or(c, effects_json(p, effects, {.command = c.command}), effects_text(effects));
-  return status_code(effects.own("gas").metrics.status);
+  return effects.interrupted ? exit_interrupted : status_code(effects.own("gas").metrics.status);
 }
 
 int accuracy_verb(const Common& c) {
-  const Prepared p = prepare(load_scene(c));
-  if (!c.out.empty()) make_folder(c.out);
+  const SceneFile file = load_scene(c);
+  const Prepared p = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
+  std::optional<ResultFolder> folder = claim_places(c, {"report.html", "accuracy.svg", "accuracy.json"});
   Bar bar(c.quiet);
   AccuracyOptions options{.stop = c.stop};
   std::size_t done = 0, of = 0;
@@ -317,12 +351,13 @@ int accuracy_verb(const Common& c) {
   bar.close(state);
   const json j = accuracy_json(p, study, {.command = c.command});
   std::string text = accuracy_text(study);
-  if (!c.out.empty() && !study.rows.empty()) {
-    const fs::path folder = c.out;
-    write_whole(folder / "report.html", accuracy_html(p, study, {.command = c.command}));
-    write_whole(folder / "accuracy.svg", accuracy_svg(p.scene.title, study));
-    write_whole(folder / "accuracy.json", j.dump(2) + "\n");
-    text += fmt::format("\nIn {}: report.html, accuracy.svg, accuracy.json\n", c.out);
+  if (folder && !study.rows.empty()) {
+    folder->write("report.html", accuracy_html(p, study, {.command = c.command}));
+    folder->write("accuracy.svg", accuracy_svg(p.scene.title, study));
+    folder->write("accuracy.json", json_text(j, 2));
+    const bool interrupted = study.status == Status::interrupted;
+    text += left_in(folder->destination(interrupted), {"report.html", "accuracy.svg", "accuracy.json"});
+    folder->publish(interrupted);
   }
   print_json_or(c, j, text);
   return status_code(study.status);
@@ -347,40 +382,53 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (request.jobs) options.jobs = whole_number("--jobs", *request.jobs, 1);
   if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
-  options.max_evaluations = default_budget(options.actuator);
+  options.max_evaluations = default_budget(options.target, options.actuator);
   if (request.budget) read_budget(*request.budget, options);
 
   const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> preparation(std::in_place, c.quiet, c.stop);
+  options.on_preparation = [&](std::string_view what, double part) { preparation->watch().tell(what, part); };
   SearchProgress progress(c.quiet, options);
-  std::optional<SearchFolder> folder;
+  std::optional<ResultFolder> folder;
+  std::optional<SearchLog> log;
   options.on_start = [&](const std::vector<std::string>& variables) {
-    folder.emplace(c.out, variables);
-    if (!c.quiet)
-      fmt::print(stderr, "softland: {}: searching a {} waveform, actuator {}, target {}; results go to {}\n", c.scene,
-                 request.waveform, request.actuator, request.target, c.out);
+    preparation.emplace(c.quiet, c.stop);
+    folder =
+        claim_places(c, {"best.toml", "best.csv", "report.html", "gap.svg", "result.json", "trajectory.csv", "evaluations.csv"});
+    log.emplace(*folder, variables);
+    if (!c.quiet) {
+      say(fmt::format("{}: searching a {} waveform, actuator {}, target {}; results go to {}", c.scene, request.waveform,
+                      request.actuator, request.target, c.out));
+    }
   };
   options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress& p) {
-    folder->evaluated(e);
+    log->evaluated(e);
     progress.show(p);
   };
-  options.on_improvement = [&](const Evaluation&, const SceneFile& best) { folder->improved(best); };
+  options.on_improvement = [&](const Evaluation&, const SceneFile& best) { log->improved(best); };
   const OptimizeResult result = optimize(file, options);
+  preparation.reset();
   progress.close();
-  folder->flush();
+  log->flush();
 
   json j = result_json(result, options, {.command = c.command});
-  for (const auto& [index, e] : folder->evaluations()) {
+  for (const auto& [index, e] : log->evaluations()) {
     j["search"]["evaluations"].push_back({index, std::isfinite(e.value) ? json(e.value) : json(nullptr)});
   }
-  j["reproduce"] = {c.command, fmt::format("softland simulate {}", (fs::path(c.out) / "best.toml").string())};
-  std::vector<std::string> left{"evaluations.csv"};
+  const bool interrupted = result.search.termination == Termination::interrupted;
+  const fs::path place = folder->destination(interrupted);
+  j["reproduce"] = {c.command, "softland simulate " + shell_word((place / "best.toml").string())};
+  std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
   if (result.best_scene) {
-    write_whole(folder->path() / "best.toml", result.best_scene->scene.file.text());
-    write_whole(folder->path() / "best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
-    left.insert(left.begin(), {"best.toml (run it with `softland simulate`)", "best.csv"});
+    folder->write("best.toml", result.best_scene->scene.file.text());
+    folder->write("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
+    left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
-  write_outputs(c, j, left);
-  if (result.search.termination == Termination::interrupted) return exit_interrupted;
+  left.emplace_back("evaluations.csv");
+  write_result(*folder, j);
+  folder->publish(interrupted);
+  print_result(c, j, left_in(place, left));
+  if (interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }
 
@@ -394,24 +442,28 @@ int new_verb(const std::string& kind) {
   std::vector<std::string> kinds;
   for (const auto& [name, scene] : scenes) kinds.push_back(name);
   require(found != scenes.end(), fmt::format("new {}: must be one of {}", kind, fmt::join(kinds, ", ")));
-  std::cout << read_text(shipped_scene(found->second));
+  print(read_file(shipped_scene(found->second)));
   return exit_done;
 }
 
-int export_verb(const std::string& result, const std::string& format) {
-  const Prepared p = prepare(scene_of_result(result));
+int export_verb(const Common& c, const std::string& result, const std::string& format) {
+  const SceneFile file = scene_of_result(result);
+  const Prepared p = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
   require(format == "csv" || format == "spice-pwl", fmt::format("--format {}: must be csv or spice-pwl", format));
-  std::cout << (format == "csv" ? csv(named_signals(p), p.duration) : spice_pwl(named_signals(p), p.duration));
+  print(format == "csv" ? csv(named_signals(p), p.duration) : spice_pwl(named_signals(p), p.duration));
   return exit_done;
 }
 
-int report_verb(const std::string& result, const std::string& out) {
-  const fs::path path = fs::is_directory(result) ? fs::path(result) / "result.json" : fs::path(result);
+int report_verb(const Common& given, const std::string& result) {
+  const fs::path path = is_folder(result) ? fs::path(result) / "result.json" : fs::path(result);
   const json j = read_result(path);
-  const fs::path folder = out.empty() ? path.parent_path() : fs::path(out);
-  if (!out.empty()) make_folder(out);
+  Common c = given;
+  if (c.out.empty()) c.out = path.has_parent_path() ? path.parent_path().string() : ".";
+  const std::vector<std::string> files{"report.html", "gap.svg"};
+  ResultFolder folder = *claim_places(c, files);
   write_report(folder, j);
-  std::cout << text_report(j) << fmt::format("\nIn {}: report.html, gap.svg\n", folder.empty() ? "." : folder.string());
+  folder.publish(false);
+  print(text_report(j) + left_in(c.out, files));
   return exit_done;
 }
 

@@ -1,4 +1,5 @@
-// One function per verb of the command line. Each returns the exit status; bad input is an InvalidInput.
+// One function per verb of the command line. Each returns the exit status (apps/exit_status.h); what keeps it from its end is an
+// exception: see apps/failure.h.
 #pragma once
 
 #include <atomic>
@@ -29,8 +30,6 @@ struct OptimizeRequest {
   std::optional<std::string> jobs;    ///< default: one per core
 };
 
-inline constexpr int exit_done = 0, exit_bad_input = 2, exit_numerical_failure = 3, exit_no_success = 4, exit_interrupted = 130;
-
 int simulate_verb(const Common& common, bool certified);
 int pull_in_verb(const Common& common);
 int modes_verb(const Common& common);
@@ -39,7 +38,7 @@ int effects_verb(const Common& common);
 int accuracy_verb(const Common& common);
 int optimize_verb(const Common& common, const OptimizeRequest& request);
 int new_verb(const std::string& kind);
-int export_verb(const std::string& result, const std::string& format);
-int report_verb(const std::string& result, const std::string& out);
+int export_verb(const Common& common, const std::string& result, const std::string& format);
+int report_verb(const Common& common, const std::string& result);
 
 }  // namespace softland::apps

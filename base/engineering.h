@@ -11,19 +11,28 @@
 namespace softland {
 
 /// `value` [unit] with the prefix, femto to giga, that leaves one to three digits before the point: 6e-05, "m" -> "60 um". At
-/// most twelve significant digits, so that what arithmetic leaves behind is not shown. No prefix for 0, for values beyond the
-/// prefixes, and for a unit that takes none: "kg/m^3", "1/m^2", "".
-[[nodiscard]] inline std::string engineering(double value, std::string_view unit) {
+/// most `digits` significant digits; twelve do not show what arithmetic leaves behind in a number that was typed. No prefix for
+/// 0, for values beyond the prefixes, and for a unit that takes none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
+[[nodiscard]] inline std::string engineering(double value, std::string_view unit, int digits = 12) {
   constexpr std::array<std::pair<int, std::string_view>, 9> prefixes{
       {{9, "G"}, {6, "M"}, {3, "k"}, {0, ""}, {-3, "m"}, {-6, "u"}, {-9, "n"}, {-12, "p"}, {-15, "f"}}};
-  const auto text = [](double number) {
+  const auto text = [digits](double number) {
     std::array<char, 32> buffer;
-    return std::string(buffer.data(), static_cast<std::size_t>(std::snprintf(buffer.data(), buffer.size(), "%.12g", number)));
+    std::string shown(buffer.data(),
+                      static_cast<std::size_t>(std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, number)));
+    if (const std::size_t e = shown.find('e'); e != std::string::npos) {  // 1e-06 is 1e-6
+      const std::size_t first = shown.find_first_of("123456789", e);
+      shown.replace(e + 1, first - e - 1, shown[e + 1] == '-' ? "-" : "");
+    }
+    return shown;
   };
   if (unit.empty()) return text(value);
   std::string_view chosen;
   double number = value;
-  if (!unit.starts_with("kg") && !unit.starts_with("1/")) {
+  const std::string_view first = unit.substr(0, unit.find_first_of(" */"));
+  const bool takes_prefix = first != "kg" && first != "1" && first != "Vsp" && first != "Vdp" && !first.ends_with('%') &&
+                            first.find('^') == std::string_view::npos;
+  if (takes_prefix) {
     for (const auto& [exponent, prefix] : prefixes) {
       const double scaled = value / std::pow(10, exponent), size = std::abs(scaled) * (1 + 1e-12);  // 999.999... counts as 1000
       if (size >= 1 && size < 1000) {

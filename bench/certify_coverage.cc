@@ -111,7 +111,7 @@ Scene judge(const Options& options, std::uint64_t index) {
       tally.in_range += other >= ill->spread.low && other <= ill->spread.high;
       continue;
     }
-    const double error = figure.error != nullptr ? figure.error(errors) : errors.bounce_count;
+    const double error = figure.error != nullptr ? figure.error(errors) : c.bounce_count_error.value_or(-1);
     const double difference = std::abs(own - other), least = truth_rounding * std::abs(other);
     const bool covered = difference <= std::max(error, least);
     ++(covered ? tally.covered : tally.missed);

@@ -49,7 +49,7 @@ std::string became(const Trajectory& t, const Metrics& m) {
        std::initializer_list<std::pair<const char*, const char*>>{{"of the electrode", "fails: pulled onto the electrode"},
                                                                   {"far side", "fails: reached the far side"},
                                                                   {"steps needed", "fails: more steps than allowed"},
-                                                                  {"came from nowhere", "fails: energy balance"}}) {
+                                                                  {"energy balance", "fails: energy balance"}}) {
     if (t.message.find(part) != std::string::npos) return name;
   }
   return "fails: " + t.message;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "config/section_reader.h"
 #include "config/units.h"
@@ -85,8 +86,10 @@ double amplitude(const SectionReader& in, std::string_view drive, const PullInVo
 
 Table read_rows(const SceneFile::Impl& file, const SectionReader& in, std::string_view drive, const PullInVoltages& pull_in) {
   if (!in.is_given("file")) return {.time = in.numbers("times"), .voltage = volts(in.quantities("voltages"), pull_in)};
+  const std::string& name = in.text("file");
+  in.require(!name.empty() && name.find('\0') == std::string::npos, "file", "must be the name of a file");
   try {
-    return read_table((file.directory / in.text("file")).string(), std::string(drive));
+    return read_table((file.directory / name).string(), std::string(drive));
   } catch (const InvalidInput& error) {
     file.fail(in.path("file"), error.what());
   }
@@ -134,16 +137,27 @@ Signal compile(const SceneFile::Impl& file, const SectionReader& in, const Wavef
   }
 }
 
+/// What a voltage can be, also one that is a multiple of another: resolved scenes are written in volts.
+const Range& any_voltage() {
+  static const Range range = Key{.dimensions = {dimension::voltage}}.range_of(dimension::voltage);
+  return range;
+}
+
 /// Nothing when the drive has no limits. Without a pull-in voltage there is no default limit.
 std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_view drive, const PullInVoltages& known) {
   DriverLimits limits{.min_voltage = 0, .max_voltage = std::numeric_limits<double>::infinity()};
   if (known.dynamic_pull_in > 0 && drive != piezo_drive) {
-    limits.max_voltage = default_max_voltage * known.dynamic_pull_in;
+    limits.max_voltage = std::min(default_max_voltage * known.dynamic_pull_in, any_voltage().most);
   } else if (!in.is_present()) {
     return std::nullopt;
   }
-  if (in.is_given("min_voltage")) limits.min_voltage = volts(in.quantities("min_voltage").front(), known);
-  if (in.is_given("max_voltage")) limits.max_voltage = volts(in.quantities("max_voltage").front(), known);
+  const auto read = [&](std::string_view key, double& limit) {
+    if (!in.is_given(key)) return;
+    limit = volts(in.quantities(key).front(), known);
+    in.require(any_voltage().contains(limit), key, any_voltage().rule("V"));
+  };
+  read("min_voltage", limits.min_voltage);
+  read("max_voltage", limits.max_voltage);
   if (in.is_given("max_slew")) limits.max_slew = in.number("max_slew");
   return limits;
 }
@@ -184,6 +198,9 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     Waveform waveform = read_waveform(file, in, drive, known, main_hold);
     if (drive == dispersion_drive) waveform = raised(std::move(waveform), -1);
     const Signal compiled = compile(file, in, waveform);
+    if (const double peak = compiled.peak(); drive != dispersion_drive && !any_voltage().contains(peak)) {
+      file.fail_section(in.path(), fmt::format("reaches {}: {}", engineering(peak, "V"), any_voltage().rule("V")));
+    }
     if (drive == main_electrode(device)) main_hold = compiled.hold_level();
     if (limits && checks == LimitChecks::all) {
       if (std::string broken = violation(compiled, *limits); !broken.empty()) {
@@ -216,7 +233,11 @@ void check_drive_name(const SceneFile::Impl& file, const std::string& electrode)
   if (electrode == piezo_drive) file.fail_section(path, "the name 'piezo' is reserved for the piezo layer");
   if (electrode == dispersion_drive) file.fail_section(path, "the name 'dispersion' is reserved for the dispersion force");
   // The name becomes a column of CSV files and a node of SPICE circuits.
-  if (!is_bare_key(electrode)) file.fail_section(path, "a name may hold letters, digits, '_' and '-'");
+  constexpr std::size_t longest = 64;
+  if (electrode == "time_s") file.fail_section(path, "the name 'time_s' is reserved for the time in CSV files");
+  if (!is_bare_key(electrode) || electrode.size() > longest) {
+    file.fail_section(path, fmt::format("a name may hold letters, digits, '_' and '-', at most {} of them", longest));
+  }
 }
 
 std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device& device) {

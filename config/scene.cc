@@ -91,6 +91,11 @@ Structure read_structure(const SectionReader& in) {
 Gap read_gap(const SectionReader& in) {
   const Gap gap{.electrode = in.number("electrode"), .contact = in.number("contact")};
   in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
+  // A run that comes within a hundredth of the electrode gap of the electrode has failed: see Switch::gap_floor().
+  constexpr double most = 0.99;
+  in.require(gap.contact < most * gap.electrode, "contact",
+             fmt::format("must be less than {:g} times {}: nearer than a hundredth of that gap no force law holds", most,
+                         in.written("electrode")));
   return gap;
 }
 
@@ -253,6 +258,11 @@ Device read_device(const SceneFile::Impl& file) {
     }
     device.electrodes.push_back(
         {.name = name, .begin = begin, .end = end, .fringing = law, .side = at, .gap = at == Side::near ? 0 : in.number("gap")});
+  }
+  if (const auto conflict = electrode_conflict(device.structure, device.electrodes)) {
+    const SectionReader in(file, "electrode", device.electrodes[conflict->electrode].name);
+    for (const std::string_view key : {"span", "area"}) in.require(!in.is_given(key), key, conflict->why);
+    file.fail_section(in.path(), conflict->why);
   }
   if (const SectionReader in(file, "gas"); in.is_present()) {
     if (!in.is_given("quality_factor")) require_of_plate(in, "model", structure, "width");

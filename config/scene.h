@@ -40,6 +40,9 @@ class SceneFile {
   [[nodiscard]] std::string text() const;
   [[nodiscard]] nlohmann::json json() const;
   [[nodiscard]] const std::string& name() const;
+  /// Throws InvalidInput about a key ("structure.length"): file and line or option, key, value, rule. Where the key is not
+  /// written, about its section.
+  [[noreturn]] void refuse(const std::string& path, std::string_view rule) const;
 
   struct Impl;
   [[nodiscard]] const Impl& impl() const { return *impl_; }

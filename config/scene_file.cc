@@ -1,15 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
+#include "base/printable.h"
+#include "base/read_file.h"
 #include "base/require.h"
+#include "base/shortened.h"
 #include "config/drives.h"
 #include "config/scene.h"
 #include "config/scene_file_impl.h"
@@ -74,7 +73,7 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
     const auto& at = error.source().begin;
     // The usual slip of a newcomer, which the parser reports in its own terms only: length = 2 um.
     const bool may_miss_quotes = error.description().find("expected a comment or whitespace") != std::string_view::npos;
-    throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, error.description(),
+    throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, shortened(error.description(), 200),
                                    may_miss_quotes ? " (a quantity needs quotes: \"2 um\")" : ""));
   }
 }
@@ -262,28 +261,17 @@ namespace {
 
 using internal::join_path;
 
-void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::string& path) {
+void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::string& path, std::size_t parts = 1) {
   for (const auto& [key, node] : table) {
     const std::string key_path = join_path(path, key.str());
-    impl.origins[key_path] = {fmt::format("{}:{}", impl.name, node.source().begin.line)};
-    if (const auto* inner = node.as_table()) record_origins(impl, *inner, key_path);
+    const std::string place = fmt::format("{}:{}", impl.name, node.source().begin.line);
+    impl.origins[key_path] = {place};
+    const auto* inner = node.as_table();
+    if (!inner) continue;
+    // A section and a dotted key in it, each short enough, may make a path that could be written but not read again.
+    require(parts < internal::deepest_path, fmt::format("{}: a key has more than {} parts", place, internal::deepest_path));
+    record_origins(impl, *inner, key_path, parts + 1);
   }
-}
-
-/// Control characters and broken UTF-8 stay out of messages.
-std::string printable(std::string_view text) {
-  bool is_utf8 = true;
-  try {
-    static_cast<void>(internal::parse_value(internal::toml_string(text)));
-  } catch (const InvalidInput&) {
-    is_utf8 = false;
-  }
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    out += byte < 0x20 || byte == 0x7f || (byte >= 0x80 && !is_utf8) ? '?' : c;
-  }
-  return out;
 }
 
 bool is_below(std::string_view path, std::string_view ancestor) {
@@ -322,29 +310,22 @@ void SceneFile::Impl::forget(std::string_view path) {
 }
 
 std::string SceneFile::Impl::written(std::string_view path) const {
-  constexpr std::size_t longest_value = 80;
   const toml::node* node = find(internal::split_path(path));
-  std::string value = node ? internal::inline_text(*node) : std::string();
-  if (value.size() > longest_value) {
-    std::size_t cut = longest_value;
-    while (cut > 0 && (static_cast<unsigned char>(value[cut]) & 0xC0) == 0x80) --cut;  // not inside a UTF-8 sequence
-    value = value.substr(0, cut) + "...";
-  }
-  return fmt::format("{} = {}", path, value);
+  return fmt::format("{} = {}", shortened(path), shortened(node ? internal::inline_text(*node) : std::string()));
 }
 
 void SceneFile::Impl::fail(std::string_view path, std::string_view rule) const {
   const Origin place = origin(path);
   const auto exact = origins.find(path);
-  if (place.is_option && exact != origins.end()) throw InvalidInput(fmt::format("{}: {}", place.text, rule));
-  throw InvalidInput(fmt::format("{}: {}: {}", place.text, written(path), rule));
+  if (place.is_option && exact != origins.end()) throw InvalidInput(fmt::format("{}: {}", place.text, printable_line(rule)));
+  throw InvalidInput(fmt::format("{}: {}: {}", place.text, written(path), printable_line(rule)));
 }
 
 void SceneFile::Impl::fail_section(std::string_view path, std::string_view rule) const {
   const auto is_option_below = [&](const auto& entry) { return entry.second.is_option && is_below(entry.first, path); };
   const auto option = std::find_if(origins.begin(), origins.end(), is_option_below);
   const Origin place = option == origins.end() ? origin(path) : option->second;
-  throw InvalidInput(fmt::format("{}: [{}]: {}", place.text, path, rule));
+  throw InvalidInput(fmt::format("{}: [{}]: {}", place.text, shortened(path), printable_line(rule)));
 }
 
 std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) const {
@@ -369,22 +350,7 @@ SceneFile::SceneFile(SceneFile&&) noexcept = default;
 SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
 SceneFile::~SceneFile() = default;
 
-SceneFile SceneFile::load(const std::filesystem::path& path) {
-  constexpr std::size_t largest = std::size_t{64} << 20;  // [byte]; a scene with a measured waveform inside stays far below
-  const std::string name = path.string();
-  std::error_code ignored;
-  require(!std::filesystem::is_directory(path, ignored), name + ": is a directory, not a scene file");
-  std::ifstream stream(path, std::ios::binary);
-  require(stream.is_open(), fmt::format("{}: cannot be opened: {}", name, std::generic_category().message(errno)));
-  std::string text;
-  std::array<char, 1 << 16> block;
-  while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-    require(text.size() <= largest, name + ": is larger than 64 MiB, so it is not a scene file");
-  }
-  require(!stream.bad(), name + ": cannot be read to its end");
-  return parse(text, name, path.parent_path());
-}
+SceneFile SceneFile::load(const std::filesystem::path& path) { return parse(read_file(path), path.string(), path.parent_path()); }
 
 SceneFile SceneFile::parse(std::string_view text, std::string name, std::filesystem::path directory) {
   auto impl = std::make_unique<Impl>();
@@ -396,7 +362,7 @@ SceneFile SceneFile::parse(std::string_view text, std::string name, std::filesys
 }
 
 void SceneFile::set(std::string_view assignment) {
-  const std::string option = "--set " + printable(assignment);
+  const std::string option = "--set " + shortened(printable_line(assignment));
   const auto equals = assignment.find('=');
   require(equals != std::string_view::npos, option + ": not of the form key.path=value");
   const std::string_view value = assignment.substr(equals + 1);
@@ -418,7 +384,8 @@ void SceneFile::set(std::string_view assignment) {
     try {
       parsed = internal::parse_value(internal::toml_string(value));
     } catch (const InvalidInput&) {
-      throw InvalidInput(fmt::format("--set {}: the value is not UTF-8 text", printable(assignment.substr(0, equals))));
+      throw InvalidInput(
+          fmt::format("--set {}: the value is not UTF-8 text", shortened(printable_line(assignment.substr(0, equals)))));
     }
   }
 
@@ -517,5 +484,14 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
 std::string SceneFile::text() const { return internal::write_scene(impl_->root); }
 nlohmann::json SceneFile::json() const { return internal::to_json(impl_->root); }
 const std::string& SceneFile::name() const { return impl_->name; }
+
+void SceneFile::refuse(const std::string& path, std::string_view rule) const {
+  std::vector<std::string> parts = internal::split_path(path);
+  if (impl_->find(parts)) impl_->fail(path, rule);
+  parts.pop_back();
+  std::string section;
+  for (const std::string& part : parts) section = join_path(section, part);
+  impl_->fail_section(section, rule);
+}
 
 }  // namespace softland

@@ -3,14 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+
+#include "base/engineering.h"
+#include "model/device.h"
 
 namespace softland::internal {
 namespace {
 
+// Ends that these leave open are closed by the extent of the dimension.
 constexpr Range positive{.least = 0, .least_open = true};
 constexpr Range not_negative{.least = 0};
 constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
+
+/// The sizes [SI unit] that a quantity of a dimension can have in a scene: far beyond any switch, and so that no product of a few
+/// of them leaves double precision.
+struct Extent {
+  Dimension dimension;
+  double smallest;  ///< of what must be positive
+  double largest;   ///< in absolute value
+};
+constexpr std::array extents{
+    Extent{dimension::none, 1e-12, 1e12},
+    Extent{dimension::length, 1e-12, 1},
+    Extent{dimension::mass, 1e-30, 1e3},
+    Extent{dimension::time, 1e-15, 1e3},
+    Extent{dimension::temperature, 1e-3, 1e5},
+    Extent{dimension::angle, 1e-12, 1e6},
+    Extent{dimension::static_pull_in, 1e-12, 1e3},
+    Extent{dimension::dynamic_pull_in, 1e-12, 1e3},
+    Extent{dimension::area, 1e-24, 1},
+    Extent{dimension::area_density, 1, 1e24},
+    Extent{dimension::density, 1e-6, 1e6},
+    Extent{dimension::frequency, 1e-6, 1e15},
+    Extent{dimension::angular_frequency, 1e-6, 1e15},
+    Extent{dimension::energy, 1e-30, 1},
+    Extent{dimension::pressure, 1e-12, 1e15},
+    Extent{dimension::viscosity, 1e-18, 1e6},
+    Extent{dimension::stiffness, 1e-12, 1e12},
+    Extent{dimension::slowness, 1e-12, 1e5},
+    Extent{dimension::voltage, 1e-12, 1e9},
+    Extent{dimension::slew_rate, 1e-6, 1e24},
+    Extent{dimension::piezo_coefficient, 1e-18, 1e-6},
+};
 
 /// Contact laws of asperities.
 const std::vector<std::string_view> rough_contacts{"asperity-uniform", "asperity-gaussian", "adhesive", "elastic-plastic"};
@@ -197,7 +233,7 @@ std::vector<Section> make_schema() {
                 .about = "of the beam"},
                {.name = "modes",
                 .type = integer,
-                .range = {.least = 1, .most = 20},
+                .range = {.least = 1, .most = most_modes},
                 .words = {"auto"},
                 .fallback = "4",
                 .only_for = beams,
@@ -332,7 +368,7 @@ std::vector<Section> make_schema() {
                  .about = "of the gas"},
                 {.name = "mean_free_path",
                  .dimensions = {dimension::length},
-                 .range = positive,
+                 .range = {.least = 0, .most = 1e9, .least_open = true},
                  .only_for = gas_films,
                  .about = "absent: from viscosity, pressure and temperature"},
                 {.name = "film_length",
@@ -622,7 +658,7 @@ std::vector<Section> make_schema() {
                  .about = "relative error of t_i, v_i, B_H and the peak force"},
                 {.name = "tolerance",
                  .dimensions = {dimension::none},
-                 .range = small_error,
+                 .range = {.least = 1e-14, .most = 0.1},
                  .instead_of = {"accuracy"},
                  .about = "relative tolerance of the integrator, instead of accuracy"},
                 {.name = "effects",
@@ -689,13 +725,23 @@ bool Range::contains(double value) const {
 }
 
 std::string Range::rule(std::string_view unit) const {
-  const auto with_unit = [&](double value) {
-    return unit.empty() ? number_text(value) : fmt::format("{} {}", number_text(value), unit);
-  };
-  if (most == std::numeric_limits<double>::infinity()) {
-    return fmt::format("must be {} {}", least_open ? "greater than" : "at least", with_unit(least));
+  return fmt::format("must be in {}{}, {}{}", least_open ? '(' : '[', engineering(least, unit), engineering(most, unit),
+                     most_open ? ')' : ']');
+}
+
+Range Key::range_of(const Dimension& dimension) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto found =
+      std::find_if(extents.begin(), extents.end(), [&](const Extent& extent) { return extent.dimension == dimension; });
+  if (type == KeyType::integer || found == extents.end()) return range;
+  Range closed = range;
+  if (closed.most == infinity) closed.most = found->largest;
+  if (closed.least == -infinity) closed.least = -found->largest;
+  if (closed.least == 0 && closed.least_open) {
+    closed.least = found->smallest;
+    closed.least_open = false;
   }
-  return fmt::format("must be in {}{}, {}{}", least_open ? '(' : '[', with_unit(least), with_unit(most), most_open ? ')' : ']');
+  return closed;
 }
 
 bool Key::is_bare_number() const {

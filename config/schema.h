@@ -21,7 +21,7 @@ struct Range {
   bool most_open = false;
 
   [[nodiscard]] bool contains(double value) const;
-  /// "must be greater than 0 m", "must be in (0, 0.1]"
+  /// "must be in [1 pm, 1 m]", "must be in [0, 1)"
   [[nodiscard]] std::string rule(std::string_view unit) const;
 };
 
@@ -30,7 +30,7 @@ struct Key {
   KeyType type = KeyType::quantity;
   /// quantity, quantities: the dimensions a value may have; empty: decided by another key. The first one names the key's SI unit.
   std::vector<Dimension> dimensions = {};
-  Range range = {};
+  Range range = {};       ///< see range_of()
   std::size_t count = 0;  ///< quantities: how many; 0: any number
   std::vector<std::string_view> choices = {};
   std::vector<std::string_view> words = {};  ///< integer: what may stand instead of a number
@@ -40,6 +40,8 @@ struct Key {
   std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
   std::string_view about = {};                    ///< one line for people
 
+  /// The range for a value of this dimension: ends that `range` leaves open are those of the dimension.
+  [[nodiscard]] Range range_of(const Dimension& dimension) const;
   /// No dimension is due: a TOML number is accepted as well.
   [[nodiscard]] bool is_bare_number() const;
   [[nodiscard]] bool belongs_to(std::string_view choice) const;

@@ -56,12 +56,12 @@ Quantity parse_number(const Key& key, const toml::node& node) {
     throw InvalidInput("not a number with a unit" + expected(key));
   }
   if (!has_unit && !key.is_bare_number()) throw InvalidInput("no unit" + expected(key));
-  if (!std::isfinite(quantity.value)) throw InvalidInput("must be finite");
   const auto& allowed = key.dimensions;
   if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), quantity.dimension) == allowed.end()) {
     throw InvalidInput(fmt::format("expected {}, got {}", describe(allowed.front()), describe(quantity.dimension)));
   }
-  if (!key.range.contains(quantity.value)) throw InvalidInput(key.range.rule(unit_symbol(quantity.dimension)));
+  const Range range = key.range_of(quantity.dimension);
+  if (!range.contains(quantity.value)) throw InvalidInput(range.rule(unit_symbol(quantity.dimension)));
   return quantity;
 }
 

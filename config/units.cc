@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 #include <optional>
 
 #include "base/require.h"
+#include "base/shortened.h"
 
 namespace softland {
 namespace {
@@ -48,8 +50,35 @@ struct Prefix {
   char letter;
   int exponent;
 };
-constexpr std::array prefixes{Prefix{'f', -15}, Prefix{'p', -12}, Prefix{'n', -9}, Prefix{'u', -6},
-                              Prefix{'m', -3},  Prefix{'k', 3},   Prefix{'M', 6},  Prefix{'G', 9}};
+constexpr std::array prefixes{Prefix{'y', -24}, Prefix{'z', -21}, Prefix{'a', -18}, Prefix{'f', -15},
+                              Prefix{'p', -12}, Prefix{'n', -9},  Prefix{'u', -6},  Prefix{'m', -3},
+                              Prefix{'k', 3},   Prefix{'M', 6},   Prefix{'G', 9},   Prefix{'T', 12}};
+
+/// Characters of print, which reports and other programs use, and what the grammar calls them.
+struct Spelling {
+  std::string_view printed;
+  std::string_view plain;
+};
+constexpr std::array spellings{Spelling{"\u00b5", "u"},   // micro sign
+                               Spelling{"\u03bc", "u"},   // Greek mu
+                               Spelling{"\u2212", "-"},   // minus sign
+                               Spelling{"\u00a0", " "},   // no-break space
+                               Spelling{"\u202f", " "},   // narrow no-break space
+                               Spelling{"\u00b7", "*"},   // middle dot
+                               Spelling{"\u00b2", "^2"},  // superscripts
+                               Spelling{"\u00b3", "^3"}};
+
+std::string plainly_spelt(std::string_view text) {
+  std::string plain(text);
+  const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  if (std::all_of(plain.begin(), plain.end(), is_ascii)) return plain;  // long lists of numbers are
+  for (const Spelling& spelling : spellings) {
+    for (auto at = plain.find(spelling.printed); at != std::string::npos; at = plain.find(spelling.printed, at)) {
+      plain.replace(at, spelling.printed.size(), spelling.plain);
+    }
+  }
+  return plain;
+}
 
 struct Name {
   Dimension dimension;
@@ -129,12 +158,14 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+constexpr int largest_power = 9;
+
 int parse_power(std::string_view text, std::string_view factor) {
-  constexpr int largest = 9;
   int power = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), power);
-  if (error != std::errc() || end != text.data() + text.size() || power == 0 || std::abs(power) > largest) {
-    throw InvalidInput(fmt::format("'{}' needs an integer power between -{} and {}, not 0", factor, largest, largest));
+  if (error != std::errc() || end != text.data() + text.size() || power == 0 || std::abs(power) > largest_power) {
+    throw InvalidInput(
+        fmt::format("'{}' needs an integer power between -{} and {}, not 0", shortened(factor), largest_power, largest_power));
   }
   return power;
 }
@@ -146,8 +177,15 @@ void apply_factor(Scale& scale, std::string_view factor, int sign) {
   const int power = sign * (caret == std::string_view::npos ? 1 : parse_power(factor.substr(caret + 1), factor));
   if (name == "degC") throw InvalidInput("'degC' has an offset and can only stand alone; use K here");
   const auto unit = look_up(name);
-  if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", name));
-  for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) scale.dimension.powers[i] += power * unit->dimension.powers[i];
+  if (!unit) throw InvalidInput(fmt::format("unknown unit '{}'", shortened(name)));
+  for (std::size_t i = 0; i < scale.dimension.powers.size(); ++i) {
+    scale.dimension.powers[i] += power * unit->dimension.powers[i];
+    // A quantity is written in base units, with powers that can be read again.
+    if (std::abs(scale.dimension.powers[i]) > largest_power) {
+      throw InvalidInput(fmt::format("with '{}' the power of {} in the unit is {}; it must lie between -{} and {}",
+                                     shortened(factor), base_units[i], scale.dimension.powers[i], largest_power, largest_power));
+    }
+  }
   scale.exponent += power * unit->exponent;
   if (unit->factor != 1) scale.factor *= std::pow(unit->factor, power);
 }
@@ -210,7 +248,9 @@ std::size_t number_length(std::string_view text) {
 double scaled_number(std::string_view number, int exponent) {
   if (number.starts_with('+')) number.remove_prefix(1);
   const auto e = number.find_first_of("eE");
-  const auto out_of_range = [&] { return InvalidInput(fmt::format("{} is outside the range of double precision", number)); };
+  const auto out_of_range = [&] {
+    return InvalidInput(fmt::format("{} is outside the range of double precision", shortened(number)));
+  };
   if (e != std::string_view::npos) {
     std::string_view digits = number.substr(e + 1);
     if (digits.starts_with('+')) digits.remove_prefix(1);
@@ -229,8 +269,9 @@ double scaled_number(std::string_view number, int exponent) {
 
 }  // namespace
 
-Quantity parse_quantity(std::string_view text) {
-  text = trim(text);
+Quantity parse_quantity(std::string_view given) {
+  const std::string plain = plainly_spelt(given);
+  const std::string_view text = trim(plain);
   const std::size_t length = number_length(text);
   const std::string_view number = text.substr(0, length);
   const std::string_view unit = trim(text.substr(length));

@@ -1,9 +1,10 @@
 // Quantities as text: "2 um", "1.86e-5 Pa s", "19300 kg/m^3", "15 %". Converted to SI once, here.
 //
 // Grammar: number SPACE unit. A unit is factors joined by spaces or `*`, with at most one `/`; every factor after the `/`
-// divides. A factor is a prefix (f p n u m k M G), a symbol and an integer power `^n`; the whole numerator may be `1`. A text
-// without unit is a plain number. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa" metre pascal, "mPa"
-// millipascal.
+// divides. A factor is a prefix (y z a f p n u m k M G T), a symbol and an integer power `^n`; the whole numerator may be `1`. A
+// text without unit is a plain number. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa" metre pascal,
+// "mPa" millipascal. The spellings of print are read as well: µ (micro sign or Greek mu) for u, the no-break space, the minus
+// sign, the middle dot, ² and ³. So whatever softland prints as a quantity can be read again.
 //
 // Prefixes and `%` move the decimal exponent of the number before it is rounded, so that "2 um" is the double nearest to 2e-6,
 // and a number in SI base units is read bit for bit.
@@ -60,7 +61,7 @@ struct Quantity {
 };
 
 /// Throws InvalidInput with the broken rule only ("unknown unit 'u'"): the caller knows which key it was. The value is finite.
-[[nodiscard]] Quantity parse_quantity(std::string_view text);
+[[nodiscard]] Quantity parse_quantity(std::string_view given);
 
 /// The SI symbol: "m", "kg/m^3"; empty for a plain number; base units where there is no usual name.
 [[nodiscard]] std::string unit_symbol(const Dimension& dimension);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/engineering.h"
+
 namespace softland {
 namespace {
 
@@ -172,7 +174,7 @@ bool Lawson::step(double t_stop) {
     const bool stops = t_ + h >= t_stop;
     if (stops) h = t_stop - t_;
     if (!(t_ + h > t_)) {
-      message_ = fmt::format("no step is short enough for the tolerance at t = {:.9g} s", t_);
+      message_ = fmt::format("no step is short enough for the tolerance at t = {}", engineering(t_, "s", 4));
       return false;
     }
     const double end = stops ? t_stop : t_ + h;

@@ -18,6 +18,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "base/engineering.h"
 #include "integrators/arrow.h"
 
 namespace softland {
@@ -117,7 +118,7 @@ class SundialsStepper : public Stepper {
   /// Whether a call of the library succeeded; keeps what it said where it did not.
   bool ok(int flag, std::string_view function) {
     if (flag >= 0) return true;
-    message_ = fmt::format("{} returned {} at t = {:.9g} s{}{}", function, flag, t_, said_.empty() ? "" : ": ", said_);
+    message_ = fmt::format("{} returned {} at t = {}{}{}", function, flag, engineering(t_, "s", 4), said_.empty() ? "" : ": ", said_);
     said_.clear();
     return false;
   }

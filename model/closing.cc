@@ -88,6 +88,7 @@ class Run {
     if (parts_.touches.note(event, p)) {
       if (!model_.has_contact()) {
         out_.warnings.push_back("no [contact] section: the run ends at first touch");
+        out_.ends_at_touch = true;
         return end(Status::done);
       }
       if (model_.rigid_contact() != nullptr) return strike();
@@ -155,7 +156,7 @@ class Run {
 
   void fail(const std::string& why) {
     end(Status::numerical_failure);
-    out_.message = fmt::format("at t = {:.6g} s: {}", here().time, why);
+    out_.message = fmt::format("at t = {}: {}", engineering(here().time, "s", 4), why);
   }
 
   void finish() {
@@ -167,19 +168,21 @@ class Run {
     out_.deepest_penetration = parts_.touches.deepest_penetration();
     const double error = out_.energy_error / model_.bending_energy();
     if (!(error <= not_credible) && out_.status != Status::numerical_failure) {
-      fail(fmt::format("{:.3g} of the bending energy came from nowhere: the tolerance {:g} is too loose for this closing", error,
-                       options_.tolerance));
+      fail(
+          fmt::format("the energy balance is off by {:.3g} of the bending energy: the tolerance {} is too loose for this closing",
+                      error, engineering(options_.tolerance, "")));
     } else if (error > worth_warning) {
-      out_.warnings.push_back(fmt::format(
-          "energy balance: {:.2g} % of the bending energy came from nowhere: the tolerance {:g} is too loose for this closing",
-          100 * error, options_.tolerance));
+      out_.warnings.push_back(
+          fmt::format("energy balance: off by {:.2g} % of the bending energy: the tolerance {} is too loose for this closing",
+                      100 * error, engineering(options_.tolerance, "")));
     }
     for (std::string& warning : gas_warnings(model_.device(), out_.smallest_gap, parts_.course.largest_squeeze())) {
       out_.warnings.push_back(std::move(warning));
     }
     if (const auto& contact = model_.device().contact; contact && out_.deepest_penetration > largest_interference(*contact)) {
-      out_.warnings.push_back(fmt::format("contact law {}: interference {:.3g} m exceeds the asperity height {:.3g} m",
-                                          to_string(contact->model), out_.deepest_penetration, largest_interference(*contact)));
+      out_.warnings.push_back(fmt::format("contact law {}: interference {} exceeds the asperity height {}",
+                                          to_string(contact->model), engineering(out_.deepest_penetration, "m", 3),
+                                          engineering(largest_interference(*contact), "m", 3)));
     }
   }
 
@@ -219,7 +222,8 @@ Trajectory observe_closing(const Switch& device, std::span<const Signal> drives,
                            ClosingObserver& observer) {
   require(drives.size() == device.drives(),
           fmt::format("{} signals for a switch with {} drives", drives.size(), device.drives()));
-  require(options.duration > 0 && options.duration < 1e6, fmt::format("duration = {} s: must be positive", options.duration));
+  require(options.duration > 0 && options.duration < 1e6,
+          fmt::format("duration = {} s: must be greater than 0 s and below 1e6 s", options.duration));
   require(options.tolerance > 0 && options.tolerance <= 0.1,
           fmt::format("tolerance = {}: must be in (0, 0.1]", options.tolerance));
   require(options.restart_at_contact || why_always_restarted(device).empty(),

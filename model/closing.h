@@ -15,7 +15,7 @@
 //
 // Every run keeps the books of its energy, dissipation by Simpson's rule over each step, and more exactly from where they are off
 // by 1e-4 of the energy that bends the beam by the contact gap: an integrator that loses the contact
-// between two steps, or a tolerance too loose for a stiff one, shows as energy that came from nowhere. A residual above 1 % of
+// between two steps, or a tolerance too loose for a stiff one, shows as energy that no source supplied. A residual above 1 % of
 // the energy that bends the beam by the contact gap is a warning, above 20 % the run is a numerical failure.
 //
 // A compressible gas film adds its pressures to the states, in thousandths of a period of diffusion: such scenes run implicitly,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/engineering.h"
@@ -14,7 +15,9 @@ namespace softland {
 namespace {
 
 void positive(double value, const char* unit, const char* name) {
-  require(value > 0 && value < 1e30, fmt::format("{} = {}: must be positive", name, engineering(value, unit)));
+  require(!std::isnan(value), fmt::format("{}: is needed here and not given", name));
+  require(value > 0 && value < 1e30,
+          fmt::format("{} = {}: must be greater than 0 and below 1e30", name, engineering(value, unit)));
 }
 
 void span(double begin, double end, double length, const std::string& name) {
@@ -33,8 +36,9 @@ void validate(const SurfacePressure& p, double contact_gap) {
   positive(p.hamaker_constant, "J", "contact.hamaker_constant");
   positive(p.smoothing_distance, "m", "contact.smoothing_distance");
   const double meet = p.asperity_distance + p.adhesion_range;
-  require(p.reach > meet && p.reach < 1, fmt::format("contact.reach = {}: must exceed asperity_distance + adhesion_range = {}",
-                                                     engineering(p.reach, "m"), engineering(meet, "m")));
+  require(p.reach > meet && p.reach <= 1,
+          fmt::format("contact.reach = {}: must exceed asperity_distance + adhesion_range = {} and be at most 1 m",
+                      engineering(p.reach, "m"), engineering(meet, "m")));
   const AdhesiveRepulsiveContact law(p, 1);
   require(law.touch_distance() > 0, "contact: these pressures never turn from attraction to repulsion");
   require(law.reach() < contact_gap,
@@ -64,6 +68,36 @@ std::string_view to_string(ContactModel model) {
       break;
   }
   return "asperity-uniform";
+}
+
+std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const std::vector<Electrode>& electrodes) {
+  const double rounding = 1e-12 * s.length;
+  for (const Side side : {Side::near, Side::far}) {
+    const std::string_view side_name = side == Side::near ? "near" : "far";
+    std::vector<std::size_t> here;  // from the clamped end on
+    for (std::size_t k = 0; k < electrodes.size(); ++k) {
+      if (electrodes[k].side == side || electrodes[k].side == Side::both) here.push_back(k);
+    }
+    const bool plate = s.kind == StructureKind::plate;
+    if (!plate) {
+      std::stable_sort(here.begin(), here.end(),
+                       [&](std::size_t a, std::size_t b) { return electrodes[a].begin < electrodes[b].begin; });
+    }
+    double taken = 0;  // of the length: up to here on a beam, in all on a plate
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const Electrode& e = electrodes[here[i]];
+      if (i > 0 && (plate ? taken + e.end - e.begin > s.length + rounding : e.begin < taken - rounding)) {
+        const std::string& other = electrodes[here[i - 1]].name;
+        return ElectrodeConflict{
+            here[i], plate
+                         ? fmt::format("the electrodes of the {} side must not have more area together than the plate", side_name)
+                         : fmt::format("must not overlap electrode.{}, which ends at {} on the {} side too", other,
+                                       engineering(taken, "m"), side_name)};
+      }
+      taken = plate ? taken + e.end - e.begin : e.end;
+    }
+  }
+  return std::nullopt;
 }
 
 std::string why_not_along_pad(const Structure& structure, const Contact& contact) {
@@ -108,9 +142,9 @@ void validate(const Device& d) {
     positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
     positive(s.density, "kg/m^3", "structure.density");
   }
-  require(s.modes >= 1 && s.modes <= 20, fmt::format("structure.modes = {}: must be from 1 to 20", s.modes));
+  require(s.modes >= 1 && s.modes <= most_modes, fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes));
   require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
-          fmt::format("structure.damping_ratio = {}: must not be negative", s.damping_ratio));
+          fmt::format("structure.damping_ratio = {}: must be in [0, 1000)", s.damping_ratio));
   require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
           fmt::format("structure.poissons_ratio = {}: plate_strain needs one between -1 and 0.5", s.poissons_ratio));
   if (s.kind == StructureKind::clamped_clamped) {
@@ -118,7 +152,8 @@ void validate(const Device& d) {
             fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio));
     const std::string buckled = d.surface ? std::string() : why_buckled(s);
     require(buckled.empty() && s.residual_stress < 1e30,
-            fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"), buckled));
+            fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"),
+                        buckled.empty() ? "must be below 1e30 Pa" : buckled));
     require(
         !d.piezo,
         "piezo: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off "
@@ -134,6 +169,9 @@ void validate(const Device& d) {
     if (e.fringing == Fringing::meijs_fokkema || e.fringing == Fringing::bao_2001) {
       positive(s.thickness, "m", "structure.thickness");
     }
+  }
+  if (const auto conflict = electrode_conflict(s, d.electrodes)) {
+    throw InvalidInput(fmt::format("electrode.{}: {}", d.electrodes[conflict->electrode].name, conflict->why));
   }
   if (d.gas) {
     const Gas& g = *d.gas;
@@ -186,7 +224,7 @@ void validate(const Device& d) {
     }
     if (c.model == ContactModel::hysteretic) {
       require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30,
-              fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}",
+              fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}, and below 1e30 N/m",
                           engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m")));
     }
     if (c.model == ContactModel::elastic_plastic) positive(c.hardness, "Pa", "contact.hardness");
@@ -196,7 +234,7 @@ void validate(const Device& d) {
       require(wrong.empty(), "contact.distribution = pad: " + wrong);
     }
     require(c.damping >= 0 && c.damping < 1e6,
-            fmt::format("contact.damping = {}: must not be negative", engineering(c.damping, "s/m")));
+            fmt::format("contact.damping = {}: must be in [0 s/m, 1e6 s/m)", engineering(c.damping, "s/m")));
     require(
         c.damping == 0 || c.model == ContactModel::linear || c.model == ContactModel::asperity_uniform ||
             c.model == ContactModel::asperity_gaussian,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@
 #include <vector>
 
 namespace softland {
+
+/// Of a beam: the formulas of higher mode shapes lose their digits.
+inline constexpr int most_modes = 20;
 
 enum class StructureKind { cantilever, clamped_clamped, plate };
 
@@ -184,6 +188,16 @@ struct Device {
     return {end - contact->pad_length, end};
   }
 };
+
+/// An electrode that has no room beside the others, and why.
+struct ElectrodeConflict {
+  std::size_t electrode = 0;  ///< its number
+  std::string why;
+};
+/// Electrodes on one side of a beam must not overlap, and those on one side of a plate must not have more area together than the
+/// plate: the force would count twice. Edges may touch, within rounding. Nothing when all of them fit.
+[[nodiscard]] std::optional<ElectrodeConflict> electrode_conflict(const Structure& structure,
+                                                                  const std::vector<Electrode>& electrodes);
 
 /// Why this contact cannot act along the pad of this structure; empty when it can.
 [[nodiscard]] std::string why_not_along_pad(const Structure& structure, const Contact& contact);

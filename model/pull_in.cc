@@ -131,9 +131,9 @@ class Statics {
 };
 
 // The static branch of one drive as a function of the contact point's deflection.
-class Branch {
+class EquilibriumBranch {
  public:
-  Branch(const Switch& device, std::size_t drive) : statics_(device), drive_(drive) {}
+  EquilibriumBranch(const Switch& device, std::size_t drive) : statics_(device), drive_(drive) {}
 
   // Strength at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
   double operator()(double s) {
@@ -213,7 +213,7 @@ StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
   // V.
   const bool from_straight = device.drive_kind(drive) == DriveKind::dispersion;
   if (!from_straight && !device.rest()) return {.status = Status::collapsed_at_rest};
-  Branch branch(device, drive);
+  EquilibriumBranch branch(device, drive);
   const double end = device.device().gap.contact;
   const double begin = from_straight ? 0 : device.contact_deflection(device.rest()->data());
   const auto place = [&](double k) { return begin + (end - begin) * k / branch_steps; };
@@ -239,7 +239,7 @@ StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
 
 double release_voltage(const Switch& device, std::size_t drive) {
   if (!device.has_contact() || !pulls_in(device.device(), drive)) return nan;
-  Branch branch(device, drive);
+  EquilibriumBranch branch(device, drive);
   const double plane = device.device().gap.contact;
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
   if (device.rigid_contact() != nullptr) {
@@ -298,11 +298,12 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::s
                            .potential = device.potential(held->q.data(), volts, true, work)};
 }
 
-DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result, double tolerance) {
+DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result, const Watch& watch,
+                              double tolerance) {
   if (static_result.status != Status::done) return {.status = static_result.status};
   if (!device.rest()) return {.status = Status::collapsed_at_rest};
   Statics statics(device);
-  Branch branch(device, drive);
+  EquilibriumBranch branch(device, drive);
   const double plane = device.device().gap.contact;
   const Eigen::VectorXd& rest = *device.rest();
   Switch::Workspace work = device.workspace();
@@ -324,6 +325,8 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     return {plane, held ? statics.potential(held->q, all) : nan};
   };
 
+  const double halvings = std::log2(0.5 / dynamic_pull_in_precision);  // of the bracket
+  double done = 0;
   const auto reaches = [&](double value) {
     std::vector<double> all(device.drives(), 0.0);
     all[drive] = value;
@@ -331,11 +334,14 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     if (device.potential(rest.data(), all, false, work) < barrier.potential) return false;
     std::vector<Signal> signals(device.drives());
     signals[drive] = Signal::constant(value);
-    ClosingOptions options{
-        .duration = 100 * 2 * pi / device.angular_frequencies()[0], .tolerance = tolerance, .after_contact = 0};
+    ClosingOptions options{.duration = 100 * 2 * pi / device.angular_frequencies()[0],
+                           .tolerance = tolerance,
+                           .after_contact = 0,
+                           .stop = watch.stop};
     int step = 0;
-    options.observer = [&](double, const double* q, const double* v) {
+    options.observer = [&](double time, const double* q, const double* v) {
       if (++step % 8 != 0) return false;  // looking more often costs more than it saves
+      watch.tell("dynamic pull-in voltage", std::min(1.0, (done + time / options.duration) / halvings));
       return device.contact_deflection(q) < barrier.deflection &&
              device.kinetic_energy(v) + device.potential(q, all, device.untouched(q), work) + device.film_energy(q, work) <
                  barrier.potential;
@@ -345,14 +351,17 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;
   while (reaches(low)) {
+    if (watch.stopped()) break;
     high = low;
     low /= 2;
     if (low < 1e-9 * static_result.voltage) return {.status = Status::numerical_failure};
   }
-  while (high - low > 1e-7 * high) {
+  while (high - low > dynamic_pull_in_precision * high && !watch.stopped()) {
     const double middle = (low + high) / 2;
     (reaches(middle) ? high : low) = middle;
+    ++done;
   }
+  if (watch.stopped()) return {.status = Status::interrupted};
   return {.status = Status::done, .voltage = high};
 }
 

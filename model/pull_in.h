@@ -11,6 +11,7 @@
 #include <span>
 #include <string_view>
 
+#include "base/watch.h"
 #include "model/status.h"
 #include "model/switch.h"
 
@@ -51,14 +52,17 @@ struct ClosedEquilibrium {
 /// onto the electrode.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts);
 
+/// How closely a dynamic pull-in voltage is bracketed, relative; the upper end is given.
+inline constexpr double dynamic_pull_in_precision = 1e-7;
+
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest whose contact point reaches the contact plane, whether
-/// or not it stays, within 100 periods of the first mode; to 1e-7 relative. At most the static pull-in voltage, at which the
-/// thickest film gives way in the end. NaN with a status when static pull-in fails.
+/// or not it stays, within 100 periods of the first mode; to dynamic_pull_in_precision. At most the static pull-in voltage, at
+/// which the thickest film gives way in the end. NaN with a status when static pull-in fails, or `watch` asks to stop.
 struct DynamicPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; of the dispersion force its factor less one
 };
 [[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result,
-                                            double tolerance = 1e-8);
+                                            const Watch& watch = {}, double tolerance = 1e-8);
 
 }  // namespace softland

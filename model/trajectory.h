@@ -47,8 +47,9 @@ struct EnergyBalance {
 
 struct Trajectory {
   Status status = Status::not_run;
-  std::string message;     ///< why, where it is not done
-  double contact_gap = 0;  ///< dt: the first-touch plane [m]
+  std::string message;         ///< why, where it is not done
+  bool ends_at_touch = false;  ///< the switch has no contact, so the run ended where it first reached the plane
+  double contact_gap = 0;      ///< dt: the first-touch plane [m]
   std::vector<TrajectoryPoint> points;
   std::vector<Touch> touches;
   double in_contact_period =

@@ -35,6 +35,8 @@ std::optional<Target> target_from(std::string_view name) {
   return std::nullopt;
 }
 
+bool has_own_cost(Target target) { return target == Target::settling || target == Target::impact || target == Target::energy; }
+
 CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options) {
   CostFigures f;
   f.touched = !trajectory.touches.empty();
@@ -55,8 +57,8 @@ CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& opt
     const double until = std::isfinite(r.end) ? r.end : end;
     f.separated += until - r.begin;
     f.rebound_height = std::max(f.rebound_height, r.height);
-    f.soft_count += r.height / (r.height + options.significant_rebound);
-    if (r.height > options.significant_rebound) f.last_rebound_end = until;
+    if (!(r.height > options.significant_rebound)) continue;
+    f.last_rebound_end = until;
   }
   return f;
 }
@@ -67,24 +69,28 @@ double cost(Target target, const Trajectory& trajectory, const CostScale& scale,
   if (!f.touched) return 10 + f.closest / scale.contact_gap;
   const double h = ratio(f.rebound_height, scale.step.rebound_height);
   const double p = f.rebound_height / (f.rebound_height + 10 * options.significant_rebound);
-  const double v = ratio(f.touch_speed, scale.step.touch_speed), v2 = v * v;
+  const double v = ratio(f.touch_speed, scale.step.touch_speed);
   const double k = ratio(f.landing_excess, scale.step.landing_excess);
   const double s = f.separated / scale.score_window;
   const double t = ratio(f.first_touch, scale.step.first_touch);
   const double late = t + 10 * std::max(0.0, t - scale.free_touch);
+  const double bounce = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
+  const auto judged_by = [&](double own) {
+    if (f.rebound_height > options.significant_rebound / 2) return 1 + (bounce + own) / 2;
+    const double ordered = own + bounce / 1000;
+    return ordered / (1 + ordered);
+  };
   switch (target) {
     case Target::bounce:
-      return 0.2 * h + 0.15 * v2 + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
-    case Target::settling:
-      return 0.4 * ratio(f.last_rebound_end, scale.step.first_touch) + 0.2 * h + 0.1 * v2 + 0.25 * k + 0.05 * p;
     case Target::rebound:
-      return 0.5 * h + 0.1 * v2 + 0.33 * k + 0.05 * p + 0.02 * late;
     case Target::count:
-      return 0.3 * ratio(f.soft_count, scale.step.soft_count) + 0.2 * h + 0.1 * v2 + 0.33 * k + 0.05 * p + 0.02 * late;
+      return bounce;
+    case Target::settling:
+      return judged_by(ratio(f.last_rebound_end, scale.step.first_touch));
     case Target::impact:
-      return 0.6 * v + 0.1 * h + 0.2 * k + 0.05 * p + 0.05 * late;
+      return judged_by(v);
     case Target::energy:
-      return 0.5 * ratio(f.impact_energy, scale.step.impact_energy) + 0.1 * h + 0.1 * v2 + 0.2 * k + 0.05 * p + 0.05 * late;
+      return judged_by(ratio(f.impact_energy, scale.step.impact_energy));
   }
   return std::numeric_limits<double>::infinity();
 }

@@ -135,6 +135,7 @@ Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options) {
     if (trajectory.status == Status::done) result.status = Status::no_contact;
     return result;
   }
+  if (trajectory.ends_at_touch) return result;  // what follows depends on a contact that is not described
   result.hold_force = trajectory.hold_force;
   if (!trajectory.touches.empty()) {
     result.peak_contact_force = 0;

@@ -85,12 +85,8 @@ long share_of(long budget, double share, std::size_t searches) {
   return std::max(kShortestHeat, static_cast<long>(share * static_cast<double>(budget) / static_cast<double>(searches)));
 }
 
-}  // namespace
-
-void search_auto(Ledger& ledger) {
-  const Method& polisher = find_method("bobyqa");
-  const Method& searcher = find_method("cma-es");
-  const std::array<const Method*, kSearches> methods = {&searcher, &polisher, &searcher, &searcher};
+/// `finisher`: takes over from the searches after their first heat, where it is another method.
+void search(Ledger& ledger, const std::array<const Method*, kSearches>& methods, const Method* finisher, const Method& polisher) {
   std::uint64_t points_sampled = 0;
   std::uint64_t searches_begun = 0;
   const auto begin_search = [&](const Method& method, const Point& start, double step) {
@@ -117,6 +113,9 @@ void search_auto(Ledger& ledger) {
       if (running.size() == 1) break;
       std::stable_sort(running.begin(), running.end(), [](const Search& a, const Search& b) { return a.best < b.best; });
       running.resize((running.size() + 1) / 2);
+      if (finisher != nullptr && share == kFirstHeat) {
+        for (Search& each : running) each = begin_search(*finisher, each.best_point, kPolishingStep);
+      }
       share = kLaterHeat;
     }
 
@@ -129,6 +128,19 @@ void search_auto(Ledger& ledger) {
     }
     if (ledger.remaining() == before) return;
   }
+}
+
+}  // namespace
+
+void search_auto(Ledger& ledger) {
+  const Method& polisher = find_method("bobyqa");
+  const Method& searcher = find_method("cma-es");
+  search(ledger, {&searcher, &polisher, &searcher, &searcher}, nullptr, polisher);
+}
+
+void search_and_finish(Ledger& ledger, const Method& finisher) {
+  const Method& searcher = find_method("cma-es");
+  search(ledger, {&searcher, &searcher, &searcher, &searcher}, &finisher, finisher);
 }
 
 }  // namespace softland::internal

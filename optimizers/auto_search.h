@@ -11,11 +11,15 @@
 // The constants were chosen by success rates over the landscapes of tests/optimizers (bench/optimizers prints them).
 #pragma once
 
+#include "optimizers/backends.h"
 #include "optimizers/ledger.h"
 
 namespace softland::internal {
 
 /// Runs until the ledger is over, or until an epoch makes no new evaluation.
 void search_auto(Ledger& ledger);
+/// For the methods with a gradient, which end at the first kink: cma-es makes the first heat of every search, `finisher` goes on
+/// from the best points it found, and polishes.
+void search_and_finish(Ledger& ledger, const Method& finisher);
 
 }  // namespace softland::internal

@@ -110,7 +110,11 @@ RunReport run_ipopt(const Run& run, Strand& strand) {
   options->SetStringValue("sb", "yes");
   options->SetStringValue("hessian_approximation", "limited-memory");
   options->SetNumericValue("bound_relax_factor", 0.0);  // points outside the bounds are never asked for
-  options->SetNumericValue("tol", 1e-6);                // of gradients that are no better than that
+  // Starts are good points, some of them near a bound: the usual barrier would first push them to the middle of the box.
+  options->SetNumericValue("mu_init", 1e-4);
+  options->SetNumericValue("bound_push", 1e-6);
+  options->SetNumericValue("bound_frac", 1e-6);
+  options->SetNumericValue("tol", 1e-6);  // of gradients that are no better than that
   options->SetIntegerValue("max_iter", 1000);
   // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);

@@ -27,9 +27,9 @@ double compress(double value) {
 // Above compress(x) for every finite x (the largest is 6.8e14).
 constexpr double kPenaltyInTheDark = 1e15;
 
-// Objectives carry noise of about 1e-9, so that a step of its cube root balances the noise against the curvature a difference
-// leaves out.
-constexpr double kDifferenceStep = 1e-3;
+// Short, because the smooth pieces of an objective may be: those of the cost of a closing are narrower than a thousandth of the
+// box. The noise of about 1e-9 that objectives carry is then 1e-4 of a slope of order 1.
+constexpr double kDifferenceStep = 1e-5;
 
 // A search that is continued first walks through its own past, so the limit grows with what is known.
 constexpr long kCirclesAllowed = 1000;

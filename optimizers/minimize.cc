@@ -121,6 +121,10 @@ OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options
     internal::search_auto(ledger);
     return ledger.result(true, "");
   }
+  if (method.uses_gradient) {
+    internal::search_and_finish(ledger, method);
+    return ledger.result(true, "");
+  }
   const internal::RunReport report = internal::search_single_method(ledger, method);
   return ledger.result(report.converged, report.message);
 }

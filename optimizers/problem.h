@@ -27,7 +27,8 @@ struct Problem {
   /// give the same value for the same x: a point that comes back is answered from memory.
   std::function<double(std::span<const double>)> objective = {};
   /// Starting points worth trying first; may be empty. Points outside the bounds are moved to them. Every optimizer evaluates all
-  /// of them, as given to the last digit; local methods search from each in turn, `auto` from the most promising.
+  /// of them, as given to the last digit; local methods search from each in turn, `auto` and those with a gradient from the most
+  /// promising.
   std::vector<std::vector<double>> starts = {};
 };
 
@@ -94,10 +95,11 @@ struct OptimizerResult {
 /// never cut short.
 ///
 /// `auto` samples the box, runs local searches from well separated good points, lets the promising ones continue and polishes the
-/// best; it is the one that uses several jobs. A local method runs from the starts in turn and then from points drawn from the
-/// seed, each time until it converges, as long as the budget lasts; infeasible points are passed over. A global method runs once.
-/// Gradient-based methods take central differences, which count as evaluations. Ipopt solves one problem at a time in a process;
-/// others wait, so an objective must not itself minimize with ipopt while ipopt calls it.
+/// best; it uses several jobs. So do the methods with a gradient, which go on from the best points of such a search after its
+/// first two fifths. Another local method runs from the starts in turn and then from points drawn from the seed, each time until
+/// it converges, as long as the budget lasts; infeasible points are passed over. A global method runs once. Gradients are central
+/// differences, which count as evaluations. Ipopt solves one problem at a time in a process; others wait, so an objective must
+/// not itself minimize with ipopt while ipopt calls it.
 [[nodiscard]] OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options);
 
 }  // namespace softland

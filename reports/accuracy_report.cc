@@ -12,6 +12,8 @@
 #include "reports/chart.h"
 #include "reports/escape.h"
 #include "reports/findings.h"
+#include "reports/json_number.h"
+#include "reports/made_with.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
@@ -21,20 +23,19 @@
 namespace softland {
 namespace {
 
+using internal::json_number;
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json errors_json(const FigureErrors& errors) {
   json all = json::object();
-  for (std::size_t i = 0; i < errors.size(); ++i) all[std::string(studied_figures[i].key)] = number(errors[i]);
+  for (std::size_t i = 0; i < errors.size(); ++i) all[std::string(studied_figures[i].key)] = json_number(errors[i]);
   return all;
 }
 
 json setting_json(const AccuracyRow& row) {
   return {{"integrator", to_string(row.integrator)},
           {"tolerance", row.tolerance},
-          {"points_per_length", row.points_per_length},
+          {"points_per_length", row.points_per_length ? json(*row.points_per_length) : json(nullptr)},
           {"modes", row.modes}};
 }
 
@@ -48,7 +49,7 @@ json row_json(const AccuracyRow& row) {
   j["metrics"] = metrics_json(row.figures);
   j["steps"] = row.work.steps;
   j["rhs_evaluations"] = row.work.rhs_evaluations;
-  j["cpu_s"] = number(row.seconds);
+  j["cpu_s"] = json_number(row.seconds);
   j["runs"] = row.runs;
   return j;
 }
@@ -60,21 +61,10 @@ json rows_json(const std::vector<AccuracyRow>& rows) {
 }
 
 json spread_json(const Spread& s) {
-  return {{"low", number(s.low)}, {"median", number(s.median)}, {"high", number(s.high)}, {"runs", s.runs}};
+  return {{"low", json_number(s.low)}, {"median", json_number(s.median)}, {"high", json_number(s.high)}, {"runs", s.runs}};
 }
 
-// "1e-4"
-std::string power(double value) {
-  std::string text = fmt::format("{:.1e}", value);
-  if (const auto tenths = text.find(".0e"); tenths != std::string::npos) text.erase(tenths, 2);
-  if (const auto zero = text.find("-0"); zero != std::string::npos) text.erase(zero + 1, 1);
-  return text;
-}
-
-std::string error_cell(double error) {
-  if (std::isnan(error)) return "-";
-  return std::isinf(error) ? "missing" : error == 0 ? "0" : fmt::format("{:.1e}", error);
-}
+std::string error_cell(double error) { return std::isinf(error) ? "missing" : internal::relative_error(error); }
 
 // Columns of words and numbers: the first to the left, the others to the right.
 std::string aligned(const std::vector<std::string>& cells) {
@@ -87,7 +77,7 @@ std::string aligned(const std::vector<std::string>& cells) {
 std::vector<std::string> head(const std::vector<std::string>& setting) {
   std::vector<std::string> cells = setting;
   for (const StudiedFigure& f : studied_figures) cells.emplace_back(f.symbol);
-  cells.insert(cells.end(), {"rhs", "ms"});
+  cells.insert(cells.end(), {"rhs", "time"});
   return cells;
 }
 
@@ -99,15 +89,11 @@ std::string line(std::vector<std::string> cells, const AccuracyRow& row) {
   }
   for (const double error : row.errors) cells.push_back(error_cell(error));
   cells.push_back(fmt::format("{}", row.work.rhs_evaluations));
-  cells.push_back(fmt::format("{:.3g}", 1e3 * row.seconds));
+  cells.push_back(internal::quantity(row.seconds, "s"));
   return aligned(cells);
 }
 
-std::string figure_text(double value, std::string_view unit) {
-  std::string text = internal::quantity(value, unit, 5);
-  for (auto at = text.find("\u00a0"); at != std::string::npos; at = text.find("\u00a0")) text.replace(at, 2, " ");
-  return text;
-}
+std::string figure_text(double value, std::string_view unit) { return internal::quantity(value, unit, 4); }
 
 std::string symbols(const AccuracyStudy& study, bool conditioned) {
   std::vector<std::string_view> names;
@@ -121,15 +107,26 @@ std::string symbols(const AccuracyStudy& study, bool conditioned) {
   return fmt::format("{} and {}", fmt::join(names, ", "), last);
 }
 
-std::string setting_text(const AccuracyRow& row) {
-  return fmt::format("{}, tolerance {}, {:g} points per length", to_string(row.integrator), power(row.tolerance),
-                     row.points_per_length);
+// "24 points per length"; empty for a plate.
+std::string points_text(const AccuracyRow& row) {
+  return row.points_per_length ? fmt::format("{:g} points per length", *row.points_per_length) : std::string();
 }
+
+std::string setting_text(const AccuracyRow& row) {
+  const std::string points = points_text(row);
+  return fmt::format("{}, tolerance {}{}{}", to_string(row.integrator), internal::scientific(row.tolerance),
+                     points.empty() ? "" : ", ", points);
+}
+
+constexpr const char* no_quadrature =
+    "A rigid plate has the same gap everywhere: the number of quadrature points does not matter, and none were tried.";
+
+std::string modes_text(const AccuracyRow& row) { return fmt::format("{} mode{}", row.modes, row.modes == 1 ? "" : "s"); }
 
 std::string recommended(const AccuracyStudy& study, const Recommendation& r) {
   if (!r.row) return "nothing that was tried";
   const AccuracyRow& row = study.rows[*r.row];
-  return fmt::format("{}: {} ms", setting_text(row), internal::plain_number(1e3 * row.seconds, 2));
+  return fmt::format("{}: {}", setting_text(row), internal::quantity(row.seconds, "s", 2));
 }
 
 std::string restart_text(const AccuracyStudy& study) {
@@ -145,24 +142,28 @@ std::vector<std::string> recommendations(const AccuracyStudy& study) {
   const std::string figures = symbols(study, true);
   if (figures.empty()) return {"No figure is well-conditioned here: no setting can be recommended."};
   for (const Recommendation& r : study.recommendations) {
-    lines.push_back(fmt::format("for {} in {}: {}", power(r.accuracy), figures, recommended(study, r)));
+    lines.push_back(fmt::format("for {} in {}: {}", internal::scientific(r.accuracy), figures, recommended(study, r)));
   }
   return lines;
 }
 
-// The rows with the integrator that simulate takes at its tightest tolerance, one per number of points.
+std::optional<double> own_points(const AccuracyStudy& study) { return study.rows.front().points_per_length; }
+
+// The rows with the integrator that simulate takes at the tightest tolerance that ran, one per number of points.
 std::vector<const AccuracyRow*> quadrature_rows(const AccuracyStudy& study) {
   std::vector<const AccuracyRow*> rows;
   double tightest = std::numeric_limits<double>::infinity();
-  for (const AccuracyRow& row : study.rows) tightest = std::min(tightest, row.tolerance);
+  for (const AccuracyRow& row : study.rows) {
+    const bool tried = row.missing.empty() && row.integrator == study.reference.integrator;
+    if (tried && row.points_per_length == own_points(study)) tightest = std::min(tightest, row.tolerance);
+  }
+  if (std::isinf(tightest)) tightest = study.rows.front().tolerance;
   for (const AccuracyRow& row : study.rows) {
     if (row.integrator == study.reference.integrator && row.tolerance == tightest) rows.push_back(&row);
   }
   std::sort(rows.begin(), rows.end(), [](auto* a, auto* b) { return a->points_per_length < b->points_per_length; });
   return rows;
 }
-
-double own_points(const AccuracyStudy& study) { return study.rows.front().points_per_length; }
 
 std::string cloud_text(const AccuracyStudy& study) {
   std::string text = fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}\n", "cloud", "low", "median", "high", "runs");
@@ -252,7 +253,7 @@ Picture picture(const AccuracyStudy& study) {
     for (Mark& mark : work.marks) {  // which tolerance is where, said once
       for (const AccuracyRow& row : study.rows) {
         const bool shown = row.integrator == own && row.points_per_length == own_points(study) && row.seconds == mark.x;
-        if (shown && mark.role == pens[i % pens.size()]) mark.text = power(row.tolerance);
+        if (shown && mark.role == pens[i % pens.size()]) mark.text = internal::scientific(row.tolerance);
       }
     }
   }
@@ -275,10 +276,10 @@ Picture picture(const AccuracyStudy& study) {
                                    "Quadrature points per length", "", 260);
   points.caption = "What too few points leave, however tight the tolerance.";
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    if (!study.conditioned[i]) continue;
+    if (!study.conditioned[i] || !own_points(study)) continue;
     Points errors;
     for (const AccuracyRow* row : quadrature_rows(study)) {
-      if (row->missing.empty()) errors.push_back({row->points_per_length, row->errors[i]});
+      if (row->missing.empty()) errors.push_back({*row->points_per_length, row->errors[i]});
     }
     add_curve(drawn, points, std::string(studied_figures[i].symbol), pens[i % pens.size()], std::move(errors));
   }
@@ -342,19 +343,23 @@ std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
 
 std::string recommendations_html(const AccuracyStudy& study) {
   if (symbols(study, true).empty()) return "<p>" + recommendations(study).front() + "</p>\n";
+  const bool has_points = own_points(study).has_value();
   std::string rows;
   for (const Recommendation& r : study.recommendations) {
-    const std::string accuracy = power(r.accuracy);
-    if (!r.row) {
-      rows += table_row("td", {accuracy, "nothing that was tried", "", "", ""});
-      continue;
+    const std::string accuracy = internal::scientific(r.accuracy);
+    std::vector<std::string> cells{accuracy, "nothing that was tried", "", ""};
+    if (r.row) {
+      const AccuracyRow& row = study.rows[*r.row];
+      cells = {accuracy, std::string(to_string(row.integrator)), internal::scientific(row.tolerance),
+               internal::quantity(row.seconds, "s", 2)};
     }
-    const AccuracyRow& row = study.rows[*r.row];
-    rows += table_row("td", {accuracy, std::string(to_string(row.integrator)), power(row.tolerance),
-                             fmt::format("{:g}", row.points_per_length), internal::quantity(row.seconds, "s", 2)});
+    if (has_points) cells.insert(cells.end() - 1, r.row ? fmt::format("{:g}", *study.rows[*r.row].points_per_length) : "");
+    rows += table_row("td", cells);
   }
+  std::vector<std::string> head{"Accuracy wanted", "Integrator", "Tolerance", "Time of a closing"};
+  if (has_points) head.insert(head.end() - 1, "Points per length");
   const std::string ill = symbols(study, false);
-  return table({"Accuracy wanted", "Integrator", "Tolerance", "Points per length", "Time of a closing"}, rows) +
+  return table(head, rows) +
          fmt::format(
              "<p class=\"below\">The quickest setting with which {} are that accurate, there and at every tighter tolerance "
              "tried.{}</p>\n",
@@ -364,7 +369,7 @@ std::string recommendations_html(const AccuracyStudy& study) {
 std::string clouds_html(const AccuracyStudy& study) {
   std::string rows;
   const auto add = [&](std::string_view symbol, std::string_view unit, const Spread& s, const char* note) {
-    const auto value = [&](double v) { return s.runs > 0 ? internal::quantity(v, unit, 5) : std::string("—"); };
+    const auto value = [&](double v) { return s.runs > 0 ? figure_text(v, unit) : std::string("—"); };
     rows += table_row("td", {symbol_html(symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
                              fmt::format("<span class=\"note\">{}</span>", note)});
   };
@@ -381,13 +386,9 @@ std::string clouds_html(const AccuracyStudy& study) {
          "bounce count are properties of such a cloud, not of one run.</p>\n";
 }
 
-std::string charts_html(const AccuracyStudy& study) {
-  const Picture drawn = picture(study);
+std::string charts_html(const Picture& drawn) {
   std::string out;
-  for (const Chart& chart : drawn.charts) {
-    out += fmt::format("<figure id=\"figure-{}\">{}<figcaption>{}</figcaption></figure>\n", chart.id,
-                       internal::still_picture(drawn.tables, chart), internal::escaped(chart.caption));
-  }
+  for (const Chart& chart : drawn.charts) out += internal::figure_html(drawn.tables, chart);
   return out;
 }
 
@@ -418,11 +419,11 @@ std::pair<std::string, std::string> headline(const Prepared& prepared, const Acc
       *std::min_element(study.recommendations.begin(), study.recommendations.end(), [&](const auto& a, const auto& b) {
         return std::abs(std::log(a.accuracy) - asked) < std::abs(std::log(b.accuracy) - asked);
       });
-  if (!r.row) return {fmt::format("Nothing that was tried has {} within {}.", figures, power(r.accuracy)), ""};
+  if (!r.row) return {fmt::format("Nothing that was tried has {} within {}.", figures, internal::scientific(r.accuracy)), ""};
   const AccuracyRow& row = study.rows[*r.row];
-  return {
-      fmt::format("A closing with {} within {} takes {}", figures, power(r.accuracy), internal::quantity(row.seconds, "s", 2)),
-      fmt::format(", with {}.", setting_text(row))};
+  return {fmt::format("A closing with {} within {} takes {}", figures, internal::scientific(r.accuracy),
+                      internal::quantity(row.seconds, "s", 2)),
+          fmt::format(", with {}.", setting_text(row))};
 }
 
 }  // namespace
@@ -432,6 +433,7 @@ json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const P
          {"status", to_string(study.status)},
          {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
          {"version", version},
+         {"made_with", made_with()},
          {"command", provenance.command}};
   if (!study.message.empty()) j["message"] = study.message;
   if (study.rows.empty()) return j;
@@ -476,32 +478,38 @@ std::string accuracy_text(const AccuracyStudy& study) {
                                    error_cell(study.resolution[i])));
     }
   }
-  std::string text = wrapped(fmt::format("Reference: {}, {} modes: {}. In brackets what a second reference differs by.",
-                                         setting_text(study.reference), study.reference.modes, fmt::join(values, ", "))) +
+  std::string text = wrapped(fmt::format("Reference: {}, {}: {}. In brackets what a second reference differs by.",
+                                         setting_text(study.reference), modes_text(study.reference), fmt::join(values, ", "))) +
                      "\n\n";
+  if (!study.message.empty()) text += wrapped("The reference: " + study.message + ".") + "\n\n";
   text += aligned(head({"integrator", "tolerance"}));
   for (const AccuracyRow& row : study.rows) {
     if (row.points_per_length != own_points(study)) continue;
-    text += line({std::string(to_string(row.integrator)), power(row.tolerance)}, row);
+    text += line({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row);
   }
   if (!study.through.empty()) text += "\n" + aligned(head({"no restart", "tolerance"}));
   for (const AccuracyRow& row : study.through) {
-    text += line({std::string(to_string(row.integrator)), power(row.tolerance)}, row);
+    text += line({std::string(to_string(row.integrator)), internal::scientific(row.tolerance)}, row);
   }
-  text += "\n" + aligned(head({"points", "per length"}));
-  for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", row->points_per_length)}, *row);
+  if (own_points(study)) {
+    text += "\n" + aligned(head({"points", "per length"}));
+    for (const AccuracyRow* row : quadrature_rows(study)) text += line({"", fmt::format("{:g}", *row->points_per_length)}, *row);
+  }
   if (!study.modes.empty()) {
     text += "\n" + aligned(head({"modes", ""}));
     for (const AccuracyRow& row : study.modes) text += line({"", fmt::format("{}", row.modes)}, row);
   }
-  text += "\n" +
-          wrapped(fmt::format(
-              "Relative errors of the delivered figures against the reference; times are medians of processor time. Integrators "
-              "with {:g} points per length, points and modes with {}, tolerance {}. What another number "
-              "of modes changes is no error of the integration. {}",
-              own_points(study), to_string(study.reference.integrator), power(quadrature_rows(study).front()->tolerance),
-              restart_text(study))) +
-          "\n\n";
+  text +=
+      "\n" +
+      wrapped(fmt::format(
+          "Relative errors of the delivered figures against the reference; times are medians of processor time. {} {}",
+          own_points(study) ? fmt::format("Integrators with {}, points and modes with {}, tolerance {}. What another number of "
+                                          "modes changes is no error of the integration.",
+                                          points_text(study.rows.front()), to_string(study.reference.integrator),
+                                          internal::scientific(quadrature_rows(study).front()->tolerance))
+                            : no_quadrature,
+          restart_text(study))) +
+      "\n\n";
   text += cloud_text(study) + "\n" +
           wrapped(
               "The cloud: runs whose drives differ by one part in 1e9 to 1e7. Permanent contact time and bounce count are "
@@ -515,17 +523,18 @@ std::string accuracy_text(const AccuracyStudy& study) {
 
 std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
   const auto integrator = [](const AccuracyRow& row) {
-    return std::vector<std::string>{std::string(to_string(row.integrator)), power(row.tolerance)};
+    return std::vector<std::string>{std::string(to_string(row.integrator)), internal::scientific(row.tolerance)};
   };
   std::vector<const AccuracyRow*> own;
   for (const AccuracyRow& row : study.rows) {
     if (row.points_per_length == own_points(study)) own.push_back(&row);
   }
   std::string settings = fmt::format(
-      "<p>Relative errors of the delivered figures against the reference: {}, {} modes. Times are medians of processor "
-      "time.</p>\n",
-      setting_text(study.reference), study.reference.modes);
-  settings += fmt::format("<h3>Integrator and tolerance, with {:g} points per length</h3>\n", own_points(study)) +
+      "<p>Relative errors of the delivered figures against the reference: {}, {}. {}Times are medians of processor time.</p>\n",
+      setting_text(study.reference), modes_text(study.reference),
+      study.message.empty() ? "" : "The reference: " + internal::escaped(study.message) + ". ");
+  const std::string points = points_text(study.rows.front());
+  settings += fmt::format("<h3>Integrator and tolerance{}{}</h3>\n", points.empty() ? "" : ", with ", points) +
               errors_table({"Integrator", "Tolerance"}, own, integrator);
   settings += "<h3>The same without a restart at make and break of contact</h3>\n";
   settings += study.through.empty()
@@ -533,19 +542,23 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
                   : "<details><summary>" + restart_text(study) + "</summary>\n" +
                         errors_table({"Integrator", "Tolerance"}, all_of(study.through), integrator) + "</details>\n";
   const std::vector<const AccuracyRow*> quadrature = quadrature_rows(study);
-  const std::string tightest =
-      fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator), power(quadrature.front()->tolerance));
-  settings += fmt::format("<h3>Quadrature, with {}</h3>\n", tightest) +
-              errors_table({"Points per length"}, quadrature,
-                           [](const AccuracyRow& row) { return std::vector{fmt::format("{:g}", row.points_per_length)}; });
+  const std::string tightest = fmt::format("{} at a tolerance of {}", to_string(study.reference.integrator),
+                                           internal::scientific(quadrature.front()->tolerance));
+  settings += fmt::format("<h3>Quadrature, with {}</h3>\n", tightest);
+  settings += points.empty() ? fmt::format("<p>{}</p>\n", no_quadrature)
+                             : errors_table({"Points per length"}, quadrature, [](const AccuracyRow& row) {
+                                 return std::vector{fmt::format("{:g}", *row.points_per_length)};
+                               });
   if (!study.modes.empty()) {
     settings += fmt::format("<h3>Another number of modes, with {}: another model, not an error</h3>\n", tightest) +
                 errors_table({"Modes"}, all_of(study.modes),
                              [](const AccuracyRow& row) { return std::vector{fmt::format("{}", row.modes)}; });
   }
+  const Picture drawn = picture(study);
   const auto [main, rest] = headline(prepared, study);
   const json result{{"command", provenance.command},
                     {"version", version},
+                    {"made_with", made_with()},
                     {"scene_toml", resolved(prepared.scene, prepared.voltage_units()).text()}};
   return internal::page({.title = prepared.scene.title,
                          .origin = "accuracy",
@@ -553,16 +566,19 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
                          .headline_rest = rest,
                          .keys = reference_keys(study),
                          .body = section("recommendations", "Quickest settings", recommendations_html(study)) +
-                                 section("charts", "What accuracy costs", charts_html(study)) +
+                                 section("charts", "What accuracy costs", charts_html(drawn)) +
                                  section("settings", "Every setting that was tried", settings) +
                                  section("cloud", "What no setting can tell", clouds_html(study)) + internal::reproduce(result) +
-                                 internal::scene(result)});
+                                 internal::scene(result),
+                         .style = internal::chart_style(),
+                         .scripts = internal::chart_scripts(drawn)});
 }
 
 std::string accuracy_svg(const std::string& title, const AccuracyStudy& study) {
   std::string words = "Dots are tolerances, a factor of ten apart. Quickest within";
   for (const Recommendation& r : study.recommendations)
-    words += fmt::format(" {}: {}{}", power(r.accuracy), recommended(study, r), &r == &study.recommendations.back() ? "." : ";");
+    words += fmt::format(" {}: {}{}", internal::scientific(r.accuracy), recommended(study, r),
+                         &r == &study.recommendations.back() ? "." : ";");
   return svg_page(title.empty() ? "What accuracy costs" : title + ": what accuracy costs", words, picture(study));
 }
 

@@ -27,15 +27,22 @@ const char* role_name(Role role) {
       return "best";
     case Role::baseline:
       return "baseline";
-    case Role::evaluations:
     case Role::third:
+      return "third";
     case Role::fourth:
+      return "fourth";
     case Role::fifth:
+      return "fifth";
+    case Role::limit:
+      return "limit";
+    case Role::evaluations:
     case Role::measured:
       break;
   }
   return "evaluations";
 }
+
+const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" : "log"; }
 
 /// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
 /// out.
@@ -250,6 +257,14 @@ void add_time_charts(const json& result, Picture& out) {
     chart.y_unit = drive_scale(drive).unit;
     chart.height = 210;
     add_series(chart, "/" + drive, "level");
+    const DriveLimits limits = drive_limits(result, drive);
+    for (const auto& [name, level] :
+         {std::pair{"most the driver gives", limits.highest}, {"least the driver gives", limits.lowest}}) {
+      if (!std::isfinite(level) || level == 0) continue;  // the axis shows 0
+      const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
+      add_columns(out.tables[table], "time_s", "level", {{0, level}, {window, level}});
+      chart.series.push_back({table, "level", name, Role::limit});
+    }
     keep(std::move(chart));
   }
 
@@ -352,11 +367,17 @@ Picture picture(const json& result) {
 
 json chart_json(const Picture& picture, std::size_t rows) {
   json tables = json::object();
+  std::set<std::string> logarithmic;  // tables of charts whose axes are both logarithmic
+  for (const Chart& chart : picture.charts) {
+    if (chart.x_scale == Scale::linear) continue;
+    for (const Series& one : chart.series) logarithmic.insert(one.table);
+  }
   for (const auto& [name, table] : picture.tables) {
     std::vector<const std::vector<double>*> columns;
     for (const auto& [key, column] : table) columns.push_back(&column);
     const std::vector<std::size_t> kept = thinned(columns, rows);
-    for (const auto& [key, column] : table) tables[name][key] = packed(column, kept, key == "value");
+    for (const auto& [key, column] : table)
+      tables[name][key] = packed(column, kept, logarithmic.contains(name) || key == "value");
   }
   json charts = json::array();
   for (const Chart& chart : picture.charts) {
@@ -367,22 +388,27 @@ json chart_json(const Picture& picture, std::size_t rows) {
     json marks = json::array();
     for (const Mark& mark : chart.marks)
       marks.push_back({{"x", mark.x}, {"y", mark.y}, {"role", role_name(mark.role)}, {"text", mark.text}});
-    charts.push_back(
-        {{"id", chart.id},
-         {"group", chart.group},
-         {"height", chart.height},
-         {"x",
-          {{"column", chart.x_column},
-           {"label", chart.x_label},
-           {"unit", chart.x_unit},
-           {"home", chart.x_home},
-           {"whole", chart.x_whole}}},
-         {"y", {{"label", chart.y_label}, {"unit", chart.y_unit}, {"scale", chart.scale == Scale::linear ? "linear" : "log"}}},
-         {"zero", chart.zero_line},
-         {"zeroLabel", chart.zero_label},
-         {"zeroLabelLeft", chart.zero_label_left},
-         {"series", series},
-         {"marks", marks}});
+    charts.push_back({{"id", chart.id},
+                      {"group", chart.group},
+                      {"height", chart.height},
+                      {"x",
+                       {{"column", chart.x_column},
+                        {"label", chart.x_label},
+                        {"unit", chart.x_unit},
+                        {"least", resolution(chart.x_unit)},
+                        {"scale", scale_name(chart.x_scale)},
+                        {"home", chart.x_home},
+                        {"whole", chart.x_whole}}},
+                      {"y",
+                       {{"label", chart.y_label},
+                        {"unit", chart.y_unit},
+                        {"least", resolution(chart.y_unit)},
+                        {"scale", scale_name(chart.scale)}}},
+                      {"zero", chart.zero_line},
+                      {"zeroLabel", chart.zero_label},
+                      {"zeroLabelLeft", chart.zero_label_left},
+                      {"series", series},
+                      {"marks", marks}});
     if (chart.y_home) charts.back()["y"]["home"] = *chart.y_home;
   }
   return {{"tables", tables}, {"charts", charts}};

@@ -15,8 +15,8 @@ using Table = std::map<std::string, std::vector<double>>;
 using Tables = std::map<std::string, Table>;
 
 /// Whose data a curve shows, which gives it its pen; `third`, `fourth`, `fifth` and `measured` (dots) are for pictures of
-/// other than results.
-enum class Role { best, baseline, evaluations, third, fourth, fifth, measured };
+/// other than results, `limit` is what a source can do.
+enum class Role { best, baseline, evaluations, third, fourth, fifth, measured, limit };
 enum class Scale { linear, logarithmic };
 
 struct Series {
@@ -44,7 +44,7 @@ struct Chart {
   std::string y_label;
   std::string y_unit;
   Scale scale = Scale::linear;                  ///< of y
-  Scale x_scale = Scale::linear;                ///< in the static picture; the page's is linear
+  Scale x_scale = Scale::linear;                ///< logarithmic: the curves join dots
   std::array<double, 2> x_home{0, 1};           ///< what is shown before any zoom
   std::array<double, 2> x_whole{0, 1};          ///< all there is
   std::optional<std::array<double, 2>> y_home;  ///< not set: from the data in view

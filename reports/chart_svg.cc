@@ -42,6 +42,8 @@ Stroke stroke(Role role) {
       return {"#e69f00", 1.8, "5 2 1.5 2 1.5 2"};
     case Role::measured:
       return {ink, 5, ""};
+    case Role::limit:
+      return {muted, 1.3, "2 3"};
     case Role::evaluations:
       break;
   }
@@ -143,7 +145,9 @@ std::array<double, 2> range_in_view(const Tables& tables, const Chart& chart) {
   lowest = std::min(lowest, 0.0);
   highest = std::max(highest, 0.0);
   const double margin = highest > lowest ? 0.06 * (highest - lowest) : 1.0;
-  return {lowest - (lowest < 0 || chart.zero_line ? margin : 0), highest + margin};
+  const double words =
+      chart.zero_label.empty() ? 0 : 0.1 * (highest - lowest) * 240 / chart.height;  // room for them below the line
+  return {lowest - (lowest < 0 || chart.zero_line ? std::max(margin, words) : 0), highest + margin};
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* colour, const char* extra = "") {
@@ -157,11 +161,21 @@ std::string label(double x, double y, const char* anchor, const char* colour, do
                      anchor, colour, size, extra, escaped(words));
 }
 
-/// With a true minus sign, and no negative zero.
+/// With a true minus sign, and no negative zero; powers of ten beyond four digits as such.
 std::string tick_text(double value) {
+  const double exponent = std::log10(std::abs(value));
+  if (value > 0 && std::abs(exponent) > 3.5 && std::abs(exponent - std::round(exponent)) < 1e-9) {
+    constexpr std::array digits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string power = "10";
+    for (const char c : fmt::format("{:.0f}", exponent)) power += c == '-' ? "⁻" : digits[static_cast<std::size_t>(c - '0')];
+    return power;
+  }
   const std::string size = fmt::format("{:.6g}", std::abs(value));
-  return value < 0 && size != "0" ? "−" + size : size;
+  return size == "0" ? size : with_true_minus((value < 0 ? "-" : "") + size);
 }
+
+/// A halo of the paper's colour, so that no curve runs through the words.
+constexpr const char* halo = " paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"";
 
 /// "Time (µs)", "Gap (nm)", "cost".
 std::string axis_title(const std::string& name, const std::string& unit, const Prefix& prefix) {
@@ -224,8 +238,8 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
     out += line(left, y.pixel(0), width - right, y.pixel(0), ink, " stroke-width=\"1\"");
     const bool at_left = chart.zero_label_left;
     if (!chart.zero_label.empty())
-      out +=
-          label(at_left ? left + 4 : width - right - 4, y.pixel(0) - 5, at_left ? "start" : "end", muted, 11.5, chart.zero_label);
+      out += label(at_left ? left + 4 : width - right - 4, y.pixel(0) + 13, at_left ? "start" : "end", muted, 11.5,
+                   chart.zero_label, halo);
   }
   out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n",
                      chart.id, left, y.pixel_high, x.pixel_high - x.pixel_low, chart.height);
@@ -250,12 +264,13 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
         path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
   }
   for (const Mark& mark : chart.marks) {
-    if (mark.x < x.low || mark.x > x.high) continue;
+    if (mark.x < x.low || mark.x > x.high || mark.y < y.low || mark.y > y.high) continue;
     const Stroke pen = stroke(mark.role);
     out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x.pixel(mark.x), y.pixel(mark.y),
                        pen.colour);
     if (mark.text.empty()) continue;
-    out += label(x.pixel(mark.x) + 6, y.pixel(mark.y) - 4, "start", pen.colour, 12.5, mark.text, " font-weight=\"600\"");
+    out += label(std::clamp(x.pixel(mark.x), left + 26, width - right - 26), std::max(y.pixel(mark.y) - 6, y.pixel_high + 13),
+                 "middle", pen.colour, 12.5, mark.text, (std::string(" font-weight=\"600\"") + halo).c_str());
   }
   return out + "</g>\n";
 }

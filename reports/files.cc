@@ -9,9 +9,11 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
+#include <system_error>
 #include <vector>
 
+#include "base/output_lost.h"
+#include "base/read_file.h"
 #include "base/require.h"
 
 namespace softland {
@@ -64,29 +66,60 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
+/// The file that a link leads to, so that a link stays one.
+std::filesystem::path behind_links(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(path, error)) return path;
+  const std::filesystem::path target = std::filesystem::canonical(path, error);
+  return error ? path : target;
+}
+
+/// By errno.
+std::string failure(const std::filesystem::path& path, const char* what) {
+  return fmt::format("{}: cannot {}: {}", path.string(), what, std::generic_category().message(errno));
+}
+
+/// For a place that the user named: it is a bad one, unless it is the disk that has no room.
+void require_place(bool done, const std::filesystem::path& path, const char* what) {
+  if (done) return;
+  if (errno == ENOSPC || errno == EDQUOT || errno == EIO) throw OutputLost(failure(path, what));
+  throw InvalidInput(failure(path, what));
+}
+
 }  // namespace
 
+void check_writable(const std::filesystem::path& path) {
+  const std::filesystem::path target = behind_links(path);
+  require_place(TemporaryFile(target).open(), path, "write in its folder");
+  std::error_code missing;
+  const auto old = std::filesystem::status(target, missing);
+  if (missing || !std::filesystem::exists(old)) return;
+  errno = EISDIR;
+  require_place(!std::filesystem::is_directory(old), path, "replace it");
+  require(std::filesystem::is_regular_file(old), path.string() + ": is no regular file, so it is not replaced");
+  require(!was_read(target), path.string() + ": is read by this run, so its output does not replace it");
+}
+
 void write_whole(const std::filesystem::path& path, std::string_view content) {
-  const auto check = [&](bool done, const char* what) {
-    if (done) return;
-    const int reason = errno;
-    throw InvalidInput(fmt::format("{}: cannot {}: {}", path.string(), what, std::strerror(reason)));
+  check_writable(path);
+  const std::filesystem::path target = behind_links(path);
+  const auto written = [&](bool done, const char* what) {
+    if (!done) throw OutputLost(failure(path, what));
   };
-  std::filesystem::path folder = path.parent_path();
-  if (folder.empty()) folder = ".";
-  TemporaryFile temporary(path);
-  check(temporary.open(), "write in its folder");
-  check(temporary.write(content), "write");
-  check(temporary.adopt_rights(path), "set its access rights");
-  check(temporary.rename_to(path), "replace it");
+  TemporaryFile temporary(target);
+  require_place(temporary.open(), path, "write in its folder");
+  written(temporary.write(content), "write");
+  written(temporary.adopt_rights(target), "set its access rights");
+  require_place(temporary.rename_to(target), path, "replace it");
+  const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
   const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  check(directory >= 0, "open its folder");
+  written(directory >= 0, "open its folder");
   // Some file systems cannot sync a folder and say so with EINVAL; the rename itself has been done.
   const bool synced = ::fsync(directory) == 0 || errno == EINVAL;
   const int reason = errno;
   ::close(directory);
   errno = reason;
-  check(synced, "sync its folder");
+  written(synced, "sync its folder");
 }
 
 std::string trajectory_csv(const json& curves) {

@@ -8,9 +8,14 @@
 
 namespace softland {
 
-/// Writes `content` to `path` whole: a temporary name in the same folder, fsync, rename, fsync of the folder. Whatever goes
-/// wrong, an existing file stays as it was and the temporary one is removed. Throws InvalidInput with path and reason when the
-/// folder does not exist or is not writable, `path` is a folder, or the disk is full.
+/// Throws InvalidInput with path and reason unless write_whole() may write there: the folder exists and is writable, and `path`
+/// is neither a folder nor a device or pipe nor, under whatever name, a file that this run has read. For what takes long to
+/// compute, to be asked before.
+void check_writable(const std::filesystem::path& path);
+
+/// Writes `content` to `path` whole: a temporary name in the same folder, fsync, rename, fsync of the folder. Of a symbolic link
+/// the file behind it is replaced. Whatever goes wrong, an existing file stays as it was and the temporary one is removed. Throws
+/// as check_writable() does, and OutputLost with path and reason where the content does not get there, as on a full disk.
 void write_whole(const std::filesystem::path& path, std::string_view content);
 
 /// Curves of a run ({"time_s": [], "tip_gap_m": [], ...}) as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those

@@ -19,13 +19,23 @@ struct Actor {
   std::string object;  ///< empty: the subject is the switch itself
 };
 
-/// An estimated error beyond which a figure is quoted with "about": half a bounce, one per cent of a time.
+/// An estimated error beyond which a figure is quoted with "about": half a bounce, one per cent of a time. One that is not known
+/// counts as beyond after more than a few rebounds.
 constexpr double doubtful_count = 0.5;
 constexpr double doubtful_time = 0.01;
+constexpr double few_rebounds = 5;
+
+constexpr int figure_digits = 4;  // of the tables, where the error does not allow fewer
 
 std::string times_word(double count) { return count == 1 ? "once" : fmt::format("{:.0f} times", count); }
 
 std::string within(double window) { return std::isfinite(window) ? " within " + quantity(window, "s") : std::string(); }
+
+/// The highest rebound [m], 0 where it is too low to be told from none.
+double rebound_height(const json& metrics) {
+  const double height = number(metrics, {"major_bounce_height_m"});
+  return height < resolution("m") ? 0 : height;
+}
 
 bool touches(const json& metrics) { return std::isfinite(number(metrics, {"initial_contact_time_s"})); }
 
@@ -35,22 +45,29 @@ bool settles(const json& metrics) {
 
 bool clean(const json& metrics) { return touches(metrics) && settles(metrics) && number(metrics, {"bounce_count"}) == 0; }
 
+/// Touched, and nothing is known of what followed: the scene has no contact, or the run stopped.
+bool ends_at_touch(const json& metrics) { return touches(metrics) && !std::isfinite(number(metrics, {"bounce_count"})); }
+
 std::string closes(const Actor& actor, const std::string& when) {
   return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, when)
                               : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
 }
 
+bool doubtful(const json& metrics, double error, double limit) {
+  return std::isfinite(error) ? error > limit : number(metrics, {"bounce_count"}) > few_rebounds;
+}
+
 /// "bounces about 79 times"; `errors` may be null.
 std::string bounces(const json& metrics, const json& errors) {
-  const bool doubtful = number(errors, {"bounce_count"}) > doubtful_count;
-  return fmt::format("bounces {}{}", doubtful ? "about " : "", times_word(number(metrics, {"bounce_count"})));
+  const bool about = doubtful(metrics, number(errors, {"bounce_count"}), doubtful_count);
+  return fmt::format("bounces {}{}", about ? "about " : "", times_word(number(metrics, {"bounce_count"})));
 }
 
 /// The settling time, with "about" where it is doubtful.
 std::string settling(const json& metrics, const json& errors) {
   const double settled = number(metrics, {"permanent_contact_time_s"});
-  const bool doubtful = number(errors, {"permanent_contact_time_s"}) > doubtful_time * settled;
-  return (doubtful ? "about " : "") + quantity(settled, "s");
+  const double error = number(errors, {"permanent_contact_time_s"});
+  return (doubtful(metrics, error, doubtful_time * settled) ? "about " : "") + quantity_within(settled, error, "s");
 }
 
 /// What one closing does, as a clause without full stop.
@@ -62,8 +79,12 @@ std::string clause(const Actor& actor, const json& metrics, const json& errors, 
     return fmt::format("{} does not close{}{}", actor.subject, actor.object.empty() ? "" : " " + actor.object, within(window));
   }
   const double first = number(metrics, {"initial_contact_time_s"});
+  if (ends_at_touch(metrics)) {
+    return fmt::format("{} reaches the contact plane at {} with {}; without a [contact] section the run ends there",
+                       actor.subject, quantity(first, "s"), quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"));
+  }
   const double count = number(metrics, {"bounce_count"});
-  const double height = number(metrics, {"major_bounce_height_m"});
+  const double height = rebound_height(metrics);
   if (clean(metrics)) {
     std::string words = closes(actor, "at " + quantity(first, "s")) + " with no rebound";
     if (height > 0) words += " above " + quantity(height, "m");
@@ -105,7 +126,11 @@ std::string course(const std::string& subject, const json& result, const char* r
     const double least = closest(result, run);
     return subject + " never touches" + (std::isfinite(least) ? " (no nearer than " + quantity(least, "m") + ")" : "");
   }
-  const double height = number(metrics, {"major_bounce_height_m"});
+  if (ends_at_touch(metrics)) {
+    return fmt::format("{} first touches at {} with {}", subject, quantity(number(metrics, {"initial_contact_time_s"}), "s"),
+                       quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"));
+  }
+  const double height = rebound_height(metrics);
   if (clean(metrics)) {
     const std::string above = height > 0 ? fmt::format(" but for rebounds of {} at most", quantity(height, "m")) : "";
     return fmt::format("{} lands at {} with {} and stays closed{}", subject,
@@ -175,8 +200,7 @@ Change change(double before, double after, bool lower_is_better, Kind kind) {
   if (!(before > 0) || !(after > 0)) return {word, verdict};
   const double ratio = lower ? before / after : after / before;
   if (ratio < 1.095) return {fmt::format("{:.1f} % {}", 100 * std::abs(after / before - 1), word), verdict};
-  return {fmt::format("{} times {}", ratio < 9.95 ? fmt::format("{:.1f}", ratio) : plain_number(std::round(ratio), 3), word),
-          verdict};
+  return {times(ratio) + " " + word, verdict};
 }
 
 const std::vector<Figure>& figures() {
@@ -196,30 +220,43 @@ const std::vector<Figure>& figures() {
   return all;
 }
 
-std::string figure_text(const json& metrics, const json& beside, const Figure& figure) {
+std::string figure_text(const json& metrics, const json& errors, const json& beside, const Figure& figure) {
   if (figure.unit == "bool") {
     const auto value = truth(metrics, {figure.key});
     return value ? (*value ? "yes" : "no") : "—";
   }
-  constexpr int digits = 4;
-  return quantity_beside(number(metrics, {figure.key}), number(beside, {figure.key}), figure.unit, digits);
+  const double value = number(metrics, {figure.key}), error = number(errors, {figure.key});
+  return value == 0 ? quantity_beside(value, number(beside, {figure.key}), figure.unit, figure_digits)
+                    : quantity_within(value, error, figure.unit, figure_digits);
+}
+
+std::string error_text(const json& metrics, const json& errors, const Figure& figure) {
+  return error_of(number(metrics, {figure.key}), number(errors, {figure.key}), figure.unit, figure_digits);
 }
 
 std::string cloud_text(const json& result, const Figure& figure) {
   const json& cloud = at(result, {"certified", figure.key});
   if (!cloud.is_object()) return {};
-  constexpr int digits = 4;
   const auto value = [&](const char* key) {
-    return quantity_beside(number(cloud, {key}), number(cloud, {"high"}), figure.unit, digits);
+    return quantity_beside(number(cloud, {key}), number(cloud, {"high"}), figure.unit, figure_digits);
   };
   return fmt::format("median {}, {} to {} in {:.0f} runs", value("median"), value("low"), value("high"), number(cloud, {"runs"}));
 }
 
+std::string error_heading(const json& result) {
+  return at(result, {"certified"}).is_object() ? "± certified" : "± integration only";
+}
+
 std::string certificate_caption(const json& result) {
   const json& certified = at(result, {"certified"});
-  if (!certified.is_object()) return {};
+  if (!certified.is_object()) {
+    return number(best_metrics(result), {"bounce_count"}) > 0
+               ? "The settling time and the number of rebounds have no error here: past the first large rebound a closing is "
+                 "chaotic. softland simulate --certify gives their range."
+               : "";
+  }
   if (certified.empty())
-    return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance and quadrature.";
+    return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance, quadrature and pull-in voltages.";
   std::string words = fmt::format(
       "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {:.0f} runs whose drives "
       "differ by one part in 1e9 to 1e7.",
@@ -237,6 +274,7 @@ std::string certificate_caption(const json& result) {
 std::string missing_reason(const json& metrics, std::string_view key) {
   if (!metrics.is_object() || std::isfinite(number(metrics, {key}))) return {};
   if (!touches(metrics)) return "no contact";
+  if (ends_at_touch(metrics)) return "not known";
   return key == "permanent_contact_time_s" && !settles(metrics) ? "not settled" : "";
 }
 
@@ -275,10 +313,11 @@ std::string gap_caption(const json& result) {
 std::string landing_caption(const json& result) {
   const auto reach = [&](const char* subject, const json& metrics) -> std::string {
     if (!touches(metrics)) return {};
-    const double height = number(metrics, {"major_bounce_height_m"});
+    const double height = rebound_height(metrics);
+    const std::string speed = quantity(number(metrics, {"impact_velocity_m_s"}), "m/s");
+    if (ends_at_touch(metrics)) return fmt::format("{} reaches the plane with {}", subject, speed);
     const std::string after = height > 0 ? "rises " + quantity(height, "m") + " above it again" : "does not rise above it again";
-    return fmt::format("{} reaches the plane with {} and {}", subject, quantity(number(metrics, {"impact_velocity_m_s"}), "m/s"),
-                       after);
+    return fmt::format("{} reaches the plane with {} and {}", subject, speed, after);
   };
   const std::string found = is_optimize(result)
                                 ? joined(reach(step_subject, baseline_metrics(result)), reach(own_subject, best_metrics(result)))
@@ -319,25 +358,32 @@ std::string waveform_caption(const json& result, const std::string& drive) {
   const bool equal = is_optimize(result) && !shape.is_null() && shape == at(result, {"baseline", "waveforms", drive});
   const DriveScale scale = drive_scale(drive);
   const auto range = [&](const char* run) -> std::string {
-    double lowest = std::numeric_limits<double>::infinity();
-    double highest = -lowest;
-    for (const json& point : at(result, {run, "waveforms", drive})) {
-      if (!point.is_array() || point.size() != 2 || !std::isfinite(number(point[1]))) continue;
-      lowest = std::min(lowest, number(point[1]));
-      highest = std::max(highest, number(point[1]));
-    }
-    if (lowest > highest) return {};
-    if (lowest == highest) return fmt::format("{} at {}", equal ? "stay" : "stays", quantity(lowest, scale.unit));
-    return fmt::format("{} between {} and {}", equal ? "run" : "runs", quantity_beside(lowest, highest, scale.unit),
-                       quantity_beside(highest, lowest, scale.unit));
+    const json& waveform = at(result, {run, "waveforms", drive});
+    const DriveDemand demand = drive_demand(waveform, scale.rest);
+    if (!std::isfinite(demand.lowest)) return {};
+    if (demand.lowest == demand.highest)
+      return fmt::format("{} at {}", equal ? "stay" : "stays", quantity(demand.lowest, scale.unit));
+    const std::string slew = scale.unit.empty()        ? ""
+                             : std::isinf(demand.slew) ? ", with a jump"
+                                                       : ", at most " + quantity(demand.slew, "V/s");
+    return fmt::format("{} between {} and {}{}", equal ? "run" : "runs",
+                       quantity_beside(demand.lowest, demand.highest, scale.unit),
+                       quantity_beside(demand.highest, demand.lowest, scale.unit), slew);
   };
+  const DriveLimits limits = drive_limits(result, drive);
+  const std::string driver =
+      !std::isfinite(limits.highest) || scale.unit.empty()
+          ? ""
+          : fmt::format(" The driver gives {} to {}{}.", given_quantity(std::isfinite(limits.lowest) ? limits.lowest : 0, "V"),
+                        given_quantity(limits.highest, "V"),
+                        std::isfinite(limits.slew) ? ", at most " + given_quantity(limits.slew, "V/s") : "");
   const std::string own = range("best");
-  if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.", scale.name, drive, own);
+  if (equal && !own.empty()) return fmt::format("{} of the drive “{}”. Both waveforms {}.{}", scale.name, drive, own, driver);
   const std::string step = range("baseline");
   const std::string name = is_optimize(result) ? own_subject : "the waveform";
   const std::string found =
       joined(own.empty() ? "" : name + " " + own, step.empty() ? "" : std::string(step_subject) + " " + step);
-  return fmt::format("{} of the drive “{}”.{}", scale.name, drive, found.empty() ? "" : " " + found);
+  return fmt::format("{} of the drive “{}”.{}{}", scale.name, drive, found.empty() ? "" : " " + found, driver);
 }
 
 std::string search_caption(const json& result) {
@@ -389,7 +435,7 @@ std::string checks_caption(const json& result) {
       ++clean_runs;
       continue;
     }
-    const double height = number(metrics, {"major_bounce_height_m"});
+    const double height = rebound_height(metrics);
     if (std::isfinite(height) && height > worst_height) {
       worst_height = height;
       worst = text(check, {"name"});

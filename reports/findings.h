@@ -49,12 +49,18 @@ struct Figure {
   [[nodiscard]] Kind kind() const { return unit == "s" ? Kind::time : unit.empty() ? Kind::count : Kind::size; }
 };
 [[nodiscard]] const std::vector<Figure>& figures();
-/// The value of a figure as text, an em dash when not available; `beside` are the metrics shown next to it.
-[[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& beside, const Figure& figure);
+/// The value of a figure as text, rounded to its error where that is known; an em dash when not available; `beside` are the
+/// metrics shown next to it.
+[[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& errors, const nlohmann::json& beside,
+                                      const Figure& figure);
+/// Its error beside that text; an em dash when not known.
+[[nodiscard]] std::string error_text(const nlohmann::json& metrics, const nlohmann::json& errors, const Figure& figure);
 /// The same in words when a number is not available but the reason is: "no contact", "not settled"; else empty.
 [[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, std::string_view key);
 /// Of an ill-conditioned figure of a certified result: "median 305.5 µs, 280.5 µs to 336.1 µs in 16 runs"; else empty.
 [[nodiscard]] std::string cloud_text(const nlohmann::json& result, const Figure& figure);
+/// What the errors of the figures are errors of.
+[[nodiscard]] std::string error_heading(const nlohmann::json& result);
 /// What a certificate says of the figures and of the rebound at which the runs part, in a sentence or two; empty without one.
 [[nodiscard]] std::string certificate_caption(const nlohmann::json& result);
 /// What the search wanted of a figure: "0", "yes", "below 323.1 µs"; empty where it wanted nothing.

@@ -12,9 +12,9 @@
 #include "reports/escape.h"
 #include "reports/findings.h"
 #include "reports/page.h"
-#include "reports/page_files.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
+#include "reports/sketch.h"
 
 namespace softland {
 namespace {
@@ -22,8 +22,6 @@ namespace {
 using namespace internal;
 using nlohmann::json;
 
-/// Rows per curve in the page: several times the pixels of a wide screen, so that zooming shows more, at about 100 kB a curve.
-constexpr std::size_t rows_per_curve = 6000;
 constexpr std::size_t most_lines = 200;
 
 std::string verdict_class(Verdict verdict) {
@@ -68,6 +66,31 @@ std::string key_numbers(const json& result) {
          key_number(result, "impact_velocity_m_s", "Impact speed");
 }
 
+/// What every drive demands of its source, where there are several.
+std::string drive_rows(const json& result, bool pair, bool estimated) {
+  const json& found = at(result, {"best", "waveforms"});
+  if (!found.is_object() || found.size() < 2) return {};
+  std::string out;
+  for (const auto& [drive, waveform] : found.items()) {
+    const DriveScale scale = drive_scale(drive);
+    if (scale.unit.empty()) continue;  // a factor has no source
+    const DriveDemand own = drive_demand(waveform, scale.rest);
+    const DriveDemand step = drive_demand(at(result, {"baseline", "waveforms", drive}), scale.rest);
+    const auto row = [&](const char* what, const std::string& value, const std::string& before) {
+      out += fmt::format("<tr><th scope=\"row\">{}, {}</th>", what, escaped(drive));
+      if (pair) out += fmt::format("<td>{}</td><td></td>", before);
+      out += fmt::format("<td class=\"own\">{}</td>", value);
+      if (pair) out += "<td></td>";
+      if (estimated) out += "<td></td>";
+      out += "</tr>\n";
+    };
+    const auto slew = [](double value) { return std::isinf(value) ? std::string("jumps") : quantity(value, "V/s"); };
+    row("Peak voltage", quantity(own.peak(), "V", 4), quantity(step.peak(), "V", 4));
+    row("Peak slew", slew(own.slew), slew(step.slew));
+  }
+  return out;
+}
+
 std::string figures_table(const json& result) {
   const json& own = best_metrics(result);
   const json& step = baseline_metrics(result);
@@ -81,13 +104,15 @@ std::string figures_table(const json& result) {
   out += "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
   if (pair) out += "<th scope=\"col\">Plain step</th><th scope=\"col\">Goal</th>";
   out += pair ? "<th scope=\"col\">Softland</th><th scope=\"col\">Change</th>" : "<th scope=\"col\">Value</th>";
-  if (estimated) out += "<th scope=\"col\">Estimated error</th>";
+  if (estimated) out += fmt::format("<th scope=\"col\">{}</th>", error_heading(result));
   out += "</tr></thead><tbody>\n";
   for (const Figure& one : figures()) {
     if (at(own, {one.key}).is_null() && at(step, {one.key}).is_null()) continue;
     out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label);
-    if (pair) out += fmt::format("<td>{}</td><td>{}</td>", figure_text(step, own, one), goal_text(result, one.key));
-    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, step, one));
+    if (pair)
+      out += fmt::format("<td>{}</td><td>{}</td>", figure_text(step, at(result, {"baseline", "errors"}), own, one),
+                         goal_text(result, one.key));
+    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, errors, step, one));
     if (pair) {
       const Change changed = figure_change(step, own, one);
       out += fmt::format("<td class=\"change {}\">{}</td>", verdict_class(changed.verdict), changed.words);
@@ -97,14 +122,12 @@ std::string figures_table(const json& result) {
       const double value = number(own, {one.key});
       constexpr double ill = 0.1;  // an error above a tenth of the figure
       const std::string cloud = cloud_text(result, one);
-      out += fmt::format("<td>{}{}</td>",
-                         !cloud.empty()         ? cloud
-                         : std::isfinite(error) ? "± " + quantity(error, one.unit, 2)
-                                                : "—",
+      out += fmt::format("<td>{}{}</td>", !cloud.empty() ? cloud : error_text(own, errors, one),
                          !cloud.empty() || error > ill * std::abs(value) ? " <span class=\"note\">ill-conditioned</span>" : "");
     }
     out += "</tr>\n";
   }
+  out += drive_rows(result, pair, estimated);
   out += "</tbody></table></div>\n";
   if (const std::string words = certificate_caption(result); !words.empty()) out += fmt::format("<p>{}</p>\n", escaped(words));
   return out + "</section>\n";
@@ -114,11 +137,7 @@ std::string charts(const Picture& drawn) {
   std::string time_charts;
   std::string search;
   for (const Chart& chart : drawn.charts) {
-    std::string words = fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n",
-                                    chart.id, escaped(chart.title));
-    words += still_picture(drawn.tables, chart);
-    words += fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(chart.caption));
-    (chart.group.empty() ? search : time_charts) += words;
+    (chart.group.empty() ? search : time_charts) += figure_html(drawn.tables, chart);
   }
   std::string out;
   if (!time_charts.empty()) {
@@ -133,6 +152,14 @@ std::string charts(const Picture& drawn) {
   }
   if (!search.empty()) out += "<section id=\"search\"><h2>The search</h2>\n" + search + "</section>\n";
   return out;
+}
+
+/// The switch from the side.
+std::string drawn_switch(const json& result) {
+  const std::string drawing = sketch(result);
+  if (drawing.empty()) return {};
+  return "<section id=\"sketch\"><h2>The switch at rest</h2>\n" + drawing +
+         "<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p></section>\n";
 }
 
 std::string list_of(const json& lines, std::string_view heading, std::string_view id) {
@@ -164,7 +191,7 @@ std::string checks_table(const json& result) {
   const auto row = [&](const std::string& name, const json& metrics) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(name));
     for (const std::string_view key : keys)
-      out += fmt::format("<td>{}</td>", figure_text(metrics, baseline_metrics(result), figure(key)));
+      out += fmt::format("<td>{}</td>", figure_text(metrics, json(), baseline_metrics(result), figure(key)));
     out += "</tr>\n";
   };
   row("as searched", best_metrics(result));
@@ -182,20 +209,72 @@ std::pair<std::string, std::string_view> without_unit(const std::string& name) {
   return {name, ""};
 }
 
+/// Where a parameter acts in its waveform: the numbers of two parameters sort as the times from which they act.
+int place_in_time(const std::string& name) {
+  constexpr std::array<std::pair<std::string_view, int>, 8> stems{{{"rise_time", 0},
+                                                                   {"start", 0},
+                                                                   {"edge", 1},
+                                                                   {"amplitude", 2},
+                                                                   {"angular_frequency", 3},
+                                                                   {"phase", 4},
+                                                                   {"duration", 5},
+                                                                   {"fade", 6}}};
+  if (!name.empty() && name.back() >= '1' && name.back() <= '9') {
+    const int number = 10 * (name.back() - '0');
+    return name.starts_with("level") ? number : number + 1;
+  }
+  const auto* const found = std::find_if(stems.begin(), stems.end(), [&](const auto& one) { return one.first == name; });
+  return found == stems.end() ? 1000 : found->second;
+}
+
+/// The parameters in the order in which they act, with the box they were searched in.
 std::string parameters_table(const json& result) {
   const json& parameters = at(result, {"best", "parameters"});
   if (!parameters.is_object() || parameters.empty()) return {};
-  std::string out =
-      "<section id=\"parameters\"><h2>The waveform found</h2>\n<div class=\"scroll\"><table><thead><tr><th "
-      "scope=\"col\">Parameter</th><th scope=\"col\">Value</th></tr></thead><tbody>\n";
+  struct Row {
+    std::string drive, name;
+    std::string_view unit;
+    const json* value;
+    const json* bounds;
+  };
+  std::vector<Row> rows;
+  for (const auto& [key, value] : parameters.items()) {
+    const auto [plain, unit] = without_unit(key);
+    const std::size_t dot = plain.rfind('.');
+    rows.push_back({plain.substr(0, dot == std::string::npos ? 0 : dot), plain.substr(dot == std::string::npos ? 0 : dot + 1),
+                    unit, &value, &at(result, {"best", "bounds", key})});
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
+    return std::pair(a.drive, place_in_time(a.name)) < std::pair(b.drive, place_in_time(b.name));
+  });
+  std::string out = "<section id=\"parameters\"><h2>The waveform found</h2>\n";
+  std::string drive = "\n";
+  for (const Row& row : rows) {
+    if (row.drive != drive) out += parameter_drawing(result, drive = row.drive);
+  }
+  out +=
+      "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Parameter</th><th scope=\"col\">Value</th><th "
+      "scope=\"col\">Searched</th></tr></thead><tbody>\n";
   std::size_t shown = 0;
-  for (const auto& [name, value] : parameters.items()) {
+  for (const Row& row : rows) {
     if (shown++ == most_lines) break;
-    const auto [plain, unit] = without_unit(name);
-    const std::string words = value.is_number()   ? quantity(value.get<double>(), unit, 6)
-                              : value.is_string() ? value.get<std::string>()
-                                                  : value.dump();
-    out += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(plain), escaped(words));
+    constexpr int digits = 5;
+    const double value = number(*row.value);
+    const std::string words = std::isfinite(value)     ? quantity(value, row.unit, digits)
+                              : row.value->is_string() ? row.value->get<std::string>()
+                                                       : row.value->dump();
+    std::string searched;
+    if (row.bounds->is_array() && row.bounds->size() == 2) {
+      const double low = number((*row.bounds)[0]), high = number((*row.bounds)[1]);
+      constexpr double near = 0.01;  // of the box
+      const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
+                          : high - value <= near * (high - low) ? "at its upper bound"
+                                                                : "";
+      searched = fmt::format("{} to {}{}", given_quantity(low, row.unit, 4), given_quantity(high, row.unit, 4),
+                             *bound ? fmt::format(" <span class=\"bound\">{}</span>", bound) : "");
+    }
+    out += fmt::format("<tr><th scope=\"row\">{}{}{}</th><td>{}</td><td>{}</td></tr>\n", escaped(row.drive),
+                       row.drive.empty() ? "" : ".", escaped(row.name), escaped(words), searched);
   }
   return out + "</tbody></table></div></section>\n";
 }
@@ -251,22 +330,17 @@ std::string html_report(const json& result) {
   for (const char* key : {"target", "actuator"}) {
     if (const std::string word = text(result, {key}); !word.empty()) origin += " · " + word;
   }
-  const std::string scripts =
-      filled(page_file("page/scripts.html"), {{"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
-                                              {"chart_licence", std::string(page_file("uplot/LICENSE"))},
-                                              {"js", std::string(page_file("page/page.js"))},
-                                              {"data", script_json(chart_json(drawn, rows_per_curve))}});
   return page({.title = title,
                .origin = origin,
                .headline = line.main,
                .headline_rest = line.rest,
                .doubt = checks_agree(result) ? "" : checks_caption(result),
                .keys = key_numbers(result),
-               .body = charts(drawn) + figures_table(result) + checks_table(result) +
+               .body = drawn_switch(result) + charts(drawn) + figures_table(result) + checks_table(result) +
                        list_of(at(result, {"warnings"}), "Warnings", "warnings") + parameters_table(result) + facts(result) +
                        reproduce(result) + scene(result),
-               .style = std::string(page_file("uplot/uPlot.min.css")),
-               .scripts = scripts});
+               .style = chart_style(),
+               .scripts = chart_scripts(drawn)});
 }
 
 }  // namespace softland

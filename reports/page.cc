@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "reports/escape.h"
+#include "reports/made_with.h"
 #include "reports/page_files.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
@@ -16,6 +17,8 @@ using nlohmann::json;
 
 /// Bytes of text shown per block; more is cut.
 constexpr std::size_t most_text = 100'000;
+/// Rows per curve in the page: several times the pixels of a wide screen, so that zooming shows more, at about 100 kB a curve.
+constexpr std::size_t rows_per_curve = 6000;
 
 }  // namespace
 
@@ -51,6 +54,21 @@ std::string still_picture(const Tables& tables, const Chart& chart) {
                      chart_svg_height(chart), escaped(chart.title + ". " + chart.caption), chart_svg(tables, chart, width, 0));
 }
 
+std::string figure_html(const Tables& tables, const Chart& chart) {
+  return fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n", chart.id,
+                     escaped(chart.title)) +
+         still_picture(tables, chart) + fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(chart.caption));
+}
+
+std::string chart_style() { return std::string(page_file("uplot/uPlot.min.css")); }
+
+std::string chart_scripts(const Picture& drawn) {
+  return filled(page_file("page/scripts.html"), {{"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
+                                                 {"chart_licence", std::string(page_file("uplot/LICENSE"))},
+                                                 {"js", std::string(page_file("page/page.js"))},
+                                                 {"data", script_json(chart_json(drawn, rows_per_curve))}});
+}
+
 std::string reproduce(const json& result) {
   std::string commands;
   const json& lines = at(result, {"reproduce"});
@@ -65,8 +83,13 @@ std::string reproduce(const json& result) {
     if (const std::string value = any(result, {key}); !value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
   }
   if (commands.empty() && with.empty()) return {};
-  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre></section>\n",
-                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)));
+  const std::string made = made_with_text(result);
+  return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",
+                     with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)),
+                     made.empty() ? ""
+                                  : "<p>Made with " + escaped(made) +
+                                        ". The same bits are to be expected of the same program on the same kind of processor; "
+                                        "elsewhere rounding differs, and a search may end elsewhere.</p>\n");
 }
 
 std::string scene(const json& result) {

@@ -35,6 +35,11 @@ struct Page {
 
 /// The chart as an <svg> element.
 [[nodiscard]] std::string still_picture(const Tables& tables, const Chart& chart);
+/// The chart in a page, with its title, its caption and the place where the script draws it.
+[[nodiscard]] std::string figure_html(const Tables& tables, const Chart& chart);
+/// The style and the scripts that draw the charts of a page.
+[[nodiscard]] std::string chart_style();
+[[nodiscard]] std::string chart_scripts(const Picture& drawn);
 /// Sections of a result: the command lines that make it again, and its scene.
 [[nodiscard]] std::string reproduce(const nlohmann::json& result);
 [[nodiscard]] std::string scene(const nlohmann::json& result);

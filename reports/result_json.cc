@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "integrators/quintic.h"
+#include "reports/json_number.h"
+#include "reports/made_with.h"
 #include "studies/certify.h"
 #include "studies/omissions.h"
 #include "version.h"
@@ -11,14 +13,13 @@
 namespace softland {
 namespace {
 
+using internal::json_number;
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json pull_in_json(const Prepared& p) {
   if (p.pull_in.empty()) return nullptr;
   const auto one = [](const ElectrodePullIn& e) {
-    return json{{"static_V", number(e.statically.voltage)}, {"dynamic_V", number(e.dynamically.voltage)}};
+    return json{{"static_V", json_number(e.statically.voltage)}, {"dynamic_V", json_number(e.dynamically.voltage)}};
   };
   // One electrode is the usual case; several are told apart by name.
   if (p.pull_in.size() == 1) return one(p.pull_in.begin()->second);
@@ -74,7 +75,7 @@ json curves_json(const Trajectory& t, const MetricsOptions& options) {
     }
   }
   for (const Rebound& r : rebounds(t)) {
-    if (r.height > options.significant_rebound) bounces.push_back({r.begin, number(r.end), r.height, r.time_of_height});
+    if (r.height > options.significant_rebound) bounces.push_back({r.begin, json_number(r.end), r.height, r.time_of_height});
   }
   return {{"time_s", std::move(time)},
           {"tip_gap_m", std::move(gap)},
@@ -85,8 +86,8 @@ json curves_json(const Trajectory& t, const MetricsOptions& options) {
 
 json figures_json(const Closing& c) {
   json m = metrics_json(c.metrics);
-  m["peak_voltage_V"] = number(c.peak_voltage);
-  m["peak_slew_V_s"] = number(c.peak_slew);
+  m["peak_voltage_V"] = json_number(c.peak_voltage);
+  m["peak_slew_V_s"] = json_number(c.peak_slew);
   return m;
 }
 
@@ -94,7 +95,7 @@ json errors_json(const Closing& c) {
   json e = metrics_json(c.errors);
   e.erase("settled");
   e.erase("status");
-  if (!std::isfinite(c.errors.initial_contact_time)) e["bounce_count"] = nullptr;
+  e["bounce_count"] = c.bounce_count_error ? json(*c.bounce_count_error) : json(nullptr);
   e["peak_voltage_V"] = e["peak_slew_V_s"] = nullptr;
   return e;
 }
@@ -103,9 +104,9 @@ json errors_json(const Closing& c) {
 json certified_json(const Certificate& certificate) {
   json all = json::object();
   for (const IllConditioned& f : certificate.ill_conditioned) {
-    all[std::string(f.key)] = {{"median", number(f.spread.median)},
-                               {"low", number(f.spread.low)},
-                               {"high", number(f.spread.high)},
+    all[std::string(f.key)] = {{"median", json_number(f.spread.median)},
+                               {"low", json_number(f.spread.low)},
+                               {"high", json_number(f.spread.high)},
                                {"runs", f.spread.runs}};
   }
   return all;
@@ -116,7 +117,7 @@ json grazing_json(const std::optional<GrazingRebound>& r) {
   return {{"rebound", r->number},
           {"time_s", r->time},
           {"height_m", r->height},
-          {"impact_velocity_m_s", number(r->impact_velocity)},
+          {"impact_velocity_m_s", json_number(r->impact_velocity)},
           {"at_significant_height", r->at_threshold}};
 }
 
@@ -129,8 +130,8 @@ void add_scene(json& j, const Prepared& p) {
   if (p.effects) {
     json left_out = json::array();
     for (const Omission& o : p.effects->choice.left_out)
-      left_out.push_back({{"effect", o.what.effect}, {"influence", number(o.influence)}});
-    j["effects"] = {{"left_out", left_out}, {"influence", number(p.effects->choice.influence)}};
+      left_out.push_back({{"effect", o.what.effect}, {"influence", json_number(o.influence)}});
+    j["effects"] = {{"left_out", left_out}, {"influence", json_number(p.effects->choice.influence)}};
   }
   const SceneFile file = resolved(p.scene, p.voltage_units());
   j["title"] = p.scene.title;
@@ -140,8 +141,15 @@ void add_scene(json& j, const Prepared& p) {
   j["tolerance"] = p.tolerance;
 }
 
+// The box that every parameter was searched in.
+json bounds_json(const OptimizeResult& r) {
+  json all = json::object();
+  for (const Variable& v : r.variables) all[v.name] = {v.lower, v.upper};
+  return all;
+}
+
 json started(std::string_view kind, const Provenance& provenance) {
-  return {{"kind", kind}, {"version", version}, {"command", provenance.command}};
+  return {{"kind", kind}, {"version", version}, {"command", provenance.command}, {"made_with", made_with()}};
 }
 
 }  // namespace
@@ -159,19 +167,20 @@ std::string_view to_string(Actuator actuator) {
 }
 
 json metrics_json(const Metrics& m) {
-  const bool touched = std::isfinite(m.initial_contact_time);
+  const bool seen = std::isfinite(m.major_bounce_height);  // what the switch does after its first touch
+  const bool unknown = !seen && std::isfinite(m.initial_contact_time);
   return {{"status", to_string(m.status)},
-          {"initial_contact_time_s", number(m.initial_contact_time)},
-          {"permanent_contact_time_s", number(m.permanent_contact_time)},
-          {"bounce_time_s", number(m.bounce_time)},
-          {"bounce_count", touched ? json(m.bounce_count) : json(nullptr)},
-          {"major_bounce_height_m", number(m.major_bounce_height)},
-          {"impact_velocity_m_s", number(m.impact_velocity)},
-          {"peak_contact_force_N", number(m.peak_contact_force)},
-          {"impact_energy_J", number(m.impact_energy)},
-          {"hold_force_N", number(m.hold_force)},
-          {"drive_energy_J", number(m.drive_energy)},
-          {"settled", m.settled}};
+          {"initial_contact_time_s", json_number(m.initial_contact_time)},
+          {"permanent_contact_time_s", json_number(m.permanent_contact_time)},
+          {"bounce_time_s", json_number(m.bounce_time)},
+          {"bounce_count", seen ? json(m.bounce_count) : json(nullptr)},
+          {"major_bounce_height_m", json_number(m.major_bounce_height)},
+          {"impact_velocity_m_s", json_number(m.impact_velocity)},
+          {"peak_contact_force_N", json_number(m.peak_contact_force)},
+          {"impact_energy_J", json_number(m.impact_energy)},
+          {"hold_force_N", json_number(m.hold_force)},
+          {"drive_energy_J", json_number(m.drive_energy)},
+          {"settled", unknown ? json(nullptr) : json(m.settled)}};
 }
 
 json result_json(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {
@@ -215,10 +224,10 @@ json result_json(const OptimizeResult& r, const OptimizeOptions& options, const 
   j["baseline"] = {{"metrics", figures_json(r.baseline)},
                    {"errors", errors_json(r.baseline)},
                    {"waveforms", waveforms_json(r.baseline_scene, r.baseline_scene.duration)},
-                   {"cost", number(r.baseline_cost)}};
+                   {"cost", json_number(r.baseline_cost)}};
   j["curves"] = {{"baseline", curves_json(r.baseline.trajectory, r.scene.scene.metrics)}};
   json history = json::array();
-  for (const Evaluation& e : r.search.improvements) history.push_back({e.index, number(e.value)});
+  for (const Evaluation& e : r.search.improvements) history.push_back({e.index, json_number(e.value)});
   j["search"] = {{"best_so_far", std::move(history)}, {"value_name", "cost"}};
   // Warnings of the scene come with every closing: once is enough.
   std::vector<std::string> warnings = r.best ? r.best->warnings : r.baseline.warnings;
@@ -232,9 +241,10 @@ json result_json(const OptimizeResult& r, const OptimizeOptions& options, const 
   j["errors"] = errors_json(*r.best);
   j["work"] = work_json(r.best->trajectory.work);
   j["best"] = {{"parameters", r.parameters},
+               {"bounds", bounds_json(r)},
                {"metrics", figures_json(*r.best)},
                {"waveforms", waveforms_json(*r.best_scene, r.best_scene->duration)},
-               {"cost", number(r.best_cost)}};
+               {"cost", json_number(r.best_cost)}};
   j["curves"]["best"] = curves_json(r.best->trajectory, r.scene.scene.metrics);
   json checks = json::array();
   for (const ConfirmingRun& c : r.checks) checks.push_back({{"name", c.name}, {"metrics", metrics_json(c.metrics)}});

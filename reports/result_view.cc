@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
+#include "base/require.h"
+#include "config/units.h"
 #include "studies/prepared.h"
 
 namespace softland::internal {
@@ -87,19 +88,55 @@ DriveScale drive_scale(std::string_view drive) {
   return {.name = "Voltage", .unit = "V", .rest = 0};
 }
 
+double quantity_of(const json& value) {
+  if (!value.is_string()) return number(value);
+  try {
+    return parse_quantity(value.get<std::string>()).value;
+  } catch (const InvalidInput&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+DriveLimits drive_limits(const json& result, const std::string& drive) {
+  const json& driver = at(result, {"scene", "driver", drive});
+  return {.lowest = quantity_of(at(driver, {"min_voltage"})),
+          .highest = quantity_of(at(driver, {"max_voltage"})),
+          .slew = quantity_of(at(driver, {"max_slew"}))};
+}
+
+double DriveDemand::peak() const { return std::max(std::abs(lowest), std::abs(highest)); }
+
+DriveDemand drive_demand(const json& waveform, double rest) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  DriveDemand demand{.lowest = infinity, .highest = -infinity};
+  double time = 0, level = rest;
+  if (waveform.is_array()) {
+    for (const json& point : waveform) {
+      if (!point.is_array() || point.size() != 2 || !std::isfinite(number(point[0])) || !std::isfinite(number(point[1])))
+        continue;
+      const double next = number(point[0]), to = number(point[1]);
+      if (to != level) demand.slew = std::max(demand.slew, next > time ? std::abs(to - level) / (next - time) : infinity);
+      demand.lowest = std::min(demand.lowest, to);
+      demand.highest = std::max(demand.highest, to);
+      time = next;
+      level = to;
+    }
+  }
+  if (demand.lowest > demand.highest) demand.lowest = demand.highest = demand.slew = std::numeric_limits<double>::quiet_NaN();
+  return demand;
+}
+
 double significant_rebound(const json& result) {
   constexpr double usual = 1e-9;
   const json& given = at(result, {"scene", "metrics", "significant_rebound"});
   if (given.is_number() && given.get<double>() > 0) return given.get<double>();
   if (!given.is_string()) return usual;
-  const std::string words = given.get<std::string>();
-  char* unit = nullptr;
-  const double value = std::strtod(words.c_str(), &unit);
-  const std::string_view rest = unit;
-  for (const auto& [name, factor] : {std::pair{" m", 1.0}, {" um", 1e-6}, {" nm", 1e-9}, {" pm", 1e-12}}) {
-    if (rest == name && value > 0) return value * factor;
+  try {
+    const Quantity q = parse_quantity(given.get<std::string>());
+    return q.dimension == dimension::length && q.value > 0 ? q.value : usual;
+  } catch (const InvalidInput&) {
+    return usual;
   }
-  return usual;
 }
 
 }  // namespace softland::internal

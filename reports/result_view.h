@@ -40,6 +40,21 @@ struct DriveScale {
 };
 /// Volts, or the factor of the drive named "dispersion".
 [[nodiscard]] DriveScale drive_scale(std::string_view drive);
+/// A quantity as a resolved scene writes it, "2 um", in SI units; a plain number as it is; NaN for anything else.
+[[nodiscard]] double quantity_of(const nlohmann::json& value);
+/// What the source of a drive can do; NaN where the scene sets no limit.
+struct DriveLimits {
+  double lowest = 0, highest = 0;  ///< [V]
+  double slew = 0;                 ///< [V/s]
+};
+[[nodiscard]] DriveLimits drive_limits(const nlohmann::json& result, const std::string& drive);
+/// What a waveform [[time, level], ...] demands of its source from `rest` on.
+struct DriveDemand {
+  double lowest = 0, highest = 0;  ///< NaN: there is no waveform
+  double slew = 0;                 ///< infinite where it jumps
+  [[nodiscard]] double peak() const;
+};
+[[nodiscard]] DriveDemand drive_demand(const nlohmann::json& waveform, double rest);
 /// Height from which a rebound counts [m]; 1 nm unless the scene says otherwise.
 [[nodiscard]] double significant_rebound(const nlohmann::json& result);
 

@@ -15,13 +15,13 @@ namespace {
 using nlohmann::json;
 
 // Columns on a terminal: UTF-8 continuation bytes take no room.
-std::size_t width(std::string_view text) {
+std::size_t columns_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 std::string padded(const std::string& text, std::size_t columns) {
-  return text + std::string(columns > width(text) ? columns - width(text) : 0, ' ');
+  return text + std::string(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ');
 }
 
 }  // namespace
@@ -33,12 +33,12 @@ std::string wrapped(std::string_view text, std::size_t columns) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
     if (used > 0) {
-      const bool fits = used + 1 + width(word) <= columns;
+      const bool fits = used + 1 + columns_of(word) <= columns;
       out += fits ? ' ' : '\n';
       used = fits ? used + 1 : 0;
     }
     out += word;
-    used += width(word);
+    used += columns_of(word);
   }
   return out;
 }
@@ -48,21 +48,24 @@ std::string text_report(const json& result) {
   const bool compares = internal::is_optimize(result);
   const json& best = internal::best_metrics(result);
   const json& baseline = internal::baseline_metrics(result);
+  const json& errors = internal::at(result, {"errors"});
+  const json& baseline_errors = internal::at(result, {"baseline", "errors"});
   out += compares ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
-                  : fmt::format("{:<36}{:>16}   {}\n", "", "value", "estimated error");
+                  : fmt::format("{:<36}{:>16}   {}\n", "", "value", internal::error_heading(result));
   for (const internal::Figure& f : internal::figures()) {
-    const auto right = [](const std::string& text) { return std::string(width(text) < 16 ? 16 - width(text) : 0, ' ') + text; };
+    if (internal::at(best, {f.key}).is_null() && internal::at(baseline, {f.key}).is_null()) continue;  // as on the page
+    const auto right = [](const std::string& text) {
+      return std::string(columns_of(text) < 16 ? 16 - columns_of(text) : 0, ' ') + text;
+    };
     if (compares) {
       const internal::Change change = internal::figure_change(baseline, best, f);
-      out += padded(f.label, 36) + right(internal::figure_text(baseline, best, f)) +
-             right(internal::figure_text(best, baseline, f)) + "   " + change.words;
+      out += padded(f.label, 36) + right(internal::figure_text(baseline, baseline_errors, best, f)) +
+             right(internal::figure_text(best, errors, baseline, f)) + "   " + change.words;
     } else {
-      const double error = internal::number(result, {"errors", f.key});
+      const bool known = std::isfinite(internal::number(errors, {f.key}));
       const std::string cloud = internal::cloud_text(result, f);
-      const std::string shown = !cloud.empty()         ? cloud
-                                : std::isfinite(error) ? internal::quantity(error, f.unit, 2)
-                                                       : std::string();
-      out += padded(f.label, 36) + right(internal::figure_text(best, json::object(), f)) + "   " + shown;
+      const std::string shown = !cloud.empty() ? cloud : known ? internal::error_text(best, errors, f) : std::string();
+      out += padded(f.label, 36) + right(internal::figure_text(best, errors, json::object(), f)) + "   " + shown;
     }
     while (!out.empty() && out.back() == ' ') out.pop_back();
     out += "\n";

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "base/engineering.h"
+
 namespace softland {
 namespace {
 
@@ -14,8 +16,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double enough_seconds = 0.03;     // of timed runs of one setting
 constexpr double reference_tighter = 1e-4;  // than the tightest tolerance
-constexpr double reference_looser = 100;    // the second reference, than the first
-constexpr int most_modes = 20;              // of a scene
+constexpr double reference_looser = 100;    // the second reference, than the first; and every reference tried than the next
+constexpr double reference_growth = 2.5;    // of the time from one to the next, of a fifth-order method
+constexpr double told_apart = 9.9;          // times the reference's tolerance, less what rounding takes: errors show from here on
 constexpr CloudOptions cloud_options{.runs = 8};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -26,36 +29,37 @@ class Study {
  public:
   Study(const Prepared& prepared, const AccuracyOptions& options)
       : prepared_(prepared), options_(options), signals_(prepared.signals()) {
-    own_points_ = prepared_.quadrature.points_per_length;
     own_modes_ = prepared.device.modes();
     own_integrator_ = automatic_integrator(prepared.device);
     if (prepared.scene.device.structure.kind != StructureKind::plate) {
+      own_points_ = prepared_.quadrature.points_per_length;
+      for (const double points : options.points) {
+        if (points != *own_points_) other_points_.push_back(points);
+      }
       for (const int modes : {own_modes_ - 1, own_modes_ + 1, own_modes_ + 2}) {
         if (modes >= 1 && modes <= most_modes) other_modes_.push_back(modes);
       }
     }
     const std::size_t tolerances = options.tolerances.size();
     // Two references and the cloud count as one each.
-    all_ =
-        3 + all_integrators.size() * tolerances + (options.points.size() - own_points_among()) * tolerances + other_modes_.size();
+    all_ = 3 + (all_integrators.size() + other_points_.size()) * tolerances + other_modes_.size();
     found_.why_always_restarted = prepared.device.has_contact() ? why_always_restarted(prepared.device) : "there is no contact";
     if (found_.why_always_restarted.empty()) all_ += all_integrators.size() * tolerances;
   }
 
   AccuracyStudy run() {
     if (!find_reference()) return std::move(found_);
-    const Switch own(prepared_.scene.device, {.points_per_length = own_points_});
+    const Switch& own = prepared_.device;
     gather_cloud(own);
     start_ = Clock::now();
     sweep(own, setting(own_integrator_, own_points_), found_.rows);
-    for (const double points : options_.points) {
-      if (points == own_points_) continue;
+    for (const double points : other_points_) {
       sweep(Switch(prepared_.scene.device, {.points_per_length = points}), setting(own_integrator_, points), found_.rows);
     }
     for (const int modes : other_modes_) {
       Device device = prepared_.scene.device;
       device.structure.modes = modes;
-      AccuracyRow row = setting(own_integrator_, own_points_, options_.tolerances.back());
+      AccuracyRow row = setting(own_integrator_, own_points_, tightest_);
       row.modes = modes;
       try_out(Switch(device), row);
       found_.modes.push_back(std::move(row));
@@ -73,15 +77,12 @@ class Study {
   }
 
  private:
-  [[nodiscard]] std::size_t own_points_among() const {
-    return static_cast<std::size_t>(std::count(options_.points.begin(), options_.points.end(), own_points_));
-  }
   [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
   void progress() {
     ++done_;
     if (options_.on_progress) options_.on_progress(done_, all_);
   }
-  [[nodiscard]] AccuracyRow setting(Integrator integrator, double points, double tolerance = 0) const {
+  [[nodiscard]] AccuracyRow setting(Integrator integrator, std::optional<double> points, double tolerance = 0) const {
     return {.integrator = integrator, .tolerance = tolerance, .points_per_length = points, .modes = own_modes_};
   }
 
@@ -115,7 +116,7 @@ class Study {
       const Trajectory t = simulate_closing(device, signals_, closing_options);
       seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
       if (cut) {
-        row.missing = fmt::format("cut after {:g} s", most_seconds);
+        row.missing = fmt::format("cut after {:.2g} s", most_seconds);
         return;
       }
       spent += seconds.back();
@@ -157,6 +158,10 @@ class Study {
       if (cut) {
         progress();
         row.missing = fmt::format("not tried: a looser tolerance took more than {:g} s", options_.most_seconds);
+      } else if (tolerance < tightest_ ||
+                 (row.points_per_length && 2 * *row.points_per_length > found_.reference.points_per_length)) {
+        progress();
+        row.missing = "not tried: the reference is not better";
       } else {
         try_out(device, row);
         cut = row.missing.starts_with("cut");
@@ -173,17 +178,43 @@ class Study {
     sweep(device, row, found_.through);
   }
 
-  // A tolerance that is too tight for rounding, or for the time there is, gives way to the next.
-  bool find_reference() {
-    const double points = 2 * options_.points.back();
-    const Switch fine(prepared_.scene.device, {.points_per_length = points});
-    const double tightest = options_.tolerances.back();
-    AccuracyRow& reference = found_.reference;
-    for (double tolerance = reference_tighter * tightest; tolerance < tightest; tolerance *= 10) {
-      reference = setting(own_integrator_, points, tolerance);
-      measure(fine, reference, 1, options_.reference_seconds);
-      if (reference.missing.empty() || stopped()) break;
+  [[nodiscard]] Switch with_points(std::optional<double> points) const {
+    return points ? Switch(prepared_.scene.device, {.points_per_length = *points}) : prepared_.device;
+  }
+
+  // From loose to tight, to the tolerance planned or to where rounding or the time that is left ends it.
+  void tighten_reference(const Switch& fine, std::optional<double> points, double& seconds_left) {
+    const double planned = reference_tighter * options_.tolerances.back();
+    int steps = 0;
+    while (planned * std::pow(reference_looser, steps + 1) * told_apart <= options_.tolerances.front()) ++steps;
+    AccuracyRow& best = found_.reference;
+    double growth = reference_growth;
+    for (; steps >= 0 && !stopped(); --steps) {
+      const bool found = best.missing.empty();
+      if (found && (!touched(best.figures) || growth * best.work.wall > seconds_left)) return;
+      AccuracyRow next = setting(own_integrator_, points, planned * std::pow(reference_looser, steps));
+      const Clock::time_point start = Clock::now();
+      constexpr double first_share = 1.0 / 3;  // so that there is time for one with fewer points
+      measure(fine, next, 1, found ? seconds_left : first_share * seconds_left);
+      const double seconds = seconds_since(start);
+      seconds_left = std::max(0.0, seconds_left - seconds);
+      if (found && !next.missing.empty()) return;
+      if (found) growth = std::max(reference_growth, seconds / best.work.wall);
+      best = std::move(next);
+      if (best.missing.starts_with("cut")) return;
     }
+  }
+
+  bool find_reference() {
+    AccuracyRow& reference = found_.reference;
+    double seconds_left = options_.reference_seconds;
+    std::optional<double> points;
+    if (own_points_) points = 2 * options_.points.back();
+    do {
+      reference.missing = "not tried";
+      tighten_reference(with_points(points), points, seconds_left);
+      if (points) *points /= 2;
+    } while (reference.missing.starts_with("cut") && points && *points >= options_.points.front() && !stopped());
     progress();
     if (!reference.missing.empty() || !touched(reference.figures)) {
       found_.status = reference.missing.starts_with("cut") ? Status::numerical_failure : reference.figures.status;
@@ -191,9 +222,20 @@ class Study {
       return false;
     }
     found_.status = Status::done;
-    AccuracyRow second = setting(own_integrator_, options_.points.back(), reference_looser * reference.tolerance);
-    measure(Switch(prepared_.scene.device, {.points_per_length = second.points_per_length}), second, 1,
-            options_.reference_seconds);
+    reference.errors = {};
+    if (const double planned = reference_tighter * options_.tolerances.back(); reference.tolerance > told_apart * planned) {
+      found_.message = fmt::format(
+          "a tolerance of {} would take more than {:g} s, or fails: settings that this one cannot judge are not tried",
+          engineering(reference.tolerance / reference_looser, "", 1), options_.reference_seconds);
+    }
+    tightest_ = options_.tolerances.back();
+    for (auto t = options_.tolerances.rbegin(); t != options_.tolerances.rend() && tightest_ < told_apart * reference.tolerance;
+         ++t)
+      tightest_ = *t;
+    points = reference.points_per_length;
+    if (points) *points /= 2;
+    AccuracyRow second = setting(own_integrator_, points, reference_looser * reference.tolerance);
+    measure(with_points(points), second, 1, options_.reference_seconds);
     found_.resolution = second.errors;
     if (!second.missing.empty()) found_.resolution.fill(Metrics::unset);
     progress();
@@ -201,7 +243,7 @@ class Study {
   }
 
   void gather_cloud(const Switch& device) {
-    const ClosingOptions options = closing(setting(own_integrator_, own_points_, options_.tolerances.back()));
+    const ClosingOptions options = closing(setting(own_integrator_, own_points_, tightest_));
     std::vector<Metrics> runs;
     for (const Trajectory& t : perturbed_closings(device, signals_, options, cloud_options)) {
       if (t.status == Status::done) runs.push_back(figures(t));
@@ -223,7 +265,8 @@ class Study {
           std::isfinite(own) && in_all && relative_errors(high, low, prepared_.scene.metrics)[i] <= ill_conditioned_range;
     }
     found_.permanent_contact_time = over([](const Metrics& m) { return m.permanent_contact_time; });
-    found_.bounce_count = over([](const Metrics& m) { return touched(m) ? m.bounce_count : Metrics::unset; });
+    found_.bounce_count =
+        over([](const Metrics& m) { return std::isfinite(m.major_bounce_height) ? m.bounce_count : Metrics::unset; });
     progress();
   }
 
@@ -252,7 +295,9 @@ class Study {
   const Prepared& prepared_;
   const AccuracyOptions& options_;
   std::vector<Signal> signals_;
-  double own_points_ = 0;
+  std::optional<double> own_points_;  // none of a plate
+  std::vector<double> other_points_;
+  double tightest_ = 0;  // of the tolerances that the reference can judge
   int own_modes_ = 0;
   Integrator own_integrator_ = Integrator::automatic;
   std::vector<int> other_modes_;

@@ -1,11 +1,12 @@
 // What accuracy costs in time, on the user's own scene: the errors of the delivered figures of merit, not of a step, against time
 // and right-hand sides, for every integrator, tolerance, number of quadrature points and number of modes.
 //
-// The reference has a ten-thousandth of the tightest tolerance and twice the most quadrature points. Drives keep the volts that
-// the scene gives them, whatever the number of modes. What another number of modes changes is a matter of the model, not an error
-// of the integration, and stands by itself. So do runs whose integrator is not restarted at the contact: simulate() restarts
-// it. Figures that imperceptible perturbations of the drives move visibly have no error:
-// they are shown as the range of a cloud of runs.
+// The reference has a ten-thousandth of the tightest tolerance and twice the most quadrature points, or as near to that as its
+// time allows; settings that are no looser than it are then not tried. A rigid plate has the same gap everywhere: it has no
+// quadrature to study. Drives keep the volts that the scene gives them, whatever the number of modes. What another number of
+// modes changes is a matter of the model, not an error of the integration, and stands by itself. So do runs whose integrator is
+// not restarted at the contact: simulate() restarts it. Figures that imperceptible perturbations of the drives move visibly have
+// no error: they are shown as the range of a cloud of runs.
 #pragma once
 
 #include <array>
@@ -50,7 +51,7 @@ struct AccuracyOptions {
   std::vector<double> wanted{1e-2, 1e-3, 1e-4, 1e-5, 1e-6};                  ///< accuracies to recommend a setting for
   int runs = 7;                   ///< timed, of which the median is taken; fewer where they take long
   double most_seconds = 2;        ///< for one closing; a slower one is cut, and tighter ones are not tried
-  double reference_seconds = 10;  ///< for a reference; a slower one gives way to a looser one
+  double reference_seconds = 10;  ///< for the references, from loose to tight; one that would take longer is not run
   double all_seconds = 15;        ///< for everything else together; what comes later is not tried
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
   const std::atomic<bool>* stop = nullptr;
@@ -60,7 +61,7 @@ struct AccuracyOptions {
 struct AccuracyRow {
   Integrator integrator = Integrator::automatic;
   double tolerance = 0;
-  double points_per_length = 0;
+  std::optional<double> points_per_length = {};  ///< none for a plate
   int modes = 0;
   bool restart = true;       ///< of the integrator, at make and break of contact
   std::string missing = {};  ///< why there are no figures; empty when there are
@@ -79,7 +80,7 @@ struct Recommendation {
 
 struct AccuracyStudy {
   Status status = Status::not_run;  ///< of the reference; without contact there is nothing to study
-  std::string message = {};
+  std::string message = {};         ///< why there is no reference, or a looser one than planned
   AccuracyRow reference;
   /// Relative difference to a second reference, with a hundred times its tolerance and half its points: errors below are not
   /// told apart.

@@ -10,11 +10,11 @@
 #include "model/constants.h"
 #include "objectives/metrics.h"
 #include "studies/prepared.h"
+#include "studies/watched.h"
 
 namespace softland {
 namespace {
 
-constexpr int most_modes = 20;          // of a scene
 constexpr double run_tolerance = 1e-6;  // of the integrator: errors far below auto_modes_tolerance
 constexpr double least_share = 0.01;    // of what a closing is like, below which a figure is as good as zero
 
@@ -22,15 +22,19 @@ struct Figure {
   double value, scale;
 };
 
-std::vector<Figure> figures(const SceneFile& file, int modes) {
+std::vector<Figure> figures(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
   with.set(fmt::format("structure.modes={}", modes));
   with.set("simulate.effects=all");  // every number of modes is judged on the same effects; they are chosen after
-  const Prepared p = prepare(with);
+  const Prepared p = prepare(with, false, watch);
   const double omega = p.device.angular_frequencies()[0], gap = p.scene.device.gap.contact;
-  const Trajectory t = simulate_closing(
-      p.device, p.signals(),
-      {.duration = p.duration, .tolerance = std::max(run_tolerance, p.tolerance), .after_contact = 2 * pi / omega});
+  const Trajectory t = simulate_closing(p.device, p.signals(),
+                                        {.duration = p.duration,
+                                         .tolerance = std::max(run_tolerance, p.tolerance),
+                                         .after_contact = 2 * pi / omega,
+                                         .stop = watch.stop,
+                                         .observer = observer(watch, fmt::format("closing with {} modes", modes), p.duration)});
+  watch.throw_if_stopped();
   const Metrics m = metrics(t, p.scene.metrics);
   std::vector<Figure> list{{m.initial_contact_time, 1 / omega}, {m.impact_velocity, gap * omega}, {m.major_bounce_height, gap}};
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
@@ -57,13 +61,17 @@ double change(const std::vector<Figure>& from, const std::vector<Figure>& to) {
 }  // namespace
 
 std::string AutoModes::note() const {
-  return settled() ? fmt::format(R"(structure.modes = "auto": {} modes; further ones move no figure by more than {:.2g} %)",
-                                 modes, 100 * moved)
-                   : fmt::format(R"(structure.modes = "auto": {} modes, but further ones still move a figure by {:.2g} %)", modes,
-                                 100 * moved);
+  const std::string judged =
+      touches ? "t_i, v_i, the highest rebound of the first period after contact and the pull-in voltages"
+              : "the pull-in voltages, the only figures that are judged since the closing does not touch in its window,";
+  const std::string not_judged = "later rebounds, and with them B_H, N_B and t_p, are not judged and may move more";
+  return settled() ? fmt::format(R"(structure.modes = "auto": {} mode{}; further ones move {} by at most {:.2g} %; {})", modes,
+                                 modes == 1 ? "" : "s", judged, 100 * moved, not_judged)
+                   : fmt::format(R"(structure.modes = "auto": {} mode{}, but further ones still move one of {} by {:.2g} %; {})",
+                                 modes, modes == 1 ? "" : "s", judged, 100 * moved, not_judged);
 }
 
-AutoModes choose_modes(const SceneFile& file) {
+AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   const bool both_clamped = read_scene(file).device.structure.kind == StructureKind::clamped_clamped;
   const int further = both_clamped ? 6 : 3;
   std::vector<std::vector<Figure>> known;
@@ -71,10 +79,12 @@ AutoModes choose_modes(const SceneFile& file) {
   for (int modes = 1; modes + further <= most_modes; ++modes) {
     found = {.modes = modes};
     for (int more = 1; more <= further && found.settled(); ++more) {
-      while (static_cast<int>(known.size()) < modes + more) known.push_back(figures(file, static_cast<int>(known.size()) + 1));
+      while (static_cast<int>(known.size()) < modes + more)
+        known.push_back(figures(file, static_cast<int>(known.size()) + 1, watch));
       found.moved = std::max(
           found.moved, change(known[static_cast<std::size_t>(modes - 1)], known[static_cast<std::size_t>(modes + more - 1)]));
     }
+    found.touches = std::isfinite(known[static_cast<std::size_t>(modes - 1)].front().value);
     if (found.settled()) break;
   }
   return found;

@@ -10,6 +10,7 @@
 
 #include <string>
 
+#include "base/watch.h"
 #include "config/scene.h"
 
 namespace softland {
@@ -18,13 +19,14 @@ inline constexpr double auto_modes_tolerance = 0.03;
 
 struct AutoModes {
   int modes = 0;
-  double moved = 0;  ///< the most that further modes move a figure, relative
+  bool touches = true;  ///< the closing that is judged
+  double moved = 0;     ///< the most that further modes move a figure, relative
   [[nodiscard]] bool settled() const { return moved <= auto_modes_tolerance; }
   /// What a result says about it.
   [[nodiscard]] std::string note() const;
 };
 
 /// Where nothing settles up to the most modes there are, the largest number that can be judged. Throws as prepare() does.
-[[nodiscard]] AutoModes choose_modes(const SceneFile& file);
+[[nodiscard]] AutoModes choose_modes(const SceneFile& file, const Watch& watch = {});
 
 }  // namespace softland

@@ -4,6 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+
+#include "base/require.h"
+#include "studies/omissions.h"
 
 namespace softland {
 namespace {
@@ -54,6 +59,43 @@ bool ill_conditioned(const std::vector<double>& cloud, double own, double better
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const double size = std::max(std::abs(*low), std::abs(*high));
   return size > least && *high - std::max(*low, least) > visible_range * size;
+}
+
+// Figures of the closing with each pull-in voltage that its drives are written in higher, and lower, by the error of that
+// voltage: a multiple of what a finer quadrature changes, and the width of its bracket.
+std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fine, const SwitchOptions& quadrature,
+                                      const ClosingOptions& options, const Watch& watch) {
+  const Scene& written = prepared.effects ? prepared.effects->described : prepared.scene;
+  std::vector<Metrics> found;
+  for (const std::string& name : written.need_pull_in) {
+    const auto& electrodes = written.device.electrodes;
+    const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
+    const auto k = static_cast<std::size_t>(at - electrodes.begin());
+    const Switch device(written.device, quadrature);
+    const StaticPullIn statically = static_pull_in(device, k);
+    const DynamicPullIn dynamically = dynamic_pull_in(device, k, statically, watch);
+    const ElectrodePullIn& own = prepared.pull_in.at(name);
+    const double by_static = error_safety * std::abs(statically.voltage - own.statically.voltage);
+    const double by_dynamic = error_safety * std::abs(dynamically.voltage - own.dynamically.voltage) +
+                              dynamic_pull_in_precision * own.dynamically.voltage;
+    for (const double sign : {-1.0, 1.0}) {
+      std::map<std::string, PullInVoltages> units = prepared.voltage_units();
+      units[name].static_pull_in += sign * by_static;
+      units[name].dynamic_pull_in += sign * by_dynamic;
+      Prepared moved = prepared;
+      try {
+        moved.drives = written.drives(units);
+      } catch (const InvalidInput&) {  // a drive at a limit of its driver, or no better voltage: the error is not known
+        found.emplace_back();
+        continue;
+      }
+      const std::vector<Signal> signals = moved.signals();
+      Trajectory t = simulate_closing(fine, signals, options);
+      t.hold_force = hold_force(fine, signals);
+      found.push_back(metrics(t, prepared.scene.metrics));
+    }
+  }
+  return found;
 }
 
 // What one run did, rebound by rebound, with the touch before each.
@@ -112,20 +154,30 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
   return gentlest(first.rebounds.size());
 }
 
-Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
-  Closing c = simulate(prepared, true, stop);
+Closing certify(const Prepared& prepared, const Watch& watch) {
+  Closing c = simulate(prepared, true, watch);
   if (!c.judge) return c;
   if (c.judge->status != Status::done) {
-    c.warnings.push_back(fmt::format("the figures could not be certified: a hundredfold tighter run ended with {}{}{}",
-                                     to_string(c.judge->status), c.judge->message.empty() ? "" : ": ", c.judge->message));
+    c.warnings.push_back("the figures could not be certified: there is no other run to judge them by");
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
-  const Switch fine(prepared.scene.device, c.judge->quadrature);
-  const ClosingOptions options{.duration = prepared.duration, .tolerance = c.judge->tolerance, .stop = stop};
+  // The better one of the run and its judge.
+  const bool judge_is_better = c.judge->tolerance < c.tolerance;
+  const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
+  const Switch fine(prepared.scene.device, quadrature);
+  const ClosingOptions options{
+      .duration = prepared.duration, .tolerance = std::min(c.judge->tolerance, c.tolerance), .stop = watch.stop};
   Metrics better = c.judge->metrics;
-  better.hold_force = hold_force(fine, signals);
-  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options);
+  if (std::isfinite(c.metrics.hold_force))
+    better.hold_force = hold_force(Switch(prepared.scene.device, c.judge->quadrature), signals);
+  const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);
+  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {}, watch);
+  if (watch.stopped()) {
+    c.metrics.status = Status::interrupted;
+    c.warnings.insert(c.warnings.begin(), "interrupted before the figures were certified");
+    return c;
+  }
   std::erase_if(cloud, [](const Trajectory& t) { return t.status != Status::done; });
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
@@ -139,6 +191,10 @@ Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
     const double own = figure.value(c.metrics), other = figure.value(better);
     const bool is_height = figure.key == "major_bounce_height_m";
     double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
+    const double unmoved = judge_is_better ? other : own;
+    for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // both signs of one voltage
+      error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
+    }
     if (ill_conditioned(values, own, other, is_height ? prepared.scene.metrics.significant_rebound : 0)) {
       const Spread cloud_spread = spread(std::move(values));
       for (const double value : {cloud_spread.low, cloud_spread.high}) error = std::fmax(error, std::abs(own - value));
@@ -147,7 +203,7 @@ Closing certify(const Prepared& prepared, const std::atomic<bool>* stop) {
     if (figure.error != nullptr) {
       figure.error(c.errors) = error;
     } else if (std::isfinite(error)) {
-      c.errors.bounce_count = static_cast<int>(std::ceil(error - 0.5));
+      c.bounce_count_error = static_cast<int>(std::ceil(error - 0.5));
     }
   }
   if (!certificate.ill_conditioned.empty()) certificate.grazing = grazing_rebound(cloud, prepared.scene.metrics);

@@ -1,9 +1,10 @@
 // Figures of merit that carry an error to rely on, and clouds in the place of those that have none.
 //
 // The figures are those of simulate(). Their errors are a multiple of the difference to the run that judged them, and a hundredth
-// of the tolerance for what both miss; calibrated on random scenes
-// (bench/certify_coverage.cc). A figure is ill-conditioned where imperceptible changes of the drives move it visibly: it is then
-// given as median and range over a cloud of runs, and its error reaches to the end of that range.
+// of the tolerance for what both miss; calibrated on random scenes (bench/certify_coverage.cc). Where drives are given in pull-in
+// voltages these are computed again with the judge's quadrature, and the figures' errors hold what theirs moves. A figure is
+// ill-conditioned where imperceptible changes of the drives move it visibly: it is then given as median and range over a cloud of
+// runs, and its error reaches to the end of that range.
 #pragma once
 
 #include <array>
@@ -52,6 +53,6 @@ inline constexpr double error_safety = 2;
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
 
 /// Runs the scene's own waveforms with simulate() and certifies the figures; not those of a run, or of a judge, that is not done.
-[[nodiscard]] Closing certify(const Prepared& prepared, const std::atomic<bool>* stop = nullptr);
+[[nodiscard]] Closing certify(const Prepared& prepared, const Watch& watch = {});
 
 }  // namespace softland

@@ -8,10 +8,11 @@
 namespace softland {
 
 std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const Signal> drives, const ClosingOptions& closing,
-                                           const CloudOptions& options) {
+                                           const CloudOptions& options, const Watch& watch) {
   std::vector<Trajectory> runs;
   std::uint64_t sample = 0;
   for (int i = 0; i < options.runs; ++i) {
+    watch.tell("cloud of perturbed closings", static_cast<double>(i) / options.runs);
     std::vector<Signal> perturbed;
     for (const Signal& drive : drives) {
       const double size = internal::draw_uniform(options.seed, internal::Draw::perturbation, sample++);

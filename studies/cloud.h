@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/watch.h"
 #include "model/closing.h"
 #include "objectives/metrics.h"
 
@@ -21,7 +22,8 @@ struct CloudOptions {
 
 /// The runs in order: a function of the arguments alone. Those that `closing.stop` ends are left out.
 [[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const Signal> drives,
-                                                         const ClosingOptions& closing, const CloudOptions& options = {});
+                                                         const ClosingOptions& closing, const CloudOptions& options = {},
+                                                         const Watch& watch = {});
 
 /// Where a figure lies in the runs that have it; NaN when none has.
 struct Spread {

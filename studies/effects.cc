@@ -3,26 +3,43 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/require.h"
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/timing.h"
+#include "studies/watched.h"
 
 namespace softland {
 namespace {
 
-Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const std::atomic<bool>* stop) {
+// Why this gas cannot surround the device; empty when it can.
+std::string refusal(Device device, const Gas& gas) {
+  device.gas = gas;
+  try {
+    validate(device);
+  } catch (const InvalidInput& wrong) {
+    return wrong.what();
+  }
+  return {};
+}
+
+Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
   Device described = prepared.scene.device;
   described.gas = gas;
   const Switch device(described, prepared.quadrature);
   const std::vector<Signal> signals = prepared.signals();
   const Trajectory t =
-      simulate_closing(device, signals, {.duration = prepared.duration, .tolerance = prepared.tolerance, .stop = stop});
+      simulate_closing(device, signals,
+                       {.duration = prepared.duration,
+                        .tolerance = prepared.tolerance,
+                        .stop = watch.stop,
+                        .observer = observer(watch, "closings with every gas law", prepared.duration, done, share)});
   Effect e{.section = "gas",
            .choice = "none",
            .magnitude = {.name = "damping per length, closed", .unit = "N s/m^2", .value = 0},
            .group = {.name = "Knudsen number, closed"},
            .metrics = metrics(t, prepared.scene.metrics),
-           .rhs_seconds = right_hand_side_seconds(device, signals, prepared.duration),
+           .rhs_seconds = watch.stopped() ? Metrics::unset : right_hand_side_seconds(device, signals, prepared.duration),
            .warnings = t.warnings};
   if (!gas) return e;
   const double closed = described.gap.electrode - described.gap.contact;
@@ -54,23 +71,33 @@ double relative_change(const Effect& effect, const Effect& own, double Metrics::
   return (effect.metrics.*figure - own.metrics.*figure) / (own.metrics.*figure);
 }
 
-Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop) {
+Effects compare_effects(const Prepared& prepared, const Watch& watch) {
   const std::optional<Gas>& own = prepared.scene.device.gas;
   Effects found;
-  found.list.push_back(closing_with(prepared, std::nullopt, stop));
-  found.list.back().in_scene = !own;
+  std::vector<std::optional<Gas>> laws{std::nullopt};
   for (const GasModelEntry& e : gas_models) {
     Gas gas = own.value_or(Gas{});
     const bool in_scene = own && own->model == e.model;
     // A damper and a slit are not there for the taking: only where the scene describes them.
     if ((e.model == GasModel::linear || e.model == GasModel::strip_slit) && !in_scene) continue;
-    // A rigid contact takes no film with states of its own; that film has none on the far side.
-    if (is_compressible(e.model) && (prepared.device.rigid_contact() != nullptr || !std::isnan(gas.far_gap))) continue;
     gas.model = e.model;
-    found.list.push_back(closing_with(prepared, gas, stop));
-    found.list.back().in_scene = in_scene;
+    if (const std::string reason = refusal(prepared.scene.device, gas); !reason.empty()) {
+      found.not_compared.push_back({.choice = std::string(e.name), .reason = reason});
+      continue;
+    }
+    laws.emplace_back(gas);
   }
-  found.omissions = compare_omissions(prepared, found.own("gas").metrics, true, stop);
+  for (const std::optional<Gas>& law : laws) {
+    const double share = 1.0 / static_cast<double>(laws.size());
+    Effect e = closing_with(prepared, law, watch, static_cast<double>(found.list.size()) * share, share);
+    if (watch.stopped()) break;
+    e.in_scene = law.has_value() == own.has_value() && (!own || law->model == own->model);
+    found.list.push_back(std::move(e));
+  }
+  const bool own_is_there = std::any_of(found.list.begin(), found.list.end(), [](const Effect& e) { return e.in_scene; });
+  if (!own_is_there) throw Interrupted();
+  found.omissions = compare_omissions(prepared, found.own("gas").metrics, true, watch);
+  found.interrupted = watch.stopped();
   return found;
 }
 

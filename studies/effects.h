@@ -3,10 +3,10 @@
 // the law differs.
 #pragma once
 
-#include <atomic>
 #include <string>
 #include <vector>
 
+#include "base/watch.h"
 #include "objectives/metrics.h"
 #include "studies/omissions.h"
 #include "studies/prepared.h"
@@ -25,9 +25,17 @@ struct Effect {
   std::vector<std::string> warnings;  ///< of this closing
 };
 
+/// A law that cannot take the place of the scene's own.
+struct NotCompared {
+  std::string choice;
+  std::string reason;
+};
+
 struct Effects {
-  std::vector<Effect> list;  ///< the laws of the gas
+  std::vector<Effect> list;               ///< the laws of the gas
+  std::vector<NotCompared> not_compared;  ///< those that the scene cannot have
   std::vector<Omission> omissions;
+  bool interrupted = false;  ///< asked to stop: the lists hold only what was complete by then, the scene's own closing at least
 
   /// What the scene itself says in this section.
   [[nodiscard]] const Effect& own(const std::string& section) const;
@@ -41,7 +49,7 @@ struct Effects {
 
 /// Repeats the closing without each effect, and with no gas and with every gas law, in the state of gas that the scene describes
 /// (air at 101325 Pa and 300 K where it describes none). The linear damper and the film over a slit only where the scene
-/// describes them.
-[[nodiscard]] Effects compare_effects(const Prepared& prepared, const std::atomic<bool>* stop = nullptr);
+/// describes them. Throws Interrupted where `watch` asks to stop before the scene's own closing is complete.
+[[nodiscard]] Effects compare_effects(const Prepared& prepared, const Watch& watch = {});
 
 }  // namespace softland

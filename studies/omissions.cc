@@ -8,6 +8,7 @@
 #include "model/closing.h"
 #include "model/gas/gas_law.h"
 #include "studies/timing.h"
+#include "studies/watched.h"
 
 namespace softland {
 namespace {
@@ -39,8 +40,12 @@ double force_at_rest(const Device& described, std::size_t electrode) {
 
 double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
 
-Metrics figures(const Prepared& p, const std::atomic<bool>* stop) {
-  return metrics(simulate_closing(p.device, p.signals(), {.duration = p.duration, .tolerance = p.tolerance, .stop = stop}),
+Metrics figures(const Prepared& p, const Watch& watch, double done = 0, double share = 1) {
+  return metrics(simulate_closing(p.device, p.signals(),
+                                  {.duration = p.duration,
+                                   .tolerance = p.tolerance,
+                                   .stop = watch.stop,
+                                   .observer = observer(watch, "closings without each effect", p.duration, done, share)}),
                  p.scene.metrics);
 }
 
@@ -185,30 +190,38 @@ double influence(const Metrics& own, const Metrics& other, const MetricsOptions&
   return std::isfinite(most) ? most : infinity;
 }
 
-std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed, const std::atomic<bool>* stop) {
+std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed, const Watch& watch) {
   std::vector<Omission> list;
-  for (Omissible& effect : omissible_effects(prepared)) {
+  std::vector<Omissible> effects = omissible_effects(prepared);
+  for (Omissible& effect : effects) {
+    const double share = 1.0 / static_cast<double>(effects.size());
     const Prepared p = without(prepared, {effect});
-    Omission o{.what = std::move(effect), .metrics = figures(p, stop), .influence = 0, .rhs_seconds = Metrics::unset};
+    Omission o{.what = std::move(effect),
+               .metrics = figures(p, watch, static_cast<double>(list.size()) * share, share),
+               .influence = 0,
+               .rhs_seconds = Metrics::unset};
     o.influence = influence(own, o.metrics, prepared.scene.metrics);
+    if (watch.stopped()) break;
     if (timed) o.rhs_seconds = right_hand_side_seconds(p.device, p.signals(), p.duration);
     list.push_back(std::move(o));
   }
   return list;
 }
 
-EffectsChoice negligible_effects(const Prepared& prepared, double tolerance) {
+EffectsChoice negligible_effects(const Prepared& prepared, double tolerance, const Watch& watch) {
   EffectsChoice choice;
-  const Metrics own = figures(prepared, nullptr);
-  for (Omission& o : compare_omissions(prepared, own, false)) {
+  const Metrics own = figures(prepared, watch);
+  for (Omission& o : compare_omissions(prepared, own, false, watch)) {
     if (o.what.automatic && o.influence <= tolerance) choice.left_out.push_back(std::move(o));
   }
+  watch.throw_if_stopped();
   std::sort(choice.left_out.begin(), choice.left_out.end(),
             [](const Omission& a, const Omission& b) { return a.influence < b.influence; });
   for (; !choice.left_out.empty(); choice.left_out.pop_back()) {
     std::vector<Omissible> effects;
     for (const Omission& o : choice.left_out) effects.push_back(o.what);
-    choice.influence = influence(own, figures(without(prepared, effects), nullptr), prepared.scene.metrics);
+    choice.influence = influence(own, figures(without(prepared, effects), watch), prepared.scene.metrics);
+    watch.throw_if_stopped();
     if (choice.influence <= tolerance) return choice;
   }
   choice.influence = 0;

@@ -2,10 +2,10 @@
 // voltages. `effects = "auto"` in [simulate] leaves out what does not matter.
 #pragma once
 
-#include <atomic>
 #include <string>
 #include <vector>
 
+#include "base/watch.h"
 #include "objectives/metrics.h"
 #include "studies/prepared.h"
 
@@ -48,9 +48,10 @@ struct Omission {
 /// a figure appears, disappears, or is missing in both but B_H.
 [[nodiscard]] double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options);
 
-/// Leaves out one effect after the other. `timed`: also measures the right-hand side.
+/// Leaves out one effect after the other; asked to stop, the list ends with the last closing that was complete. `timed`: also
+/// measures the right-hand side.
 [[nodiscard]] std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed,
-                                                      const std::atomic<bool>* stop = nullptr);
+                                                      const Watch& watch = {});
 
 /// What effects = "auto" decided.
 struct EffectsChoice {
@@ -59,12 +60,12 @@ struct EffectsChoice {
 };
 
 struct DescribedEffects {
-  Device described;
+  Scene described;  ///< with every effect, its drives as written
   EffectsChoice choice;
 };
 
 /// Effects whose influence is at most `tolerance`, alone and together: while together they exceed it the most influential one is
-/// put back. Nothing is left out of a scene whose closing does not touch.
-[[nodiscard]] EffectsChoice negligible_effects(const Prepared& prepared, double tolerance);
+/// put back. Nothing is left out of a scene whose closing does not touch. Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] EffectsChoice negligible_effects(const Prepared& prepared, double tolerance, const Watch& watch = {});
 
 }  // namespace softland

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
+#include "studies/two_stages.h"
 
 namespace softland {
 namespace {
@@ -18,7 +21,8 @@ constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;   // of the integrator: costs good to about 1e-4
 constexpr double tight_tolerance = 1e-9;    // of the confirming run
 constexpr int more_modes = 2;               // of the confirming run
-constexpr std::size_t most_candidates = 8;  // verified at the most
+constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
+constexpr double distinct = 1.01;           // ratio of the costs of two candidates
 
 // The scene with other waveforms on some drives.
 SceneFile with_waveforms(const Prepared& p, const std::map<std::string, Waveform>& waveforms) {
@@ -35,7 +39,7 @@ Prepared read_back(const SceneFile& file, const std::string& name, const Prepare
   return p;
 }
 
-// Better or worse as a user would rank two closings: the target's own figure, unsettled last.
+// The target's own figure, infinite where the closing has none.
 double figure(Target target, const Metrics& m) {
   const double none = std::numeric_limits<double>::infinity();
   if (!std::isfinite(m.initial_contact_time)) return none;
@@ -63,7 +67,7 @@ std::vector<ConfirmingRun> confirm(const Prepared& winner) {
     return metrics(simulate_closing(device, signals, {.duration = winner.duration, .tolerance = tolerance}),
                    winner.scene.metrics);
   };
-  std::vector<ConfirmingRun> runs{{fmt::format("tolerance {:g}", tight_tolerance), run(winner.device, tight_tolerance)}};
+  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.device, tight_tolerance)}};
   Device richer = winner.scene.device;
   if (richer.structure.kind != StructureKind::plate) {
     richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
@@ -72,28 +76,57 @@ std::vector<ConfirmingRun> confirm(const Prepared& winner) {
   return runs;
 }
 
+// How far a candidate is believed.
+enum class Belief { touches, settles, meets_goal, confirmed };
+
+// A candidate after its run over the whole window, as its file says, at the accuracy the scene asks for.
+struct Verified {
+  Prepared scene;
+  Closing closing;
+  std::vector<ConfirmingRun> checks;
+  std::map<std::string, double> parameters;
+  double cost = 0;
+  double figure = 0;  // the target's own; rebounds that are not significant are equal
+  Belief belief = Belief::touches;
+
+  [[nodiscard]] bool better_than(const Verified& other) const {
+    return std::tuple(-static_cast<int>(belief), figure, cost) <
+           std::tuple(-static_cast<int>(other.belief), other.figure, other.cost);
+  }
+};
+
+bool same(const std::vector<Signal>& a, const std::vector<Signal>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Signal& one, const Signal& other) { return one.pieces() == other.pieces(); });
+}
+
+// The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
+// reason.
+std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
+  std::vector<Evaluation> chosen;
+  for (auto e = improvements.rbegin(); e != improvements.rend() && chosen.size() < most_candidates; ++e) {
+    if (!(e->value < never_touched)) break;
+    if (chosen.empty() || e->value > distinct * chosen.back().value) chosen.push_back(*e);
+  }
+  return chosen;
+}
+
 }  // namespace
 
-long default_budget(Actuator actuator) {
-  switch (actuator) {
-    case Actuator::electrostatic:
-      return 2500;
-    case Actuator::pzt:
-    case Actuator::both:
-      break;
-  }
-  return 10000;
+long default_budget(Target target, Actuator actuator) {
+  const long by_bounce = actuator == Actuator::electrostatic ? 2500 : 10000;
+  return has_own_cost(target) ? by_bounce + by_bounce / 2 : by_bounce;
 }
 
 bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
-  if (!best.settled) return false;
-  if (target == Target::bounce || target == Target::rebound || target == Target::count) return best.bounce_count == 0;
-  return figure(target, best) < figure(target, baseline);
+  if (!best.settled || best.bounce_count > 0) return false;
+  return !has_own_cost(target) || figure(target, best) < figure(target, baseline);
 }
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
-  Prepared given = prepare(file, true);
+  const Watch before{.stop = options.stop, .progress = options.on_preparation}, after{.progress = options.on_preparation};
+  Prepared given = prepare(file, true, before);
   require(given.device.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
 
   // The baseline: plain steps to the hold levels the scene describes, as steep as the driver permits.
@@ -111,7 +144,8 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   }
   if (given.device.has_piezo()) plain[std::string(piezo_drive)] = Step{.level = 0};
   Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml", given);
-  OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true)};
+  OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true, before)};
+  before.throw_if_stopped();
 
   // How candidates are scored.
   const double period = 2 * pi / given.device.angular_frequencies()[0];
@@ -133,83 +167,118 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
                   .first_touch = period / 2,
                   .touch_speed = given.scene.device.gap.contact * given.device.angular_frequencies()[0],
                   .rebound_height = given.scene.device.gap.contact,
-                  .soft_count = 1,
                   .impact_energy = 0};
   }
   result.baseline_cost = cost(options.target, step, scale, metrics_options);
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
   run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.device.in_contact_period());
   require(run.no_contact_before > 0,
-          fmt::format("simulate.duration = {:.3g} s is too short to judge a landing: it needs more than {:.3g} s", given.duration,
-                      2 * given.device.in_contact_period()));
+          fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
+                      engineering(given.duration, "s", 3), engineering(2 * given.device.in_contact_period(), "s", 3)));
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
 
   const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);
   const std::vector<std::string> names = given.drive_names();
   const std::vector<Signal> standing = baseline_scene.signals();
-  const auto evaluate = [&](std::span<const double> x) {
+  result.variables = space.variables();
+  const auto price = [&](const std::vector<Signal>& signals) {
+    const Trajectory closing = simulate_closing(given.device, signals, run);
+    const auto by = [&](Target target) { return cost(target, closing, scale, metrics_options); };
+    const double leading = by(Target::bounce);
+    return Prices{.leading = leading, .own = has_own_cost(options.target) ? by(options.target) : leading};
+  };
+  const auto price_at = [&](std::span<const double> x) {
     std::vector<Signal> signals = standing;
     for (const auto& [drive, waveform] : space.waveforms(x)) {
       const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin());
       signals[at] = signal(waveform);
-      if (!violation(signals[at], given.drives.limits.at(drive)).empty()) return std::numeric_limits<double>::infinity();
+      if (!violation(signals[at], given.drives.limits.at(drive)).empty()) return Prices{};
     }
-    return cost(options.target, simulate_closing(given.device, signals, run), scale, metrics_options);
+    return price(signals);
   };
 
-  const Problem problem{.variables = space.variables(), .objective = evaluate, .starts = space.starts()};
-  if (options.on_start) {
-    std::vector<std::string> variable_names;
-    for (const Variable& v : problem.variables) variable_names.push_back(v.name);
-    options.on_start(variable_names);
-  }
+  Problem problem{.variables = space.variables(), .objective = {}, .starts = space.starts()};
+  std::vector<std::string> variable_names;
+  for (const Variable& v : problem.variables) variable_names.push_back(v.name);
+  const auto named = [&](std::span<const double> x) {
+    std::map<std::string, double> parameters;
+    for (std::size_t k = 0; k < x.size(); ++k) parameters[variable_names[k]] = x[k];
+    return parameters;
+  };
+  if (options.on_start) options.on_start(variable_names);
   OptimizeProgress progress{.baseline_cost = result.baseline_cost};
-  OptimizerOptions search{.optimizer = options.optimizer,
-                          .max_evaluations = options.max_evaluations,
-                          .max_seconds = options.max_seconds,
-                          .seed = options.seed,
-                          .jobs = options.jobs,
-                          .stop = options.stop};
-  search.on_evaluation = [&](const Evaluation& e) {
-    ++progress.evaluations;
-    if (options.on_evaluation) options.on_evaluation(e, progress);
-  };
-  search.on_improvement = [&](const Evaluation& e) {
-    progress.best_cost = e.value;
-    if (options.on_improvement && e.value < never_touched)
-      options.on_improvement(e, with_waveforms(baseline_scene, space.waveforms(e.x)));
-  };
-  result.search = minimize(problem, search);
 
-  // Believe no candidate before it has been run over the whole window, as its file says, at the accuracy the scene asks for, nor
-  // prefer one whose landing a tighter integrator or a richer beam undoes.
-  enum class Belief { none, feasible, meets_goal, confirmed };
-  Belief belief = Belief::none;
-  const auto& found = result.search.improvements;
-  for (std::size_t i = 0; i < std::min(most_candidates, found.size()) && belief < Belief::confirmed; ++i) {
-    const Evaluation& candidate = found[found.size() - 1 - i];
-    if (!(candidate.value < never_touched)) break;
-    Prepared scene = read_back(with_waveforms(baseline_scene, space.waveforms(candidate.x)), "best.toml", given);
-    Closing closing = simulate(scene, true);
-    const bool met = goal_met(options.target, closing.metrics, result.baseline.metrics);
-    if (!met && belief >= Belief::feasible) continue;
-    std::vector<ConfirmingRun> checks = confirm(scene);
-    const bool confirmed = met && std::all_of(checks.begin(), checks.end(), [&](const ConfirmingRun& check) {
-                             return goal_met(options.target, check.metrics, result.baseline.metrics);
-                           });
-    const Belief now = confirmed ? Belief::confirmed : met ? Belief::meets_goal : Belief::feasible;
-    if (now <= belief) continue;
-    belief = now;
-    result.best_scene = std::move(scene);
-    result.best = std::move(closing);
-    result.best_cost = candidate.value;
-    result.goal_met = met;
-    result.checks = std::move(checks);
-    result.parameters.clear();
-    for (std::size_t k = 0; k < problem.variables.size(); ++k) result.parameters[problem.variables[k].name] = candidate.x[k];
+  // A scene that holds a landing already is refined: its drives are the first candidate, and where the search can describe them
+  // it starts there.
+  double given_cost = never_touched;
+  const std::optional<std::vector<double>> given_point = space.parameters(given.drives.waveforms);
+  if (!same(given.signals(), standing)) {
+    given_cost = price(given.signals()).own;
+    if (given_point) problem.starts.insert(problem.starts.begin(), *given_point);
+    if (given_cost < never_touched) {
+      progress.best_cost = given_cost;
+      if (options.on_improvement)
+        options.on_improvement({.index = given_index, .value = given_cost, .x = given_point.value_or(std::vector<double>{})},
+                               with_waveforms(given, {}));
+    }
   }
-  if (result.best) {
-    result.better_than_baseline = figure(options.target, result.best->metrics) < figure(options.target, result.baseline.metrics);
+
+  TwoStages stages(price_at, [&](const Evaluation& e) {
+    ++progress.evaluations;
+    const bool improves = std::isfinite(e.value) && !(progress.best_cost <= e.value);
+    if (improves) progress.best_cost = e.value;
+    if (options.on_evaluation) options.on_evaluation(e, progress);
+    if (improves && options.on_improvement && e.value < never_touched)
+      options.on_improvement(e, with_waveforms(baseline_scene, space.waveforms(e.x)));
+  });
+  result.search = stages.run(std::move(problem),
+                             {.optimizer = options.optimizer,
+                              .max_evaluations = options.max_evaluations,
+                              .max_seconds = options.max_seconds,
+                              .seed = options.seed,
+                              .jobs = options.jobs,
+                              .stop = options.stop},
+                             has_own_cost(options.target));
+
+  // Believe no candidate before it has been verified, nor prefer one whose landing a tighter integrator or a richer beam undoes.
+  std::optional<Verified> winner;
+  const auto verify = [&](const SceneFile& text, double value, std::map<std::string, double> parameters) {
+    Prepared scene = read_back(text, "best.toml", given);
+    Closing closing = simulate(scene, true, after);
+    const auto met = [&](const Metrics& m) { return goal_met(options.target, m, result.baseline.metrics); };
+    const Metrics& m = closing.metrics;
+    Verified now{.scene = std::move(scene),
+                 .closing = closing,
+                 .checks = {},
+                 .parameters = std::move(parameters),
+                 .cost = value,
+                 .figure = figure(options.target, m),
+                 .belief = met(m)      ? Belief::meets_goal
+                           : m.settled ? Belief::settles
+                                       : Belief::touches};
+    if (options.target == Target::bounce || options.target == Target::rebound)
+      now.figure = std::max(now.figure, metrics_options.significant_rebound);
+    if (now.belief == Belief::meets_goal || !winner || now.better_than(*winner)) now.checks = confirm(now.scene);
+    if (now.belief == Belief::meets_goal &&
+        std::all_of(now.checks.begin(), now.checks.end(), [&](const ConfirmingRun& c) { return met(c.metrics); }))
+      now.belief = Belief::confirmed;
+    if (!winner || now.better_than(*winner)) winner = std::move(now);
+  };
+  if (given_cost < never_touched)
+    verify(with_waveforms(given, {}), given_cost, given_point ? named(*given_point) : std::map<std::string, double>{});
+  for (const Evaluation& e : candidates(result.search.improvements)) {
+    verify(with_waveforms(baseline_scene, space.waveforms(e.x)), e.value, named(e.x));
+    if (winner->belief == Belief::confirmed && winner->cost <= e.value) break;
+  }
+  if (winner) {
+    const Metrics& m = winner->closing.metrics;
+    result.goal_met = winner->belief >= Belief::meets_goal;
+    result.better_than_baseline = figure(options.target, m) < figure(options.target, result.baseline.metrics);
+    result.best_scene = std::move(winner->scene);
+    result.best = std::move(winner->closing);
+    result.checks = std::move(winner->checks);
+    result.parameters = std::move(winner->parameters);
+    result.best_cost = winner->cost;
   }
   return result;
 }

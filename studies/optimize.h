@@ -5,7 +5,8 @@
 // fixed time after its own first contact, must touch within 2.5 times the baseline's first-touch time, stays inside the driver's
 // limits, and is infeasible if the beam comes near the electrode. The winner is believed only after a run over the whole window
 // at the scene's accuracy, read back from the very text of best.toml; runs with a tighter integrator and with two more modes
-// confirm it. Where the best candidate fails one of these, the next ones of the search are tried.
+// confirm it. Where the best candidate fails one of these, the next ones of the search are tried. The waveform that the scene
+// holds already is a candidate too, so that refining a winner never ends with a worse one.
 #pragma once
 
 #include <atomic>
@@ -32,8 +33,12 @@ struct OptimizeProgress {
 };
 
 /// Evaluations that found bounce-free waveforms from every seed tried, on the shipped scenes and their variants: the landscape of
-/// a weak piezo is the harder one.
-[[nodiscard]] long default_budget(Actuator actuator);
+/// a weak piezo is the harder one. A target with a cost of its own has half as much again for it, after the same search as
+/// `bounce`.
+[[nodiscard]] long default_budget(Target target, Actuator actuator);
+
+/// Evaluation::index of the scene's own waveform.
+inline constexpr long given_index = -1;
 
 struct OptimizeOptions {
   Target target = Target::bounce;
@@ -44,14 +49,19 @@ struct OptimizeOptions {
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
   int jobs = 1;
-  /// Set from outside (Ctrl-C): ends the search. Baseline, verification and confirming runs are short and always run to the end.
+  /// Set from outside (Ctrl-C): ends the search. The runs that verify and confirm what it found by then are run to their end.
   const std::atomic<bool>* stop = nullptr;
+  /// Told before and after the search itself, of the pull-in voltages, the baseline and the runs that verify the winner: see
+  /// Watch.
+  std::function<void(std::string_view what, double part)> on_preparation = {};
   /// Called once, when scene and options have been found valid and before the first evaluation, with the names of the searched
   /// parameters in the order of Evaluation::x.
   std::function<void(const std::vector<std::string>&)> on_start = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
-  /// Called under the same lock at every improvement that touches, with the scene file that gives it.
+  /// Called under the same lock at every improvement that touches, with the scene file that gives it. The first may be the
+  /// scene's own waveform, before the search: its index is given_index, and x is empty where the searched family cannot describe
+  /// it.
   std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
 };
 
@@ -68,6 +78,7 @@ struct OptimizeResult {
   std::optional<Closing> best;
   std::vector<ConfirmingRun> checks;
   std::map<std::string, double> parameters;  ///< of the winner, by drive.name
+  std::vector<Variable> variables;           ///< what was searched, and within which bounds
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   OptimizerResult search;
@@ -79,8 +90,8 @@ struct OptimizeResult {
 /// result.
 [[nodiscard]] OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options);
 
-/// Goal of a target: bounce, rebound, count: no significant rebound; settling, impact, energy: settled and better than the
-/// baseline.
+/// Goal of every target: settled without a significant rebound; settling, impact, energy: their own figure is also better than
+/// the baseline's.
 [[nodiscard]] bool goal_met(Target target, const Metrics& best, const Metrics& baseline);
 
 }  // namespace softland

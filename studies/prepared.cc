@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "base/require.h"
+#include "base/engineering.h"
 #include "model/constants.h"
+#include "model/timoshenko.h"
 #include "studies/auto_modes.h"
 #include "studies/omissions.h"
 
@@ -47,11 +49,35 @@ SwitchOptions quadrature_for(double accuracy, int modes) {
 
 namespace {
 
-Prepared as_described(const SceneFile& given, bool default_limits) {
+/// Windows and waveforms that no computer would see the end of.
+void check_window(const Prepared& p) {
+  constexpr double longest = 1e3;  // [s], as the longest simulate.duration
+  const SceneFile& file = p.scene.file;
+  if (!(p.duration <= longest)) {
+    file.refuse("structure.kind",
+                fmt::format("the window, where simulate.duration is absent six periods of the first mode, is {} "
+                            "and must be at most {}: what moves is too soft or too heavy",
+                            engineering(p.duration, "s"), engineering(longest, "s")));
+  }
+  constexpr double most_periods = 1e5;
+  for (const auto& [name, waveform] : p.drives.waveforms) {
+    const auto* sine = std::get_if<Harmonic>(&waveform);
+    if (sine == nullptr || sine->amplitude == 0) continue;
+    const double periods = sine->angular_frequency / (2 * pi) * (std::min(sine->end, p.duration) - sine->start);
+    if (!(periods > most_periods)) continue;
+    const std::string section = "waveform." + name + ".";
+    const bool in_hertz = file.json()["waveform"][name].contains("frequency");
+    file.refuse(section + (in_hertz ? "frequency" : "angular_frequency"),
+                fmt::format("makes {:.3g} periods in the window of {}; there may be {:g}", periods, engineering(p.duration, "s"),
+                            most_periods));
+  }
+}
+
+Prepared as_described(const SceneFile& given, bool default_limits, const Watch& watch) {
   SceneFile file = given;
   Scene scene = read_scene(file);
   if (scene.auto_modes) {
-    const AutoModes chosen = choose_modes(file);
+    const AutoModes chosen = choose_modes(file, watch);
     file.set(fmt::format("structure.modes={}", chosen.modes));
     scene = read_scene(file);
     scene.warnings.push_back(chosen.note());
@@ -59,20 +85,26 @@ Prepared as_described(const SceneFile& given, bool default_limits) {
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
   const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
   Prepared p{.scene = scene, .device = Switch(scene.device, quadrature), .quadrature = quadrature};
+  if (std::string warning = slenderness_warning(scene.device.structure); !warning.empty()) {
+    p.scene.warnings.push_back(std::move(warning));
+  }
   for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) {
     const std::string& name = scene.device.electrodes[k].name;
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
     if (!needed && !default_limits) continue;
     ElectrodePullIn found{.statically = static_pull_in(p.device, k)};
-    found.dynamically = dynamic_pull_in(p.device, k, found.statically);
+    found.dynamically = dynamic_pull_in(p.device, k, found.statically, watch);
+    watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
-    require(ok || !needed,
-            fmt::format("{}: electrode.{}: its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found",
-                        file.name(), name));
+    if (needed && !ok) {
+      file.refuse("electrode." + name + ".span",
+                  "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found");
+    }
     if (ok) p.pull_in.emplace(name, found);
   }
   p.drives = scene.drives(p.voltage_units());
   p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.device.angular_frequencies()[0];
+  check_window(p);
   p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance
                                              : tolerance_for(scene.simulate.accuracy, p.device.film_states() > 0);
   return p;
@@ -80,26 +112,28 @@ Prepared as_described(const SceneFile& given, bool default_limits) {
 
 std::string left_out_note(const EffectsChoice& choice, double tolerance) {
   if (choice.left_out.empty())
-    return fmt::format("effects = \"auto\": nothing is left out, every effect changes a figure by more than {:g}", tolerance);
+    return fmt::format(
+        "effects = \"auto\": nothing is left out: no effect was found without which t_i, v_i and B_H change by less than {}",
+        engineering(tolerance, ""));
   std::vector<std::string> names;
-  for (const Omission& o : choice.left_out) names.push_back(fmt::format("{} ({:.1g})", o.what.effect, o.influence));
-  return fmt::format("effects = \"auto\" leaves out {}: t_i, v_i and B_H change by {:.1g} together", fmt::join(names, ", "),
-                     choice.influence);
+  for (const Omission& o : choice.left_out)
+    names.push_back(fmt::format("{} ({})", o.what.effect, engineering(o.influence, "", 1)));
+  return fmt::format("effects = \"auto\" leaves out {}: t_i, v_i and B_H change by {} together", fmt::join(names, ", "),
+                     engineering(choice.influence, "", 1));
 }
 
 }  // namespace
 
-Prepared prepare(const SceneFile& file, bool default_limits) {
-  Prepared p = as_described(file, default_limits);
+Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch) {
+  Prepared p = as_described(file, default_limits, watch);
   const SimulateOptions& options = p.scene.simulate;
   if (!options.automatic_effects) return p;
-  EffectsChoice choice = negligible_effects(p, options.effects_tolerance);
+  EffectsChoice choice = negligible_effects(p, options.effects_tolerance, watch);
   std::vector<Omissible> effects;
   for (const Omission& o : choice.left_out) effects.push_back(o.what);
   Prepared chosen = without(p, effects);
   chosen.scene.warnings.push_back(left_out_note(choice, options.effects_tolerance));
-  chosen.effects =
-      std::make_shared<const DescribedEffects>(DescribedEffects{.described = p.scene.device, .choice = std::move(choice)});
+  chosen.effects = std::make_shared<const DescribedEffects>(DescribedEffects{.described = p.scene, .choice = std::move(choice)});
   return chosen;
 }
 

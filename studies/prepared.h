@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/watch.h"
 #include "config/scene.h"
 #include "model/pull_in.h"
 #include "model/switch.h"
@@ -52,7 +53,8 @@ struct Prepared {
 
 /// Reads, composes and resolves a scene; modes = "auto" is replaced by the number chosen, with a warning that says so; pull-in
 /// voltages are computed for the electrodes that need them (and, with `default_limits`, for all that have no written limit).
-/// Throws InvalidInput for a bad scene, or one whose pull-in voltage is needed and does not exist.
-[[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false);
+/// Throws InvalidInput for a bad scene, or one whose pull-in voltage is needed and does not exist; Interrupted where `watch` asks
+/// to stop.
+[[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false, const Watch& watch = {});
 
 }  // namespace softland

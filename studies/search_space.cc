@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
 
@@ -52,9 +53,8 @@ void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
 
 void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
   const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
-  require(room > 0,
-          fmt::format("driver.{}: the hold level {:.6g} V stands at the driver's limit, which leaves no room for a dither",
-                      s.drive, s.hold));
+  require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
+                                s.drive, engineering(s.hold, "V", 5)));
   const Eigen::VectorXd& omega = p.device.angular_frequencies();
   const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
   const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];
@@ -111,6 +111,27 @@ Waveform DriveSearch::waveform(std::span<const double> x) const {
   const double edge = std::max(x[4], steps / slew);
   const double first = std::max(x[2], edge);
   return Pulse{.levels = {x[0], x[1], hold}, .times = {first, first + std::max(x[3], edge)}, .edge = edge};
+}
+
+std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& waveform) const {
+  std::vector<double> x;
+  if (softland::family(waveform) != family) return std::nullopt;
+  if (const auto* step = std::get_if<Step>(&waveform)) {
+    x = {step->rise_time};
+  } else if (const auto* pulse = std::get_if<Pulse>(&waveform)) {
+    if (pulse->levels.size() != 3) return std::nullopt;
+    x = {pulse->levels[0], pulse->levels[1], pulse->times[0], pulse->times[1] - pulse->times[0], pulse->edge};
+  } else if (const auto* dither = std::get_if<Harmonic>(&waveform)) {
+    const double duration = dither->end - dither->start;
+    x = {dither->amplitude, dither->angular_frequency, dither->phase, dither->start, duration, dither->fade / duration};
+  }
+  constexpr double rounding = 1e-9;  // of the bounds' distance: a scene file writes rounded numbers
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double lower = variables[k].lower, upper = variables[k].upper, inside = std::clamp(x[k], lower, upper);
+    if (!(std::abs(x[k] - inside) <= rounding * (upper - lower))) return std::nullopt;
+    x[k] = inside;
+  }
+  return x;
 }
 
 SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch) {
@@ -180,6 +201,17 @@ std::map<std::string, Waveform> SearchSpace::waveforms(std::span<const double> x
     at += d.variables.size();
   }
   return result;
+}
+
+std::optional<std::vector<double>> SearchSpace::parameters(const std::map<std::string, Waveform>& waveforms) const {
+  std::vector<double> all;
+  for (const DriveSearch& d : drives_) {
+    const auto found = waveforms.find(d.drive);
+    const auto part = found == waveforms.end() ? std::nullopt : d.parameters(found->second);
+    if (!part) return std::nullopt;
+    all.insert(all.end(), part->begin(), part->end());
+  }
+  return all;
 }
 
 }  // namespace softland

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,8 @@ struct DriveSearch {
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
   [[nodiscard]] Waveform waveform(std::span<const double> x) const;
+  /// The parameters of a waveform of this family and hold level that lies within the bounds, to rounding.
+  [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
 };
 
 class SearchSpace {
@@ -48,6 +51,8 @@ class SearchSpace {
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Waveforms of the searched drives.
   [[nodiscard]] std::map<std::string, Waveform> waveforms(std::span<const double> x) const;
+  /// The point that gives these waveforms, if there is one: where a search refines what was found before.
+  [[nodiscard]] std::optional<std::vector<double>> parameters(const std::map<std::string, Waveform>& waveforms) const;
 
  private:
   std::vector<DriveSearch> drives_;

@@ -7,22 +7,22 @@
 #include <limits>
 #include <utility>
 
+#include "base/engineering.h"
+#include "studies/watched.h"
+
 namespace softland {
 namespace {
 
-// What two runs of one closing differ by. The tighter one is so much nearer to the truth that the difference is the error of the
-// other.
-Metrics difference(const Metrics& a, const Metrics& b) {
+// What two runs of one closing differ by, and the rounding that they share. t_p, t_b and N_B are left to clouds.
+Metrics difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
+  constexpr double shared = 0.01;              // of the tolerance, relative to a figure
+  constexpr double lowest_separation = 1e-12;  // of the contact gap, below which metrics() sees no rebound
   Metrics d;
-  d.initial_contact_time = std::abs(a.initial_contact_time - b.initial_contact_time);
-  d.permanent_contact_time = std::abs(a.permanent_contact_time - b.permanent_contact_time);
-  d.bounce_time = std::abs(a.bounce_time - b.bounce_time);
-  d.bounce_count = std::abs(a.bounce_count - b.bounce_count);
-  d.major_bounce_height = std::abs(a.major_bounce_height - b.major_bounce_height);
-  d.impact_velocity = std::abs(a.impact_velocity - b.impact_velocity);
-  d.peak_contact_force = std::abs(a.peak_contact_force - b.peak_contact_force);
-  d.impact_energy = std::abs(a.impact_energy - b.impact_energy);
-  d.drive_energy = std::abs(a.drive_energy - b.drive_energy);
+  for (double Metrics::*figure : {&Metrics::initial_contact_time, &Metrics::major_bounce_height, &Metrics::impact_velocity,
+                                  &Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
+    d.*figure = std::max(std::abs(a.*figure - b.*figure), shared * tolerance * std::abs(a.*figure));
+  }
+  d.major_bounce_height = std::max(d.major_bounce_height, lowest_separation * contact_gap);
   return d;
 }
 
@@ -33,20 +33,59 @@ struct Run {
   SwitchOptions quadrature;
 };
 
-// The largest relative error of the figures that `accuracy` is about, by a tighter run.
-double error(const Run& run, const Run& tighter, const Prepared& prepared) {
+// Where two runs part: the first significant rebound whose heights differ by a tenth. Infinite where they do not.
+double parting_time(const Run& a, const Run& b, const MetricsOptions& options) {
+  constexpr double parted = 0.1;
+  const std::vector<Rebound> one = rebounds(a.trajectory), two = rebounds(b.trajectory);
+  for (std::size_t k = 0; k < std::max(one.size(), two.size()); ++k) {
+    const double own = k < one.size() ? one[k].height : 0, other = k < two.size() ? two[k].height : 0;
+    const double higher = std::max(own, other);
+    if (higher > options.significant_rebound && !(std::abs(own - other) <= parted * higher)) {
+      return k < one.size() ? one[k].begin : two[k].begin;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+// What two runs say of anything beyond the point where they part is chance: it has no error but a cloud's. Nor have figures that
+// hang on every touch where the runs differ by a thousand times the tolerance.
+void forget_what_is_chaotic(Metrics& errors, const Run& best, const Run& other, const MetricsOptions& options) {
+  constexpr double magnified = 1000;
+  const double visible = magnified * std::max(best.tolerance, other.tolerance);
+  for (double Metrics::*figure : {&Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
+    if (errors.*figure > visible * std::abs(best.metrics.*figure)) errors.*figure = Metrics::unset;
+  }
+  const double parting = parting_time(best, other, options);
+  if (std::isinf(parting)) return;
+  errors.impact_energy = errors.drive_energy = Metrics::unset;
+  for (const Run* run : {&best, &other}) {
+    const std::vector<Touch>& touches = run->trajectory.touches;
+    const auto hardest = std::max_element(touches.begin(), touches.end(),
+                                          [](const Touch& x, const Touch& y) { return x.peak_force < y.peak_force; });
+    if (hardest != touches.end() && hardest->begin >= parting) errors.peak_contact_force = Metrics::unset;
+    const std::vector<Rebound> all = rebounds(run->trajectory);
+    const auto highest =
+        std::max_element(all.begin(), all.end(), [](const Rebound& x, const Rebound& y) { return x.height < y.height; });
+    if (highest != all.end() && highest->begin >= parting) errors.major_bounce_height = Metrics::unset;
+  }
+}
+
+// The largest relative difference of the figures that `accuracy` is about.
+double error(const Run& run, const Run& other, const Prepared& prepared) {
   const auto relative = [](double value, double truth, double least) {
     if (std::isnan(value) && std::isnan(truth)) return 0.0;
     const double e = std::abs(value - truth) / std::max(std::abs(truth), least);
     return std::isnan(e) ? std::numeric_limits<double>::infinity() : e;
   };
-  const Metrics &a = run.metrics, &b = tighter.metrics;
+  const Metrics &a = run.metrics, &b = other.metrics;
   return std::max({relative(a.initial_contact_time, b.initial_contact_time, 0), relative(a.impact_velocity, b.impact_velocity, 0),
                    relative(a.major_bounce_height, b.major_bounce_height, prepared.scene.metrics.significant_rebound),
                    relative(a.peak_contact_force, b.peak_contact_force, least_peak_force(prepared))});
 }
 
-constexpr double tighter_by = 100, least_tolerance = 1e-13, finer_by = 2, finest = 96;
+constexpr double tighter_by = 100, finer_by = 2;
+constexpr double loosest_tolerance = 0.1;     // that simulate_closing takes
+constexpr double least_tolerance = 0.99e-13;  // beyond which rounding decides; 1e-13 itself as quotients give it
 // Of a fifth-order method 2.5 times the steps are to be expected; what needs this many more is not waited for.
 constexpr long most_growth = 10, least_steps = 100;
 constexpr double helps = 1.0 / 3;  // a tighter run that leaves more than this of the error does not
@@ -59,58 +98,90 @@ double least_peak_force(const Prepared& prepared) {
   return share * 2 * prepared.device.bending_energy() / prepared.scene.device.gap.contact;
 }
 
-Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atomic<bool>* stop) {
+Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch) {
   const std::vector<Signal> signals = prepared.signals();
+  int runs = 0;
+  bool interrupted = false;
   const auto run = [&](const Switch& device, double tolerance, const SwitchOptions& quadrature, long max_steps) {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
-    r.trajectory = simulate_closing(
-        device, signals, {.duration = prepared.duration, .tolerance = tolerance, .max_steps = max_steps, .stop = stop});
+    const std::string what =
+        runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {:.0e}, for its errors", tolerance);
+    r.trajectory = simulate_closing(device, signals,
+                                    {.duration = prepared.duration,
+                                     .tolerance = tolerance,
+                                     .max_steps = max_steps,
+                                     .stop = watch.stop,
+                                     .observer = observer(watch, what, prepared.duration)});
+    interrupted = interrupted || r.trajectory.status == Status::interrupted;
     r.metrics = metrics(r.trajectory, prepared.scene.metrics);
     return r;
   };
+  const auto can_tighten = [](const Run& r) { return r.tolerance / tighter_by >= least_tolerance; };
   const auto tighter_than = [&](const Run& r) {
-    const SwitchOptions finer{.points_per_length = std::min(finest, finer_by * r.quadrature.points_per_length)};
-    return run(Switch(prepared.scene.device, finer), std::max(least_tolerance, r.tolerance / tighter_by), finer,
+    const SwitchOptions finer{.points_per_length = finer_by * r.quadrature.points_per_length};
+    return run(Switch(prepared.scene.device, finer), r.tolerance / tighter_by, finer,
                most_growth * (least_steps + r.trajectory.work.steps));
+  };
+  const auto looser_than = [&](const Run& r) {
+    const SwitchOptions coarser{.points_per_length = r.quadrature.points_per_length / finer_by};
+    return run(Switch(prepared.scene.device, coarser), std::min(loosest_tolerance, r.tolerance * tighter_by), coarser,
+               ClosingOptions{}.max_steps);
+  };
+  const auto judge_of = [&](const Run& r) {
+    if (!can_tighten(r)) return looser_than(r);
+    Run tighter = tighter_than(r);
+    return tighter.trajectory.status == Status::done || watch.stopped() ? std::move(tighter) : looser_than(r);
   };
   Run best = run(prepared.device, prepared.tolerance, prepared.quadrature, ClosingOptions{}.max_steps);
   const SimulateOptions& asked = prepared.scene.simulate;
   const bool may_tighten = estimate_errors && asked.tolerance == 0;
-  if (may_tighten && best.trajectory.status == Status::numerical_failure) best = tighter_than(best);
+  if (may_tighten && best.trajectory.status == Status::numerical_failure && can_tighten(best)) best = tighter_than(best);
 
   Closing c;
   if (estimate_errors && best.trajectory.status == Status::done) {
-    Run tighter = tighter_than(best);
-    double e = error(best, tighter, prepared);
-    for (int vain = 0; may_tighten && e > asked.accuracy && vain < most_in_vain && tighter.trajectory.status == Status::done &&
-                       tighter.tolerance > least_tolerance;) {
-      Run next = tighter_than(tighter);
+    Run other = judge_of(best);
+    double e = error(best, other, prepared);
+    for (int vain = 0; may_tighten && e > asked.accuracy && vain < most_in_vain && other.trajectory.status == Status::done &&
+                       other.tolerance < best.tolerance && can_tighten(other);) {
+      Run next = tighter_than(other);
       if (next.trajectory.status != Status::done) break;
-      const double less = error(tighter, next, prepared);
+      const double less = error(other, next, prepared);
       vain = less < helps * e ? 0 : vain + 1;
       e = less;
-      best = std::move(tighter);
-      tighter = std::move(next);
+      best = std::move(other);
+      other = std::move(next);
     }
-    c.judge = {.status = tighter.trajectory.status,
-               .message = tighter.trajectory.message,
-               .metrics = tighter.metrics,
-               .tolerance = tighter.tolerance,
-               .quadrature = tighter.quadrature};
-    if (tighter.trajectory.status == Status::done) {
-      c.errors = difference(best.metrics, tighter.metrics);
+    c.judge = {.status = other.trajectory.status,
+               .message = other.trajectory.message,
+               .metrics = other.metrics,
+               .tolerance = other.tolerance,
+               .quadrature = other.quadrature};
+    if (other.trajectory.status == Status::done) {
+      const char* how = other.tolerance < best.tolerance ? "tighter" : "looser";
+      c.errors = difference(best.metrics, other.metrics, best.tolerance, prepared.scene.device.gap.contact);
+      forget_what_is_chaotic(c.errors, best, other, prepared.scene.metrics);
       if (may_tighten && e > asked.accuracy) {
         c.warnings.push_back(fmt::format(
-            "accuracy {:g} is not reached: at an integrator tolerance of {:.0e} t_i, v_i, B_H or the peak force is still "
-            "known to {:.1g} only, for so small a change decides it",
-            asked.accuracy, best.tolerance, e));
+            "accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is still known to {} "
+            "only, {}",
+            engineering(asked.accuracy, ""), engineering(best.tolerance, "", 1), engineering(e, "", 1),
+            other.tolerance < best.tolerance ? "for so small a change decides it"
+            : can_tighten(best)              ? "and no tighter run comes to its end"
+                                             : "and rounding forbids a tighter run"));
       }
-      if (c.errors.bounce_count > 0 || c.errors.bounce_time > 0.01 * std::abs(best.metrics.bounce_time)) {
+      const double moved = std::abs(best.metrics.bounce_time - other.metrics.bounce_time);
+      if (best.metrics.bounce_count != other.metrics.bounce_count || moved > 0.01 * std::abs(best.metrics.bounce_time)) {
         c.warnings.push_back(
-            fmt::format("bounce count and permanent contact time are ill-conditioned here: a hundredfold tighter run gives {} "
+            fmt::format("bounce count and permanent contact time are ill-conditioned here: a hundredfold {} run gives {} "
                         "rebounds instead of {}; past the first large rebound a closing is chaotic",
-                        tighter.metrics.bounce_count, best.metrics.bounce_count));
+                        how, other.metrics.bounce_count, best.metrics.bounce_count));
       }
+    } else if (!watch.stopped()) {
+      c.warnings.push_back(fmt::format(
+          "the errors are not known, nor whether accuracy {} is reached: no other run to compare with came to its end "
+          "({}{}{})",
+          engineering(asked.accuracy, ""), to_string(other.trajectory.status), other.trajectory.message.empty() ? "" : ": ",
+          other.trajectory.message));
     }
   }
   c.trajectory = std::move(best.trajectory);
@@ -120,6 +191,16 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atom
   for (const Signal& signal : signals) hold.push_back(signal.hold_level());
   if (const auto closed = closed_equilibrium(prepared.device, hold)) c.trajectory.hold_force = closed->contact_force;
   c.metrics = metrics(c.trajectory, prepared.scene.metrics);
+  if (interrupted) {
+    const bool complete = c.trajectory.status != Status::interrupted;
+    c.metrics.status = Status::interrupted;
+    c.errors = {};
+    c.judge.reset();
+    c.warnings = {complete ? fmt::format("interrupted: the figures are those of a complete closing at tolerance {:.0e}, but how "
+                                         "far they are from the truth was not found out",
+                                         c.tolerance)
+                           : std::string("interrupted: the figures are those of the part of the closing that was simulated")};
+  }
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
   const bool piezo_only = prepared.scene.device.electrodes.empty();

@@ -1,12 +1,12 @@
 // One closing, with figures of merit and their errors, as accurate as the scene asks for.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/watch.h"
 #include "model/closing.h"
 #include "objectives/metrics.h"
 #include "studies/prepared.h"
@@ -15,7 +15,8 @@ namespace softland {
 
 struct Certificate;
 
-/// The run that judges another: a hundredth of its tolerance, twice its quadrature points.
+/// The run that judges another: a hundredth of its tolerance, twice its quadrature points. Where rounding leaves no room for
+/// that, or such a run fails, a hundred times its tolerance and half its points: the difference is then the error of the judge.
 struct Judge {
   Status status = Status::not_run;
   std::string message = {};  ///< why, where it is not done
@@ -27,11 +28,14 @@ struct Judge {
 struct Closing {
   Trajectory trajectory;
   Metrics metrics;
-  /// Absolute error estimates, NaN where not estimated: the difference to the judge's, or what certify() makes of it.
+  /// Absolute error estimates: the difference to the judge's and what rounding leaves, or what certify() makes of it. NaN where
+  /// not estimated: t_p and t_b have none but from certify(), nor what comes after the runs part in a rebound's height, since
+  /// no two runs tell the range of a chaotic figure.
   Metrics errors;
-  double tolerance = 0;        ///< of the integrator, in the run that the figures are of
-  SwitchOptions quadrature;    ///< of that run
-  std::optional<Judge> judge;  ///< of that run, where errors are estimated
+  std::optional<int> bounce_count_error = {};  ///< in the place of errors.bounce_count; from certify() only
+  double tolerance = 0;                        ///< of the integrator, in the run that the figures are of
+  SwitchOptions quadrature;                    ///< of that run
+  std::optional<Judge> judge;                  ///< of that run, where errors are estimated
   double peak_voltage = 0;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
   double peak_slew = 0;     ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
   std::vector<std::string> warnings;                    ///< of the scene, of the laws, and of ill-conditioned figures
@@ -44,7 +48,8 @@ struct Closing {
 /// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure; where a scene
 /// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
 /// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
-/// helps.
-[[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const std::atomic<bool>* stop = nullptr);
+/// helps. No run is its own judge, and no error is 0. Asked to stop, the status of the figures is interrupted: they are those of
+/// the last run that was complete, without errors, or of the part of the first one that was run.
+[[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "base/read_file.h"
 #include "base/require.h"
 
 namespace softland {
@@ -74,20 +74,19 @@ Signal signal(const Table& table) {
   return Signal::piecewise_linear(points);
 }
 
-Table read_table(const std::string& file, const std::string& drive) {
-  std::ifstream stream(file, std::ios::binary);
-  require(stream.is_open(), fmt::format("{}: the file cannot be opened for reading", file));
+Table read_table(const std::string& file, const std::string& drive) { return parse_table(read_file(file), file, drive); }
 
+Table parse_table(std::string_view content, const std::string& file, const std::string& drive) {
   Table table;
-  std::string line;
   std::size_t time_column = 0;
   std::size_t drive_column = 0;
   std::size_t columns = 0;
-  for (int line_number = 1; std::getline(stream, line); ++line_number) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    std::string_view text = line;
-    if (line_number == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    text = trimmed(text);
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
+  for (int line_number = 1; !content.empty(); ++line_number) {
+    const std::size_t line_end = content.find('\n');
+    const std::string_view text = trimmed(content.substr(0, line_end));
+    content.remove_prefix(line_end == std::string_view::npos ? content.size() : line_end + 1);
     if (text.empty() || text.starts_with('#')) continue;
 
     // Measured files are long: a message, and the place in it, is composed only when a row is refused.
@@ -115,10 +114,16 @@ Table read_table(const std::string& file, const std::string& drive) {
       throw InvalidInput(
           fmt::format("{}: time_s is {} s; it must not be before the {} s of the row above", place(), time, table.time.back()));
     }
+    const double voltage = cell(drive_column, drive);
+    if (!table.time.empty() && time > table.time.back() &&
+        !std::isfinite((voltage - table.voltage.back()) / (time - table.time.back()))) {
+      throw InvalidInput(
+          fmt::format("{}: {} is {} V, {} s after the {} V of the row above; the slope between them must be finite", place(),
+                      drive, voltage, time - table.time.back(), table.voltage.back()));
+    }
     table.time.push_back(time);
-    table.voltage.push_back(cell(drive_column, drive));
+    table.voltage.push_back(voltage);
   }
-  require(!stream.bad(), fmt::format("{}: the file cannot be read", file));
   require(columns > 0, fmt::format("{}: the file has no header; its first line must be time_s and one column per drive", file));
   require(!table.time.empty(), fmt::format("{}: the file has a header and no rows; there must be at least one", file));
   return table;

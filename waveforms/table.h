@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "waveforms/signal.h"
@@ -18,5 +19,8 @@ struct Table {
 /// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file,
 /// line and rule.
 [[nodiscard]] Table read_table(const std::string& file, const std::string& drive);
+
+/// The same for the content of such a file; `file` stands for it in messages.
+[[nodiscard]] Table parse_table(std::string_view content, const std::string& file, const std::string& drive);
 
 }  // namespace softland

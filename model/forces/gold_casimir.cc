@@ -6,13 +6,13 @@
 namespace softland {
 namespace {
 
-struct Knot {
+struct Tabulated {
   double gap;  // [nm]
   double eta;
 };
 
 // The integral of the header by Gauss-Legendre quadrature, to all digits given.
-constexpr std::array<Knot, GoldFactor::knots> lifshitz{
+constexpr std::array<Tabulated, GoldFactor::knots> lifshitz{
     {{1, 0.00860746},     {1.259, 0.01082279}, {1.585, 0.01359945}, {1.995, 0.01707059}, {2.512, 0.02141064}, {3.162, 0.02680351},
      {3.981, 0.03349097}, {5.012, 0.04173243}, {6.31, 0.05182469},  {7.943, 0.06408202}, {10, 0.07886161},    {12.59, 0.09651393},
      {15.85, 0.11739672}, {19.95, 0.14186180}, {25.12, 0.17035401}, {31.62, 0.20316199}, {39.81, 0.24067807}, {50.12, 0.28305663},

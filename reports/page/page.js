@@ -16,19 +16,30 @@
   }
 
   const prefix = (largest) => (largest > 0 ? prefixes.find(([factor]) => largest >= factor * (1 - 1e-9)) || prefixes[prefixes.length - 1] : [1, ""]);
-  const quantity = (value, unit, digits = 4) => {
+  const minus = (text) => String(text).replace("-", "\u2212");
+  // As reports/quantity.h: nothing below `least`, the resolution of the unit.
+  const quantity = (value, unit, least, digits = 4) => {
     if (value == null || !isFinite(value)) return "";
-    if (!unit) return String(+value.toPrecision(digits));
-    if (value === 0) return "0" + noBreak + unit;
-    const [factor, symbol] = prefix(Math.abs(value));
-    return (value / factor).toPrecision(digits).replace("-", "\u2212") + noBreak + symbol + unit;
+    if (!unit) return minus(+value.toPrecision(digits));
+    if (Math.abs(value) < (least || Number.MIN_VALUE)) return "0" + noBreak + unit;
+    const [factor, symbol] = prefix(Math.abs(+value.toPrecision(digits)));
+    const whole = Math.floor(Math.log10(Math.abs(value / factor)) + 1e-9) + 1;
+    const decimals = Math.min(digits - whole, least ? Math.round(Math.log10(factor / least)) : digits);
+    return minus((value / factor).toFixed(Math.max(0, decimals))) + noBreak + symbol + unit;
+  };
+  const superscript = (exponent) => "10" + String(exponent).replace(/./g, (c) => "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"["-0123456789".indexOf(c)]);
+  // A number at an axis: whole powers of ten beyond four digits as such.
+  const tickText = (value) => {
+    const exponent = Math.log10(Math.abs(value));
+    if (value > 0 && Math.abs(exponent) > 3.5 && Math.abs(exponent - Math.round(exponent)) < 1e-9) return superscript(Math.round(exponent));
+    return minus(+value.toPrecision(6));
   };
   const largest = (scale) => Math.max(Math.abs(scale.min), Math.abs(scale.max));
 
   // One x axis for curves with knots of their own: the union of all knots, values in between on the straight line. A jump (two knots at one
   // x) stays a jump.
-  // A few knots far apart get company (`extra`), so that the read-out follows the cursor.
-  const aligned = (curves, extra) => {
+  // A few knots far apart get company (`extra`), so that the read-out follows the cursor. Curves of dots have no values in between.
+  const aligned = (curves, extra, dots) => {
     const count = new Map(extra.map((x) => [x, 1]));
     for (const {xs} of curves) {
       for (let i = 0; i < xs.length; ) {
@@ -49,7 +60,7 @@
           out[row] = xs[right - 1] === x[row] ? ys[right - 1] : out[row - 1];
         } else if (right < xs.length && xs[right] === x[row]) {
           out[row] = ys[right];
-        } else if (right > 0 && right < xs.length && ys[right] !== null && ys[right - 1] !== null) {
+        } else if (!dots && right > 0 && right < xs.length && ys[right] !== null && ys[right - 1] !== null) {
           const share = (x[row] - xs[right - 1]) / (xs[right] - xs[right - 1]);
           out[row] = ys[right - 1] + share * (ys[right] - ys[right - 1]);
         }
@@ -66,13 +77,33 @@
     best: {width: 2, dash: undefined},
     baseline: {width: 1.25, dash: [7, 2.5]},
     evaluations: {width: 0, dash: undefined},
+    third: {width: 1.8, dash: [2.5, 2.5]},
+    fourth: {width: 1.8, dash: [10, 3, 2, 3]},
+    fifth: {width: 1.8, dash: [5, 2, 1.5, 2, 1.5, 2]},
+    limit: {width: 1.25, dash: [2, 3]},
   };
   const font = (size) => size + 'px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
+  // Decades, thinned to what there is room for; of fewer than three their parts as well.
   const decades = (u, axis, min, max) => {
     const first = Math.ceil(Math.log10(min) - 1e-9);
-    const count = Math.floor(Math.log10(max) + 1e-9) - first + 1;
-    return Array.from({length: Math.max(0, count)}, (none, i) => 10 ** (first + i));
+    const last = Math.floor(Math.log10(max) + 1e-9);
+    const room = (u.axes[axis].side % 2 ? u.height - 60 : u.width - 80) / (u.axes[axis].side % 2 ? 24 : 44);
+    const every = Math.max(1, Math.ceil((last - first + 1) / Math.max(2, room)));
+    const splits = [];
+    for (let exponent = first - (first <= last && last - first > 1 ? 0 : 1); exponent <= last; exponent += last - first > 1 ? every : 1) {
+      for (const part of last - first > 1 ? [1] : [1, 2, 5]) splits.push(+(part * 10 ** exponent).toPrecision(3));
+    }
+    return splits.filter((value) => value >= min * (1 - 1e-9) && value <= max * (1 + 1e-9));
+  };
+  // As wide as the longest number needs.
+  const roomFor = (u, values) => {
+    if (!values) return 54;
+    u.ctx.save();
+    u.ctx.font = font(12 * uPlot.pxRatio);
+    const widest = Math.max(0, ...values.map((value) => (value ? u.ctx.measureText(value).width / uPlot.pxRatio : 0)));
+    u.ctx.restore();
+    return Math.max(40, Math.ceil(widest) + 14);
   };
 
   const drawn = new Map();   // chart id -> uPlot
@@ -96,12 +127,12 @@
   };
   const goHome = (chart) => (chart.group === "time" ? show("home") : setRange(chart, chart.x.home));
   const zoom = (chart, factor) => {
-    const {min, max} = drawn.get(chart.id).scales.x;
     const u = drawn.get(chart.id);
-    const centre = u.cursor.left >= 0 ? u.posToVal(u.cursor.left, "x") : (min + max) / 2;
-    const [low, high] = chart.x.whole;
-    const range = [Math.max(low, centre - (centre - min) * factor), Math.min(high, centre + (max - centre) * factor)];
-    if (!(range[1] - range[0] > 1e-6 * (high - low))) return;
+    const [to, back] = chart.x.scale === "log" ? [Math.log10, (value) => 10 ** value] : [(value) => value, (value) => value];
+    const [min, max, low, high] = [u.scales.x.min, u.scales.x.max, ...chart.x.whole].map(to);
+    const centre = u.cursor.left >= 0 ? to(u.posToVal(u.cursor.left, "x")) : (min + max) / 2;
+    const range = [Math.max(low, centre - (centre - min) * factor), Math.min(high, centre + (max - centre) * factor)].map(back);
+    if (!(to(range[1]) - to(range[0]) > 1e-6 * (high - low))) return;
     if (chart.group === "time") {
       press(null);
       spread(() => range);
@@ -114,7 +145,21 @@
     const u = drawn.get(chart.id);
     const width = u.bbox.width / uPlot.pxRatio;
     const from = u.cursor.left >= 0 ? u.cursor.left : direction > 0 ? 0 : width;
-    u.setCursor({left: Math.min(width, Math.max(0, from + 4 * direction)), top: u.bbox.height / uPlot.pxRatio / 2}, true);
+    u.setCursor({left: Math.min(width, Math.max(0, from + 4 * direction)), top: u.bbox.height / uPlot.pxRatio / 2}, true, true);
+  };
+
+  // Words on a halo of the paper's colour, so that no curve runs through them, within the picture.
+  const write = (u, words, x, y) => {
+    const {ctx, bbox} = u;
+    const half = ctx.measureText(words).width / 2;
+    const at = Math.min(Math.max(x, bbox.left + half + 4 * uPlot.pxRatio), bbox.left + bbox.width - half - 4 * uPlot.pxRatio);
+    const down = Math.max(y, bbox.top + 16 * uPlot.pxRatio);
+    ctx.textAlign = "center";
+    ctx.lineJoin = "round";
+    ctx.lineWidth = 5 * uPlot.pxRatio;
+    ctx.strokeStyle = colour("paper");
+    ctx.strokeText(words, at, down);
+    ctx.fillText(words, at, down);
   };
 
   const decorate = (chart) => (u) => {
@@ -134,23 +179,24 @@
       ctx.stroke();
       ctx.fillStyle = colour("muted");
       ctx.font = font(12 * ratio);
-      ctx.textAlign = chart.zeroLabelLeft ? "left" : "right";
-      ctx.textBaseline = "bottom";
-      ctx.fillText(chart.zeroLabel, chart.zeroLabelLeft ? bbox.left + 4 * ratio : bbox.left + bbox.width - 4 * ratio, y - 3 * ratio);
+      // Below the line, but above it where the curves end visibly below.
+      const lowest = u.data.slice(1).reduce((low, row) => row.reduce((least, value) => (value !== null && value < least ? value : least), low), 0);
+      const under = chart.zeroLabelLeft || lowest > -0.03 * (u.scales.y.max - u.scales.y.min);
+      ctx.textBaseline = under ? "top" : "bottom";
+      if (chart.zeroLabel) write(u, chart.zeroLabel, chart.zeroLabelLeft ? bbox.left : bbox.left + bbox.width, y + (under ? 3 : -3) * ratio);
     }
-    ctx.textAlign = "left";
     ctx.textBaseline = "bottom";
     ctx.font = "600 " + font(12.5 * ratio);
     for (const mark of chart.marks) {
       const index = 1 + chart.series.findIndex(({role}) => role === mark.role);
-      if (mark.x < u.scales.x.min || mark.x > u.scales.x.max || (index > 0 && !u.series[index].show)) continue;
+      if (mark.y < u.scales.y.min || mark.y > u.scales.y.max || mark.x < u.scales.x.min || mark.x > u.scales.x.max || (index > 0 && !u.series[index].show)) continue;
       const x = u.valToPos(mark.x, "x", true);
       const y = u.valToPos(mark.y, "y", true);
       ctx.fillStyle = colour(mark.role);
       ctx.beginPath();
       ctx.arc(x, y, 2.6 * ratio, 0, 2 * Math.PI);
       ctx.fill();
-      if (mark.text) ctx.fillText(mark.text, x + 6 * ratio, y - ratio);
+      if (mark.text) write(u, mark.text, x, y - 5 * ratio);
     }
     ctx.restore();
   };
@@ -166,21 +212,23 @@
       ticks: {show: false},
       ...more,
     });
-    const distribution = {linear: {distr: 1}, log: {distr: 3, log: 10}}[y.scale];
+    const distributions = {linear: {distr: 1}, log: {distr: 3, log: 10}};
+    const joined = x.scale === "linear";
     const yPrefix = (u) => (!y.unit ? [1, ""] : prefix(largest(u.scales.y) / 1.1));
-    const ticks = (factor) => (value) => (value === null ? null : String(+(value / factor).toPrecision(6)).replace("-", "\u2212"));
+    const ticks = (factor) => (value) => (value === null ? null : tickText(value / factor));
     const padded = (u, min, max) => {
       if (min === null || max === null) return [0, 1];
       const low = Math.min(min, chart.zero || min > 0 && min < 0.6 * max ? 0 : min);
       const high = Math.max(max, 0);
       const margin = high > low ? 0.06 * (high - low) : Math.max(1e-12, Math.abs(high));
-      return [low < 0 || chart.zero ? low - margin : low, high + margin];
+      const below = chart.zeroLabel ? Math.max(margin, (0.1 * (high - low) * 240) / chart.height) : margin;  // room for its words
+      return [low < 0 || chart.zero ? low - below : low, high + margin];
     };
     const range = y.home ? y.home : y.scale === "linear" ? padded : (u, min, max) => [min / 1.5, max * 1.5];
     return {
       width,
       height: narrow ? Math.min(chart.height, 240) : chart.height,
-      padding: [10, 14, 0, 0],
+      padding: [10, 24, 0, 4],
       cursor: {
         y: false,
         drag: {x: true, y: false, setScale: true},
@@ -189,7 +237,7 @@
         bind: {dblclick: () => () => goHome(chart)},
       },
       legend: {live: true, markers: {width: 3, dash: (u, index) => (u.series[index].dash ? "dashed" : "solid")}},
-      scales: {x: {time: false, min: start[0], max: start[1], range: (u, min, max) => [min, max]}, y: {...distribution, range}},
+      scales: {x: {time: false, ...distributions[x.scale], min: start[0], max: start[1], range: (u, min, max) => [min, max]}, y: {...distributions[y.scale], range}},
       axes: [
         axis("x", x.unit, {
           label: (u) => (x.unit ? `${x.label} (${prefix(largest(u.scales.x))[1]}${x.unit})` : x.label),
@@ -197,28 +245,30 @@
           labelSize: 22,
           size: 30,
           space: narrow ? 50 : 80,
+          ...(x.scale === "log" ? {splits: decades, filter: (u, splits) => splits} : {}),
         }),
         axis("y", y.unit, {
           label: (u) => (y.unit ? `${y.label} (${yPrefix(u)[1]}${y.unit})` : y.label),
           values: (u, splits) => splits.map(ticks(yPrefix(u)[0])),
           labelSize: 20,
-          size: 54,
+          size: roomFor,
           space: 36,
-          ...(y.scale === "log" ? {splits: decades} : {}),
+          ...(y.scale === "log" ? {splits: decades, filter: (u, splits) => splits} : {}),
         }),
       ],
       series: [
-        {label: x.label, value: (u, value) => quantity(value, x.unit)},
+        {label: x.label, value: (u, value) => quantity(value, x.unit, x.least)},
         ...chart.series.map(({label, role}) => ({
           label,
           class: role,
           stroke: colour(role),
           ...pens[role],
-          spanGaps: false,
+          spanGaps: !joined,
           pxAlign: 0,
-          points: role === "evaluations" ? {show: true, size: narrow ? 2.5 : 3.5, width: 0, fill: colour(role), space: 0} : {show: false},
+          points: role === "evaluations" ? {show: true, size: narrow ? 2.5 : 3.5, width: 0, fill: colour(role), space: 0}
+            : {show: !joined, size: 5, width: 0, fill: colour(role), space: 0},
           ...(role === "evaluations" ? {paths: () => null} : {}),
-          value: (u, value) => quantity(value, y.unit, 4),
+          value: (u, value) => (x.scale === "log" && value > 0 ? value.toExponential(1) : quantity(value, y.unit, y.least)),
         })),
       ],
       hooks: {
@@ -237,12 +287,31 @@
     };
   };
 
+  // Charts of a group have one x axis for all their curves: the same cursor reads the same sample in every one.
+  const curve = (chart) => ({table, column: key}) => ({xs: tables[table][chart.x.column], ys: tables[table][key]});
+  const groups = new Map();
+  for (const chart of charts) {
+    if (!chart.group) continue;
+    if (!groups.has(chart.group)) groups.set(chart.group, {curves: [], extra: []});
+    const {curves, extra} = groups.get(chart.group);
+    curves.push(...chart.series.map(curve(chart)));
+    extra.push(...grid(chart.x));
+  }
+  for (const group of groups.values()) group.aligned = aligned(group.curves, group.extra);
+  const dataOf = (chart) => {
+    if (!chart.group) return aligned(chart.series.map(curve(chart)), [], chart.x.scale === "log");
+    const {aligned: all} = groups.get(chart.group);
+    const first = charts.filter(({group}) => group === chart.group);
+    const before = first.slice(0, first.indexOf(chart)).reduce((sum, {series}) => sum + series.length, 0);
+    return [all[0], ...all.slice(1 + before, 1 + before + chart.series.length)];
+  };
+
   const draw = () => {
     for (const u of drawn.values()) u.destroy();
     drawn.clear();
     for (const chart of charts) {
       const place = document.querySelector(`[data-chart="${chart.id}"]`);
-      const data = aligned(chart.series.map(({table, column: key}) => ({xs: tables[table][chart.x.column], ys: tables[table][key]})), chart.group ? grid(chart.x) : []);
+      const data = dataOf(chart);
       const range = wanted.get(chart.id) || chart.x.home;
       wanted.set(chart.id, range);
       const u = new uPlot(options(chart, place.clientWidth, range), data, place);
@@ -267,6 +336,13 @@
     }
   };
 
+  // On a narrow screen every row of a wide table is a card whose numbers bear the heading of their column.
+  for (const table of document.querySelectorAll("table")) {
+    const headings = [...table.querySelectorAll("thead th")].map((one) => one.textContent);
+    if (headings.length < 3) continue;
+    table.classList.add("wide");
+    for (const row of table.tBodies[0].rows) [...row.cells].forEach((cell, i) => (cell.dataset.label = headings[i]));
+  }
   document.body.classList.add("drawn");
   draw();
   for (const tools of document.querySelectorAll(".tools")) tools.hidden = false;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "program.h"
+#include "tests/support/access_rights.h"
 
 namespace softland {
 namespace {
@@ -11,7 +12,7 @@ struct Case {
   std::string message;
 };
 
-class BadInput : public testing::Test {
+class BadInput : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     here = new Workplace;
@@ -62,6 +63,26 @@ TEST_F(BadInput, Verbs) {
   });
 }
 
+TEST_F(BadInput, LongWordsAreCut) {
+  const std::string word(10'000, 'x');
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{word},
+                                                                                     {"check", word},
+                                                                                     {"new", word},
+                                                                                     {"check", "gold.toml", word},
+                                                                                     {"check", "gold.toml", "--set", word},
+                                                                                     {"optimize", "gold.toml", "--target", word},
+                                                                                     {"optimize", "gold.toml", "--seed", word},
+                                                                                     {"export", "gold.toml", "--format", word}}) {
+    const Outcome o = here->run(words);
+    EXPECT_EQ(o.status, 2);
+    EXPECT_LT(o.err.size(), 500U) << o.err;
+    EXPECT_NE(o.err.find("xxx…"), std::string::npos) << o.err;
+  }
+  const Outcome check = here->run({"check", "gold.toml", "--set", "title=" + word});
+  EXPECT_EQ(check.status, 0);
+  EXPECT_LT(check.out.find('\n'), 200U) << check.out;
+}
+
 TEST_F(BadInput, Options) {
   expect_refused({
       {{"simulate", "gold.toml", "--frob"}, "The following argument was not expected: --frob (see softland simulate --help)"},
@@ -82,12 +103,12 @@ TEST_F(BadInput, SceneFiles) {
   expect_refused({
       {{"simulate"}, "SCENE is required (see softland simulate --help)"},
       {{"accuracy"}, "SCENE is required (see softland accuracy --help)"},
-      {{"accuracy", "none.toml"}, "none.toml: cannot be opened: No such file or directory"},
+      {{"accuracy", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
       {{"pull-in"}, "SCENE is required (see softland pull-in --help)"},
-      {{"simulate", "none.toml"}, "none.toml: cannot be opened: No such file or directory"},
-      {{"modes", "none.toml"}, "none.toml: cannot be opened: No such file or directory"},
-      {{"optimize", "none.toml"}, "none.toml: cannot be opened: No such file or directory"},
-      {{"simulate", "folder"}, "folder: is a directory, not a scene file"},
+      {{"simulate", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
+      {{"modes", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
+      {{"optimize", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
+      {{"simulate", "folder"}, "folder: is a folder, it must be a regular file"},
       {{"simulate", "broken.toml"}, "broken.toml:1:11: not TOML: Error while parsing table header: expected ']', saw '\\n'"},
       {{"simulate", "empty.toml"}, "empty.toml: section [structure] is missing"},
       {{"simulate", "unit.toml"}, "unit.toml:12: structure.length = \"250 V\": expected a length [m], got a voltage [V]"},
@@ -103,7 +124,7 @@ TEST_F(BadInput, Assignments) {
       {set("gap.contct=1 um"), "--set gap.contct=1 um: unknown key (did you mean 'contact'?)"},
       {set("gap.contact=1 V"), "--set gap.contact=1 V: expected a length [m], got a voltage [V]"},
       {set("gap.contact=-1"), "--set gap.contact=-1: no unit (expected a length such as \"2 um\")"},
-      {set("gap.contact=-1 um"), "--set gap.contact=-1 um: must be greater than 0 m"},
+      {set("gap.contact=-1 um"), "--set gap.contact=-1 um: must be in [1 pm, 1 m]"},
       {set("gap.contact=9 um"), "--set gap.contact=9 um: must be less than gap.electrode = \"3.5 um\""},
   });
 }
@@ -188,7 +209,7 @@ TEST_F(BadInput, Results) {
   expect_refused({
       {{"export", "nonsense.json"}, "nonsense.json: is not a result.json of softland"},
       {{"export", "empty.json"}, "empty.json: is not a result.json of softland"},
-      {{"export", "none"}, "none: cannot be opened: No such file or directory"},
+      {{"export", "none"}, "none: cannot be read: No such file or directory"},
       {{"export", "folder"}, "folder: holds neither best.toml nor result.json"},
       {{"export", "gold.toml", "--format", "wav"}, "--format wav: must be csv or spice-pwl"},
       {{"report", "nonsense.json"}, "nonsense.json: is not a result.json of softland"},
@@ -196,7 +217,7 @@ TEST_F(BadInput, Results) {
       {{"export", "none.json"}, "none.json: cannot be read: No such file or directory"},
       {{"report", "none"}, "none: cannot be read: No such file or directory"},
       {{"report", "folder"}, "folder/result.json: cannot be read: No such file or directory"},
-      {{"report", "odd"}, "odd/result.json: cannot be read: Is a directory"},
+      {{"report", "odd"}, "odd/result.json: is a folder, it must be a regular file"},
       {{"report", "gold.toml"}, "gold.toml: is not a result.json of softland"},
       {{"report", "odd.json"}, "odd.json: is not a result.json of softland"},
       {{"new", "magnet"},
@@ -206,11 +227,12 @@ TEST_F(BadInput, Results) {
 }
 
 TEST_F(BadInput, ResultsThatMayNotBeRead) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may read everything";
   write(here->path() / "secret.json", "{}");
   fs::permissions(here->path() / "secret.json", fs::perms::none);
-  expect_refused({{{"report", "secret.json"}, "secret.json: cannot be read: Permission denied"},
-                  {{"export", "secret.json"}, "secret.json: cannot be read: Permission denied"}});
+  test::expect_where_access_rights_bind([] {
+    expect_refused({{{"report", "secret.json"}, "secret.json: cannot be read: Permission denied"},
+                    {{"export", "secret.json"}, "secret.json: cannot be read: Permission denied"}});
+  });
 }
 
 }  // namespace

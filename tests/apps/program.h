@@ -6,14 +6,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 extern char** environ;
@@ -41,6 +46,48 @@ struct Outcome {
   std::string out, err;
 };
 
+/// What /proc/PID/stat tells of a process (proc(5)).
+struct ProcessState {
+  char state = 'X';     ///< R: runs or could, S: sleeps, Z: has ended, X: there is none
+  long cpu_ticks = -1;  ///< used so far, by all of its threads
+};
+inline ProcessState process_state(pid_t child) {
+  const std::string stat = read("/proc/" + std::to_string(child) + "/stat");
+  const std::size_t name_end = stat.rfind(')');  // the name before may hold anything
+  if (name_end == std::string::npos) return {};
+  std::istringstream fields(stat.substr(name_end + 1));
+  ProcessState process;
+  long user = 0, system = 0;
+  std::string skipped;
+  fields >> process.state;
+  for (int field = 4; field < 14; ++field) fields >> skipped;
+  fields >> user >> system;
+  process.cpu_ticks = user + system;
+  return process;
+}
+
+/// Waits until the process has computed for a while, however busy the machine is; at most a minute.
+inline void wait_until_it_computes(pid_t child) {
+  const long enough = sysconf(_SC_CLK_TCK) / 2;
+  for (int i = 0; i < 1200; ++i) {
+    const ProcessState process = process_state(child);
+    if (process.cpu_ticks >= enough || process.state == 'Z' || process.state == 'X') return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+/// Waits until the process waits for something itself; at most a minute.
+inline void wait_until_it_waits(pid_t child) {
+  long ticks = -1;
+  for (int i = 0, quiet = 0; i < 1200 && quiet < 10; ++i) {
+    const ProcessState process = process_state(child);
+    if (process.state == 'Z' || process.state == 'X') return;
+    quiet = process.state == 'S' && process.cpu_ticks == ticks ? quiet + 1 : 0;
+    ticks = process.cpu_ticks;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
 /// A temporary folder that the program works in.
 class Workplace {
  public:
@@ -60,7 +107,11 @@ class Workplace {
 
   [[nodiscard]] const fs::path& path() const { return path_; }
 
-  [[nodiscard]] pid_t start(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM) const {
+  static constexpr int to_file = -1, closed = -2;
+
+  /// `out` is what the program gets as standard output: a descriptor, `to_file`, or `closed`; `err` likewise.
+  [[nodiscard]] pid_t start(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM,
+                            int out = to_file, int err = to_file) const {
     std::vector<char*> arguments{const_cast<char*>(program.c_str())};
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
@@ -68,11 +119,28 @@ class Workplace {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addchdir_np(&actions, path_.c_str());
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, "stdout.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, 2, "stderr.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const auto connect = [&](int stream, int to, const char* file) {
+      if (to == to_file) {
+        posix_spawn_file_actions_addopen(&actions, stream, file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+      } else if (to == closed) {
+        posix_spawn_file_actions_addclose(&actions, stream);
+      } else {
+        posix_spawn_file_actions_adddup2(&actions, to, stream);
+      }
+    };
+    connect(1, out, "stdout.txt");
+    connect(2, err, "stderr.txt");
+    // As from a terminal, whatever the tests were started to ignore.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t all;
+    sigfillset(&all);
+    posix_spawnattr_setsigdefault(&attributes, &all);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
     pid_t child = 0;
-    const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+    const int error = posix_spawn(&child, program.c_str(), &actions, &attributes, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
     if (error != 0) throw std::runtime_error("cannot start " + program);
     return child;
   }
@@ -81,12 +149,20 @@ class Workplace {
     waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read(path_ / "stdout.txt"), read(path_ / "stderr.txt")};
   }
-  [[nodiscard]] Outcome run(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM) const {
-    return finish(start(words, program));
+  [[nodiscard]] Outcome run(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM,
+                            int out = to_file) const {
+    return finish(start(words, program, out));
   }
 
  private:
   fs::path path_;
 };
+
+/// Of a JSON object.
+inline std::set<std::string> keys(const nlohmann::json& object) {
+  std::set<std::string> all;
+  for (const auto& [key, value] : object.items()) all.insert(key);
+  return all;
+}
 
 }  // namespace softland

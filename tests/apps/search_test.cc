@@ -49,12 +49,6 @@ std::vector<std::string> lines(const std::string& text) {
   return all;
 }
 
-std::set<std::string> keys(const json& object) {
-  std::set<std::string> all;
-  for (const auto& [key, value] : object.items()) all.insert(key);
-  return all;
-}
-
 void expect_complete_log(const std::string& log) {
   ASSERT_FALSE(log.empty());
   EXPECT_EQ(log.back(), '\n');
@@ -67,7 +61,7 @@ void expect_complete_log(const std::string& log) {
 pid_t start_long_search(const Workplace& here) {
   const pid_t child = here.start(words("optimize", {"--budget", "100000000", "--out", "out", "--jobs", "2"}));
   using namespace std::chrono_literals;
-  for (int i = 0; i < 600 && !fs::exists(here.path() / "out/best.toml"); ++i) std::this_thread::sleep_for(50ms);
+  for (int i = 0; i < 600 && !fs::exists(here.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(50ms);
   std::this_thread::sleep_for(1500ms);
   return child;
 }
@@ -156,8 +150,8 @@ TEST_F(Search, PrintsItsResultAsJsonAndNothingElse) {
                                                   "kind",        "reproduce",
                                                   "target",      "termination_message",
                                                   "title",       "tolerance",
-                                                  "waveform"}));
-  EXPECT_EQ(keys(printed["best"]), (std::set<std::string>{"cost", "metrics", "parameters", "waveforms"}));
+                                                  "waveform",    "made_with"}));
+  EXPECT_EQ(keys(printed["best"]), (std::set<std::string>{"bounds", "cost", "metrics", "parameters", "waveforms"}));
   EXPECT_EQ(keys(printed["baseline"]), (std::set<std::string>{"cost", "errors", "metrics"}));
   for (const char* key : {"metrics", "errors", "best", "scene", "checks"}) EXPECT_EQ(printed[key], whole[key]) << key;
 }
@@ -203,12 +197,48 @@ TEST(KilledSearch, LeavesWholeFiles) {
   const pid_t child = start_long_search(here);
   kill(child, SIGKILL);
   EXPECT_EQ(here.finish(child).status, -SIGKILL);
-  const Outcome checked = here.run({"check", "out/best.toml"});
+  const Outcome checked = here.run({"check", "out/unfinished/best.toml"});
   EXPECT_EQ(checked.status, 0) << checked.err;
-  expect_complete_log(read(here.path() / "out/evaluations.csv"));
+  expect_complete_log(read(here.path() / "out/unfinished/evaluations.csv"));
   const Outcome next = search(here, "out", {}, "12");
   EXPECT_TRUE(next.status == 0 || next.status == 4) << next.err;
   EXPECT_TRUE(fs::exists(here.path() / "out/result.json"));
+  EXPECT_FALSE(fs::exists(here.path() / "out/unfinished")) << "the next search has finished, and its results are here";
+}
+
+TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn) {
+  const Workplace here;
+  fs::create_directory(here.path() / "out");
+  const std::set<std::string> earlier{"best.toml", "best.csv", "report.html", "result.json", "evaluations.csv", "trajectory.csv"};
+  for (const std::string& name : earlier) write(here.path() / "out" / name, "of an earlier search");
+  const auto expect_kept = [&](const char* when) {
+    for (const std::string& name : earlier) EXPECT_EQ(read(here.path() / "out" / name), "of an earlier search") << when << name;
+  };
+  const pid_t killed = start_long_search(here);
+  expect_kept("while the next one runs: ");
+  kill(killed, SIGKILL);
+  static_cast<void>(here.finish(killed));
+  expect_kept("when the next one is killed: ");
+
+  const pid_t stopped = here.start(words("optimize", {"--budget", "100000000", "--out", "out", "--jobs", "2"}));
+  for (int i = 0; i < 600 && !fs::exists(here.path() / "out/unfinished-2/best.toml"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  kill(stopped, SIGINT);
+  const Outcome o = here.finish(stopped);
+  EXPECT_EQ(o.status, 130) << o.err;
+  EXPECT_THAT(o.out, testing::HasSubstr("In out/unfinished-2: report.html"));
+  expect_kept("when the next one is interrupted: ");
+  EXPECT_EQ(json::parse(read(here.path() / "out/unfinished-2/result.json"))["reproduce"][1],
+            "softland simulate out/unfinished-2/best.toml");
+  EXPECT_EQ(here.run({"report", "out/unfinished-2"}).status, 0);
+
+  EXPECT_EQ(search(here, "out").status, 0);
+  EXPECT_NE(read(here.path() / "out/best.toml"), "of an earlier search");
+  std::set<std::string> left;
+  for (const auto& entry : fs::directory_iterator(here.path() / "out")) left.insert(entry.path().filename());
+  std::set<std::string> expected = earlier;
+  expected.insert("gap.svg");
+  EXPECT_EQ(left, expected);
 }
 
 }  // namespace

@@ -32,10 +32,19 @@ TEST(Engineering, LeavesOutWhatDoesNotSuit) {
   EXPECT_EQ(engineering(std::nan(""), "m"), "nan m");
   EXPECT_EQ(engineering(INFINITY, "Pa"), "inf Pa");
   EXPECT_EQ(engineering(1e-20, "m"), "1e-20 m");
-  EXPECT_EQ(engineering(1e15, "m"), "1e+15 m");
+  EXPECT_EQ(engineering(1e15, "m"), "1e15 m");
   EXPECT_EQ(engineering(19300, "kg/m^3"), "19300 kg/m^3");
   EXPECT_EQ(engineering(1e11, "1/m^2"), "100000000000 1/m^2");
+  EXPECT_EQ(engineering(1e-8, "m^2"), "1e-8 m^2") << "nm^2 would be a square nanometre";
+  EXPECT_EQ(engineering(1500, "Vdp"), "1500 Vdp");
+  EXPECT_EQ(engineering(0.015, "%"), "0.015 %");
   EXPECT_EQ(engineering(0.05, ""), "0.05");
+  EXPECT_EQ(engineering(1e-6, ""), "1e-6");
+}
+
+TEST(Engineering, RoundsToFewerDigitsWhenAsked) {
+  EXPECT_EQ(engineering(31.4159e-9, "m", 3), "31.4 nm");
+  EXPECT_EQ(engineering(3.2e-10, "", 1), "3e-10");
 }
 
 TEST(Engineering, KeepsNumbersApartThatDiffer) {

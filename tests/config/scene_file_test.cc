@@ -15,7 +15,7 @@
 namespace softland {
 namespace {
 
-const std::map<std::string, PullInVoltages> pull_in{{"main", {.static_pull_in = 50.1, .dynamic_pull_in = 1.0 / 0.023}}};
+const std::map<std::string, PullInVoltages> measured_pull_in{{"main", {.static_pull_in = 50.1, .dynamic_pull_in = 1.0 / 0.023}}};
 
 SceneFile small_file() { return SceneFile::parse(small_scene, "x.toml"); }
 
@@ -251,9 +251,9 @@ TEST(Resolved, IsTheSameSceneDigitForDigitAndNeedsNoPullIn) {
       "deg\" }");
   file.set("waveform.piezo={ family = \"harmonic\", amplitude = \"1 %\", frequency = \"31 kHz\" }");
   const Scene scene = read_scene(file);
-  const Scene again = read_scene(SceneFile::parse(resolved(scene, pull_in).text(), "y.toml"));
+  const Scene again = read_scene(SceneFile::parse(resolved(scene, measured_pull_in).text(), "y.toml"));
   EXPECT_THAT(again.need_pull_in, testing::IsEmpty());
-  const Drives before = scene.drives(pull_in);
+  const Drives before = scene.drives(measured_pull_in);
   const Drives after = again.drives({});
   for (const char* drive : {"main", "piezo"}) {
     const auto a = std::get<Harmonic>(before.waveforms.at(drive));
@@ -262,18 +262,18 @@ TEST(Resolved, IsTheSameSceneDigitForDigitAndNeedsNoPullIn) {
     EXPECT_EQ(before.limits.at(drive).max_voltage, after.limits.at(drive).max_voltage) << drive;
     EXPECT_EQ(before.limits.at(drive).min_voltage, after.limits.at(drive).min_voltage) << drive;
   }
-  EXPECT_EQ(resolved(again, {}).text(), resolved(scene, pull_in).text());
+  EXPECT_EQ(resolved(again, {}).text(), resolved(scene, measured_pull_in).text());
 }
 
 TEST(Resolved, KeepsToleranceWithoutAddingAccuracy) {
   SceneFile file = small_file();
   file.set("simulate.tolerance=1e-8");
-  const SceneFile full = resolved(read_scene(file), pull_in);
+  const SceneFile full = resolved(read_scene(file), measured_pull_in);
   EXPECT_EQ(full.json()["simulate"], (nlohmann::json{{"tolerance", 1e-8}, {"effects", "all"}, {"effects_tolerance", 1e-3}}));
 }
 
 TEST(Resolved, MessagesDoNotCiteTheLinesOfTheOriginal) {
-  SceneFile full = resolved(read_scene(small_file()), pull_in);
+  SceneFile full = resolved(read_scene(small_file()), measured_pull_in);
   EXPECT_EQ(full.name(), "x.toml (resolved)");
 }
 

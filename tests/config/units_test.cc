@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/engineering.h"
 #include "base/require.h"
 
 namespace softland {
@@ -44,6 +45,14 @@ INSTANTIATE_TEST_SUITE_P(Units, GoodQuantity, testing::Values(
     Good{"5. m", 5, dimension::length},
     Good{"1E3 fm", 1e-12, dimension::length},
     Good{"1 km", 1e3, dimension::length},
+    Good{"250 \u00b5m", 250e-6, dimension::length},
+    Good{"250\u00a0\u03bcm", 250e-6, dimension::length},
+    Good{"3 V/\u00b5s", 3e6, dimension::slew_rate},
+    Good{"100 1/\u03bcm\u00b2", 1e14, dimension::area_density},
+    Good{"\u2212171\u202fpm/V", -171e-12, dimension::piezo_coefficient},
+    Good{"1 N\u00b7m", 1, dimension::energy},
+    Good{"19300 kg/m\u00b3", 19300, dimension::density},
+    Good{"26 as", 26e-18, dimension::time},
     Good{"1 mm", 1e-3, dimension::length},
     Good{"1e+2 nm", 1e-7, dimension::length},
     Good{"1 kg", 1, dimension::mass},
@@ -124,7 +133,9 @@ INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(
     Bad{"2 UM", "unknown unit 'UM'"},
     Bad{"2 min", "unknown unit 'min'"},
     Bad{"2 cm", "unknown unit 'cm'"},
-    Bad{"2 \xc2\xb5m", "unknown unit '\xc2\xb5m'"},
+    Bad{"2 \xc2\xb5", "unknown unit 'u'"},
+    Bad{"2 \xc2m", "unknown unit '\xc2m'"},
+    Bad{"\u22122\u22121 m", no_number},
     Bad{"2 mVdp", "unknown unit 'mVdp'"},
     Bad{"2 k%", "unknown unit 'k%'"},
     Bad{"2 kdeg", "unknown unit 'kdeg'"},
@@ -135,6 +146,8 @@ INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(
     Bad{"2 m^0", "'m^0' needs an integer power between -9 and 9, not 0"},
     Bad{"2 m^2.5", "'m^2.5' needs an integer power between -9 and 9, not 0"},
     Bad{"2 m^10", "'m^10' needs an integer power between -9 and 9, not 0"},
+    Bad{"2 m^9 m^9", "with 'm^9' the power of m in the unit is 18; it must lie between -9 and 9"},
+    Bad{"2 1/N^5", "with 'N^5' the power of s in the unit is 10; it must lie between -9 and 9"},
     Bad{"2 m^99999999999", "'m^99999999999' needs an integer power between -9 and 9, not 0"},
     Bad{"2 m ^2", "unknown unit ''"},
     Bad{"2 m/s/s", "more than one '/' in the unit 'm/s/s'"},
@@ -149,6 +162,42 @@ INSTANTIATE_TEST_SUITE_P(Units, BadQuantity, testing::Values(
     Bad{"1e308 km", "1e308 is outside the range of double precision"},
     Bad{"1e308 deg^-9", "1e308 deg^-9 is outside the range of double precision"}));
 // clang-format on
+
+TEST(Units, EveryPrefixGoesWithEveryUnitThatTakesOne) {
+  struct Prefix {
+    std::string text;
+    int exponent;
+  };
+  const std::vector<Prefix> prefixes{{"y", -24},     {"z", -21},     {"a", -18}, {"f", -15}, {"p", -12}, {"n", -9}, {"u", -6},
+                                     {"\u00b5", -6}, {"\u03bc", -6}, {"m", -3},  {"k", 3},   {"M", 6},   {"G", 9},  {"T", 12}};
+  for (const char* unit : {"m", "g", "s", "A", "K", "Pa", "N", "J", "W", "V", "C", "F", "ohm", "S", "Hz", "rad"}) {
+    const Quantity plain = parse_quantity(std::string("1 ") + unit);
+    const int own = std::string(unit) == "g" ? -3 : 0;
+    for (const Prefix& prefix : prefixes) {
+      const Quantity scaled = parse_quantity("2.5 " + prefix.text + unit);
+      EXPECT_EQ(scaled.value, std::stod("2.5e" + std::to_string(prefix.exponent + own))) << prefix.text << unit;
+      EXPECT_EQ(scaled.dimension, plain.dimension) << prefix.text << unit;
+    }
+  }
+  for (const char* unit : {"deg", "%", "Vsp", "Vdp"}) {
+    EXPECT_NO_THROW((void)parse_quantity(std::string("1 ") + unit));
+    for (const Prefix& prefix : prefixes) {
+      EXPECT_THROW((void)parse_quantity("1 " + prefix.text + unit), InvalidInput) << prefix.text << unit;
+    }
+  }
+}
+
+TEST(Units, NumbersOfMessagesReadBack) {
+  for (const char* unit : {"m",   "s",  "V",      "N",     "J",   "Pa", "Pa s",  "N/m", "m/V", "s/m",     "V/s",
+                           "m/s", "kg", "kg/m^3", "1/m^2", "m^2", "Hz", "rad/s", "K",   "Vdp", "N s/m^2", "J/m^2"}) {
+    for (int exponent = -30; exponent <= 30; ++exponent) {
+      const double value = std::stod("-1.25e" + std::to_string(exponent));
+      const Quantity read = parse_quantity(engineering(value, unit));
+      EXPECT_NEAR(read.value, value, 1e-11 * std::abs(value)) << engineering(value, unit);
+      EXPECT_EQ(read.dimension, parse_quantity(std::string("1 ") + unit).dimension) << engineering(value, unit);
+    }
+  }
+}
 
 TEST(Units, TwoWaysToWriteANumberGiveTheSameBits) {
   EXPECT_EQ(parse_quantity("0.1 um").value, parse_quantity("100 nm").value);

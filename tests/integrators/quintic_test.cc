@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "base/gauss.h"
-#include "model/constants.h"
 
 namespace softland {
 namespace {
@@ -39,8 +39,8 @@ TEST(Quintic, ErrsWithTheSixthPowerOfTheStep) {
 
 TEST(BracketedZero, FindsZerosToRounding) {
   const auto cosine = [](double x) { return std::cos(x); };
-  EXPECT_NEAR(bracketed_zero(cosine, 1, 2), pi / 2, 1e-15);
-  EXPECT_NEAR(bracketed_zero([&](double x) { return -cosine(x); }, 1, 2), pi / 2, 1e-15);
+  EXPECT_NEAR(bracketed_zero(cosine, 1, 2), std::numbers::pi / 2, 1e-15);
+  EXPECT_NEAR(bracketed_zero([&](double x) { return -cosine(x); }, 1, 2), std::numbers::pi / 2, 1e-15);
   EXPECT_EQ(bracketed_zero([](double x) { return x - 0.25; }, 0, 1), 0.25);
   // Steep on one side, flat on the other; a root of odd order.
   EXPECT_NEAR(bracketed_zero([](double x) { return std::exp(30 * x) - 2; }, -10, 10), std::log(2.0) / 30, 1e-15);
@@ -82,7 +82,7 @@ TEST(Quintic, TurnsWhereItsVelocityChangesSign) {
   };
   const Quintic one = knots(3, 3.5), none = knots(3.2, 3.5);
   ASSERT_EQ(one.turns().count, 1u);
-  EXPECT_NEAR(one.turns().at[0], pi, 1e-5);
+  EXPECT_NEAR(one.turns().at[0], std::numbers::pi, 1e-5);
   EXPECT_NEAR(one.velocity(one.turns().at[0]), 0, 1e-15);
   EXPECT_EQ(none.turns().count, 0u);
   const Quintic two = knots(0.5, 7);

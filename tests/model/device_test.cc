@@ -60,18 +60,52 @@ TEST(Device, NamesWhatIsWrongWithABeamBetweenTwoClamps) {
   EXPECT_DOUBLE_EQ(Switch(free).angular_frequencies()[0], Switch(test::gold_cantilever()).angular_frequencies()[0]);
 }
 
+TEST(Device, RefusesElectrodesThatOverlapOnOneSideOfABeam) {
+  const auto conflict = [](std::vector<Electrode> electrodes, Structure structure = test::gold_cantilever().structure) {
+    const auto found = electrode_conflict(structure, electrodes);
+    return found ? std::to_string(found->electrode) + " " + found->why : "";
+  };
+  const auto electrode = [](double begin, double end, Side side = Side::near) {
+    return Electrode{.name = "e" + std::to_string(std::lround(begin * 1e6)), .begin = begin, .end = end, .side = side};
+  };
+  constexpr double L = 250_um, bit = 1e-14 * L;
+  EXPECT_EQ(conflict({electrode(0, 100_um), electrode(100_um, L)}), "");
+  EXPECT_EQ(conflict({electrode(100_um - bit, L), electrode(0, 100_um)}), "") << "edges that touch within rounding";
+  const std::string near = "must not overlap electrode.e0, which ends at 100 um on the near side too";
+  EXPECT_EQ(conflict({electrode(0, 100_um), electrode(99.9_um, L)}), "1 " + near);
+  EXPECT_EQ(conflict({electrode(50_um, 60_um), electrode(0, 100_um)}), "0 " + near) << "one inside the other";
+  EXPECT_EQ(conflict({electrode(0, 100_um), electrode(0, 100_um)}), "1 " + near);
+  EXPECT_EQ(conflict({electrode(120_um, 130_um), electrode(0, 100_um), electrode(90_um, 110_um)}), "2 " + near);
+  EXPECT_EQ(conflict({electrode(0, 100_um), electrode(50_um, L, Side::far)}), "") << "opposite sides";
+  EXPECT_EQ(conflict({electrode(0, 100_um, Side::both), electrode(50_um, L)}), "1 " + near);
+  EXPECT_EQ(conflict({electrode(0, 100_um, Side::both), electrode(50_um, L, Side::far)}),
+            "1 must not overlap electrode.e0, which ends at 100 um on the far side too");
+
+  const Structure plate = test::full_plate().structure;  // 100 um long
+  const auto share = [&](double length, Side side = Side::near) { return electrode(0, length, side); };
+  EXPECT_EQ(conflict({share(70_um), share(30_um), share(100_um, Side::far)}, plate), "");
+  EXPECT_EQ(conflict({share(70_um), share(31_um)}, plate),
+            "1 the electrodes of the near side must not have more area together than the plate");
+  EXPECT_EQ(conflict({share(70_um, Side::far), share(10_um, Side::near), share(31_um, Side::both)}, plate),
+            "2 the electrodes of the far side must not have more area together than the plate");
+  expect_message([](Device& d) { d.electrodes.push_back({.name = "tip", .begin = 200_um, .end = 250_um}); },
+                 "electrode.tip: must not overlap electrode.main, which ends at 240 um on the near side too");
+}
+
 TEST(Device, NamesWhatIsWrongWithIt) {
-  expect_message([](Device& d) { d.structure.length = 0; }, "structure.length = 0 m: must be positive");
-  expect_message([](Device& d) { d.structure.width = -1e-6; }, "structure.width = -1 um: must be positive");
-  expect_message([](Device& d) { d.structure.thickness = std::nan(""); }, "structure.thickness = nan m: must be positive");
-  expect_message([](Device& d) { d.structure.youngs_modulus = INFINITY; }, "structure.youngs_modulus = inf Pa: must be positive");
-  expect_message([](Device& d) { d.structure.density = 0; }, "structure.density = 0 kg/m^3: must be positive");
+  expect_message([](Device& d) { d.structure.length = 0; }, "structure.length = 0 m: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.structure.width = -1e-6; }, "structure.width = -1 um: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.structure.thickness = std::nan(""); }, "structure.thickness: is needed here and not given");
+  expect_message([](Device& d) { d.structure.youngs_modulus = INFINITY; },
+                 "structure.youngs_modulus = inf Pa: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.structure.density = 0; },
+                 "structure.density = 0 kg/m^3: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.structure.modes = 0; }, "structure.modes = 0: must be from 1 to 20");
   expect_message([](Device& d) { d.structure.modes = 21; }, "structure.modes = 21: must be from 1 to 20");
-  expect_message([](Device& d) { d.structure.damping_ratio = -0.1; }, "structure.damping_ratio = -0.1: must not be negative");
+  expect_message([](Device& d) { d.structure.damping_ratio = -0.1; }, "structure.damping_ratio = -0.1: must be in [0, 1000)");
   expect_message([](Device& d) { d.structure.plate_strain = true; },
                  "structure.poissons_ratio = nan: plate_strain needs one between -1 and 0.5");
-  expect_message([](Device& d) { d.gap.electrode = 0; }, "gap.electrode = 0 m: must be positive");
+  expect_message([](Device& d) { d.gap.electrode = 0; }, "gap.electrode = 0 m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.gap.contact = 4e-6; },
                  "gap.contact = 4 um: must be positive and below gap.electrode = 3.5 um");
   expect_message([](Device& d) { d.gap.contact = 0; }, "gap.contact = 0 m: must be positive and below gap.electrode = 3.5 um");
@@ -79,36 +113,41 @@ TEST(Device, NamesWhatIsWrongWithIt) {
                  "electrode.left.span = [0 m, 100 mm]: must increase and lie on the beam, from 0 m to 250 um");
   expect_message([](Device& d) { d.electrodes[0].begin = d.electrodes[0].end = 60_um; },
                  "electrode.main.span = [60 um, 60 um]: must increase and lie on the beam, from 0 m to 250 um");
-  expect_message([](Device& d) { d.gas->viscosity = 0; }, "gas.viscosity = 0 Pa s: must be positive");
-  expect_message([](Device& d) { d.gas->pressure = 0; }, "gas.pressure = 0 Pa: must be positive");
-  expect_message([](Device& d) { d.gas->temperature = -1; }, "gas.temperature = -1 K: must be positive");
-  expect_message([](Device& d) { d.gas->mean_free_path = 0; }, "gas.mean_free_path = 0 m: must be positive");
+  expect_message([](Device& d) { d.gas->viscosity = 0; }, "gas.viscosity = 0 Pa s: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.gas->pressure = 0; }, "gas.pressure = 0 Pa: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.gas->temperature = -1; }, "gas.temperature = -1 K: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.gas->mean_free_path = 0; }, "gas.mean_free_path = 0 m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear}; },
                  "gas.model = linear: needs either damping or quality_factor");
   expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear, .damping = 1, .quality_factor = 2}; },
                  "gas.model = linear: needs either damping or quality_factor");
   expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear, .damping = 0}; },
-                 "gas.damping = 0 N s/m^2: must be positive");
+                 "gas.damping = 0 N s/m^2: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contact->pad_length = 1; },
                  "contact.pad_length = 1 m: must be positive and below structure.length = 250 um");
-  expect_message([](Device& d) { d.contact->asperity_radius = 0; }, "contact.asperity_radius = 0 m: must be positive");
-  expect_message([](Device& d) { d.contact->asperity_density = 0; }, "contact.asperity_density = 0 1/m^2: must be positive");
-  expect_message([](Device& d) { d.contact->asperity_height = 0; }, "contact.asperity_height = 0 m: must be positive");
-  expect_message([](Device& d) { d.contact->effective_modulus = 0; }, "contact.effective_modulus = 0 Pa: must be positive");
-  expect_message([](Device& d) { d.contact->model = ContactModel::linear; }, "contact.stiffness = 0 N/m: must be positive");
+  expect_message([](Device& d) { d.contact->asperity_radius = 0; },
+                 "contact.asperity_radius = 0 m: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.contact->asperity_density = 0; },
+                 "contact.asperity_density = 0 1/m^2: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.contact->asperity_height = 0; },
+                 "contact.asperity_height = 0 m: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.contact->effective_modulus = 0; },
+                 "contact.effective_modulus = 0 Pa: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.contact->model = ContactModel::linear; },
+                 "contact.stiffness = 0 N/m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contact->model = ContactModel::asperity_gaussian; },
-                 "contact.asperity_deviation = 0 m: must be positive");
+                 "contact.asperity_deviation = 0 m: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contact->model = ContactModel::adhesive; },
-                 "contact.adhesion_energy = 0 J/m^2: must be positive");
+                 "contact.adhesion_energy = 0 J/m^2: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contact->model = ContactModel::elastic_plastic; },
-                 "contact.hardness = 0 Pa: must be positive");
+                 "contact.hardness = 0 Pa: must be greater than 0 and below 1e30");
   expect_message(
       [](Device& d) {
         d.contact->model = ContactModel::hysteretic;
         d.contact->stiffness = 100;
         d.contact->unloading_stiffness = 50;
       },
-      "contact.unloading_stiffness = 50 N/m: must not be below contact.stiffness = 100 N/m");
+      "contact.unloading_stiffness = 50 N/m: must not be below contact.stiffness = 100 N/m, and below 1e30 N/m");
   expect_message([](Device& d) { d.contact->model = ContactModel::rigid; },
                  "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
   expect_message(
@@ -116,13 +155,13 @@ TEST(Device, NamesWhatIsWrongWithIt) {
         d.contact->model = ContactModel::adhesive_repulsive;
         d.contact->pressure.wall_range = 0;
       },
-      "contact.wall_range = 0 m: must be positive");
+      "contact.wall_range = 0 m: must be greater than 0 and below 1e30");
   expect_message(
       [](Device& d) {
         d.contact->model = ContactModel::adhesive_repulsive;
         d.contact->pressure.reach = 100_nm;
       },
-      "contact.reach = 100 nm: must exceed asperity_distance + adhesion_range = 112 nm");
+      "contact.reach = 100 nm: must exceed asperity_distance + adhesion_range = 112 nm and be at most 1 m");
   expect_message(
       [](Device& d) {
         d.contact->model = ContactModel::adhesive_repulsive;
@@ -153,7 +192,7 @@ TEST(Device, NamesWhatIsWrongWithIt) {
   expect_message(along_pad([](Device& d) { d.contact->pad_length = 26_um; }),
                  "contact.distribution = pad: the pad counts as straight, so pad_length must not exceed a tenth of the beam's "
                  "length, 25 um");
-  expect_message([](Device& d) { d.contact->damping = -1; }, "contact.damping = -1 s/m: must not be negative");
+  expect_message([](Device& d) { d.contact->damping = -1; }, "contact.damping = -1 s/m: must be in [0 s/m, 1e6 s/m)");
   expect_message(
       [](Device& d) {
         d.contact->model = ContactModel::adhesive;
@@ -163,9 +202,10 @@ TEST(Device, NamesWhatIsWrongWithIt) {
       "contact.damping = 1 s/m: not with contact.model = \"adhesive\"");
   expect_message([](Device& d) { d.piezo->begin = -1e-6, d.piezo->end = 2e-4; },
                  "piezo.span = [-1 um, 200 um]: must increase and lie on the beam, from 0 m to 250 um");
-  expect_message([](Device& d) { d.piezo->thickness = 0; }, "piezo.thickness = 0 m: must be positive");
-  expect_message([](Device& d) { d.piezo->youngs_modulus = 0; }, "piezo.youngs_modulus = 0 Pa: must be positive");
-  expect_message([](Device& d) { d.piezo->density = 0; }, "piezo.density = 0 kg/m^3: must be positive");
+  expect_message([](Device& d) { d.piezo->thickness = 0; }, "piezo.thickness = 0 m: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.piezo->youngs_modulus = 0; },
+                 "piezo.youngs_modulus = 0 Pa: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { d.piezo->density = 0; }, "piezo.density = 0 kg/m^3: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.piezo->d31 = std::nan(""); }, "piezo.d31 = nan m/V: must be between -1 m/V and 1 m/V");
 }
 
@@ -181,9 +221,9 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
     validate(device);
   };
   EXPECT_NO_THROW(expect_valid([](Device&) {}));
-  expect([](Device& d) { d.structure.mass = 0; }, "structure.mass = 0 kg: must be positive");
-  expect([](Device& d) { d.structure.stiffness = -1; }, "structure.stiffness = -1 N/m: must be positive");
-  expect([](Device& d) { d.structure.thickness = 0; }, "structure.thickness = 0 m: must be positive");
+  expect([](Device& d) { d.structure.mass = 0; }, "structure.mass = 0 kg: must be greater than 0 and below 1e30");
+  expect([](Device& d) { d.structure.stiffness = -1; }, "structure.stiffness = -1 N/m: must be greater than 0 and below 1e30");
+  expect([](Device& d) { d.structure.thickness = 0; }, "structure.thickness = 0 m: must be greater than 0 and below 1e30");
   expect([](Device& d) { d.piezo = test::gold_pzt_cantilever().piezo; },
          "piezo: a rigid plate does not bend; a layer needs a beam");
   expect([](Device& d) { d.contact->model = ContactModel::asperity_uniform; },

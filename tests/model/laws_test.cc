@@ -989,6 +989,31 @@ TEST(ElasticPlastic, KogutEtsionIsScaledByWhatItsHeaderSays) {
   EXPECT_NEAR(jump(110), 1.079, printed);
 }
 
+/// What one asperity gives back as it unloads from u times the interference of first yield, over the work P w_c of its load
+/// there: the fits of Etsion, Kligerman and Kadin (2005, Int. J. Solids Struct. 42, 3716) to finite elements, whose summits are
+/// flattened.
+double returned_by_flattened_summit(double u) {
+  const double residual = u * (1 - std::pow(u, -0.28)) * (1 - std::pow(u, -0.69));
+  const double exponent = 1.5 * std::pow(u, -0.0331);
+  return (u - residual) / (exponent + 1);
+}
+
+TEST(ElasticPlastic, GivesBackMoreThanAFlattenedSummitByWhatTheDocumentationSays) {
+  const double w = yield(Plasticity::kogut_etsion).first, critical = ke_asperity(w, radius, hardness, modulus);
+  // The sharp summit unloads along Hertz' curve from the load p: 0.4 p p^(2/3).
+  const auto sharp = [](double load) { return 0.4 * std::pow(load, 2.0 / 3); };
+  constexpr double printed = 5e-3;  // three digits
+  struct {
+    double u, published, here;
+  } const cases[] = {{10, 1.34, 1.30}, {50, 1.65, 1.60}, {100, 1.81, 1.76}};
+  for (const auto& [u, published, here] : cases) {
+    const double fit = ke_asperity(u * w, radius, hardness, modulus, true) / critical;
+    EXPECT_NEAR(sharp(fit) / returned_by_flattened_summit(u), published, printed) << u;
+    const double load = KogutEtsionAsperity::first_integral(Dual(u, 1)).slope;
+    EXPECT_NEAR(sharp(load) / returned_by_flattened_summit(u), here, printed) << u;
+  }
+}
+
 TEST(ElasticPlastic, IsElasticBelowFirstYieldAndSofterAbove) {
   const ContactLaw elastic = contact_law(pad(ContactModel::asperity_uniform, 0), beam_width);
   for (const Plasticity plasticity : plasticities) {

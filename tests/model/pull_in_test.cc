@@ -11,17 +11,14 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "tests/model/gold.h"
 #include "tests/support/devices.h"
 
 namespace softland {
 namespace {
 
 using namespace literals;
-
-const Switch& gold() {
-  static const Switch device(test::gold_cantilever());
-  return device;
-}
+using test::gold;
 
 /// An electrode near the root: the contact point reaches the contact plane before the fold.
 Switch contact_first() {

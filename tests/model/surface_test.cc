@@ -16,7 +16,7 @@ namespace {
 
 using namespace literals;
 
-constexpr double rounding = 1e-12;  // relative
+constexpr double relative_rounding = 1e-12;
 
 /// Silicon, faces along [100]: E_s = -10.654 N/m, tau_0 = 0.6048 N/m (Miller & Shenoy 2000).
 Device silicon(double thickness, SurfaceFaces faces = SurfaceFaces::wide) {
@@ -72,7 +72,7 @@ TEST(Surface, ResidualCompressionSoftensACantileverUntilItBuckles) {
   Device d = silicon(30_nm);
   d.surface->cantilever_load = ResidualLoad::compression;
   const double pull = 2 * 0.6048 * 100_nm;
-  EXPECT_NEAR(beam_support(d.structure, d.surface).axial_force, -pull, rounding * pull);
+  EXPECT_NEAR(beam_support(d.structure, d.surface).axial_force, -pull, relative_rounding * pull);
   const double buckling_length = pi / 2 * std::sqrt(plain_section(d.structure, d.surface).rigidity / pull);
   EXPECT_NEAR(buckling_length, 0.875_um, 0.001_um);
   const auto of_length = [&](double length) {
@@ -104,7 +104,7 @@ TEST(Surface, ResidualStressIsATensionBetweenTwoClamps) {
   const Switch by_stress(d);
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(by_surface.angular_frequencies()[i], by_stress.angular_frequencies()[i],
-                rounding * by_stress.angular_frequencies()[i]);
+                relative_rounding * by_stress.angular_frequencies()[i]);
   }
 }
 

@@ -55,7 +55,8 @@ std::vector<Combination> combinations() {
       all.push_back({fmt::format("gas {}, piezo {}", e.name, layer), d});
     }
   }
-  Device two = test::gold_cantilever();  // two electrodes that overlap on a part of the beam
+  Device two = test::gold_cantilever();  // two electrodes that meet on the beam
+  two.electrodes[0].end = 150_um;
   two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
   all.push_back({"two electrodes", two});
   for (const bool gas : {false, true}) {

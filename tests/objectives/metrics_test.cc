@@ -8,13 +8,13 @@
 #include <numbers>
 
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
 
 namespace softland {
 namespace {
 
 using namespace literals;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGap = 2e-6;
 // Positions and times carry the rounding of 2 um and of the window; every figure that the interpolant holds exactly agrees this
 // well, relative to the largest number that enters it.
@@ -371,6 +371,26 @@ TEST(Metrics, NoContactLeavesTheContactFiguresUnset) {
   }
   EXPECT_EQ(m.drive_energy, 1e-12);
   EXPECT_TRUE(rebounds(trajectory).empty());
+}
+
+TEST(Metrics, OfARunThatEndsAtItsTouchSayNothingOfWhatFollows) {
+  Trajectory trajectory = BouncingBall{}.trajectory(0, 0, 3);
+  const double touch = metrics(trajectory).initial_contact_time;
+  std::erase_if(trajectory.points, [&](const TrajectoryPoint& p) { return p.time > touch; });
+  trajectory.touches = {{.begin = touch, .end = kNaN, .impact_velocity = 1}};
+  trajectory.energy.source_work = 1e-12;
+  trajectory.hold_force = 1e-6;
+  trajectory.ends_at_touch = true;
+  const Metrics m = metrics(trajectory);
+  EXPECT_EQ(m.status, Status::done);
+  EXPECT_FALSE(m.settled);
+  EXPECT_EQ(m.initial_contact_time, touch);
+  EXPECT_GT(m.impact_velocity, 0);
+  EXPECT_EQ(m.drive_energy, 1e-12);
+  for (const double figure :
+       {m.permanent_contact_time, m.bounce_time, m.major_bounce_height, m.peak_contact_force, m.impact_energy, m.hold_force}) {
+    EXPECT_TRUE(std::isnan(figure));
+  }
 }
 
 TEST(Metrics, EmptyTrajectoriesAndSingleKnotsAreAnswered) {

@@ -1,26 +1,19 @@
 // What objectives do to optimizers: NaN, infinities, exceptions, plateaus, steps. Each case is a failure seen in one of the
 // libraries.
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "tests/optimizers/landscapes.h"
 #include "tests/optimizers/support.h"
+#include "tests/support/not_finite.h"
 
 namespace softland {
 namespace {
 
+using landscapes::bowl;
 using landscapes::box;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr long kBudget = 250;
-
-double bowl(std::span<const double> x) {
-  double sum = 0;
-  for (const double coordinate : x) sum += (coordinate - 0.3) * (coordinate - 0.3);
-  return sum;
-}
 
 struct Counted {
   OptimizerResult result;
@@ -45,7 +38,7 @@ using Failing = EveryOptimizer;
 INSTANTIATE_TEST_SUITE_P(Optimizers, Failing, testing::ValuesIn(every_name()), case_name);
 
 TEST_P(Failing, AnObjectiveThatIsAlwaysNanHasNoFeasiblePoint) {
-  const OptimizerResult result = run(GetParam(), [](auto) { return kNan; }).result;
+  const OptimizerResult result = run(GetParam(), [](auto) { return kNaN; }).result;
   EXPECT_EQ(result.termination, Termination::no_feasible_point);
   EXPECT_TRUE(result.x.empty());
   EXPECT_TRUE(std::isnan(result.value));
@@ -77,7 +70,7 @@ TEST_P(Failing, AnythingMayBeThrown) {
 
 TEST_P(Failing, AHalfSpaceOfNanHidesNoMinimumBeyondIt) {
   // The minimum of the feasible half lies on its border, where differences see one side only.
-  const OptimizerResult result = run(GetParam(), [](auto x) { return x[0] < 0.4 ? kNan : bowl(x); }).result;
+  const OptimizerResult result = run(GetParam(), [](auto x) { return x[0] < 0.4 ? kNaN : bowl(x); }).result;
   ASSERT_FALSE(result.x.empty());
   EXPECT_GE(result.x[0], 0.4);
   EXPECT_EQ(result.value, bowl(result.x));
@@ -120,7 +113,7 @@ TEST_P(Failing, AConstantObjectiveEnds) {
 TEST_P(Failing, TheBudgetIsNeverExceeded) {
   for (const long budget : {1L, 2L, 3L, 10L, 57L}) {
     for (const bool failing : {false, true}) {
-      const auto objective = [&](std::span<const double> x) { return failing && x[0] * x[1] > 0 ? kNan : bowl(x); };
+      const auto objective = [&](std::span<const double> x) { return failing && x[0] * x[1] > 0 ? kNaN : bowl(x); };
       const Counted counted = run(GetParam(), objective, 4, budget);
       EXPECT_GE(counted.calls, 1);
       EXPECT_NE(counted.result.termination, Termination::not_run);
@@ -131,7 +124,7 @@ TEST_P(Failing, TheBudgetIsNeverExceeded) {
 
 TEST(Penalty, IsMetByMethodsThatComparePointsAsWorseThanTheWorst) {
   // A start in the infeasible half: the simplex must leave it although every finite value it meets is enormous.
-  const auto objective = [](std::span<const double> x) { return x[0] < 0 ? kNan : 1e14 + 1e13 * bowl(x); };
+  const auto objective = [](std::span<const double> x) { return x[0] < 0 ? kNaN : 1e14 + 1e13 * bowl(x); };
   Problem problem = box(2, -1, 1, objective);
   problem.starts = {{-0.1, 0.0}};
   const OptimizerResult result = minimize(problem, {.optimizer = "nelder-mead", .max_evaluations = 100});

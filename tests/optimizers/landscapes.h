@@ -31,6 +31,13 @@ inline Problem box(std::size_t dimension, double lower, double upper, std::funct
   return problem;
 }
 
+/// Round, minimum 0 at (0.3, ..., 0.3).
+inline double bowl(std::span<const double> x) {
+  double sum = 0;
+  for (const double coordinate : x) sum += (coordinate - 0.3) * (coordinate - 0.3);
+  return sum;
+}
+
 /// A curved valley, minimum 0 at (1, ..., 1); divided by 100.
 inline double rosenbrock(std::span<const double> x) {
   double sum = 0;

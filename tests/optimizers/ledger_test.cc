@@ -10,13 +10,12 @@
 
 #include "tests/optimizers/landscapes.h"
 #include "tests/optimizers/support.h"
+#include "tests/support/not_finite.h"
 
 namespace softland::internal {
 namespace {
 
 using landscapes::box;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Gives the body a strand of a problem over [0, 1]^n, where points and x are the same.
 void with_strand(std::size_t dimension, const std::function<double(std::span<const double>)>& objective,
@@ -32,7 +31,7 @@ TEST(Answers, RankInfeasiblePointsBelowEverythingSeen) {
   const std::vector<double> values = {-1e300, -1e13, -5, 0, 1e-9, 1, 3, 1e11, 1e12, 1e13, 1e14, 1e200, 1.7e308};
   const auto objective = [&](std::span<const double> x) {
     const auto k = static_cast<std::size_t>(std::lround(x[0] * 1000));
-    return k % 2 == 0 ? kNan : values[k / 2];
+    return k % 2 == 0 ? kNaN : values[k / 2];
   };
   with_strand(1, objective, [&](Strand& strand) {
     double worst = -std::numeric_limits<double>::infinity();
@@ -48,7 +47,7 @@ TEST(Answers, RankInfeasiblePointsBelowEverythingSeen) {
 
 TEST(Answers, InTheDarkArePenaltiesAboveAnyValueToCome) {
   with_strand(
-      1, [](auto x) { return x[0] < 0.5 ? kNan : std::numeric_limits<double>::max(); },
+      1, [](auto x) { return x[0] < 0.5 ? kNaN : std::numeric_limits<double>::max(); },
       [](Strand& strand) {
         const Answer dark = strand(std::vector{0.1});
         EXPECT_GT(dark.value, strand(std::vector{0.9}).value);
@@ -57,7 +56,7 @@ TEST(Answers, InTheDarkArePenaltiesAboveAnyValueToCome) {
 
 TEST(Answers, AreOfTheSizeOfTheValuesSeen) {
   with_strand(
-      1, [](auto x) { return x[0] > 0.5 ? kNan : x[0]; },
+      1, [](auto x) { return x[0] > 0.5 ? kNaN : x[0]; },
       [](Strand& strand) {
         strand(std::vector{0.1});
         strand(std::vector{0.4});
@@ -94,7 +93,7 @@ TEST(Answers, EndASearchThatGoesInCircles) {
 
 TEST(Answers, ToNanCoordinatesAreThoseOfTheMiddle) {
   with_strand(
-      1, [](auto x) { return x[0]; }, [](Strand& strand) { EXPECT_EQ(strand(std::vector{kNan}).value, 0.5); });
+      1, [](auto x) { return x[0]; }, [](Strand& strand) { EXPECT_EQ(strand(std::vector{kNaN}).value, 0.5); });
 }
 
 TEST(Answers, EndWithTheBudget) {
@@ -139,13 +138,13 @@ TEST(Rounds, EndWithTheFirstTaskAtTheTargetEvenWhenALaterOneIsThereSooner) {
   EXPECT_TRUE(ledger.over());
 }
 
-// Rounding of values of order 1 over a step of 1e-3.
-constexpr double kDifferenceRounding = 1e-12;
+// A few roundings of values of order 1 at both ends of a step of 1e-5.
+constexpr double kDifferenceRounding = 10 * std::numeric_limits<double>::epsilon() / 1e-5;
 
 TEST(Gradient, OfAParabolaIsExactInsideAndAtTheBounds) {
   const auto parabola = [](std::span<const double> x) { return 3 * x[0] * x[0] - x[0] + 2 * x[1] * (1 - x[1]); };
   with_strand(2, parabola, [](Strand& strand) {
-    for (const double u : {0.0, 1e-9, 0.0005, 0.3, 0.9995, 1.0}) {
+    for (const double u : {0.0, 1e-9, 5e-6, 0.3, 1 - 5e-6, 1.0}) {
       std::vector<double> gradient(2);
       strand.gradient(std::vector{u, 1 - u}, gradient);
       EXPECT_NEAR(gradient[0], 6 * u - 1, kDifferenceRounding);
@@ -155,13 +154,25 @@ TEST(Gradient, OfAParabolaIsExactInsideAndAtTheBounds) {
 }
 
 TEST(Gradient, LooksAwayFromInfeasiblePoints) {
-  const auto line = [](std::span<const double> x) { return x[0] < 0.5 ? kNan : 2 * x[0]; };
+  const auto line = [](std::span<const double> x) { return x[0] < 0.5 ? kNaN : 2 * x[0]; };
   with_strand(1, line, [](Strand& strand) {
     std::vector<double> gradient(1);
     strand.gradient(std::vector{0.5}, gradient);
     EXPECT_NEAR(gradient[0], 2, kDifferenceRounding);
     strand.gradient(std::vector{0.1}, gradient);
     EXPECT_EQ(gradient[0], 0);
+  });
+}
+
+TEST(Gradient, OfAnObjectiveOfShortSmoothPiecesIsThatOfThePiece) {
+  // Pieces of a five-thousandth of the box, each set off against the next.
+  const auto pieces = [](std::span<const double> x) { return 3 * x[0] + 0.1 * std::fmod(std::floor(5000 * x[0]), 2); };
+  with_strand(1, pieces, [](Strand& strand) {
+    for (const double middle : {0.1001, 0.5003, 0.7777}) {
+      std::vector<double> gradient(1);
+      strand.gradient(std::vector{middle}, gradient);
+      EXPECT_NEAR(gradient[0], 3, kDifferenceRounding) << middle;
+    }
   });
 }
 

@@ -13,14 +13,9 @@
 namespace softland {
 namespace {
 
+using landscapes::bowl;
 using landscapes::box;
 using namespace std::chrono_literals;
-
-double bowl(std::span<const double> x) {
-  double sum = 0;
-  for (const double coordinate : x) sum += (coordinate - 0.3) * (coordinate - 0.3);
-  return sum;
-}
 
 /// A landing, infeasible in places in three ways, and slower to evaluate in one half than in the other.
 double difficult(std::span<const double> x) {

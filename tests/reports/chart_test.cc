@@ -33,7 +33,7 @@ std::vector<double> unpacked(const json& column) {
 }
 
 TEST(Charts, FollowTheParts) {
-  json result = softland::testing::sample_optimize_result(600);
+  json result = softland::test::sample_optimize_result(600);
   EXPECT_EQ(ids(picture(result)),
             (std::vector<std::string>{"gap", "landing", "drive-0", "drive-1", "velocity", "force", "search"}));
   result.erase("search");
@@ -44,21 +44,21 @@ TEST(Charts, FollowTheParts) {
 }
 
 TEST(Charts, EnlargeTheLandingAndTheHighestRebound) {
-  const Picture drawn = picture(softland::testing::sample_optimize_result(6000));
+  const Picture drawn = picture(softland::test::sample_optimize_result(6000));
   EXPECT_EQ(drawn.charts[0].x_home[1], 600e-6);
   EXPECT_GT(drawn.charts[1].x_home[1], 60e-6);
   EXPECT_LT(drawn.charts[1].x_home[1], 150e-6);
 }
 
 TEST(Charts, EnlargeNoLandingWhereThereIsNone) {
-  json result = softland::testing::sample_simulate_result(600);
+  json result = softland::test::sample_simulate_result(600);
   for (json& gap : result["curves"]["best"]["tip_gap_m"]) gap = 1e-6 + std::abs(gap.get<double>());
   for (json& force : result["curves"]["best"]["contact_force_N"]) force = 0;
   EXPECT_EQ(ids(picture(result)), (std::vector<std::string>{"gap", "drive-0", "drive-1", "velocity"}));
 }
 
 TEST(Charts, ShowNanometresAroundThePlane) {
-  json result = softland::testing::sample_optimize_result(6000);
+  json result = softland::test::sample_optimize_result(6000);
   const auto band = [&] { return picture(result).charts.at(1).y_home.value(); };
   const std::vector<double> gaps = result["curves"]["baseline"]["tip_gap_m"];
   const double deepest = *std::min_element(gaps.begin(), gaps.end());
@@ -72,7 +72,7 @@ TEST(Charts, ShowNanometresAroundThePlane) {
 }
 
 TEST(Charts, WriteNoWordsOnReboundsTooSmallToSee) {
-  json result = softland::testing::sample_optimize_result(6000);
+  json result = softland::test::sample_optimize_result(6000);
   result["curves"]["best"]["rebounds"] = {{50e-6, 52e-6, 20e-9, 51e-6}};
   const auto words = [&](std::size_t chart) {
     const Picture drawn = picture(result);
@@ -95,14 +95,14 @@ TEST(Charts, DropRowsWithoutATimeAndTimesThatRunBackwards) {
 }
 
 TEST(Charts, DrawADriveFromRestToTheEndOfTheWindow) {
-  const Picture drawn = picture(softland::testing::sample_optimize_result(600));
+  const Picture drawn = picture(softland::test::sample_optimize_result(600));
   const Table& main = drawn.tables.at("best/main");
   EXPECT_EQ(main.at("time_s"), (std::vector<double>{0, 0, 600e-6}));
   EXPECT_EQ(main.at("level"), (std::vector<double>{0, 28.087, 28.087}));
 }
 
 TEST(Charts, DrawAForceFactorFromOneWithoutAUnit) {
-  json result = softland::testing::sample_optimize_result(600);
+  json result = softland::test::sample_optimize_result(600);
   for (const char* run : {"best", "baseline"}) result[run]["waveforms"] = {{"dispersion", {{0, 1.25}}}};
   const Picture drawn = picture(result);
   EXPECT_EQ(drawn.tables.at("best/dispersion").at("level"), (std::vector<double>{1, 1.25, 1.25}));
@@ -115,7 +115,7 @@ TEST(Charts, DrawAForceFactorFromOneWithoutAUnit) {
 }
 
 TEST(Charts, SurvivePackingToOnePartInTenMillion) {
-  const Picture drawn = picture(softland::testing::sample_optimize_result(5000));
+  const Picture drawn = picture(softland::test::sample_optimize_result(5000));
   const json packed = chart_json(drawn, 6000);
   const std::vector<double>& gap = drawn.tables.at("best").at("tip_gap_m");
   const std::vector<double> back = unpacked(packed.at("tables").at("best").at("tip_gap_m"));
@@ -125,7 +125,7 @@ TEST(Charts, SurvivePackingToOnePartInTenMillion) {
 }
 
 TEST(Charts, KeepExtremesWhenThinned) {
-  const Picture drawn = picture(softland::testing::sample_optimize_result(20000));
+  const Picture drawn = picture(softland::test::sample_optimize_result(20000));
   const json packed = chart_json(drawn, 6000);
   for (const char* column : {"tip_gap_m", "contact_force_N", "tip_velocity_m_s"}) {
     const std::vector<double>& before = drawn.tables.at("baseline").at(column);

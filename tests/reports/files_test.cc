@@ -3,21 +3,23 @@
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
 #include <iterator>
 
+#include "base/output_lost.h"
+#include "base/read_file.h"
 #include "base/require.h"
-#include "temporary_folder.h"
+#include "tests/support/access_rights.h"
+#include "tests/support/temporary_folder.h"
 
 namespace softland {
 namespace {
 
 using nlohmann::json;
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
-using testing::TemporaryFolder;
 namespace fs = std::filesystem;
 
 std::string content(const fs::path& path) {
@@ -36,6 +38,15 @@ std::string refusal(const fs::path& path, std::string_view words) {
     return error.what();
   }
   return "was not refused";
+}
+
+std::string loss(const fs::path& path, std::string_view words) {
+  try {
+    write_whole(path, words);
+  } catch (const OutputLost& error) {
+    return error.what();
+  }
+  return "was not lost";
 }
 
 TEST(WriteWhole, WritesReplacesAndLeavesNothingElse) {
@@ -75,12 +86,11 @@ TEST(WriteWhole, RemovesItsTemporaryFileWhenTheTargetIsAFolder) {
 }
 
 TEST(WriteWhole, KeepsTheOldFileWhenTheFolderIsReadOnly) {
-  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "kept";
   write_whole(file, "old");
   fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_THAT(refusal(file, "new"), HasSubstr("Permission denied"));
+  test::expect_where_access_rights_bind([&] { EXPECT_THAT(refusal(file, "new"), HasSubstr("Permission denied")); });
   fs::permissions(folder.path(), fs::perms::owner_all);
   EXPECT_EQ(content(file), "old");
 }
@@ -96,12 +106,46 @@ TEST(WriteWhole, KeepsTheOldFileWhenThereIsNoRoomForTheNewOne) {
   tight.rlim_cur = 4096;
   const auto before = std::signal(SIGXFSZ, SIG_IGN);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
-  const std::string message = refusal(file, std::string(10'000, 'x'));
+  const std::string message = loss(file, std::string(10'000, 'x'));
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &usual), 0);
   std::signal(SIGXFSZ, before);
   EXPECT_THAT(message, HasSubstr("kept: cannot write: File too large"));
   EXPECT_EQ(content(file), "old");
   EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(WriteWhole, LeavesALinkALink) {
+  const TemporaryFolder folder;
+  write_whole(folder.path() / "file", "old");
+  fs::create_symlink("file", folder.path() / "link");
+  write_whole(folder.path() / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+  EXPECT_EQ(content(folder.path() / "file"), "new");
+}
+
+TEST(WriteWhole, ReplacesNoDeviceAndNothingThatWasRead) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe", input = folder.path() / "input";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(refusal(pipe, "x"), HasSubstr("pipe: is no regular file, so it is not replaced"));
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  write_whole(input, "old");
+  static_cast<void>(read_file(input));
+  fs::create_symlink("input", folder.path() / "link");
+  for (const char* name : {"input", "link"}) {
+    EXPECT_THROW(check_writable(folder.path() / name), InvalidInput);
+    EXPECT_THAT(refusal(folder.path() / name, "new"), HasSubstr("is read by this run, so its output does not replace it"));
+  }
+  EXPECT_EQ(content(input), "old");
+  EXPECT_EQ(entries(folder.path()), 3u);
+}
+
+TEST(WriteWhole, IsAskedBeforeWhetherItMay) {
+  const TemporaryFolder folder;
+  check_writable(folder.path() / "new");
+  EXPECT_EQ(entries(folder.path()), 0u);
+  EXPECT_THROW(check_writable(folder.path() / "missing/new"), InvalidInput);
+  EXPECT_THROW(check_writable(folder.path()), InvalidInput);
 }
 
 TEST(TrajectoryCsv, HasOneLinePerRowAndReadsBackExactly) {

@@ -8,8 +8,8 @@ namespace softland::internal {
 namespace {
 
 using nlohmann::json;
-using softland::testing::sample_optimize_result;
-using softland::testing::sample_simulate_result;
+using softland::test::sample_optimize_result;
+using softland::test::sample_simulate_result;
 
 constexpr std::size_t few_rows = 601;
 
@@ -25,8 +25,8 @@ std::string sentence(const json& result) { return plain(headline(result).whole()
 TEST(Headline, OfASoftLandingNamesBothClosings) {
   EXPECT_EQ(sentence(sample_optimize_result(few_rows)),
             "Softland's waveform closes the switch at 44.5 µs with no rebound; the plain step first touches at 23.2 µs, then "
-            "bounces 57 times up to "
-            "803 nm and settles after 374 µs.");
+            "bounces about 57 times up to "
+            "803 nm and settles after about 374 µs.");
 }
 
 TEST(Headline, SaysWhenTheGoalWasNotMet) {
@@ -40,7 +40,7 @@ TEST(Headline, SaysWhenTheGoalWasNotMet) {
   EXPECT_EQ(sentence(result),
             "The goal was not met. Softland's waveform first touches at 44.5 µs, then bounces once up to 12.3 nm and settles "
             "after 61.0 µs; the plain step "
-            "first touches at 23.2 µs, then bounces 57 times up to 803 nm and settles after 374 µs.");
+            "first touches at 23.2 µs, then bounces about 57 times up to 803 nm and settles after about 374 µs.");
 }
 
 TEST(Headline, SaysWhenNothingTouches) {
@@ -63,14 +63,15 @@ TEST(Headline, SaysWhenASwitchHasNotSettled) {
   result["metrics"]["settled"] = false;
   result["metrics"]["permanent_contact_time_s"] = nullptr;
   result["errors"] = nullptr;
-  EXPECT_EQ(sentence(result),
-            "The switch first touches at 23.2 µs, then bounces 57 times up to 803 nm and has not settled when the window ends at "
-            "600 µs.");
+  EXPECT_EQ(
+      sentence(result),
+      "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and has not settled when the window ends at "
+      "600 µs.");
 }
 
 TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
   EXPECT_EQ(sentence(sample_simulate_result(few_rows)),
-            "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and settles after about 374 µs.");
+            "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and settles after about 370 µs.");
 }
 
 TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
@@ -106,7 +107,8 @@ TEST(Captions, StateWhatTheNumbersSay) {
   const json result = sample_optimize_result(few_rows);
   EXPECT_EQ(plain(gap_caption(result)),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The plain step "
-            "bounces 57 times, up to 803 nm, until 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and stays closed.");
+            "bounces about 57 times, up to 803 nm, until about 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and "
+            "stays closed.");
   EXPECT_EQ(plain(landing_caption(result)),
             "The same gap in a narrow band around the contact plane; below it the contact is pressed. The plain step reaches the "
             "plane with 133 mm/s and rises 803 nm above it again; softland's waveform reaches the plane with 900 µm/s and does "
@@ -119,7 +121,8 @@ TEST(Captions, StateWhatTheNumbersSay) {
             "Closed and at rest, the contact "
             "carries 2.10 µN.");
   EXPECT_EQ(plain(waveform_caption(result, "piezo")),
-            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV; the plain step stays at 0 V.");
+            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, at most 121 kV/s; the plain step "
+            "stays at 0 V.");
   EXPECT_EQ(plain(waveform_caption(result, "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
   EXPECT_EQ(plain(checks_caption(result)),
             "1 of 2 confirmations of the winner closes without a rebound; the highest rebound is 3.20 nm (“6 modes”).");
@@ -172,7 +175,7 @@ TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
   const json result = sample_simulate_result(few_rows);
   EXPECT_EQ(plain(gap_caption(result)),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
-            "bounces about 57 times, up to 803 nm, until about 374 µs.");
+            "bounces about 57 times, up to 803 nm, until about 370 µs.");
   EXPECT_EQ(plain(force_caption(result)),
             "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
 }

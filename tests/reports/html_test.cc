@@ -37,7 +37,7 @@ std::vector<std::string> loads(const std::string& page) {
 }
 
 TEST(HtmlReport, LoadsNothing) {
-  EXPECT_THAT(loads(html_report(testing::sample_optimize_result(2000))), ::testing::IsEmpty());
+  EXPECT_THAT(loads(html_report(test::sample_optimize_result(2000))), ::testing::IsEmpty());
   EXPECT_THAT(loads("<img src=\"https://a\"> <p style='background:url(x.png)'>"), ::testing::ElementsAre("https://a", "x.png"));
 }
 
@@ -47,7 +47,7 @@ TEST(HtmlReport, ForbidsTheBrowserToLoadAnything) {
 }
 
 TEST(HtmlReport, StaysBelowAMegabyteForTwentyThousandRowsPerCurveAndALongScene) {
-  json result = testing::sample_optimize_result(20000);
+  json result = test::sample_optimize_result(20000);
   // Noise on every column, so that no row looks dispensable.
   for (const char* run : {"best", "baseline"}) {
     for (const char* column : {"tip_gap_m", "tip_velocity_m_s", "contact_force_N"}) {
@@ -68,7 +68,7 @@ TEST(HtmlReport, StaysBelowAMegabyteForTwentyThousandRowsPerCurveAndALongScene) 
 
 TEST(HtmlReport, EscapesHostileText) {
   const std::string hostile = "</title></script><script>alert(1)</script><img src=x onerror='alert(2)'>\" {{data}} <!--";
-  json result = testing::sample_optimize_result(600);
+  json result = test::sample_optimize_result(600);
   for (const char* key :
        {"title", "command", "version", "target", "actuator", "optimizer", "termination", "budget", "scene_toml"})
     result[key] = hostile;
@@ -80,21 +80,21 @@ TEST(HtmlReport, EscapesHostileText) {
   result["best"]["waveforms"][hostile] = {{0, 0}, {1e-6, 1}};
   result["search"]["value_name"] = hostile;
   const std::string page = html_report(result);
-  const std::string tame = html_report(testing::sample_optimize_result(600));
+  const std::string tame = html_report(test::sample_optimize_result(600));
   for (const char* tag : {"<script", "</script", "<img", "<title", "</title", "<!--"})
     EXPECT_EQ(occurrences(page, tag), occurrences(tame, tag)) << tag;
   EXPECT_THAT(page, HasSubstr("&lt;/title&gt;&lt;/script&gt;&lt;script&gt;alert(1)"));
 }
 
 TEST(HtmlReport, SaysEverythingWithoutAScript) {
-  const std::string page = html_report(testing::sample_optimize_result(600));
+  const std::string page = html_report(test::sample_optimize_result(600));
   EXPECT_THAT(
       page,
       HasSubstr(
           "<h1>Softland&#39;s waveform closes the switch at 44.5\u00a0µs with no rebound<span class=\"rest\">; the plain step"));
   EXPECT_EQ(occurrences(page, "<svg class=\"still\""), 7u);
   for (const char* words :
-       {"8.4 times shorter", "803.1\u00a0nm", "ill-conditioned", "tolerance 1e-9", "piezo.level_1</th><td>173.270\u00a0mV",
+       {"8.4 times shorter", "803.1\u00a0nm", "ill-conditioned", "tolerance 1e-9", "piezo.level_1</th><td>173.27\u00a0mV",
         "<p>The goal is met.</p>", "<td>57</td><td>0</td>", "With softland 0.1.0, seed 1:", "multi-start Nelder-Mead", "0.1.0",
         "youngs_modulus = &quot;78 GPa&quot;", "softland simulate out/best.toml", "plate_strain is off", "15.46\u00a0kHz"}) {
     EXPECT_THAT(page, HasSubstr(words));
@@ -102,15 +102,49 @@ TEST(HtmlReport, SaysEverythingWithoutAScript) {
   EXPECT_THAT(page, Not(HasSubstr("{{")));
 }
 
+TEST(HtmlReport, ListsParametersInTheOrderOfTimeWithTheirBounds) {
+  json result = test::sample_optimize_result(300);
+  result["best"]["bounds"] = {
+      {"piezo.level_1_V", {-1, 1}}, {"piezo.level_2_V", {-1, 0.603}}, {"piezo.time_1_s", {19.7e-6, 90e-6}}};
+  const std::string page = html_report(result);
+  std::size_t before = 0;
+  for (const char* name : {"piezo.level_1<", "piezo.time_1<", "piezo.level_2<", "piezo.time_2<"}) {
+    const std::size_t at = page.find(std::string("<th scope=\"row\">") + name);
+    ASSERT_NE(at, std::string::npos) << name;
+    EXPECT_GT(at, before) << name;
+    before = at;
+  }
+  EXPECT_THAT(page, HasSubstr("<td>−1\u00a0V to 1\u00a0V</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>−1\u00a0V to 603\u00a0mV <span class=\"bound\">at its upper bound</span></td>"));
+  EXPECT_THAT(page, HasSubstr("<td>19.7\u00a0µs to 90\u00a0µs <span class=\"bound\">at its lower bound</span></td>"));
+}
+
+TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
+  json result = test::sample_optimize_result(300);
+  EXPECT_THAT(html_report(result), Not(HasSubstr("id=\"sketch\"")));
+  result["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
+  result["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};
+  result["scene"]["electrode"]["main"] = {{"span", {"60 um", "240 um"}}};
+  result["scene"]["driver"]["piezo"] = {{"min_voltage", "-1 V"}, {"max_voltage", "1 V"}, {"max_slew", "1e6 V/s"}};
+  const std::string page = html_report(result);
+  for (const char* words : {"id=\"sketch\"", "length 250\u00a0µm", "to the contact 2\u00a0µm", "to the electrode 3.5\u00a0µm",
+                            "electrode main", "Peak voltage, piezo</th>", "121\u00a0kV/s", "most the driver gives",
+                            "least the driver gives", "The driver gives −1\u00a0V to 1\u00a0V, at most 1\u00a0MV/s."})
+    EXPECT_THAT(page, HasSubstr(words)) << words;
+  EXPECT_THAT(page, HasSubstr("± integration only"));
+  result["certified"] = json::object();
+  EXPECT_THAT(html_report(result), HasSubstr("± certified"));
+}
+
 TEST(HtmlReport, OfASingleRunHasNoBaselineAndNoSearch) {
-  const std::string page = html_report(testing::sample_simulate_result(600));
+  const std::string page = html_report(test::sample_simulate_result(600));
   EXPECT_THAT(page, HasSubstr("<h1>The switch first touches at 23.2\u00a0µs"));
   for (const char* words : {"id=\"figure-search\"", "Plain step</th>", "class=\"before\"", "<h2>Confirmations"})
     EXPECT_THAT(page, Not(HasSubstr(words)));
 }
 
 TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
-  const json whole = testing::sample_optimize_result(300);
+  const json whole = test::sample_optimize_result(300);
   for (const auto& [key, value] : whole.items()) {
     for (const json& stand_in : {json(), json("text"), json(3.5), json::array(), json::object(), json{{1, 2}, "x", nullptr}}) {
       json result = whole;
@@ -133,7 +167,7 @@ TEST(HtmlReport, BearsAnyPartMissingNullOrOfAnotherType) {
 }
 
 TEST(HtmlReport, SaysWhyAFigureIsMissing) {
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   result["best"]["metrics"]["permanent_contact_time_s"] = nullptr;
   result["best"]["metrics"]["settled"] = false;
   EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">not settled</span>"));
@@ -141,18 +175,18 @@ TEST(HtmlReport, SaysWhyAFigureIsMissing) {
   EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">no contact</span>"));
   result["best"]["metrics"] = json::object();
   result["best"]["metrics"]["initial_contact_time_s"] = 1e-6;
-  EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after\">—</span>"));
+  EXPECT_THAT(html_report(result), HasSubstr("<span class=\"after words\">not known</span>"));
 }
 
 TEST(HtmlReport, OfARunWithoutContactRepeatsNoFourTimes) {
-  json result = testing::sample_simulate_result(300);
+  json result = test::sample_simulate_result(300);
   EXPECT_THAT(html_report(result), HasSubstr("<div class=\"key\">"));
   result["metrics"] = {{"initial_contact_time_s", nullptr}, {"settled", false}};
   EXPECT_THAT(html_report(result), Not(HasSubstr("<div class=\"key\">")));
 }
 
 TEST(HtmlReport, BearsTextThatIsNotUtf8) {
-  json result = testing::sample_optimize_result(300);
+  json result = test::sample_optimize_result(300);
   result["title"] = "\xff\xfe";
   result["best"]["waveforms"]["\xff"] = {{0, 1}};
   result["scene_toml"] = nullptr;
@@ -176,7 +210,7 @@ TEST(PageFiles, AreTheFilesOfTheSourceTree) {
 }
 
 TEST(HtmlReport, GivesIllConditionedFiguresAsMedianAndRange) {
-  json result = softland::testing::sample_simulate_result(600);
+  json result = softland::test::sample_simulate_result(600);
   result["certified"]["bounce_count"] = {{"median", 54.5}, {"low", 44}, {"high", 60}, {"runs", 16}};
   result["cloud"] = {{"runs", 16}, {"grazing_rebound", nullptr}};
   const std::string page = html_report(result);

@@ -13,8 +13,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::filesystem::path folder = argv[1];
-  const auto optimize = softland::testing::sample_optimize_result();
-  const auto simulate = softland::testing::sample_simulate_result();
+  const auto optimize = softland::test::sample_optimize_result();
+  const auto simulate = softland::test::sample_simulate_result();
   softland::write_whole(folder / "optimize.html", softland::html_report(optimize));
   softland::write_whole(folder / "simulate.html", softland::html_report(simulate));
   softland::write_whole(folder / "optimize.svg", softland::svg_gap_chart(optimize));

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace softland::testing {
+namespace softland::test {
 namespace {
 
 using nlohmann::json;
@@ -236,4 +236,4 @@ json sample_simulate_result(std::size_t rows_per_curve) {
   return result;
 }
 
-}  // namespace softland::testing
+}  // namespace softland::test

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
-namespace softland::testing {
+namespace softland::test {
 
 /// A combined switch whose plain step touches at 23.186 us and bounces 57 times up to 803.1 nm until 374 us; the winner lands
 /// at 44.5 us.
@@ -13,4 +13,4 @@ namespace softland::testing {
 /// The plain step of the above as the result of `simulate`.
 [[nodiscard]] nlohmann::json sample_simulate_result(std::size_t rows_per_curve = 12000);
 
-}  // namespace softland::testing
+}  // namespace softland::test

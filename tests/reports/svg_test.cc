@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST(SvgPicture, IsWellFormedAndTellsTheFinding) {
-  const std::string svg = svg_gap_chart(testing::sample_optimize_result(6000));
-  EXPECT_EQ(testing::xml_fault(svg), "");
+  const std::string svg = svg_gap_chart(test::sample_optimize_result(6000));
+  EXPECT_EQ(test::xml_fault(svg), "");
   EXPECT_THAT(svg, HasSubstr("<title>Softland&#39;s waveform closes the switch at 44.5\u00a0µs with no rebound; the plain step"));
   EXPECT_THAT(svg, HasSubstr("Time (µs)"));
   EXPECT_THAT(svg, HasSubstr("Gap (nm)"));
@@ -28,11 +28,11 @@ TEST(SvgPicture, IsWellFormedAndTellsTheFinding) {
 }
 
 TEST(SvgPicture, IsWellFormedForHostileAndForEmptyResults) {
-  json result = testing::sample_simulate_result(600);
+  json result = test::sample_simulate_result(600);
   result["title"] = "a <b> & \"c\" \x01 <script>";
   result["best"]["waveforms"]["]]> <x>"] = {{0, 1}};
-  EXPECT_EQ(testing::xml_fault(svg_gap_chart(result)), "");
-  EXPECT_EQ(testing::xml_fault(svg_gap_chart(json::object())), "");
+  EXPECT_EQ(test::xml_fault(svg_gap_chart(result)), "");
+  EXPECT_EQ(test::xml_fault(svg_gap_chart(json::object())), "");
   EXPECT_THROW((void)svg_gap_chart(json::array()), InvalidInput);
 }
 
@@ -46,9 +46,9 @@ TEST(SvgPicture, OfACurveThatStandsStillHasFiniteCoordinates) {
 }
 
 TEST(XmlFault, FindsFaults) {
-  EXPECT_EQ(testing::xml_fault("<a b=\"1\"><c/>x &amp; y</a>\n"), "");
+  EXPECT_EQ(test::xml_fault("<a b=\"1\"><c/>x &amp; y</a>\n"), "");
   for (const char* bad : {"", "<a>", "<a></b>", "<a b=1/>", "<a b=\"1\" b=\"2\"/>", "<a>&x</a>", "<a/><b/>", "<a b=\"<\"/>"}) {
-    EXPECT_NE(testing::xml_fault(bad), "") << bad;
+    EXPECT_NE(test::xml_fault(bad), "") << bad;
   }
 }
 

@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <sstream>
 
+#include "reports/html.h"
 #include "sample_result.h"
+#include "tests/support/printed.h"
 
 namespace softland {
 namespace {
 
 using nlohmann::json;
-using softland::testing::sample_optimize_result;
+using softland::test::sample_optimize_result;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -24,6 +26,41 @@ TEST(Wrapped, BreaksAtBlanksOnly) {
   EXPECT_EQ(wrapped("one two", 6), "one\ntwo");
   EXPECT_EQ(wrapped("a longer-than-that word", 6), "a\nlonger-than-that\nword");
   EXPECT_EQ(wrapped("µµ µµ µ", 5), "µµ µµ\nµ") << "columns, not bytes";
+}
+
+/// What a reader of the page sees as text: without scripts, pictures, the listed scene and tags.
+std::string read_aloud(const std::string& page) {
+  std::string text;
+  for (std::size_t at = page.find("<main>"); at < page.size();) {
+    const std::size_t tag = std::min(page.find('<', at), page.size());
+    text += page.substr(at, tag - at) + " ";
+    if (tag == page.size()) break;
+    std::string_view end = ">";
+    for (const std::string_view hidden : {"script", "svg", "pre"}) {
+      if (page.compare(tag + 1, hidden.size(), hidden) == 0)
+        end = hidden == "svg" ? "</svg>" : hidden == "pre" ? "</pre>" : "</script>";
+    }
+    at = std::min(page.find(end, tag), page.size() - end.size()) + end.size();
+  }
+  return text;
+}
+
+TEST(EveryReport, SaysNoMoreThanIsKnown) {
+  for (json result : {sample_optimize_result(few_rows), softland::test::sample_simulate_result(few_rows)}) {
+    EXPECT_EQ(absurd_number(text_report(result)), "");
+    // Figures of a landing so soft that its remainders are those of arithmetic, and errors of a run judged by one like it.
+    for (const char* part : {"metrics", "errors"}) {
+      for (auto& [key, value] : result[part].items()) {
+        if (value.is_number_float() && !key.starts_with("initial")) value = 35.3e-18 * (part[0] == 'e' ? 1e-3 : 1);
+      }
+    }
+    result["errors"]["initial_contact_time_s"] = 26e-18;
+    result["metrics"]["major_bounce_height_m"] = 35.3e-15;
+    result["best"]["metrics"] = result["metrics"];
+    result["best"]["parameters"]["piezo.phase_rad"] = -1.23456789012;
+    EXPECT_EQ(absurd_number(text_report(result)), "") << text_report(result);
+    EXPECT_EQ(absurd_number(read_aloud(html_report(result))), "");
+  }
 }
 
 TEST(TextReport, KeepsItsSentencesWithinAHundredColumns) {
@@ -44,8 +81,18 @@ TEST(TextReport, PassesOverWhatIsNotThere) {
     EXPECT_NO_THROW((void)text_report(json::parse(text))) << text;
 }
 
+TEST(TextReport, SaysWhoGivesTheRangeOfTheSettlingTimeAndTheCount) {
+  json result = softland::test::sample_simulate_result(few_rows);
+  EXPECT_THAT(text_report(result), HasSubstr("softland simulate --certify"));
+  result["certified"] = json::object();
+  EXPECT_THAT(text_report(result), Not(HasSubstr("--certify")));
+  result.erase("certified");
+  result["metrics"]["bounce_count"] = 0;
+  EXPECT_THAT(text_report(result), Not(HasSubstr("--certify"))) << "a landing without rebounds is not chaotic";
+}
+
 TEST(TextReport, GivesIllConditionedFiguresAsMedianAndRange) {
-  json result = softland::testing::sample_simulate_result(few_rows);
+  json result = softland::test::sample_simulate_result(few_rows);
   EXPECT_THAT(text_report(result), Not(HasSubstr("Certified")));
   result["certified"] = json::object();
   EXPECT_THAT(text_report(result), HasSubstr("no figure is ill-conditioned"));

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace softland::testing {
+namespace softland::test {
 
 /// Empty when `text` is one well-formed element (names nest, attributes quoted once each, entities known); else what is wrong.
 inline std::string xml_fault(std::string_view text) {
@@ -64,4 +64,4 @@ inline std::string xml_fault(std::string_view text) {
   return root_closed ? "" : "no root";
 }
 
-}  // namespace softland::testing
+}  // namespace softland::test

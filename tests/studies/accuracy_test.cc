@@ -27,7 +27,7 @@ const AccuracyStudy& study_of_first_bounces() {
   return study;
 }
 
-std::vector<AccuracyRow> rows_of(const AccuracyStudy& study, Integrator integrator, double points) {
+std::vector<AccuracyRow> rows_of(const AccuracyStudy& study, Integrator integrator, std::optional<double> points) {
   std::vector<AccuracyRow> rows;
   for (const AccuracyRow& row : study.rows) {
     if (row.integrator == integrator && row.points_per_length == points) rows.push_back(row);
@@ -189,9 +189,34 @@ TEST(Accuracy, OfAPlateKnowsNoOtherModesAndWithoutContactNoRebounds) {
   const AccuracyStudy study = study_accuracy(prepare(scene("purdue-nickel.toml")), few_settings());
   EXPECT_EQ(study.status, Status::done);
   EXPECT_TRUE(study.modes.empty());
+  EXPECT_EQ(study.rows.size(), 3 * all_integrators.size()) << "the points do not matter";
+  for (const AccuracyRow& row : study.rows) EXPECT_FALSE(row.points_per_length);
   EXPECT_TRUE(study.conditioned[0]);
   EXPECT_FALSE(study.conditioned[2]) << "the run ends at first touch";
   EXPECT_TRUE(std::isnan(study.rows.front().errors[3]));
+}
+
+// The pressures of its film are states: a reference at 1e-13 takes many seconds.
+TEST(Accuracy, OfASlowSceneHasTheReferenceThatItsTimeAllows) {
+  const Prepared p = prepare(scene("hung-senturia.toml", {"structure.modes=1", "simulate.accuracy=1e-2"}));
+  const AccuracyStudy study = study_accuracy(p, {.tolerances = {1e-3, 1e-6, 1e-9},
+                                                 .points = {24},
+                                                 .runs = 1,
+                                                 .most_seconds = 0.5,
+                                                 .reference_seconds = 2,
+                                                 .all_seconds = 1});
+  ASSERT_EQ(study.status, Status::done) << study.message;
+  EXPECT_GT(study.reference.tolerance, 1e-12);
+  EXPECT_NE(study.message, "");
+  EXPECT_TRUE(std::isfinite(study.resolution[0]));
+  for (const AccuracyRow& row : study.rows) {
+    const bool judged =
+        row.tolerance > 9 * study.reference.tolerance && 2 * *row.points_per_length <= study.reference.points_per_length;
+    const bool cut = row.missing.starts_with("cut") || row.missing.find("took more") != std::string::npos;
+    if (!cut) {
+      EXPECT_EQ(row.missing == "not tried: the reference is not better", !judged) << row.tolerance << row.missing;
+    }
+  }
 }
 
 TEST(Accuracy, WithoutATouchHasNothingToStudy) {

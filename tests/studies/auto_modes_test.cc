@@ -14,14 +14,9 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-SceneFile gold_at_17_volts(const char* modes) {
-  SceneFile file = gold(
-      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
-  file.set(std::string("structure.modes=") + modes);
-  return file;
-}
+SceneFile gold_with_modes(const char* modes) { return gold_at_17_volts({std::string("structure.modes=") + modes}); }
 
-double rebound(const char* modes) { return simulate(prepare(gold_at_17_volts(modes)), false).metrics.major_bounce_height; }
+double rebound(const char* modes) { return simulate(prepare(gold_with_modes(modes)), false).metrics.major_bounce_height; }
 
 TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
   // Three to five modes agree, and are wrong by a tenth.
@@ -30,30 +25,41 @@ TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
   EXPECT_NEAR(rebound("4"), rebound("5"), auto_modes_tolerance * rebound("5"));
   EXPECT_GT(std::abs(rebound("4") - converged), 0.08 * converged);
 
-  const AutoModes found = choose_modes(gold_at_17_volts("auto"));
+  const AutoModes found = choose_modes(gold_with_modes("auto"));
   EXPECT_TRUE(found.settled());
   EXPECT_GE(found.modes, 8);
   EXPECT_LE(found.modes, 11);
   EXPECT_NEAR(rebound(std::to_string(found.modes).c_str()), converged, 2 * auto_modes_tolerance * converged);
 }
 
+TEST(AutoModes, SayWhenNoClosingCouldBeJudged) {
+  SceneFile file = gold_with_modes("auto");
+  file.set("simulate.duration=20 us");
+  const AutoModes found = choose_modes(file);
+  EXPECT_FALSE(found.touches);
+  EXPECT_THAT(found.note(), HasSubstr("the pull-in voltages, the only figures that are judged"));
+  EXPECT_THAT(found.note(), testing::Not(HasSubstr("t_i, v_i, the highest rebound")));
+}
+
 TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
-  const Prepared p = prepare(gold_at_17_volts("auto"));
+  const Prepared p = prepare(gold_with_modes("auto"));
   const int modes = p.scene.device.structure.modes;
   EXPECT_EQ(p.device.modes(), modes);
   EXPECT_FALSE(p.scene.auto_modes);
-  const std::string note =
-      R"(structure.modes = "auto": )" + std::to_string(modes) + " modes; further ones move no figure by more than ";
+  const std::string note = R"(structure.modes = "auto": )" + std::to_string(modes) +
+                           " modes; further ones move t_i, v_i, the highest rebound of the first period after contact and the "
+                           "pull-in voltages by at most ";
   EXPECT_THAT(p.scene.warnings, Contains(HasSubstr(note)));
+  EXPECT_THAT(p.scene.warnings, Contains(HasSubstr("B_H, N_B and t_p, are not judged and may move more")));
   EXPECT_THAT(resolved(p.scene, p.voltage_units()).text(), HasSubstr("modes = " + std::to_string(modes) + "\n"));
 }
 
 TEST(AutoModes, AreChosenBeforeTheEffects) {
-  SceneFile file = gold_at_17_volts("auto");
+  SceneFile file = gold_with_modes("auto");
   file.set("structure.damping_ratio=1e-9");
   file.set("simulate.effects=auto");
   const Prepared p = prepare(file);
-  EXPECT_EQ(p.scene.device.structure.modes, choose_modes(gold_at_17_volts("auto")).modes);
+  EXPECT_EQ(p.scene.device.structure.modes, choose_modes(gold_with_modes("auto")).modes);
   ASSERT_TRUE(p.effects);
   ASSERT_EQ(p.effects->choice.left_out.size(), 1u);
   EXPECT_EQ(p.effects->choice.left_out[0].what.effect, "structure.damping_ratio");
@@ -61,7 +67,7 @@ TEST(AutoModes, AreChosenBeforeTheEffects) {
 }
 
 TEST(AutoModes, OfASwitchThatDoesNotCloseSettleItsPullInVoltage) {
-  SceneFile file = gold_at_17_volts("auto");
+  SceneFile file = gold_with_modes("auto");
   file.set("waveform.main.level=3 V");
   const AutoModes found = choose_modes(file);
   EXPECT_EQ(found.modes, 1) << "one mode gives Vsp within 0.1 %";

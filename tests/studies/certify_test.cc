@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "model/constants.h"
 #include "scenes.h"
 #include "tests/support/random_scenes.h"
 
@@ -19,7 +20,7 @@ using testing::Contains;
 using testing::IsEmpty;
 using testing::Not;
 
-Prepared gold_at_17_volts(std::string_view duration, std::string_view accuracy = "1e-6") {
+Prepared prepared_gold(std::string_view duration, std::string_view accuracy = "1e-6") {
   return prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
                        fmt::format("simulate.duration={}", duration), fmt::format("simulate.accuracy={}", accuracy)}));
 }
@@ -44,7 +45,7 @@ std::pair<int, int> coverage(const Prepared& p, const Closing& c) {
   for (const CertifiedFigure& f : certified_figures()) {
     const double own = f.value(c.metrics), best = f.value(truth);
     if (f.key == "hold_force_N" || !std::isfinite(own) || std::find(ill.begin(), ill.end(), f.key) != ill.end()) continue;
-    const double error = f.error != nullptr ? f.error(errors) : errors.bounce_count;
+    const double error = f.error != nullptr ? f.error(errors) : c.bounce_count_error.value_or(-1);
     const bool covered = std::abs(own - best) <= std::max(error, rounding * std::abs(best));
     ++(covered ? counts.first : counts.second);
   }
@@ -64,7 +65,7 @@ TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
     }
     tightened += plain.tolerance < p.tolerance;
   };
-  expect_same(gold_at_17_volts("60 us"));
+  expect_same(prepared_gold("60 us"));
   for (const std::uint64_t index : {18, 69, 120, 185}) {
     SCOPED_TRACE(index);
     SceneFile file = test::random_scene(3, index);
@@ -76,7 +77,7 @@ TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
 
 TEST(Certify, CoversTheTrueErrorsOfAWellConditionedClosing) {
   for (const char* accuracy : {"1e-2", "1e-4", "1e-6"}) {
-    const Prepared p = gold_at_17_volts("60 us", accuracy);
+    const Prepared p = prepared_gold("60 us", accuracy);
     const Closing c = certify(p);
     EXPECT_THAT(ill_conditioned(c), IsEmpty()) << accuracy << ": a loose tolerance is an error, not a condition";
     EXPECT_FALSE(c.certificate->grazing);
@@ -109,7 +110,7 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
 }
 
 TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
-  const Prepared p = gold_at_17_volts("600 us", "1e-3");
+  const Prepared p = prepared_gold("600 us", "1e-3");
   const Closing c = certify(p);
   EXPECT_THAT(ill_conditioned(c), Contains("permanent_contact_time_s"));
   EXPECT_THAT(ill_conditioned(c), Not(Contains("major_bounce_height_m"))) << "the first large rebound";
@@ -128,12 +129,102 @@ TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
   EXPECT_LT(c.certificate->grazing->impact_velocity, c.metrics.impact_velocity);
 }
 
+// Vdp by bisection of its own, a hundred thousand times closer than dynamic_pull_in().
+double tight_pull_in(const Prepared& p) {
+  const Switch fine(p.scene.device, {.points_per_length = 48});
+  const double known = p.pull_in.at("main").dynamically.voltage;
+  const ClosingOptions options{.duration = 100 * 2 * pi / fine.angular_frequencies()[0], .tolerance = 1e-12, .after_contact = 0};
+  double low = known * (1 - 1e-6), high = known * (1 + 1e-6);
+  while (high - low > 1e-12 * high) {
+    const double middle = (low + high) / 2;
+    const std::vector<Signal> step{Signal::constant(middle)};
+    (simulate_closing(fine, step, options).touches.empty() ? low : high) = middle;
+  }
+  return high;
+}
+
+// The scene at the voltage that its level stands for: what it differs by is in the errors.
+TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn) {
+  const auto driven = [](const char* accuracy, const std::string& level) {
+    return prepare(gold({fmt::format("waveform.main.level={}", level), "simulate.duration=60 us",
+                         fmt::format("simulate.accuracy={}", accuracy)}));
+  };
+  for (const double level : {1.25, 1.05}) {
+    const std::string in_pull_in = fmt::format("{} Vdp", level);
+    const double volts = level * tight_pull_in(driven("1e-4", in_pull_in));
+    const Closing truth = simulate(driven("1e-9", fmt::format("{:.17g} V", volts)), false);
+    for (const char* accuracy : {"1e-2", "1e-4", "1e-8"}) {
+      const Closing c = certify(driven(accuracy, in_pull_in));
+      Metrics errors = c.errors;
+      for (const CertifiedFigure& f : certified_figures()) {
+        if (f.error == nullptr || !std::isfinite(f.value(c.metrics))) continue;
+        const double off = std::abs(f.value(c.metrics) - f.value(truth.metrics));
+        EXPECT_LE(off, f.error(errors)) << f.key << ' ' << level << ' ' << accuracy;
+      }
+      EXPECT_LT(errors.impact_velocity, 0.05 * c.metrics.impact_velocity) << "not by naming any number";
+    }
+  }
+  SceneFile file = gold({"simulate.duration=60 us", "simulate.accuracy=1e-4"});
+  const double all = certify(prepare(file)).errors.impact_velocity;
+  file.set("structure.damping_ratio=1e-9");
+  file.set("simulate.effects=auto");  // the voltages are those of the whole scene, and so are their errors
+  EXPECT_NEAR(certify(prepare(file)).errors.impact_velocity, all, 0.5 * all);
+}
+
+Prepared far_electrode(std::string_view setting) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/far_electrode.toml");
+  file.set(std::string(setting));
+  return prepare(file);
+}
+
+// However tight: a run that leaves no room for a tighter one is judged by a looser one.
+TEST(Simulate, IsNeverItsOwnJudge) {
+  for (const char* setting : {"simulate.accuracy=1e-8", "simulate.accuracy=1e-12", "simulate.tolerance=1e-13"}) {
+    const Closing c = simulate(far_electrode(setting), true);
+    ASSERT_EQ(c.judge->status, Status::done) << setting;
+    EXPECT_NE(c.judge->tolerance, c.tolerance) << setting;
+    EXPECT_NE(c.judge->quadrature.points_per_length, c.quadrature.points_per_length) << setting;
+    for (double Metrics::*error : {&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height}) {
+      EXPECT_GT(c.errors.*error, 0) << setting;
+    }
+    for (double Metrics::*chance : {&Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
+      EXPECT_TRUE(std::isnan(c.errors.*chance)) << setting << ": what comes after the runs part";
+    }
+    for (double Metrics::*none : {&Metrics::permanent_contact_time, &Metrics::bounce_time})
+      EXPECT_TRUE(std::isnan(c.errors.*none));
+    EXPECT_FALSE(c.bounce_count_error);
+  }
+  const Closing asked = simulate(far_electrode("simulate.accuracy=1e-12"), true);
+  EXPECT_THAT(asked.warnings, Contains(testing::HasSubstr("accuracy 1e-12 is not reached")));
+}
+
+TEST(Certify, GivesTheRangeOfAChaoticCount) {
+  const Closing c = certify(far_electrode("simulate.accuracy=1e-8"));
+  EXPECT_THAT(ill_conditioned(c), Contains("bounce_count"));
+  EXPECT_GE(c.bounce_count_error.value_or(0), 2);
+}
+
 TEST(Certify, SaysNothingOfARunThatIsNotDone) {
-  const Prepared p = gold_at_17_volts("60 us");
+  const Prepared p = prepared_gold("60 us");
   const std::atomic<bool> stop{true};
-  const Closing c = certify(p, &stop);
+  const Closing c = certify(p, {.stop = &stop});
   EXPECT_EQ(c.certificate, nullptr);
   EXPECT_TRUE(std::isnan(c.errors.impact_velocity));
+}
+
+TEST(Simulate, AskedToStopWhileItEstimatesErrorsKeepsTheFiguresWithoutThem) {
+  const Prepared p = prepared_gold("60 us");
+  std::atomic<bool> stop{false};
+  const Watch watch{.stop = &stop, .progress = [&](std::string_view what, double part) {
+                      EXPECT_TRUE(part >= 0 && part <= 1) << what;
+                      stop = stop || what.starts_with("closing again");
+                    }};
+  const Closing c = simulate(p, true, watch), first = simulate(p, false);
+  EXPECT_TRUE(stop);
+  EXPECT_EQ(c.metrics.status, Status::interrupted);
+  EXPECT_EQ(c.metrics.impact_velocity, first.metrics.impact_velocity);
+  EXPECT_TRUE(std::isnan(c.errors.impact_velocity));
+  for (const std::string& warning : c.warnings) EXPECT_EQ(warning.find("is not reached"), std::string::npos) << warning;
 }
 
 // Touches of 1 us between ballistic rebounds of these heights [m].
@@ -192,6 +283,15 @@ TEST(GrazingRebound, IsSeenWhereSomeRunsGoOn) {
   EXPECT_EQ(grazing_rebound(fewer, {})->number, 2);
   const std::vector<Trajectory> more{fewer[1], fewer[0]};
   EXPECT_EQ(grazing_rebound(more, {})->number, 3);
+}
+
+TEST(Certify, FindsNothingIllConditionedWhereNothingTouches) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
+  file.set("simulate.duration=20 us");
+  const Closing c = certify(prepare(file));
+  ASSERT_EQ(c.metrics.status, Status::no_contact);
+  ASSERT_TRUE(c.certificate);
+  EXPECT_TRUE(c.certificate->ill_conditioned.empty()) << c.certificate->ill_conditioned.front().key;
 }
 
 }  // namespace

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "scenes.h"
+
 namespace softland {
 namespace {
 
-constexpr Target every_target[] = {Target::bounce, Target::settling, Target::rebound,
-                                   Target::count,  Target::impact,   Target::energy};
 constexpr double gap = 2e-6, score_window = 100e-6;
 const MetricsOptions options;
 
@@ -61,13 +61,30 @@ TEST(CostFigures, OfALandingMadeByHandAreWhatItWasMadeFrom) {
   EXPECT_NEAR(f.rebound_height, 100e-9, 1e-13);
   EXPECT_NEAR(f.separated, 8e-6, 1e-11);
   EXPECT_NEAR(f.last_rebound_end, 30e-6, 1e-11);
-  EXPECT_NEAR(f.soft_count, 100.0 / 101, 1e-6);
   EXPECT_NEAR(f.impact_energy, 0.33e-12, 1e-20);
   EXPECT_DOUBLE_EQ(f.landing_excess, 1e-12);
 }
 
-TEST(Cost, OfTheStepItselfIsAboutOneForEveryTarget) {
-  for (const Target target : every_target) EXPECT_NEAR(cost(target, plain_step(), scale(), options), 1, 0.3) << to_string(target);
+TEST(Cost, OfTheStepItselfIsAboutOneAndAboutTwoByAFigureOfItsOwn) {
+  for (const Target target : every_target)
+    EXPECT_NEAR(cost(target, plain_step(), scale(), options), has_own_cost(target) ? 2 : 1, 0.3) << to_string(target);
+}
+
+TEST(Cost, BelowOneIsThatOfALandingWithoutSignificantReboundByItsOwnFigureAlone) {
+  const double insignificant = 0.4 * options.significant_rebound, significant = 1.1 * options.significant_rebound;
+  for (const Target target : every_target) {
+    if (!has_own_cost(target)) continue;
+    EXPECT_LT(cost(target, landing(45e-6, 0.6, insignificant, 1e-6, 5e-12), scale(), options), 1) << to_string(target);
+    EXPECT_GT(cost(target, landing(20e-6, 0.01, significant, 1e-6, 0), scale(), options), 1) << to_string(target);
+  }
+  // Early and hard against late and soft: settling chooses the first, impact and energy the second, by the smallest difference.
+  const Trajectory early = landing(30.0e-6, 0.1005, 0, 0, 1e-13), soft = landing(30.1e-6, 0.1, 0, 0, 5e-13);
+  const auto prefers_early = [&](Target target) {
+    return cost(target, early, scale(), options) < cost(target, soft, scale(), options);
+  };
+  EXPECT_TRUE(prefers_early(Target::settling));
+  EXPECT_FALSE(prefers_early(Target::impact));
+  EXPECT_FALSE(prefers_early(Target::energy));
 }
 
 TEST(Cost, OfWhatNeverTouchesIsTenAndThePartOfTheGapItLeft) {

@@ -14,6 +14,8 @@ namespace softland {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> choices(const Effects& effects) {
   std::vector<std::string> names;
@@ -23,13 +25,6 @@ std::vector<std::string> choices(const Effects& effects) {
 
 const Effect& find(const Effects& effects, const std::string& choice) {
   return *std::find_if(effects.list.begin(), effects.list.end(), [&](const Effect& e) { return e.choice == choice; });
-}
-
-SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
-  SceneFile file = gold(
-      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
-  for (const std::string_view change : changes) file.set(change);
-  return file;
 }
 
 TEST(Effects, CompareEveryGasLawWithTheScenesOwn) {
@@ -79,6 +74,26 @@ TEST(Effects, OfASceneWithoutGasAreThoseOfAirAndOfALinearDamperItsOwn) {
   const Effects damped = compare_effects(prepare(gold_at_17_volts({"gas={ model = \"linear\", quality_factor = 4 }"})));
   EXPECT_EQ(damped.own("gas").choice, "linear");
   EXPECT_TRUE(std::isnan(damped.own("gas").group.value));
+}
+
+// A law that takes what this scene does not give is named, and the others are compared.
+TEST(Effects, OfEverySceneNameTheLawsThatItCannotHave) {
+  const auto not_compared = [](const Effects& effects) {
+    std::vector<std::string> names;
+    for (const NotCompared& n : effects.not_compared) {
+      names.push_back(n.choice);
+      EXPECT_THAT(n.reason, Not(HasSubstr("nan")));
+    }
+    return names;
+  };
+  const Effects plate = compare_effects(prepare(scene("two-electrodes.toml")));
+  EXPECT_THAT(not_compared(plate), ElementsAre("guo-alexeenko"));
+  EXPECT_EQ(plate.not_compared[0].reason, "structure.thickness: is needed here and not given");
+  EXPECT_THAT(choices(plate), ElementsAre("none", "strip", "veijola", "gallis-torczynski", "near-contact", "reynolds"));
+  SceneFile hard = without(scene("two-electrodes.toml"), "contact");
+  hard.set("contact={ model = \"rigid\", restitution = 0.5 }");
+  const Effects rigid = compare_effects(prepare(hard));
+  EXPECT_THAT(not_compared(rigid), ElementsAre("guo-alexeenko", "reynolds"));
 }
 
 TEST(Effects, WithoutContactHaveNoSpreadOfWhatIsMissing) {

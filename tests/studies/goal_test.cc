@@ -1,6 +1,7 @@
 // When a search may say that it has reached its goal.
 #include <gtest/gtest.h>
 
+#include "scenes.h"
 #include "studies/optimize.h"
 
 namespace softland {
@@ -19,8 +20,6 @@ Metrics closing(bool settled, int bounces, double settling_time, double velocity
   return m;
 }
 
-constexpr Target every_target[] = {Target::bounce, Target::settling, Target::rebound,
-                                   Target::count,  Target::impact,   Target::energy};
 const Metrics baseline = closing(true, 7, 40e-6, 0.3, 2e-12);
 
 TEST(GoalMet, NothingUnsettledMeetsAnyGoal) {
@@ -33,12 +32,9 @@ TEST(GoalMet, AClosingThatIsBetterInEveryFigureMeetsEveryGoal) {
   for (const Target target : every_target) EXPECT_TRUE(goal_met(target, better, baseline)) << to_string(target);
 }
 
-TEST(GoalMet, OneSignificantReboundFailsBounceReboundAndCount) {
+TEST(GoalMet, OneSignificantReboundFailsEveryGoalHoweverMuchBetterTheFigure) {
   const Metrics nearly = closing(true, 1, 30e-6, 0.1, 1e-12);
-  for (const Target target : {Target::bounce, Target::rebound, Target::count})
-    EXPECT_FALSE(goal_met(target, nearly, baseline)) << to_string(target);
-  for (const Target target : {Target::settling, Target::impact, Target::energy})
-    EXPECT_TRUE(goal_met(target, nearly, baseline)) << to_string(target);
+  for (const Target target : every_target) EXPECT_FALSE(goal_met(target, nearly, baseline)) << to_string(target);
 }
 
 TEST(GoalMet, WithoutReboundTheBounceTargetsDoNotAskForMore) {
@@ -49,13 +45,13 @@ TEST(GoalMet, WithoutReboundTheBounceTargetsDoNotAskForMore) {
     EXPECT_FALSE(goal_met(target, slow_and_hard, baseline)) << to_string(target);
 }
 
-TEST(GoalMet, SettlingImpactAndEnergyAskForTheirOwnFigureAlone) {
-  EXPECT_TRUE(goal_met(Target::settling, closing(true, 3, 39e-6, 0.9, 9e-12), baseline));
-  EXPECT_FALSE(goal_met(Target::settling, closing(true, 3, 41e-6, 0.1, 1e-12), baseline));
-  EXPECT_TRUE(goal_met(Target::impact, closing(true, 3, 90e-6, 0.29, 9e-12), baseline));
-  EXPECT_FALSE(goal_met(Target::impact, closing(true, 3, 30e-6, 0.31, 1e-12), baseline));
-  EXPECT_TRUE(goal_met(Target::energy, closing(true, 3, 90e-6, 0.9, 1.9e-12), baseline));
-  EXPECT_FALSE(goal_met(Target::energy, closing(true, 3, 30e-6, 0.1, 2.1e-12), baseline));
+TEST(GoalMet, SettlingImpactAndEnergyAskForTheirOwnFigureToo) {
+  EXPECT_TRUE(goal_met(Target::settling, closing(true, 0, 39e-6, 0.9, 9e-12), baseline));
+  EXPECT_FALSE(goal_met(Target::settling, closing(true, 0, 41e-6, 0.1, 1e-12), baseline));
+  EXPECT_TRUE(goal_met(Target::impact, closing(true, 0, 90e-6, 0.29, 9e-12), baseline));
+  EXPECT_FALSE(goal_met(Target::impact, closing(true, 0, 30e-6, 0.31, 1e-12), baseline));
+  EXPECT_TRUE(goal_met(Target::energy, closing(true, 0, 90e-6, 0.9, 1.9e-12), baseline));
+  EXPECT_FALSE(goal_met(Target::energy, closing(true, 0, 30e-6, 0.1, 2.1e-12), baseline));
 }
 
 TEST(GoalMet, EqualToTheBaselineIsNotBetter) {
@@ -65,7 +61,7 @@ TEST(GoalMet, EqualToTheBaselineIsNotBetter) {
 TEST(GoalMet, AnySettledClosingIsBetterThanABaselineThatNeverTouches) {
   Metrics open;
   open.status = Status::no_contact;
-  const Metrics settled = closing(true, 2, 90e-6, 0.9, 9e-12);
+  const Metrics settled = closing(true, 0, 90e-6, 0.9, 9e-12);
   for (const Target target : {Target::settling, Target::impact, Target::energy})
     EXPECT_TRUE(goal_met(target, settled, open)) << to_string(target);
 }

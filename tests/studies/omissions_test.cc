@@ -17,13 +17,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
-  SceneFile file = gold(
-      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
-  for (const std::string_view change : changes) file.set(change);
-  return file;
-}
-
 constexpr std::string_view weak_dispersion = R"(dispersion={ model = "van-der-waals", hamaker_constant = "4e-19 J" })";
 
 std::vector<std::string> names(const std::vector<Omissible>& effects) {
@@ -121,7 +114,7 @@ TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   EXPECT_LE(p.effects->choice.influence, 1e-3);
   EXPECT_FALSE(p.scene.device.dispersion);
   EXPECT_TRUE(p.scene.device.gas) << "the film matters here";
-  EXPECT_TRUE(p.effects->described.dispersion);
+  EXPECT_TRUE(p.effects->described.device.dispersion);
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("effects = \"auto\" leaves out "));
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("dispersion ("));
   EXPECT_EQ(own(p).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);

@@ -77,5 +77,31 @@ TEST(Prepare, ChoosesAWindowOfSixPeriodsWhereTheSceneHasNone) {
   EXPECT_NEAR(p.duration * p.device.angular_frequencies()[0], 6 * 2 * 3.14159265358979, 1e-9);
 }
 
+TEST(Prepare, RefusesWhatNoComputerWouldSeeTheEndOf) {
+  const auto with = [](const std::vector<std::string>& more) {
+    SceneFile file = gold({R"(waveform.main={family="harmonic", base="15 V", amplitude="1 V", frequency="1 kHz"})"});
+    for (const std::string& option : more) file.set(option);
+    return file;
+  };
+  EXPECT_EQ(refusal([&] { (void)prepare(with({"waveform.main.frequency=1e15 Hz"})); }),
+            "--set waveform.main.frequency=1e15 Hz: makes 6e+11 periods in the window of 600 us; there may be 100000");
+  EXPECT_THAT(refusal([&] { (void)prepare(with({"waveform.main.angular_frequency=1e15 rad/s"})); }),
+              testing::StartsWith("--set waveform.main.angular_frequency=1e15 rad/s: makes "));
+  for (const char* quick : {"waveform.main.frequency=100 MHz", "waveform.main.end=1 ns"})
+    EXPECT_NO_THROW((void)prepare(with({quick})));
+  EXPECT_NO_THROW((void)prepare(with({"waveform.main.frequency=1e15 Hz", "waveform.main.amplitude=0 V"})));
+  SceneFile soft = gold({"waveform.main.level=1 V", "driver.main.max_voltage=9 V", "structure.youngs_modulus=1e-12 Pa"});
+  soft.erase("simulate.duration");
+  const std::string slow = refusal([&] { (void)prepare(soft); });
+  EXPECT_THAT(slow, testing::HasSubstr("the window, where simulate.duration is absent six periods of the first mode, is "));
+  EXPECT_THAT(slow, testing::HasSubstr(" and must be at most 1 ks"));
+}
+
+TEST(Prepare, NamesTheElectrodeWhosePullInCannotBeFound) {
+  EXPECT_EQ(refusal([] { (void)prepare(gold({"electrode.main.span=[\"249.99999999 um\", \"250 um\"]"})); }),
+            "--set electrode.main.span=[\"249.99999999 um\", \"250 um\"]: its pull-in voltage is needed for the unit Vsp or Vdp, "
+            "but none could be found");
+}
+
 }  // namespace
 }  // namespace softland

@@ -7,6 +7,7 @@
 
 #include "base/require.h"
 #include "config/scene.h"
+#include "objectives/cost.h"
 
 namespace softland {
 
@@ -18,6 +19,18 @@ inline SceneFile scene(const char* name, std::initializer_list<std::string_view>
 
 inline SceneFile gold(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold.toml", changes); }
 inline SceneFile gold_pzt(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold-pzt.toml", changes); }
+
+/// The plain step of the thesis in a window of 100 us.
+inline SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
+  SceneFile file = gold(
+      {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=100 us", "simulate.accuracy=1e-4"});
+  for (const std::string_view change : changes) file.set(change);
+  return file;
+}
+
+/// Every figure that a search may lower.
+inline constexpr Target every_target[] = {Target::bounce, Target::settling, Target::rebound,
+                                          Target::count,  Target::impact,   Target::energy};
 
 /// The scene without one of its sections.
 inline SceneFile without(const SceneFile& file, std::string_view section) {

@@ -90,6 +90,33 @@ TEST(SearchSpace, NeverTouchesTheHoldLevel) {
   }
 }
 
+TEST(SearchSpace, ReadsTheParametersOfItsOwnWaveformsBack) {
+  for (const char* family : {"step", "pulse", "harmonic"}) {
+    const SearchSpace space(plain(), Actuator::both, family, first_touch);
+    for (const auto& x : space.starts()) {
+      const auto back = space.parameters(space.waveforms(x));
+      ASSERT_TRUE(back) << family;
+      ASSERT_EQ(back->size(), x.size());
+      for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR((*back)[k], x[k], 1e-12 * std::abs(x[k])) << family << k;
+    }
+  }
+}
+
+TEST(SearchSpace, HasNoParametersForWhatItCannotReach) {
+  const SearchSpace space(plain(), Actuator::electrostatic, "pulse", first_touch);
+  const auto pulse = [&](double time, std::vector<double> levels) {
+    return std::map<std::string, Waveform>{
+        {"main", Pulse{.levels = std::move(levels), .times = {time, time + 10e-6}, .edge = 1e-6}}};
+  };
+  EXPECT_TRUE(space.parameters(pulse(20e-6, {20, 10, 15})));
+  EXPECT_FALSE(space.parameters(pulse(50e-6, {20, 10, 15}))) << "later than its bounds";
+  EXPECT_FALSE(space.parameters(pulse(20e-6, {20, 1000, 15}))) << "above the driver's limit";
+  EXPECT_FALSE(space.parameters({{"main", Pulse{.levels = {20, 15}, .times = {20e-6}, .edge = 1e-6}}}))
+      << "another number of levels";
+  EXPECT_FALSE(space.parameters({{"main", Step{.level = 15}}})) << "another family";
+  EXPECT_FALSE(space.parameters({})) << "not driven";
+}
+
 TEST(SearchSpace, BoundsLevelsByTheDriversLimits) {
   for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt}) {
     const std::string drive = actuator == Actuator::pzt ? "piezo" : "main";

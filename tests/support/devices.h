@@ -96,7 +96,7 @@ namespace softland::test {
   device.structure.kind = StructureKind::clamped_clamped;
   device.structure.modes = 5;
   device.structure.residual_stress = 2e6;
-  device.electrodes.push_back({.name = "second", .begin = 0, .end = 90e-6, .fringing = Fringing::linear});
+  device.electrodes.push_back({.name = "second", .begin = 0, .end = 60e-6, .fringing = Fringing::linear});
   return device;
 }
 

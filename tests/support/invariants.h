@@ -13,7 +13,7 @@ namespace softland::test {
 struct CheckedRun {
   Trajectory trajectory;
   Metrics metrics;
-  double surplus = 0;  ///< largest energy that came from nowhere, over the energy that bends the beam by the contact gap
+  double surplus = 0;  ///< largest energy that no source supplied, over the energy that bends the beam by the contact gap
   double largest_penetration = 0;  ///< bound of it: where first loading alone takes up twice the energy there was [m]
   std::vector<std::string> violations;
 };

@@ -11,8 +11,9 @@
 #include <limits>
 
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/waveforms/expect_invalid.h"
-#include "tests/waveforms/temporary_folder.h"
 #include "waveforms/waveform.h"
 
 namespace softland {
@@ -23,8 +24,6 @@ using test::expect_invalid;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 using Points = std::vector<std::pair<double, double>>;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const Step kStep{.level = 45_V};
 const Pulse kPulse{.levels = {0.2, 0.6, -0.3, 0}, .times = {20_us, 41_us, 46_us}, .edge = 5_us};

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
 #include "tests/waveforms/expect_invalid.h"
 #include "waveforms/step.h"
 
@@ -15,9 +16,8 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Rounding of angles up to some hundred radians, relative to the voltages.
-constexpr double kRounding = 1e-12;
+constexpr double kSineRounding = 1e-12;
 
 double envelope(const Harmonic& h, double t) {
   if (t < h.start || t > h.end) return 0;
@@ -33,7 +33,7 @@ void expect_formula(const Harmonic& h, double span) {
     const double t = span * i / samples;
     const double base = t < h.rise_time ? h.base * t / h.rise_time : h.base;
     const double expected = base + h.amplitude * envelope(h, t) * std::sin(h.angular_frequency * t + h.phase);
-    EXPECT_NEAR(compiled.voltage(t), expected, kRounding * (std::abs(h.base) + std::abs(h.amplitude))) << "t = " << t;
+    EXPECT_NEAR(compiled.voltage(t), expected, kSineRounding * (std::abs(h.base) + std::abs(h.amplitude))) << "t = " << t;
   }
 }
 
@@ -103,7 +103,7 @@ TEST(Harmonic, FadesAreContinuousAndMeetWithoutAPieceBetween) {
   // 0.3 + 0.1 is above 0.7 - 0.3 in binary: the fades overlap by rounding only.
   const Signal both = signal(Harmonic{.base = 0, .amplitude = 1, .angular_frequency = 50, .start = 0.1, .end = 0.7, .fade = 0.3});
   ASSERT_EQ(both.pieces().size(), 4U);
-  EXPECT_NEAR(both.breakpoints()[2], 0.4, kRounding);
+  EXPECT_NEAR(both.breakpoints()[2], 0.4, kSineRounding);
   EXPECT_TRUE(std::isfinite(both.peak_slew()));
   EXPECT_EQ(both.voltage_before(0.7), 0);
   // 0.1 + 0.5 is below 1.1 - 0.5: they miss each other by rounding only.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/not_finite.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
 #include "waveforms/step.h"
@@ -15,8 +16,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(DriverLimits, AllowWhatReachesThemExactly) {
   EXPECT_THAT(violation(signal(Step{.level = 45}), {.max_voltage = 45}), IsEmpty());

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/waveforms/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "waveforms/export.h"
 #include "waveforms/waveform.h"
 

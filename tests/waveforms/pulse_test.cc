@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
 #include "tests/waveforms/expect_invalid.h"
 
 namespace softland {
@@ -12,8 +11,6 @@ namespace {
 
 using namespace literals;
 using test::expect_invalid;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Pulse, RunsItsEdgesFromTheSwitchingTimes) {
   const Signal pulse = signal(Pulse{.levels = {2_V, 6_V, 0_V}, .times = {20_us, 41_us}, .edge = 5_us});

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
 #include "tests/waveforms/expect_invalid.h"
 
 namespace softland {
@@ -15,8 +15,6 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // A handful of roundings of the formula at arguments of order one.
 constexpr double kRounding = 1e-14;
 // What signal.h promises for the extrema of sines, relative to their amplitude.

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "base/literals.h"
+#include "tests/support/not_finite.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/waveforms/expect_invalid.h"
-#include "tests/waveforms/temporary_folder.h"
 
 namespace softland {
 namespace {
@@ -14,8 +13,6 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 using test::TemporaryFolder;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Table, IsLinearBetweenRowsAndHoldsItsLast) {
   const Signal table = signal(Table{.time = {0, 1, 3}, .voltage = {2, 4, -4}});
@@ -82,8 +79,10 @@ TEST(Table, BadFilesAreNamedWithLineAndRule) {
   refused("time_s,main\n0,1e999\n", {":2:", "main is \"1e999\""});
   refused("time_s,main\n1,1\n", {":2:", "first time_s is 1 s", "must be 0"});
   refused("time_s,main\n0,1\n2,1\n\n1,1\n", {":5:", "1 s", "2 s"});
-  expect_invalid([&] { (void)read_table(folder.path("absent.csv"), "main"); }, {"absent.csv", "cannot be opened"});
-  expect_invalid([&] { (void)read_table(folder.path(""), "main"); }, {"cannot be"});
+  refused("time_s,main\n0,1e308\n1e-3,-1e308\n",
+          {":3:", "main is -1e+308 V, 0.001 s after", "the slope between them must be finite"});
+  expect_invalid([&] { (void)read_table(folder.path("absent.csv"), "main"); }, {"absent.csv", "cannot be read"});
+  expect_invalid([&] { (void)read_table(folder.path(""), "main"); }, {"is a folder"});
 }
 
 }  // namespace

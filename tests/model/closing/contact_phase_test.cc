@@ -104,7 +104,9 @@ TEST(ContactPhase, GoesThroughTheReachAndTheKinksOfALaw) {
     const auto edges = phase.edges();
     ASSERT_EQ(edges.size(), zone < kinks.size() ? 2u : 1u);
     expect_edge(edges[0], zone == 0 ? plane : plane + kinks[zone - 1], 1, zone == 0 ? Phase::near : Phase::loading);
-    if (zone > 0) EXPECT_EQ(edges[0].zone, zone - 1);
+    if (zone > 0) {
+      EXPECT_EQ(edges[0].zone, zone - 1);
+    }
     if (zone == kinks.size()) break;
     expect_edge(edges[1], plane + kinks[zone], -1, Phase::loading);
     EXPECT_EQ(edges[1].zone, zone + 1);

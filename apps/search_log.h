@@ -1,23 +1,23 @@
-// The folder a search leaves its findings in, kept current while the search runs: whatever happens, what is there is whole and
-// readable.
+// What a search has found so far, kept current on disk while it runs.
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "apps/result_folder.h"
 #include "config/scene.h"
 #include "optimizers/problem.h"
 
 namespace softland::apps {
 
-class SearchFolder {
+/// best.toml and evaluations.csv among the unfinished results of a folder.
+class SearchLog {
  public:
-  /// Creates the folder and removes what an earlier run left in it: only for a search that has been found valid. `variables` are
-  /// the columns of evaluations.csv. Throws InvalidInput when the folder cannot be written to.
-  SearchFolder(std::filesystem::path folder, std::vector<std::string> variables);
+  /// `variables` are the columns of evaluations.csv. Writes the file with its header, so that a
+  /// folder that takes none ends the run before its first evaluation.
+  SearchLog(ResultFolder& folder, std::vector<std::string> variables);
 
   /// Notes an evaluation for evaluations.csv.
   void evaluated(const Evaluation& evaluation);
@@ -26,11 +26,10 @@ class SearchFolder {
   /// Writes what is still only noted.
   void flush();
 
-  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] const std::map<long, Evaluation>& evaluations() const { return evaluations_; }
 
  private:
-  std::filesystem::path folder_;
+  ResultFolder& folder_;
   std::vector<std::string> variables_;
   std::map<long, Evaluation> evaluations_;  // by index: the order that does not depend on the number of jobs
   std::string best_;

@@ -1,0 +1,18 @@
+// Why a run did not succeed, as the exit status and in words.
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace softland::apps {
+
+struct Failure {
+  int status;
+  std::string message;
+};
+
+/// What an exception that ends the program means to whoever called it: every kind has its exit status, and what is not expected
+/// is a fault of the program that asks to be reported.
+[[nodiscard]] Failure failure_of(const std::exception_ptr& exception);
+
+}  // namespace softland::apps

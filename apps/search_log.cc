@@ -1,0 +1,40 @@
+#include "apps/search_log.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace softland::apps {
+
+SearchLog::SearchLog(ResultFolder& folder, std::vector<std::string> variables)
+    : folder_(folder), variables_(std::move(variables)) {
+  flush();
+}
+
+void SearchLog::evaluated(const Evaluation& evaluation) {
+  evaluations_[evaluation.index] = evaluation;
+  if (pending_ && std::chrono::steady_clock::now() - written_ > std::chrono::seconds(1)) flush();
+}
+
+void SearchLog::improved(const SceneFile& best) {
+  best_ = best.text();
+  pending_ = true;
+  if (std::chrono::steady_clock::now() - written_ > std::chrono::seconds(1)) flush();
+}
+
+void SearchLog::flush() {
+  if (!best_.empty()) folder_.write("best.toml", best_);
+  std::string log = "index,cost";
+  for (const std::string& name : variables_) log += "," + name;
+  log += "\n";
+  for (const auto& [index, e] : evaluations_) {
+    log += fmt::format("{},{}", index, e.value);
+    for (const double x : e.x) log += fmt::format(",{}", x);
+    log += "\n";
+  }
+  folder_.write("evaluations.csv", log);
+  pending_ = false;
+  written_ = std::chrono::steady_clock::now();
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,68 @@
+#include "apps/streams.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <string>
+#include <system_error>
+
+#include "apps/interrupt.h"
+#include "base/output_lost.h"
+#include "base/printable.h"
+
+namespace softland::apps {
+namespace {
+
+// Notes that cannot be written are no reason to give up a result.
+void write_to_standard_error(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+    if (written < 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace
+
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free number is `stream`. What is only open for reading refuses to be written to.
+    (void)::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+void print(std::string_view text) {
+  const std::string clean = printable(text);
+  constexpr int look_around = 200, patience = 1000;  // [ms]
+  int waited = 0;
+  for (std::string_view rest = clean; !rest.empty();) {
+    // A pipe that can be written to takes PIPE_BUF bytes without waiting for its reader.
+    pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+    if (::poll(&output, 1, look_around) <= 0) {
+      waited += look_around;
+      if (stop_requested() && waited >= patience) throw OutputInterrupted();
+      continue;
+    }
+    waited = 0;
+    const ssize_t written = ::write(STDOUT_FILENO, rest.data(), std::min<std::size_t>(rest.size(), PIPE_BUF));
+    if (written < 0) {
+      if (errno == EINTR || errno == EAGAIN) continue;
+      throw OutputLost(fmt::format("standard output: cannot be written: {}", std::generic_category().message(errno)));
+    }
+    rest.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void say(std::string_view line) { write_to_standard_error("softland: " + printable_line(line) + "\n"); }
+
+void end_bar() { write_to_standard_error("\n"); }
+
+void show_bar(std::string_view line) { write_to_standard_error("\r" + printable_line(line) + "\033[K"); }
+
+}  // namespace softland::apps

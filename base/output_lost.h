@@ -1,0 +1,15 @@
+// Results that could not be written.
+#pragma once
+
+#include <stdexcept>
+
+namespace softland {
+
+/// Part of the output did not reach its place: the disk is full, the pipe closed, the limit of a file's size reached. The message
+/// names place and reason. The program turns it into an exit status of its own.
+class OutputLost : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace softland

@@ -1,0 +1,83 @@
+#include "base/read_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <mutex>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+// The files read so far, by device and inode: other names, links and relative paths lead to the same file.
+std::mutex guard;
+std::set<std::pair<dev_t, ino_t>>& files_read() {
+  static std::set<std::pair<dev_t, ino_t>> all;
+  return all;
+}
+
+std::string_view kind(mode_t mode) {
+  if (S_ISDIR(mode)) return "a folder";
+  if (S_ISFIFO(mode)) return "a pipe";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "a device";
+}
+
+class Descriptor {
+ public:
+  // O_NONBLOCK: to open a pipe does not wait for whoever would write to it.
+  explicit Descriptor(const std::filesystem::path& path) : number_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const auto check = [&](bool done) {
+    if (!done) throw InvalidInput(name + ": cannot be read: " + std::generic_category().message(errno));
+  };
+  const Descriptor file(path);
+  check(file.number() >= 0);
+  struct stat info {};
+  check(::fstat(file.number(), &info) == 0);
+  require(S_ISREG(info.st_mode), name + ": is " + std::string(kind(info.st_mode)) + ", it must be a regular file");
+  std::string content, block(std::size_t{1} << 16, '\0');
+  for (;;) {
+    const ssize_t count = ::read(file.number(), block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    check(count >= 0);
+    if (count == 0) break;
+    content.append(block, 0, static_cast<std::size_t>(count));
+    // The size is looked at here and not in `info`: files of /proc have none, and a file may grow.
+    require(content.size() <= largest_file,
+            name + ": is too large, it must have at most " + std::to_string(largest_file >> 20) + " MiB");
+  }
+  const std::lock_guard lock(guard);
+  files_read().emplace(info.st_dev, info.st_ino);
+  return content;
+}
+
+bool was_read(const std::filesystem::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return false;
+  const std::lock_guard lock(guard);
+  return files_read().contains({info.st_dev, info.st_ino});
+}
+
+}  // namespace softland

@@ -1,0 +1,33 @@
+// Text of the user in messages: as much of it as a reader needs to recognise it.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace softland {
+
+/// `text`, cut to at most `longest` bytes and "…" when it is longer; never inside a UTF-8 sequence.
+[[nodiscard]] inline std::string shortened(std::string_view text, std::size_t longest = 80) {
+  if (text.size() <= longest) return std::string(text);
+  while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0) == 0x80) --longest;
+  return std::string(text.substr(0, longest)) + "…";
+}
+
+/// `text` with every word longer than any path cut short: a message stays one that people read.
+[[nodiscard]] inline std::string with_words_shortened(std::string_view text) {
+  constexpr std::size_t longest_word = 1000;
+  std::string out;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    out += word.size() > longest_word ? shortened(word) : std::string(word);
+    text.remove_prefix(word.size());
+    const std::size_t blanks = std::min(text.find_first_not_of(' '), text.size());
+    out += text.substr(0, blanks);
+    text.remove_prefix(blanks);
+  }
+  return out;
+}
+
+}  // namespace softland

@@ -1,0 +1,31 @@
+// How a long computation is watched from outside: it can be asked to stop, and it tells how far it is.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <string_view>
+
+namespace softland {
+
+/// A computation was asked to stop before it had anything to return. The program turns it into exit status 130.
+class Interrupted : public std::exception {
+ public:
+  [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
+};
+
+struct Watch {
+  const std::atomic<bool>* stop = nullptr;  ///< set from outside (Ctrl-C): the computation ends with what there is
+  /// Told often, from the thread that computes, what is being computed and which part of it is done, 0 to 1.
+  std::function<void(std::string_view what, double part)> progress = {};
+
+  [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
+  void throw_if_stopped() const {
+    if (stopped()) throw Interrupted();
+  }
+  void tell(std::string_view what, double part) const {
+    if (progress) progress(what, part);
+  }
+};
+
+}  // namespace softland

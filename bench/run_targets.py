@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""Every target of a search against every other: does a search for one figure win in that figure?
+
+    bench/run_targets.py BUILD/apps/softland [--seeds N] [--targets A,B] [--optimizer NAME] [--keep FILE] > results/targets.md
+
+Runs `softland optimize` with the default budget for every shipped scene that allows a search, every target and the seeds 1 to N (default 3).
+With --keep the searches are kept in a file and not run again. Takes about ten minutes on two idle cores.
+"""
+import argparse
+import datetime
+import json
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+SCENES = HERE.parent / "scenes"
+SEARCHES = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "electrostatic"), ("mem-gold-pzt.toml", "pzt"),
+            ("mem-gold-pzt.toml", "both"), ("nem-tin.toml", "electrostatic"), ("two-electrodes.toml", "electrostatic"),
+            ("gap-closing-actuator.toml", "electrostatic")]
+# The figure of each target, its key and a unit to print it in.
+FIGURES = {"bounce": "major_bounce_height_m", "settling": "permanent_contact_time_s", "rebound": "major_bounce_height_m",
+           "count": "bounce_count", "impact": "impact_velocity_m_s", "energy": "impact_energy_J"}
+UNITS = {"permanent_contact_time_s": ("t_p [us]", 1e6), "bounce_count": ("N_B", 1), "major_bounce_height_m": ("B_H [nm]", 1e9),
+         "impact_velocity_m_s": ("v_i [mm/s]", 1e3), "impact_energy_J": ("E_i [fJ]", 1e15)}
+TOLERATED = 0.05
+SIGNIFICANT = {"nem-tin.toml": 1e-11}  # [m]; the other scenes have the default, 1e-9
+
+
+def search(program, scene, actuator, target, seed, optimizer):
+    """What the table needs of one search."""
+    with tempfile.TemporaryDirectory() as out:
+        command = [program, "optimize", SCENES / scene, "--target", target, "--actuator", actuator, "--seed", str(seed), "--optimizer",
+                   optimizer, "--quiet", "--json", "-", "--out", out]
+        start = time.monotonic()
+        run = subprocess.run(command, capture_output=True, text=True)
+        wall = time.monotonic() - start
+    if run.returncode not in (0, 4):
+        sys.exit(f"{' '.join(map(str, command))}: exit status {run.returncode}\n{run.stderr}")
+    result = json.loads(run.stdout)
+    return {"metrics": result.get("best", {}).get("metrics"), "goal": result["goal_met"], "wall": wall,
+            "checks": [check["metrics"]["bounce_count"] for check in result.get("checks", [])]}
+
+
+def rank(target, metrics, significant):
+    """Rebounds first, then the target's own figure; rebounds below the significant height are none."""
+    figure = metrics and metrics[FIGURES[target]]
+    if figure is None or not metrics["settled"]:
+        return (2, 0.0)
+    if FIGURES[target] == "major_bounce_height_m":
+        figure = max(figure, significant)
+    return (min(metrics["bounce_count"], 1), figure)
+
+
+def beaten(mine, other):
+    return other[0] < mine[0] or (other[0] == mine[0] and other[1] < (1 - TOLERATED) * mine[1])
+
+
+def processor():
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def cell(value, scale):
+    return "-" if value is None else f"{value * scale:.4g}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--targets", default=",".join(FIGURES))
+    parser.add_argument("--optimizer", default="auto")
+    parser.add_argument("--keep", type=pathlib.Path)
+    given = parser.parse_args()
+    targets = given.targets.split(",")
+    revision = subprocess.run(["git", "-C", HERE, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
+    print(f"""# Every target against every other
+
+`softland optimize SCENE --target T --actuator A --seed N --optimizer {given.optimizer}` with the default budgets. The last column names the other targets whose winner,
+on the same scene with the same seed, is better in this target's own figure by more than {TOLERATED:.0%}, or has no significant rebound where this one has.
+
+- made by `bench/run_targets.py BUILD/apps/softland > results/targets.md`, {datetime.date.today().isoformat()}, revision {revision or 'unknown'}
+- machine: {processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}
+""")
+    kept = json.loads(given.keep.read_text()) if given.keep and given.keep.exists() else {}
+    for seed in range(1, given.seeds + 1):
+        for scene, actuator in SEARCHES:
+            for target in targets:
+                name = " ".join([scene, actuator, target, str(seed), given.optimizer])
+                if name not in kept:
+                    kept[name] = search(given.program, scene, actuator, target, seed, given.optimizer)
+                    if given.keep:
+                        given.keep.write_text(json.dumps(kept))
+    runs = losers = goals = 0
+    for scene, actuator in SEARCHES:
+        print(f"## {scene}, {actuator}\n")
+        print(f"| target | seed | time [s] | t_i [us] | {' | '.join(name for name, _ in UNITS.values())} | goal | checks: N_B | beaten by |")
+        print("|---|---|---|---|" + "---|" * (len(UNITS) + 3))
+        for seed in range(1, given.seeds + 1):
+            found = {t: kept[" ".join([scene, actuator, t, str(seed), given.optimizer])] for t in targets}
+            for t, one in found.items():
+                mine = rank(t, one["metrics"], SIGNIFICANT.get(scene, 1e-9))
+                better = [u for u in targets if u != t and beaten(mine, rank(t, found[u]["metrics"], SIGNIFICANT.get(scene, 1e-9)))]
+                runs += 1
+                losers += bool(better)
+                goals += one["goal"]
+                m = one["metrics"] or {}
+                figures = " | ".join(cell(m.get(key), scale) for key, (_, scale) in UNITS.items())
+                print(f"| {t} | {seed} | {one['wall']:.1f} | {cell(m.get('initial_contact_time_s'), 1e6)} | {figures} | "
+                      f"{'met' if one['goal'] else 'not met'} | {', '.join(map(str, one['checks']))} | {', '.join(better)} |")
+        print()
+    print(f"{runs} searches, {goals} goals met, {losers} beaten in their own figure by another target's winner.")
+
+
+if __name__ == "__main__":
+    main()

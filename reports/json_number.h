@@ -1,0 +1,13 @@
+// JSON knows no number that is not finite: such a figure is null in a result.
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace softland::internal {
+
+[[nodiscard]] inline nlohmann::json json_number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+}  // namespace softland::internal

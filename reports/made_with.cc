@@ -1,0 +1,97 @@
+#include "reports/made_with.h"
+
+#include <elf.h>
+#include <fmt/format.h>
+#include <gnu/libc-version.h>
+#include <link.h>
+
+#include <cstring>
+#include <fstream>
+#include <string_view>
+#include <vector>
+
+#include "reports/result_view.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view instruction_set =
+#if defined(__AVX512F__)
+    "AVX-512";
+#elif defined(__AVX2__) && defined(__FMA__)
+    "AVX2 and FMA";
+#elif defined(__aarch64__)
+    "AArch64";
+#elif defined(__x86_64__)
+    "SSE2";
+#else
+    "";
+#endif
+
+json word(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
+
+// The note that the linker leaves in the program: a hash of its content. The program itself is the first object.
+std::string build_id() {
+  std::string id;
+  dl_iterate_phdr(
+      [](dl_phdr_info* object, std::size_t, void* found) {
+        for (int i = 0; i < object->dlpi_phnum; ++i) {
+          const auto& segment = object->dlpi_phdr[i];
+          if (segment.p_type != PT_NOTE) continue;
+          const auto* at = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
+          const char* end = at + segment.p_memsz;
+          while (at + sizeof(ElfW(Nhdr)) <= end) {
+            ElfW(Nhdr) note;
+            std::memcpy(&note, at, sizeof note);
+            const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
+            const char* name = at + sizeof note;
+            const char* content = name + padded(note.n_namesz);
+            if (note.n_type == NT_GNU_BUILD_ID && std::string_view(name, note.n_namesz) == std::string_view("GNU", 4)) {
+              for (const char* byte = content; byte < content + note.n_descsz; ++byte) {
+                *static_cast<std::string*>(found) += fmt::format("{:02x}", static_cast<unsigned char>(*byte));
+              }
+              return 1;
+            }
+            at = content + padded(note.n_descsz);
+          }
+        }
+        return 1;
+      },
+      &id);
+  return id;
+}
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return {};
+}
+
+}  // namespace
+
+json made_with() {
+  static const json all{{"program", word(build_id())},
+                        {"compiler", word(std::string(compiler))},
+                        {"options", word(std::string(compiler_options))},
+                        {"instruction_set", word(std::string(instruction_set))},
+                        {"c_library", word(fmt::format("glibc {}", gnu_get_libc_version()))},
+                        {"processor", word(processor())}};
+  return all;
+}
+
+std::string internal::made_with_text(const json& result) {
+  std::vector<std::string> words;
+  for (const char* key : {"compiler", "options", "instruction_set", "c_library", "processor", "program"}) {
+    std::string value = text(result, {"made_with", key});
+    if (!value.empty()) words.push_back(std::string(key) == "program" ? "program " + value.substr(0, 12) : value);
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace softland

@@ -1,0 +1,14 @@
+// Results of earlier runs, read again.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace softland {
+
+/// The result that the content of a result.json holds: an object of kind "simulate" or "optimize"; everything else in it may be
+/// missing or of another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
+[[nodiscard]] nlohmann::json parse_result(std::string_view content, const std::string& name);
+
+}  // namespace softland

@@ -1,0 +1,197 @@
+#include "reports/sketch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "reports/escape.h"
+#include "reports/quantity.h"
+#include "reports/result_view.h"
+
+namespace softland::internal {
+namespace {
+
+using nlohmann::json;
+
+constexpr double width = 640;
+
+std::string rectangle(double left, double top, double wide, double high, const char* what) {
+  return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"{}\"/>\n", left, top, wide, high,
+                     what);
+}
+
+std::string drawn_line(double x1, double y1, double x2, double y2, const char* what) {
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"{}\"/>\n", x1, y1, x2, y2, what);
+}
+
+std::string words(double x, double y, const char* anchor, const std::string& text) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, escaped(text));
+}
+
+/// A measure between two heights, with its words to the right.
+std::string height_measure(double x, double top, double bottom, const std::string& text) {
+  return drawn_line(x, top, x, bottom, "measure") + drawn_line(x - 4, top, x + 4, top, "measure") +
+         drawn_line(x - 4, bottom, x + 4, bottom, "measure") + words(x + 8, (top + bottom) / 2 + 4, "start", text);
+}
+
+std::string spring(double left, double right, double y) {
+  std::string path = fmt::format("M{:.1f} {:.1f}", left, y);
+  constexpr int turns = 6;
+  for (int i = 1; i < 2 * turns; ++i)
+    path += fmt::format(" L{:.1f} {:.1f}", left + (right - left) * i / (2 * turns), y + (i % 2 == 0 ? -6 : 6));
+  return fmt::format("<path d=\"{} L{:.1f} {:.1f}\" class=\"measure\"/>\n", path, right, y);
+}
+
+/// Begin and end of a span as shares of the length; the whole length where none is given.
+std::array<double, 2> span_of(const json& section, double length) {
+  const json& span = at(section, {"span"});
+  if (!span.is_array() || span.size() != 2) return {0, 1};
+  const std::array<double, 2> share{quantity_of(span[0]) / length, quantity_of(span[1]) / length};
+  return share[0] >= 0 && share[1] <= 1.000001 && share[0] < share[1] ? share : std::array<double, 2>{0, 1};
+}
+
+}  // namespace
+
+std::string sketch(const json& result) {
+  const json& scene = at(result, {"scene"});
+  const std::string kind = text(scene, {"structure", "kind"});
+  const double electrode_gap = quantity_of(at(scene, {"gap", "electrode"})),
+               contact_gap = quantity_of(at(scene, {"gap", "contact"}));
+  const bool plate = kind == "plate", both_ends = kind == "clamped-clamped";
+  if (!(electrode_gap > 0) || !(contact_gap > 0) || !(plate || both_ends || kind == "cantilever")) return {};
+  const double given_length = quantity_of(at(scene, {"structure", "length"}));
+  const double length = given_length > 0 ? given_length : 1;
+
+  constexpr double left = 60, right = 440, thick = 14, gap = 60, electrode = 10, layer = 7;
+  const json& electrodes = at(scene, {"electrode"});
+  bool far_side = false;
+  if (electrodes.is_object()) {
+    for (const auto& [name, one] : electrodes.items()) far_side = far_side || text(one, {"side"}) == "far";
+  }
+  const double top = far_side ? 86 : 46, bottom = top + thick, floor = bottom + gap;
+  const auto x_at = [&](double share) { return left + share * (right - left); };
+
+  std::string out;
+  if (plate) {
+    out += spring(left - 40, left, top + thick / 2) + spring(right, right + 40, top + thick / 2);
+    out += rectangle(left - 50, top - 14, 10, thick + 28, "anchor") + rectangle(right + 40, top - 14, 10, thick + 28, "anchor");
+  } else {
+    out += rectangle(left - 40, top - 8, 40, floor - top + 18, "anchor");
+    if (both_ends) out += rectangle(right, top - 8, 40, floor - top + 18, "anchor");
+  }
+  out += rectangle(left, top, right - left, thick, "beam");
+  out += words((left + right) / 2, top + 11, "middle", plate ? "plate" : "beam");
+  if (!plate && given_length > 0) {
+    const double above = top - (at(scene, {"piezo"}).is_object() ? 22 : 12);
+    out += drawn_line(left, above, right, above, "measure") + drawn_line(left, above - 4, left, above + 4, "measure") +
+           drawn_line(right, above - 4, right, above + 4, "measure") +
+           words((left + right) / 2, above - 6, "middle", "length " + given_quantity(given_length, "m"));
+  }
+  if (const json& piezo = at(scene, {"piezo"}); piezo.is_object()) {
+    const auto [begin, end] = span_of(piezo, length);
+    out += rectangle(x_at(begin), top - layer, x_at(end) - x_at(begin), layer, "piezo") +
+           words(x_at(end) + 6, top - 2, "start", "piezo layer");
+  }
+  // The contact stands at the centre of the pad, of a beam between two clamps and of a plate in the middle.
+  const double pad = quantity_of(at(scene, {"contact", "pad_length"}));
+  const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? pad / length / 2 : 0);
+  const double plane = bottom + gap * std::min(1.0, contact_gap / electrode_gap);
+  if (electrodes.is_object()) {
+    for (const auto& [name, one] : electrodes.items()) {
+      const auto [begin, end] = span_of(one, length);
+      const bool far = text(one, {"side"}) == "far";
+      const double y = far ? top - gap * 0.75 - electrode : floor;
+      out += rectangle(x_at(begin), y, x_at(end) - x_at(begin), electrode, "electrode");
+      const double own_gap = quantity_of(at(one, {"gap"}));
+      const std::string note = far && own_gap > 0 ? ", gap " + given_quantity(own_gap, "m") : "";
+      out += words((x_at(begin) + x_at(end)) / 2, far ? y - 5 : floor + electrode + 14, "middle", "electrode " + name + note);
+    }
+  } else {
+    out += rectangle(left, floor, right - left, electrode, "electrode") +
+           words((left + right) / 2, floor + electrode + 14, "middle", "ground");
+  }
+  constexpr double contact_wide = 16;
+  const double contact_left = std::min(x_at(contact_at) - contact_wide / 2, plate || both_ends ? right : right - contact_wide);
+  out += rectangle(contact_left, plane, contact_wide, floor + electrode - plane, "contact");
+  const double measure = both_ends || plate ? right + 64 : right + 16;
+  out += drawn_line(contact_left + contact_wide, plane, measure + 6, plane, "guide") +
+         drawn_line(right, bottom, measure + 6, bottom, "guide");
+  out += height_measure(measure, bottom, plane, "to the contact " + given_quantity(contact_gap, "m"));
+  out += words(measure + 8, floor + electrode, "start", "to the electrode " + given_quantity(electrode_gap, "m"));
+  const double height = floor + electrode + 26;
+  return fmt::format(
+      "<svg class=\"sketch\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"The switch from the side\">\n{}</svg>\n",
+      width, height, out);
+}
+
+std::string parameter_drawing(const json& result, const std::string& drive) {
+  const json& shape = at(result, {"best", "waveforms", drive});
+  const json& parameters = at(result, {"best", "parameters"});
+  const auto parameter = [&](const std::string& name) { return number(parameters, {drive + "." + name}); };
+  if (!shape.is_array() || !parameters.is_object()) return {};
+  std::vector<std::array<double, 2>> points;
+  double lowest = 0, highest = 0, moves = 0;
+  for (const json& pair : shape) {
+    if (!pair.is_array() || pair.size() != 2 || !std::isfinite(number(pair[0])) || !std::isfinite(number(pair[1]))) continue;
+    if (!points.empty() && number(pair[1]) != points.back()[1]) moves = std::max(moves, number(pair[0]));
+    points.push_back({number(pair[0]), number(pair[1])});
+    lowest = std::min(lowest, points.back()[1]);
+    highest = std::max(highest, points.back()[1]);
+  }
+  if (points.size() < 2 || !(moves > 0) || !(highest > lowest)) return {};
+
+  struct Place {
+    std::string name;
+    double from, to;  // in time
+  };
+  const json& waveform = at(result, {"scene", "waveform", drive});
+  const json& times = at(waveform, {"times"});
+  const std::string family = text(waveform, {"family"});
+  std::vector<Place> spans;
+  std::vector<std::pair<std::string, double>> levels;  // name, time at which it holds
+  if (family == "pulse" && times.is_array() && times.size() == 2 && std::isfinite(parameter("level_1_V"))) {
+    const double edge = quantity_of(at(waveform, {"edge"})), first = quantity_of(times[0]), second = quantity_of(times[1]);
+    spans = {{"edge", 0, edge}, {"time_1", 0, first}, {"duration_2", first, second}};
+    levels = {{"level_1", (edge + first) / 2}, {"level_2", (first + edge + second) / 2}};
+  } else if (family == "harmonic" && std::isfinite(parameter("start_s"))) {
+    const double start = quantity_of(at(waveform, {"start"})), end = quantity_of(at(waveform, {"end"}));
+    spans = {{"start", 0, start}, {"duration", start, end}};
+    levels = {{"amplitude, angular_frequency, phase", (start + end) / 2}};
+  } else if (std::isfinite(parameter("rise_time_s"))) {
+    spans = {{"rise_time", 0, moves}};
+  }
+  if (spans.empty()) return {};
+
+  constexpr double left = 40, right = 600, top = 34, bottom = 150, row = 22;
+  const double end = 1.2 * moves;
+  const auto x = [&](double time) { return left + std::clamp(time / end, 0.0, 1.0) * (right - left); };
+  const auto y = [&](double level) { return bottom - (level - lowest) / (highest - lowest) * (bottom - top); };
+  std::string path;
+  for (const auto& [time, level] : points) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x(time), y(level));
+  std::string out = drawn_line(left, y(0), right, y(0), "guide") + words(left - 6, y(0) + 4, "end", "0");
+  double below = bottom + row;
+  for (const auto& [name, from, to] : spans) {
+    for (const double time : {from, to}) out += drawn_line(x(time), top, x(time), below + 4, "guide");
+    out += drawn_line(x(from), below, x(to), below, "measure") + drawn_line(x(from), below - 4, x(from), below + 4, "measure") +
+           drawn_line(x(to), below - 4, x(to), below + 4, "measure") + words(x(to) + 8, below + 4, "start", name);
+    below += row;
+  }
+  out += fmt::format("<path d=\"{}\" class=\"wave\"/>\n", path);
+  for (const auto& [name, time] : levels) {
+    double level = points.back()[1];
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      if (points[i - 1][0] <= time && time <= points[i][0]) level = points[i - 1][1];
+    }
+    out += words(x(time), (levels.size() == 1 ? top : y(level)) - 7, "middle", name);
+  }
+  return fmt::format(
+      "<svg class=\"sketch\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"What the parameters of {} "
+      "are\">\n{}</svg>\n",
+      width, below, escaped(drive), out);
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,17 @@
+// Drawings that explain: the switch of a result from the side, and a found waveform with its parameters.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace softland::internal {
+
+/// The switch at rest as an <svg> element: anchor, beam or plate, piezo layer, electrodes, contact, and the gaps. To scale along
+/// the beam, heights exaggerated. Empty where the result does not say what the switch is like. Its colours are the page's.
+[[nodiscard]] std::string sketch(const nlohmann::json& result);
+
+/// The waveform of a drive from 0 to where it holds, with the searched parameters written where they act; empty for a drive
+/// without searched parameters.
+[[nodiscard]] std::string parameter_drawing(const nlohmann::json& result, const std::string& drive);
+
+}  // namespace softland::internal

@@ -1,0 +1,101 @@
+#include "studies/two_stages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace softland {
+namespace {
+
+constexpr long own_share = 3;  // the budget is divided by this
+constexpr std::size_t starts_of_the_second = 8;
+constexpr double separation = 0.05;  // of two such starts in some variable, as a part of its bounds' distance
+
+}  // namespace
+
+OptimizerResult TwoStages::stage(Problem problem, OptimizerOptions options, bool leading) {
+  problem.objective = [this, leading](std::span<const double> x) {
+    const std::vector<double> point(x.begin(), x.end());
+    {
+      const std::scoped_lock lock(mutex_);
+      if (const auto found = known_.find(point); found != known_.end())
+        return leading ? found->second.leading : found->second.own;
+    }
+    const Prices prices = price_(x);
+    const std::scoped_lock lock(mutex_);
+    known_.emplace(point, prices);
+    return leading ? prices.leading : prices.own;
+  };
+  options.on_evaluation = [this](const Evaluation& e) {
+    Evaluation own = e;
+    own.index += first_index_;
+    {
+      const std::scoped_lock lock(mutex_);
+      const auto found = known_.find(e.x);
+      own.value = found == known_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second.own;  // it threw
+    }
+    on_evaluation_(own);
+    log_.emplace(own.index, std::move(own));
+  };
+  return minimize(problem, options);
+}
+
+std::vector<std::vector<double>> TwoStages::promising_points(const std::vector<Variable>& variables) const {
+  std::vector<const Evaluation*> ranked;
+  for (const auto& [index, e] : log_) {
+    if (std::isfinite(e.value)) ranked.push_back(&e);
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Evaluation* a, const Evaluation* b) { return a->value < b->value; });
+  const auto apart = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t k = 0; k < variables.size(); ++k) {
+      if (std::abs(a[k] - b[k]) > separation * (variables[k].upper - variables[k].lower)) return true;
+    }
+    return false;
+  };
+  std::vector<std::vector<double>> chosen;
+  for (const Evaluation* e : ranked) {
+    if (chosen.size() == starts_of_the_second) break;
+    if (std::all_of(chosen.begin(), chosen.end(), [&](const auto& other) { return apart(e->x, other); })) chosen.push_back(e->x);
+  }
+  return chosen;
+}
+
+OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool own_cost_differs) {
+  const auto begin = std::chrono::steady_clock::now();
+  options.on_improvement = {};
+  OptimizerOptions first = options;
+  if (own_cost_differs) {
+    first.max_evaluations -= options.max_evaluations / own_share;
+    first.max_seconds *= 1 - 1.0 / own_share;
+  }
+  OptimizerResult result = stage(problem, first, own_cost_differs);
+  const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
+  OptimizerOptions second = options;
+  second.seed = ~options.seed;  // other points than the first stage sampled
+  second.max_evaluations -= result.evaluations;
+  second.max_seconds -= std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (own_cost_differs && goes_on && second.max_evaluations > 0 && second.max_seconds > 0) {
+    if (!log_.empty()) first_index_ = log_.rbegin()->first + 1;
+    problem.starts = promising_points(problem.variables);
+    OptimizerResult own = stage(problem, second, false);
+    own.evaluations += result.evaluations;
+    own.message = fmt::format("first by the cost of bounce: {}; then by the target's own: {}", result.message, own.message);
+    if (own.first_exception.empty()) own.first_exception = result.first_exception;
+    result = std::move(own);
+  }
+  result.improvements.clear();
+  for (const auto& [index, e] : log_) {
+    if (std::isfinite(e.value) && (result.improvements.empty() || e.value < result.improvements.back().value))
+      result.improvements.push_back(e);
+  }
+  if (!result.improvements.empty()) {
+    result.x = result.improvements.back().x;
+    result.value = result.improvements.back().value;
+    if (result.termination == Termination::no_feasible_point) result.termination = Termination::evaluation_budget;
+  }
+  return result;
+}
+
+}  // namespace softland

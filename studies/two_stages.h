@@ -1,0 +1,46 @@
+// A search in two stages: two thirds of the budget by a leading cost, which finds the right valleys, then the rest by the
+// search's own cost, from the best points so far. Both stages are logged by the own cost, as one search. Where the two costs are
+// the same there is one stage.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "optimizers/problem.h"
+
+namespace softland {
+
+/// Two costs of one point; infinite where it is infeasible.
+struct Prices {
+  double leading = std::numeric_limits<double>::infinity();
+  double own = std::numeric_limits<double>::infinity();
+};
+
+class TwoStages {
+ public:
+  /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
+  TwoStages(std::function<Prices(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation)
+      : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)) {}
+
+  /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
+  /// Throws as minimize() does. Result, improvements and indices are those of one search by the own cost.
+  [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, bool own_cost_differs);
+
+ private:
+  [[nodiscard]] OptimizerResult stage(Problem problem, OptimizerOptions options, bool leading);
+  [[nodiscard]] std::vector<std::vector<double>> promising_points(const std::vector<Variable>& variables) const;
+
+  std::function<Prices(std::span<const double>)> price_;
+  std::function<void(const Evaluation&)> on_evaluation_;
+  std::mutex mutex_;
+  std::map<std::vector<double>, Prices> known_;
+  std::map<long, Evaluation> log_;  ///< by index
+  long first_index_ = 0;            ///< of the stage
+};
+
+}  // namespace softland

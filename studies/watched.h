@@ -1,0 +1,25 @@
+// Closings that tell how far they are.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "base/watch.h"
+
+namespace softland {
+
+/// For ClosingOptions::observer of a closing of `duration` [s] that is the `share` of a computation, after `done`. Empty where
+/// nobody listens. `watch` must live as long.
+[[nodiscard]] inline std::function<bool(double, const double*, const double*)> observer(const Watch& watch, std::string what,
+                                                                                        double duration, double done = 0,
+                                                                                        double share = 1) {
+  if (!watch.progress) return {};
+  return [&watch, what = std::move(what), duration, done, share](double time, const double*, const double*) {
+    watch.tell(what, std::min(1.0, done + share * time / duration));
+    return false;
+  };
+}
+
+}  // namespace softland

@@ -1,0 +1,188 @@
+// Every verb on every shipped scene: it ends with a documented status and says something that can be read.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "program.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+struct Shipped {
+  std::string name, text;
+  [[nodiscard]] bool has(const std::string& what) const { return std::regex_search(text, std::regex("\n" + what)); }
+  /// Few modes, a coarse accuracy and no compressible film: what is asked here is not how exact the figures are.
+  [[nodiscard]] std::vector<std::string> quickly(std::vector<std::string> words) const {
+    words.insert(words.end(), {"--set", "simulate.accuracy=1e-3"});
+    if (!has("kind = \"plate\"")) words.insert(words.end(), {"--set", "structure.modes=2"});
+    if (has("model = \"reynolds\"")) words.insert(words.end(), {"--set", "gas.model=strip"});
+    return words;
+  }
+};
+
+std::ostream& operator<<(std::ostream& out, const Shipped& scene) { return out << scene.name; }
+
+std::vector<Shipped> shipped_scenes() {
+  std::vector<Shipped> all;
+  for (const auto& entry : fs::directory_iterator(fs::path(SOFTLAND_SOURCE_DIR) / "scenes")) {
+    if (entry.path().extension() == ".toml") all.push_back({entry.path().filename().string(), read(entry.path())});
+  }
+  return all;
+}
+
+/// What a verb printed, as people see it: never a number that is none, and no mishap of our own.
+void expect_readable(const std::string& text, const std::string& place) {
+  static const std::regex odd("\\b(nan|inf|internal error)\\b", std::regex::icase);
+  std::smatch found;
+  EXPECT_FALSE(std::regex_search(text, found, odd)) << place << " says " << found.str() << " in\n" << text;
+}
+
+class EveryVerb : public testing::TestWithParam<Shipped> {
+ protected:
+  void SetUp() override { write(here.path() / scene().name, scene().text); }
+  static const Shipped& scene() { return GetParam(); }
+
+  /// A run that has to end well, or without success.
+  Outcome done(const std::vector<std::string>& words) const {
+    const Outcome o = finished(words);
+    EXPECT_TRUE(o.status == 0 || o.status == 4) << place(words) << ": status " << o.status << ", " << o.err;
+    EXPECT_FALSE(o.out.empty()) << place(words);
+    return o;
+  }
+  /// A run that has to be refused with this reason.
+  void refused(const std::vector<std::string>& words, const std::string& reason) const {
+    const Outcome o = finished(words);
+    EXPECT_EQ(o.status, 2) << place(words);
+    EXPECT_EQ(o.out, "") << place(words);
+    EXPECT_NE(o.err.find(reason), std::string::npos) << place(words) << ": " << o.err;
+  }
+  /// Voltages are exported; a factor of the dispersion force is none.
+  void exports(const std::vector<std::string>& words) const {
+    if (scene().has("\\[electrode")) {
+      (void)done(words);
+    } else {
+      refused(words, "there is no waveform to export");
+    }
+  }
+  [[nodiscard]] json data(const std::vector<std::string>& words) const {
+    const json j = json::parse(done(words).out, nullptr, false);
+    EXPECT_TRUE(j.is_object()) << place(words);
+    return j;
+  }
+  Workplace here;
+
+ private:
+  static std::string place(const std::vector<std::string>& words) {
+    std::string line;
+    for (const std::string& word : words) line += word + " ";
+    return line;
+  }
+  [[nodiscard]] Outcome finished(const std::vector<std::string>& words) const {
+    const Outcome o = here.run(words);
+    expect_readable(o.out, place(words));
+    expect_readable(o.err, place(words));
+    return o;
+  }
+};
+
+TEST_P(EveryVerb, Describes) {
+  const std::string& name = scene().name;
+  const bool contact = scene().has("\\[contact\\]");
+  const std::string check = done(scene().quickly({"check", name})).out;
+  for (const char* figure : {"release", "in-contact period"}) {
+    EXPECT_TRUE(contact || check.find(figure) == std::string::npos) << figure << " without contact in\n" << check;
+  }
+  (void)done(scene().quickly({"modes", name}));
+  EXPECT_FALSE(data(scene().quickly({"modes", name, "--json", "-"}))["natural_frequencies_rad_s"].empty());
+  if (scene().has("\\[electrode")) {
+    const std::string text = done(scene().quickly({"pull-in", name})).out;
+    EXPECT_EQ(text.find("release") != std::string::npos, contact) << text;
+    (void)data(scene().quickly({"pull-in", name, "--json", "-"}));
+  } else {
+    refused(scene().quickly({"pull-in", name}), "there is no electrode to pull in");
+  }
+  for (const char* format : {"csv", "spice-pwl"}) exports({"export", name, "--format", format});
+}
+
+TEST_P(EveryVerb, Simulates) {
+  const std::string& name = scene().name;
+  const bool contact = scene().has("\\[contact\\]");
+  const json j = data(scene().quickly({"simulate", name, "--quiet", "--json", "-"}));
+  const json& m = j["metrics"];
+  EXPECT_TRUE(m["initial_contact_time_s"].is_number());
+  for (const char* figure : {"bounce_count", "major_bounce_height_m", "peak_contact_force_N", "settled"}) {
+    EXPECT_EQ(!m[figure].is_null(), contact) << figure;
+  }
+  EXPECT_EQ(!j["errors"]["major_bounce_height_m"].is_null(), contact);
+  for (const char* option : {"", "--certify"}) {
+    std::vector<std::string> words = scene().quickly({"simulate", name, "--quiet", "--out", "out"});
+    if (*option != '\0') words.emplace_back(option);
+    const std::string text = done(words).out;
+    for (const char* figure : {"Rebounds", "Highest rebound", "Peak contact force", "Settled", "window ends"}) {
+      EXPECT_TRUE(contact || text.find(figure) == std::string::npos) << figure << " without contact in\n" << text;
+    }
+    EXPECT_NE(text.find("First contact"), std::string::npos) << text;
+    EXPECT_GT(fs::file_size(here.path() / "out/report.html"), 10'000U);
+  }
+  (void)done({"report", "out"});
+  exports({"export", "out"});
+}
+
+TEST_P(EveryVerb, Compares) {
+  (void)done(scene().quickly({"effects", scene().name, "--quiet", "--json", "effects.json"}));
+  const std::string written = read(here.path() / "effects.json");
+  EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
+}
+
+TEST_P(EveryVerb, Measures) {
+  // A beam with a contact takes some seconds; tests/apps/command_line_test.cc has one.
+  if (!scene().has("kind = \"plate\"") && scene().has("\\[contact\\]")) return;
+  (void)done(scene().quickly({"accuracy", scene().name, "--quiet", "--json", "accuracy.json"}));
+  const std::string written = read(here.path() / "accuracy.json");
+  EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
+}
+
+TEST_P(EveryVerb, Searches) {
+  for (const char* actuator : {"electrostatic", "pzt", "both"}) {
+    const std::vector<std::string> words = scene().quickly(
+        {"optimize", scene().name, "--quiet", "--budget", "2", "--jobs", "1", "--actuator", actuator, "--out", actuator});
+    const bool has_electrode = scene().has("\\[electrode"), has_piezo = scene().has("\\[piezo\\]");
+    if (!scene().has("\\[contact\\]")) {
+      refused(words, "optimize needs a [contact] section");
+    } else if (!has_electrode && *actuator != 'p') {
+      refused(words, "needs an electrode");
+    } else if (!has_piezo && *actuator != 'e') {
+      refused(words, "needs a [piezo] section");
+    } else {
+      (void)done(words);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryVerb, testing::ValuesIn(shipped_scenes()), [](const auto& given) {
+  std::string name = fs::path(given.param.name).stem();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+TEST(EveryKind, OfNewSceneIsAShippedOne) {
+  const Workplace here;
+  const std::vector<Shipped> scenes = shipped_scenes();
+  std::string kinds = here.run({"new", "?"}).err;  // the refusal lists them
+  kinds = kinds.substr(kinds.find("one of ") + 7);
+  static const std::regex kind("[a-z-]+");
+  int count = 0;
+  for (auto at = std::sregex_iterator(kinds.begin(), kinds.end(), kind); at != std::sregex_iterator(); ++at, ++count) {
+    const Outcome o = here.run({"new", at->str()});
+    EXPECT_EQ(o.status, 0) << at->str();
+    EXPECT_TRUE(std::any_of(scenes.begin(), scenes.end(), [&](const Shipped& s) { return s.text == o.out; })) << at->str();
+  }
+  EXPECT_GE(count, 7);
+}
+
+}  // namespace
+}  // namespace softland

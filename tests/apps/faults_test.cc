@@ -1,0 +1,483 @@
+// What can go wrong around the program, for every verb: output that is lost, signals, files that are none. The verbs are those
+// that the program itself lists, so that a new one is tried as well.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "program.h"
+
+namespace softland {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int bad_input = 2, output_lost = 74, interrupted = 130;
+constexpr std::array stopping_signals{SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+
+struct Call {
+  std::vector<std::string> quick;  ///< prints something within a moment
+  std::vector<std::string> slow;   ///< is at it for many seconds; empty for a verb that never is
+};
+
+const std::vector<std::string> in_volts{"--set", "waveform.main.level=17 V", "--set", "driver.main.max_voltage=60 V"};
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// The first word that is not an option is what the verb reads.
+std::map<std::string, Call> calls() {
+  const std::vector<std::string> short_window{"--set", "simulate.duration=60 us"},
+      long_window{"--set", "simulate.duration=100 ms"};
+  const std::vector<std::string> many{"--set", "structure.modes=20", "--set", "gas.model=reynolds"};
+  const std::vector<std::string> gold{"gold.toml"}, json_file{"--json", "out.json"};
+  return {
+      {"simulate", {gold + in_volts + short_window, gold + in_volts + many + long_window + json_file}},
+      {"pull-in", {gold + in_volts, gold + in_volts + many + json_file}},
+      {"modes", {gold + in_volts, gold + many + json_file}},
+      {"check", {gold + in_volts, gold + many}},
+      {"effects", {gold + in_volts + short_window, gold + in_volts + many + long_window + json_file}},
+      {"accuracy", {gold + std::vector<std::string>{"--set", "waveform.main.level=3 V"}, gold + in_volts + json_file}},
+      {"optimize",
+       {gold + in_volts + std::vector<std::string>{"--budget", "6", "--set", "simulate.duration=150 us"},
+        gold + in_volts + json_file + std::vector<std::string>{"--budget", "1000000"}}},
+      {"new", {{"plate"}, {}}},
+      {"export", {{"volts.toml"}, {"slow.toml"}}},
+      {"report", {{"run"}, {}}},
+  };
+}
+
+// With the scenes of those that take no --set.
+std::unique_ptr<Workplace> workplace() {
+  auto place = std::make_unique<Workplace>();
+  const std::string gold = shipped("mem-gold.toml");
+  write(place->path() / "volts.toml", edited(edited(gold, "1.25 Vdp", "17 V"), "1.5 Vdp", "60 V"));
+  write(place->path() / "slow.toml", edited(edited(gold, "modes = 4", "modes = 20"), "\"strip\"", "\"reynolds\""));
+  return place;
+}
+
+class Faults : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    here = workplace().release();
+    ASSERT_EQ(
+        here->run(std::vector<std::string>{"simulate"} + calls()["simulate"].quick + std::vector<std::string>{"--out", "run"})
+            .status,
+        0);
+    std::istringstream help(here->run({"--help"}).out);
+    bool listed = false;
+    for (std::string line; std::getline(help, line);) {
+      if (line == "Verbs:") {
+        listed = true;
+      } else if (line.empty()) {
+        listed = false;
+      } else if (listed && line[2] != ' ') {
+        verbs.push_back(line.substr(2, line.find(' ', 2) - 2));
+      }
+    }
+    std::vector<std::string> known;
+    for (const auto& [verb, call] : calls()) known.push_back(verb);
+    EXPECT_THAT(verbs, testing::UnorderedElementsAreArray(known)) << "say above how a new verb is called";
+  }
+  static void TearDownTestSuite() {
+    delete here;
+    here = nullptr;
+  }
+  static std::vector<std::string> words(const std::string& verb, const std::vector<std::string>& more) {
+    return std::vector<std::string>{verb} + more;
+  }
+  static bool takes(const std::string& verb, const char* option) {
+    return here->run({verb, "--help"}).out.find(std::string("\n  ") + option) != std::string::npos;
+  }
+
+  static inline Workplace* here = nullptr;
+  static inline std::vector<std::string> verbs;
+};
+
+// A pipe that holds as much as it can.
+class FullPipe {
+ public:
+  FullPipe() {
+    if (pipe2(ends_, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    fcntl(ends_[1], F_SETFL, O_NONBLOCK);
+    const std::string block(4096, 'x');
+    while (::write(ends_[1], block.data(), block.size()) > 0) {
+    }
+    fcntl(ends_[1], F_SETFL, 0);
+  }
+  ~FullPipe() {
+    ::close(ends_[0]);
+    ::close(ends_[1]);
+  }
+  FullPipe(const FullPipe&) = delete;
+  FullPipe& operator=(const FullPipe&) = delete;
+  [[nodiscard]] int end() const { return ends_[1]; }
+
+ private:
+  int ends_[2];
+};
+
+TEST_F(Faults, OutputThatIsLostIsAnErrorOfEveryVerb) {
+  const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
+  int broken[2];
+  ASSERT_EQ(pipe2(broken, O_CLOEXEC), 0);
+  close(broken[0]);
+  const std::map<std::string, std::pair<int, std::string>> places{{"full disk", {full, "No space left on device"}},
+                                                                  {"closed", {Workplace::closed, "Bad file descriptor"}},
+                                                                  {"closed pipe", {broken[1], "Broken pipe"}}};
+  for (const std::string& verb : verbs) {
+    for (const auto& [place, out] : places) {
+      const Outcome o = here->run(words(verb, calls()[verb].quick), SOFTLAND_PROGRAM, out.first);
+      EXPECT_EQ(o.status, output_lost) << verb << ", " << place;
+      EXPECT_THAT(o.err, HasSubstr("softland: standard output: cannot be written: " + out.second)) << verb << ", " << place;
+    }
+    if (!takes(verb, "--json")) continue;
+    const std::vector<std::string> as_json = calls()[verb].quick + std::vector<std::string>{"--json", "-"};
+    EXPECT_EQ(here->run(words(verb, as_json), SOFTLAND_PROGRAM, full).status, output_lost) << verb << " --json -";
+  }
+  for (const std::vector<std::string>& told : {std::vector<std::string>{"--help"}, {"--version"}, {"optimize", "--help"}})
+    EXPECT_EQ(here->run(told, SOFTLAND_PROGRAM, full).status, output_lost) << told.front();
+  close(full);
+  close(broken[1]);
+}
+
+// The signal that the kernel sends then would end the program without a word.
+TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne) {
+  const auto limited = [&](const std::vector<std::string>& more) {
+    return here->run(std::vector<std::string>{"-c", "ulimit -f 0; exec \"$0\" \"$@\"", SOFTLAND_PROGRAM} + more, "/bin/sh",
+                     open("/dev/null", O_WRONLY | O_CLOEXEC));
+  };
+  for (const std::string& verb : verbs) {
+    for (const char* option : {"--json", "--out"}) {
+      if (!takes(verb, option)) continue;
+      if (verb == "accuracy" && option == std::string("--out")) continue;  // a scene that is quick for it leaves no report
+      std::vector<std::string> more =
+          calls()[verb].quick + std::vector<std::string>{option, option == std::string("--out") ? "lost" : "lost.json"};
+      if (verb == "optimize" && option == std::string("--json")) more = more + std::vector<std::string>{"--out", "lost"};
+      EXPECT_EQ(limited(words(verb, more)).status, output_lost) << verb << " " << option;
+      EXPECT_THAT(read(here->path() / "stderr.txt"), Not(HasSubstr("internal"))) << verb << " " << option;
+    }
+  }
+  EXPECT_FALSE(fs::exists(here->path() / "lost.json"));
+  EXPECT_FALSE(fs::exists(here->path() / "lost/report.html"));
+}
+
+TEST_F(Faults, EverySignalEndsEveryVerbThatWaitsForItsReader) {
+  for (const int signal : stopping_signals) {
+    std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;
+    std::vector<pid_t> children;
+    const FullPipe pipe;
+    for (const std::string& verb : verbs) {
+      const auto& place = places.emplace_back(verb, workplace()).second;
+      fs::copy(here->path() / "run", place->path() / "run", fs::copy_options::recursive);
+      children.push_back(place->start(words(verb, calls()[verb].quick), SOFTLAND_PROGRAM, pipe.end()));
+    }
+    for (const pid_t child : children) wait_until_it_waits(child);
+    for (const pid_t child : children) EXPECT_EQ(kill(child, signal), 0);
+    for (std::size_t k = 0; k < children.size(); ++k)
+      EXPECT_EQ(places[k].second->finish(children[k]).status, interrupted) << places[k].first << ", signal " << signal;
+  }
+}
+
+TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo) {
+  for (const int signal : stopping_signals) {
+    std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;
+    std::vector<pid_t> children;
+    for (const std::string& verb : verbs) {
+      if (calls()[verb].slow.empty()) continue;
+      const auto& place = places.emplace_back(verb, workplace()).second;
+      children.push_back(place->start(words(verb, calls()[verb].slow)));
+    }
+    for (const pid_t child : children) wait_until_it_computes(child);
+    const auto sent = std::chrono::steady_clock::now();
+    for (const pid_t child : children) EXPECT_EQ(kill(child, signal), 0);
+    for (std::size_t k = 0; k < children.size(); ++k) {
+      const auto& [verb, place] = places[k];
+      const Outcome o = place->finish(children[k]);
+      EXPECT_EQ(o.status, interrupted) << verb << ", signal " << signal << ": " << o.err;
+      if (!takes(verb, "--json")) continue;
+      const json j = json::parse(read(place->path() / "out.json"), nullptr, false);
+      EXPECT_THAT(j.dump(), Not(HasSubstr("is not reached"))) << verb;
+      EXPECT_EQ(j.value("status", ""), "interrupted") << verb << ", signal " << signal << ": " << j.dump().substr(0, 200);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - sent, 60s) << "signal " << signal;
+  }
+}
+
+// A bar on a terminal, which goes away when the verb has ended; nothing with --quiet.
+TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs) {
+  for (const bool quiet : {false, true}) {
+    std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;
+    std::vector<pid_t> children;
+    std::vector<int> terminals;
+    for (const std::string& verb : verbs) {
+      if (calls()[verb].slow.empty() || (quiet && !takes(verb, "--quiet"))) continue;
+      const int terminal = terminals.emplace_back(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC));
+      ASSERT_TRUE(grantpt(terminal) == 0 && unlockpt(terminal) == 0);
+      const int screen = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
+      const auto& place = places.emplace_back(verb, workplace()).second;
+      std::vector<std::string> more = calls()[verb].slow;
+      if (quiet) more.emplace_back("--quiet");
+      children.push_back(place->start(words(verb, more), SOFTLAND_PROGRAM, Workplace::to_file, screen));
+      close(screen);
+    }
+    for (const pid_t child : children) wait_until_it_computes(child);
+    std::this_thread::sleep_for(1500ms);
+    for (std::size_t k = 0; k < children.size(); ++k) {
+      kill(children[k], SIGTERM);
+      EXPECT_EQ(places[k].second->finish(children[k]).status, interrupted) << places[k].first;
+      std::string shown;
+      std::array<char, 4096> block{};
+      for (ssize_t n = 0; (n = ::read(terminals[k], block.data(), block.size())) > 0;)
+        shown.append(block.data(), static_cast<std::size_t>(n));
+      close(terminals[k]);
+      if (quiet) {
+        EXPECT_THAT(shown, testing::AnyOf("", "softland: interrupted\r\n")) << places[k].first;
+      } else {
+        EXPECT_THAT(shown, testing::ContainsRegex("\r\\[[#.]{24}\\] [^\r]*[0-9] s[^\r]*\033\\[K")) << places[k].first;
+      }
+    }
+  }
+}
+
+// What is ignored from the start, as under nohup, stays ignored.
+TEST_F(Faults, AnIgnoredSignalStaysIgnored) {
+  const pid_t child = here->start({"-c", "trap '' HUP; exec \"$0\" simulate gold.toml", SOFTLAND_PROGRAM}, "/bin/sh");
+  for (int i = 0; i < 20; ++i) {
+    std::this_thread::sleep_for(5ms);
+    kill(child, SIGHUP);
+  }
+  EXPECT_EQ(here->finish(child).status, 0);
+}
+
+TEST_F(Faults, WhatIsNoRegularFileOrTooLargeIsReadByNoVerb) {
+  mkfifo((here->path() / "pipe.toml").c_str(), 0600);
+  fs::create_directory(here->path() / "folder.toml");
+  write(here->path() / "large.toml", "");
+  fs::resize_file(here->path() / "large.toml", 100'000'000);  // sparse
+  const std::map<std::string, std::string> files{{"/dev/zero", "is a device, it must be a regular file"},
+                                                 {"pipe.toml", "is a pipe, it must be a regular file"},
+                                                 {"folder.toml", "is a folder, it must be a regular file"},
+                                                 {"large.toml", "is too large, it must have at most 64 MiB"},
+                                                 {"absent.toml", "cannot be read: No such file or directory"}};
+  for (const auto& [name, message] : files) {
+    for (const std::string& verb : verbs) {
+      if (verb == "new") continue;  // reads nothing of the user's
+      std::vector<std::string> more = calls()[verb].quick;
+      more.front() = name;
+      const Outcome o = here->run(words(verb, more));
+      EXPECT_EQ(o.status, bad_input) << verb << " " << name;
+      if ((verb == "report" || verb == "export") && name == "folder.toml") continue;  // a folder of results: without any
+      EXPECT_EQ(o.err, "softland: " + name + ": " + message + "\n") << verb;
+    }
+    // A waveform of the scene.
+    write(here->path() / "table.toml", edited(shipped("mem-gold.toml"), "family = \"step\"\nlevel = \"1.25 Vdp\"",
+                                              "family = \"table\"\nfile = \"" + name + "\""));
+    const Outcome o = here->run({"simulate", "table.toml"});
+    EXPECT_EQ(o.status, bad_input) << name;
+    EXPECT_THAT(o.err, HasSubstr(message)) << name;
+  }
+  // The text of results is read like this too.
+  fs::create_directory(here->path() / "zero");
+  fs::create_symlink("/dev/zero", here->path() / "zero/result.json");
+  for (const char* verb : {"report", "export"})
+    EXPECT_EQ(here->run({verb, "zero"}).err, "softland: zero/result.json: is a device, it must be a regular file\n");
+}
+
+TEST_F(Faults, NoOutputTakesThePlaceOfAnInput) {
+  const std::string scene = shipped("mem-gold.toml");
+  fs::create_symlink("gold.toml", here->path() / "link.toml");
+  fs::create_hard_link(here->path() / "gold.toml", here->path() / "hard.toml");
+  const std::string absolute = (here->path() / "gold.toml").string();
+  for (const std::string& verb : verbs) {
+    if (!takes(verb, "--json")) continue;
+    for (const std::string& place : {std::string("gold.toml"), std::string("link.toml"), std::string("hard.toml"), absolute}) {
+      const Outcome o = here->run(words(verb, calls()[verb].quick + std::vector<std::string>{"--json", place}));
+      EXPECT_EQ(o.status, bad_input) << verb << " " << place;
+      EXPECT_EQ(o.err.substr(0, o.err.find('\n')).substr(std::max<std::size_t>(o.err.find(place), 0)),
+                place + ": is read by this run, so its output does not replace it")
+          << verb;
+    }
+  }
+  EXPECT_EQ(read(here->path() / "gold.toml"), scene);
+  // A table that the scene names, and the scene of an earlier search.
+  fs::create_directory(here->path() / "both");
+  write(here->path() / "both/trajectory.csv", "time_s,main\n0,0\n1e-6,17\n");
+  write(here->path() / "both/best.toml",
+        edited(scene, "family = \"step\"\nlevel = \"1.25 Vdp\"", "family = \"table\"\nfile = \"trajectory.csv\""));
+  const std::string before = read(here->path() / "both/best.toml");
+  EXPECT_EQ(here->run({"simulate", "both/best.toml", "--out", "both"}).err,
+            "softland: --out both: both/trajectory.csv would be replaced, which this run reads; name another folder\n");
+  EXPECT_EQ(here->run({"optimize", "both/best.toml", "--quiet", "--out", "both"}).err,
+            "softland: --out both: both/best.toml would be replaced, which this run reads; name another folder\n");
+  EXPECT_EQ(read(here->path() / "both/best.toml"), before);
+  EXPECT_EQ(here->run({"simulate", "gold.toml", "--out", "one", "--json", "one/result.json"}).err,
+            "softland: --json one/result.json: is the result.json that --out writes; name another file\n");
+}
+
+TEST_F(Faults, OnlyARegularFileIsReplaced) {
+  mkfifo((here->path() / "pipe.json").c_str(), 0600);
+  const Outcome o = here->run({"modes", "gold.toml", "--json", "pipe.json"});
+  EXPECT_EQ(o.status, bad_input);
+  EXPECT_EQ(o.err, "softland: pipe.json: is no regular file, so it is not replaced\n");
+  EXPECT_TRUE(fs::is_fifo(here->path() / "pipe.json"));
+  write(here->path() / "real.json", "old");
+  fs::create_symlink("real.json", here->path() / "link.json");
+  EXPECT_EQ(here->run({"modes", "gold.toml", "--json", "link.json"}).status, 0);
+  EXPECT_TRUE(fs::is_symlink(here->path() / "link.json"));
+  EXPECT_TRUE(json::accept(read(here->path() / "real.json")));
+}
+
+// Bytes that a terminal acts on: C0 but line feed and tab, DEL, and C1 and characters of direction in UTF-8.
+bool acts_on_a_terminal(const std::string& text) {
+  const bool control = std::any_of(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+  });
+  return control || text.find("\u009b") != std::string::npos || text.find("\u202e") != std::string::npos ||
+         text.find("\u2066") != std::string::npos;
+}
+
+TEST_F(Faults, NothingThatActsOnATerminalReachesIt) {
+  const std::string evil = "\x1b]0;owned\a\x1b[31m\u009b2J\u202eabc\u2066\x7f";
+  const std::string title = R"("\u001b]0;owned\u0007\u001b[31m\u009b2J\u202eabc\u2066\u007f")";
+  const std::string scene = shipped("mem-gold.toml");
+  const std::string name = evil + ".toml";
+  write(here->path() / name, "title = " + title + scene.substr(scene.find('\n', scene.find("title = "))));
+  ASSERT_EQ(here->run({"simulate", name, "--set", "simulate.duration=60 us", "--out", evil}).status, 0);
+  for (const std::string& verb : verbs) {
+    std::vector<std::string> more = calls()[verb].quick;
+    more.front() = verb == "report" ? evil : name;
+    if (verb == "optimize") more = more + std::vector<std::string>{"--out", evil + "2"};
+    for (const std::vector<std::string>& also :
+         {std::vector<std::string>{}, std::vector<std::string>{"--json", "-"}, std::vector<std::string>{evil},
+          std::vector<std::string>{"--set", evil + "=" + evil}, std::vector<std::string>{"--" + evil}}) {
+      const Outcome o = here->run(words(verb, more + also));
+      EXPECT_FALSE(acts_on_a_terminal(o.out)) << verb;
+      EXPECT_FALSE(acts_on_a_terminal(o.err)) << verb;
+      if (!also.empty() && also.front() == "--json" && o.status == 0) {
+        ASSERT_TRUE(json::accept(o.out)) << verb;
+        const json j = json::parse(o.out);
+        EXPECT_EQ(j.value("title", evil), evil) << "the same text, escaped";
+      }
+    }
+  }
+  const Outcome o = here->run({evil});
+  EXPECT_EQ(o.status, bad_input);
+  EXPECT_FALSE(acts_on_a_terminal(o.err));
+}
+
+TEST_F(Faults, TwoRunsDoNotWorkInOneFolder) {
+  const Workplace place;
+  const pid_t child = place.start(words("optimize", calls()["optimize"].slow + std::vector<std::string>{"--out", "out"}));
+  for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(50ms);
+  fs::copy(here->path() / "run/result.json", place.path() / "out/result.json");
+  // The second run's streams go to a place of their own.
+  for (const std::vector<std::string>& second : {std::vector<std::string>{"optimize", "gold.toml", "--quiet"},
+                                                 {"simulate", "gold.toml"},
+                                                 {"accuracy", "gold.toml"},
+                                                 {"report", "out"}}) {
+    std::vector<std::string> more = second;
+    more[1] = (place.path() / more[1]).string();
+    const std::string out = (place.path() / "out").string();
+    const Outcome o = here->run(more + std::vector<std::string>{"--out", out});
+    EXPECT_EQ(o.status, bad_input) << second.front();
+    EXPECT_THAT(o.err, HasSubstr("softland: --out " + out + ": another run works in this folder (process " +
+                                 std::to_string(child) + " on "))
+        << second.front();
+    EXPECT_THAT(o.err, HasSubstr(" UTC: softland optimize gold.toml")) << second.front();
+  }
+  kill(child, SIGKILL);
+  EXPECT_EQ(place.finish(child).status, -SIGKILL);
+  EXPECT_TRUE(fs::exists(place.path() / "out/softland.lock")) << "of a dead process";
+  EXPECT_EQ(place.run({"report", "out"}).status, 0);
+  EXPECT_FALSE(fs::exists(place.path() / "out/softland.lock"));
+  EXPECT_TRUE(fs::exists(place.path() / "out/unfinished/best.toml")) << "what the killed search had found";
+}
+
+// ---- what happens to the folder of a run
+
+TEST_F(Faults, WhatAKilledSearchLeftMayBeRefinedInPlace) {
+  const Workplace place;
+  fs::create_directories(place.path() / "out/unfinished");
+  fs::copy(place.path() / "gold.toml", place.path() / "out/unfinished/best.toml");
+  const std::string before = read(place.path() / "out/unfinished/best.toml");
+  const Outcome o = place.run(
+      words("optimize", std::vector<std::string>{"out/unfinished/best.toml"} + in_volts +
+                            std::vector<std::string>{"--budget", "6", "--set", "simulate.duration=150 us", "--out", "out"}));
+  EXPECT_NE(o.status, bad_input) << o.err;
+  EXPECT_EQ(read(place.path() / "out/unfinished/best.toml"), before) << "the scene that it read";
+}
+
+TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost) {
+  const Workplace place;
+  const pid_t child = place.start(words("optimize", std::vector<std::string>{"gold.toml"} + in_volts +
+                                                        std::vector<std::string>{"--budget", "2 s", "--out", "out"}));
+  for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(20ms);
+  fs::remove_all(place.path() / "out");
+  // Somebody else works there now.
+  fs::create_directories(place.path() / "out");
+  write(place.path() / "out/softland.lock", "process 1 on elsewhere");
+  const Outcome o = place.finish(child);
+  EXPECT_EQ(o.status, output_lost) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("out: the folder was removed or replaced during this run"));
+  EXPECT_EQ(read(place.path() / "out/softland.lock"), "process 1 on elsewhere");
+}
+
+TEST_F(Faults, NothingInTheFolderIsTakenForWhatItIsNot) {
+  const Workplace place;
+  const auto into = [&](const std::string& folder) {
+    return place.run(words("simulate", calls()["simulate"].quick + std::vector<std::string>{"--out", folder}));
+  };
+  fs::create_directories(place.path() / "notes");
+  write(place.path() / "notes/softland.lock", "my notes");
+  const Outcome notes = into("notes");
+  EXPECT_EQ(notes.status, bad_input);
+  EXPECT_THAT(notes.err, HasSubstr("is no lock of softland"));
+  EXPECT_EQ(read(place.path() / "notes/softland.lock"), "my notes");
+  fs::create_directories(place.path() / "taken/result.json");
+  const Outcome taken = into("taken");
+  EXPECT_EQ(taken.status, bad_input);
+  EXPECT_THAT(taken.err, HasSubstr("result.json is a folder"));
+}
+
+TEST_F(Faults, JsonKeepsOffStandardOutputAndUnfinishedResults) {
+  const Workplace place;  // where standard output is stdout.txt
+  fs::create_directories(place.path() / "out");
+  for (const std::string file :
+       {"out/softland.lock", "out/unfinished", "out/unfinished/result.json", "out/unfinished-2", "stdout.txt"}) {
+    const Outcome o =
+        place.run(words("simulate", calls()["simulate"].quick + std::vector<std::string>{"--out", "out", "--json", file}));
+    EXPECT_EQ(o.status, bad_input) << file;
+    EXPECT_THAT(o.err, HasSubstr("--json " + file + ": ")) << file;
+  }
+}
+
+TEST_F(Faults, ResultsKeepTheAccessRightsOfThoseTheyReplace) {
+  const Workplace place;
+  const auto run = [&] {
+    return place.run(words("simulate", calls()["simulate"].quick + std::vector<std::string>{"--out", "out"})).status;
+  };
+  ASSERT_EQ(run(), 0);
+  const auto mine = fs::perms::owner_read | fs::perms::owner_write;
+  fs::permissions(place.path() / "out/result.json", mine);
+  ASSERT_EQ(run(), 0);
+  EXPECT_EQ(fs::status(place.path() / "out/result.json").permissions(), mine);
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,38 @@
+#include "reports/html.h"
+#include "reports/result_reader.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+#include "tests/fuzz/scene_checks.h"
+#include "tests/fuzz/targets.h"
+#include "tests/reports/xml.h"
+
+namespace softland::fuzz {
+namespace {
+
+using nlohmann::json;
+
+std::size_t scripts(std::string_view page) {
+  std::size_t count = 0;
+  for (std::size_t at = page.find("<script"); at != std::string_view::npos; at = page.find("<script", at + 1)) ++count;
+  return count;
+}
+
+}  // namespace
+
+void result(std::string_view input) {
+  json read;
+  if (!accepted([&] { read = parse_result(input, "fuzz.json"); })) return;
+  check(parse_result(read.dump(), "written.json") == read, "a result changes when it is read again");
+
+  static const std::size_t own_scripts = scripts(html_report({{"kind", "simulate"}}));
+  check(scripts(html_report(read)) <= own_scripts, "a result brings a script into its page");
+  const std::string fault = testing::xml_fault(svg_gap_chart(read));
+  check(fault.empty(), "the picture of a result is not XML: " + fault);
+  static_cast<void>(text_report(read));
+
+  const auto scene = read.find("scene_toml");
+  if (scene == read.end() || !scene->is_string()) return;
+  accepted([&] { check_scene(SceneFile::parse(scene->get<std::string>(), "fuzz.json", "/nonexistent")); });
+}
+
+}  // namespace softland::fuzz

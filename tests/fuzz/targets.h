@@ -1,0 +1,47 @@
+// Everything that reads text from outside, as functions of that text. libFuzzer calls them with texts of its own making
+// (libfuzzer.cc, run_fuzzers), and the test suite calls them with the kept ones (replay_test.cc).
+//
+// A target refuses its input with InvalidInput, which it catches itself. Every other exception that leaves it is a find.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "base/require.h"
+
+namespace softland::fuzz {
+
+/// A scene file, --set assignments to a scene (separated by NUL), a quantity, a table of voltages, a result.json.
+void scene(std::string_view input);
+void set(std::string_view input);
+void units(std::string_view input);
+void table(std::string_view input);
+void result(std::string_view input);
+
+struct Target {
+  std::string_view name;
+  void (*read)(std::string_view);
+};
+inline constexpr std::array targets{Target{"scene", scene}, Target{"set", set}, Target{"units", units}, Target{"table", table},
+                                    Target{"result", result}};
+
+/// Throws logic_error unless `holds`.
+inline void check(bool holds, const std::string& what) {
+  if (!holds) throw std::logic_error(what);
+}
+
+/// Whether `read` took its input. Refusing it, with a message, is the only other way out.
+template <class Read>
+bool accepted(const Read& read) {
+  try {
+    read();
+    return true;
+  } catch (const InvalidInput& refusal) {
+    check(!std::string_view(refusal.what()).empty(), "a refusal without a message");
+    return false;
+  }
+}
+
+}  // namespace softland::fuzz

@@ -1,0 +1,44 @@
+#include "reports/result_reader.h"
+
+#include <gtest/gtest.h>
+
+#include "base/require.h"
+#include "reports/html.h"
+#include "sample_result.h"
+
+namespace softland {
+namespace {
+
+std::string refusal(const std::string& content) {
+  try {
+    (void)parse_result(content, "x.json");
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "was not refused";
+}
+
+TEST(ParseResult, ReadsWhatTheVerbsWrite) {
+  const nlohmann::json result = test::sample_optimize_result(10);
+  EXPECT_EQ(parse_result(result.dump(), "x.json"), result);
+}
+
+TEST(ParseResult, RefusesWhatIsNoResult) {
+  for (const char* content : {"", "nonsense", "{}", "[]", R"({"kind": 3})", R"({"kind": "effects"})", R"({"kind": "simulate")",
+                              "{\"kind\": \"simulate\", \"title\": \"\xff\"}", R"({"kind": "simulate", "seed": 1e999})"}) {
+    EXPECT_EQ(refusal(content), "x.json: is not a result.json of softland") << content;
+  }
+}
+
+// 300 000 brackets among the parameters once overflowed the stack of the report.
+TEST(ParseResult, RefusesNestingThatNoReportCanWalkThrough) {
+  const auto nested = [](std::size_t depth) {
+    return R"({"kind": "optimize", "best": {"parameters": {"a": )" + std::string(depth, '[') + std::string(depth, ']') + "}}}";
+  };
+  EXPECT_EQ(refusal(nested(300'000)), "x.json: is nested more than 64 deep");
+  EXPECT_EQ(refusal(nested(62)), "x.json: is nested more than 64 deep");
+  EXPECT_NO_THROW((void)html_report(parse_result(nested(61), "x.json")));
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,110 @@
+// A search led by one cost and finished by another, on functions.
+#include "studies/two_stages.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+namespace softland {
+namespace {
+
+// Two valleys by the own cost, at -0.6 and 0.6; the leading cost knows the right one alone, which is shallower by own digits.
+Prices prices(std::span<const double> x) {
+  const double u = x[0] - 0.6, v = x[1] - 0.2;
+  const double leading = u * u + v * v;
+  const double own = leading < 0.04 ? std::abs(x[0] - 0.65) + std::abs(x[1] - 0.2) - 1 : 1 + std::abs(x[0] + 0.6);
+  return {.leading = leading, .own = own};
+}
+
+struct StagesLog {
+  std::map<long, Evaluation> evaluations;
+  OptimizerResult result;
+};
+
+StagesLog search_in_stages(OptimizerOptions options, bool own_cost_differs = true,
+                           const std::function<Prices(std::span<const double>)>& f = prices) {
+  StagesLog log;
+  TwoStages stages(f, [&](const Evaluation& e) { EXPECT_TRUE(log.evaluations.emplace(e.index, e).second) << e.index; });
+  log.result = stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, options, own_cost_differs);
+  return log;
+}
+
+TEST(TwoStages, FollowTheLeadingCostFirstAndTheirOwnToItsMinimum) {
+  const StagesLog log = search_in_stages({.max_evaluations = 1500});
+  EXPECT_NEAR(log.result.value, -1, 1e-3);
+  EXPECT_NEAR(log.result.x[0], 0.65, 1e-3);
+}
+
+TEST(TwoStages, LogTheOwnCostOfEveryEvaluation) {
+  const StagesLog log = search_in_stages({.max_evaluations = 100});
+  EXPECT_EQ(log.result.evaluations, 100);
+  EXPECT_EQ(log.evaluations.size(), 100U);
+  for (const auto& [index, e] : log.evaluations) EXPECT_EQ(e.value, prices(e.x).own) << index;
+  double best = std::numeric_limits<double>::infinity();
+  std::vector<long> improving;
+  for (const auto& [index, e] : log.evaluations) {
+    if (!(e.value < best)) continue;
+    best = e.value;
+    improving.push_back(index);
+  }
+  ASSERT_EQ(log.result.improvements.size(), improving.size());
+  for (std::size_t k = 0; k < improving.size(); ++k) EXPECT_EQ(log.result.improvements[k].index, improving[k]);
+  EXPECT_EQ(log.result.value, best);
+}
+
+TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs) {
+  const StagesLog one = search_in_stages({.max_evaluations = 200}), three = search_in_stages({.max_evaluations = 200, .jobs = 3});
+  ASSERT_EQ(one.evaluations.size(), three.evaluations.size());
+  for (const auto& [index, e] : one.evaluations) {
+    ASSERT_TRUE(three.evaluations.contains(index)) << index;
+    EXPECT_EQ(three.evaluations.at(index).x, e.x) << index;
+  }
+  EXPECT_EQ(one.result.x, three.result.x);
+}
+
+TEST(TwoStages, AreOneWhereTheCostsAreTheSame) {
+  const auto bowl = [](std::span<const double> x) { return Prices{.leading = x[0] * x[0] + x[1], .own = x[0] * x[0] + x[1]}; };
+  const StagesLog log = search_in_stages({.max_evaluations = 80}, false, bowl);
+  const OptimizerResult alone = minimize({.variables = {{"a", -1, 1}, {"b", -1, 1}},
+                                          .objective = [&](std::span<const double> x) { return bowl(x).own; },
+                                          .starts = {{-0.6, 0.9}}},
+                                         {.max_evaluations = 80});
+  EXPECT_EQ(log.result.x, alone.x);
+  EXPECT_EQ(log.result.evaluations, alone.evaluations);
+  EXPECT_EQ(log.result.message, alone.message);
+  EXPECT_EQ(log.result.improvements.size(), alone.improvements.size());
+}
+
+TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
+  std::atomic<bool> stop = false;
+  std::atomic<long> calls = 0;
+  const auto counting = [&](std::span<const double> x) {
+    if (++calls == 12) stop = true;
+    return prices(x);
+  };
+  const StagesLog log = search_in_stages({.max_evaluations = 1000, .stop = &stop}, true, counting);
+  EXPECT_EQ(log.result.termination, Termination::interrupted);
+  EXPECT_EQ(log.result.evaluations, 12);
+}
+
+TEST(TwoStages, KeepAnInfeasiblePointAndOneThatThrows) {
+  const auto failing = [](std::span<const double> x) -> Prices {
+    if (x[0] > 0.5) throw std::runtime_error("too far");
+    if (x[0] > 0.2) return {};
+    return {.leading = x[0] * x[0], .own = x[1] * x[1]};
+  };
+  const StagesLog log = search_in_stages({.max_evaluations = 60}, true, failing);
+  EXPECT_EQ(log.result.first_exception, "too far");
+  EXPECT_TRUE(std::isfinite(log.result.value));
+  for (const auto& [index, e] : log.evaluations) EXPECT_EQ(std::isfinite(e.value), e.x[0] <= 0.2) << index;
+}
+
+TEST(TwoStages, WithoutAFeasiblePointSaySo) {
+  const StagesLog log = search_in_stages({.max_evaluations = 20}, true, [](std::span<const double>) { return Prices{}; });
+  EXPECT_EQ(log.result.termination, Termination::no_feasible_point);
+  EXPECT_TRUE(log.result.x.empty());
+}
+
+}  // namespace
+}  // namespace softland

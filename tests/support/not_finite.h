@@ -1,0 +1,11 @@
+// The numbers that are no quantity.
+#pragma once
+
+#include <limits>
+
+namespace softland {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace softland
