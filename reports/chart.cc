@@ -46,13 +46,13 @@ const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" :
 
 /// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
 /// out.
-Table curve_table(const json& curve) {
+CurveTable curve_table(const json& curve) {
   const std::vector<double> times = numbers(at(curve, {"time_s"}));
   std::vector<std::size_t> sound;
   for (std::size_t row = 0; row < times.size(); ++row) {
     if (std::isfinite(times[row]) && (sound.empty() || times[row] >= times[sound.back()])) sound.push_back(row);
   }
-  Table table;
+  CurveTable table;
   if (sound.size() < 2) return table;
   for (const char* name : {"time_s", "tip_gap_m", "tip_velocity_m_s", "contact_force_N"}) {
     const std::vector<double> column = numbers(at(curve, {name}));
@@ -96,7 +96,7 @@ double last_move(const Points& points) {
   return time;
 }
 
-void add_columns(Table& table, const char* x, const char* y, const Points& points) {
+void add_columns(CurveTable& table, const char* x, const char* y, const Points& points) {
   for (const auto& [first, second] : points) {
     table[x].push_back(first);
     table[y].push_back(second);
@@ -124,7 +124,7 @@ std::vector<Mark> rebound_marks(const json& result) {
 }
 
 /// The end of the part worth enlarging: the winner's landing, what its drives do, and the baseline's highest rebound.
-double landing_end(const json& result, const Tables& tables, double window) {
+double landing_end(const json& result, const CurveTables& tables, double window) {
   double end = std::numeric_limits<double>::quiet_NaN();
   const auto cover = [&](double time) {
     if (time < window) end = std::fmax(end, time);
@@ -154,7 +154,7 @@ double landing_end(const json& result, const Tables& tables, double window) {
 }
 
 /// A column of a run; empty when there is none.
-const std::vector<double>& column_of(const Tables& tables, const char* run, const char* name) {
+const std::vector<double>& column_of(const CurveTables& tables, const char* run, const char* name) {
   static const std::vector<double> none;
   const auto table = tables.find(run);
   if (table == tables.end()) return none;
@@ -163,7 +163,7 @@ const std::vector<double>& column_of(const Tables& tables, const char* run, cons
 }
 
 /// The largest value of a column in any run, at least 0.
-double largest(const Tables& tables, const char* name) {
+double largest(const CurveTables& tables, const char* name) {
   double value = 0;
   for (const auto& [run, role] : runs) {
     for (const double one : column_of(tables, run, name)) value = std::fmax(value, one);
@@ -173,7 +173,7 @@ double largest(const Tables& tables, const char* name) {
 
 /// Gaps around the contact plane worth enlarging [m]: as deep as any contact is pressed before `end`, and above the plane the
 /// winner's rebounds or twice that depth. Not set when nothing touches.
-std::optional<std::array<double, 2>> plane_band(const json& result, const Tables& tables, double end) {
+std::optional<std::array<double, 2>> plane_band(const json& result, const CurveTables& tables, double end) {
   double lowest = 0;
   for (const auto& [run, role] : runs) {
     const std::vector<double>& gaps = column_of(tables, run, "tip_gap_m");
@@ -190,7 +190,7 @@ void add_time_charts(const json& result, Picture& out) {
   if (!(window > 0)) return;
   std::set<std::string> drives;
   for (const auto& [run, role] : runs) {
-    Table table = curve_table(at(result, {"curves", run}));
+    CurveTable table = curve_table(at(result, {"curves", run}));
     if (!table.empty()) out.tables[run] = std::move(table);
     const json& waveforms = at(result, {run, "waveforms"});
     if (!waveforms.is_object()) continue;

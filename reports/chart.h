@@ -11,8 +11,8 @@
 namespace softland::internal {
 
 /// Columns of equal length; the first key of a chart's x axis is one of them.
-using Table = std::map<std::string, std::vector<double>>;
-using Tables = std::map<std::string, Table>;
+using CurveTable = std::map<std::string, std::vector<double>>;
+using CurveTables = std::map<std::string, CurveTable>;
 
 /// Whose data a curve shows, which gives it its pen; `third`, `fourth`, `fifth` and `measured` (dots) are for pictures of
 /// other than results, `limit` is what a source can do.
@@ -58,19 +58,19 @@ struct Chart {
 };
 
 struct Picture {
-  Tables tables;
+  CurveTables tables;
   std::vector<Chart> charts;
 };
 
 /// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, search. What has no data is left out.
 [[nodiscard]] Picture picture(const nlohmann::json& result);
 
-/// Tables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps of a
-/// unit fine enough to be invisible (one part in ten million of the largest value).
+/// CurveTables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps
+/// of a unit fine enough to be invisible (one part in ten million of the largest value).
 [[nodiscard]] nlohmann::json chart_json(const Picture& picture, std::size_t rows);
 
 /// The chart as SVG elements on a canvas `width` wide, its top left corner at (0, `top`); text and lines carry their own colours.
-[[nodiscard]] std::string chart_svg(const Tables& tables, const Chart& chart, double width, double top);
+[[nodiscard]] std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top);
 /// Its height on that canvas [px], title and axes included.
 [[nodiscard]] double chart_svg_height(const Chart& chart);
 

@@ -126,11 +126,11 @@ std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const s
   return out;
 }
 
-std::array<double, 2> range_in_view(const Tables& tables, const Chart& chart) {
+std::array<double, 2> range_in_view(const CurveTables& tables, const Chart& chart) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   for (const Series& one : chart.series) {
-    const Table& table = tables.at(one.table);
+    const CurveTable& table = tables.at(one.table);
     const std::vector<double>& xs = table.at(chart.x_column);
     const std::vector<double>& ys = table.at(one.column);
     for (std::size_t row = 0; row < xs.size(); ++row) {
@@ -186,7 +186,7 @@ std::string axis_title(const std::string& name, const std::string& unit, const P
 
 double chart_svg_height(const Chart& chart) { return above + chart.height + below; }
 
-std::string chart_svg(const Tables& tables, const Chart& chart, double width, double top) {
+std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top) {
   Axis x;
   x.scale = chart.x_scale;
   x.low = chart.x_home[0];
@@ -246,7 +246,7 @@ std::string chart_svg(const Tables& tables, const Chart& chart, double width, do
   out += fmt::format("<g clip-path=\"url(#clip-{})\">\n", chart.id);
   for (const Series& one : chart.series) {
     const Stroke pen = stroke(one.role);
-    const Table& table = tables.at(one.table);
+    const CurveTable& table = tables.at(one.table);
     const auto points = visible(x, y, table.at(chart.x_column), table.at(one.column));
     if (points.empty()) continue;
     std::string path;

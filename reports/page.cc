@@ -48,13 +48,13 @@ std::string any(const json& result, std::initializer_list<std::string_view> path
   return value.is_number() ? plain_number(value.get<double>(), 6) : std::string();
 }
 
-std::string still_picture(const Tables& tables, const Chart& chart) {
+std::string still_picture(const CurveTables& tables, const Chart& chart) {
   constexpr double width = 960;
   return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
                      chart_svg_height(chart), escaped(chart.title + ". " + chart.caption), chart_svg(tables, chart, width, 0));
 }
 
-std::string figure_html(const Tables& tables, const Chart& chart) {
+std::string figure_html(const CurveTables& tables, const Chart& chart) {
   return fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n", chart.id,
                      escaped(chart.title)) +
          still_picture(tables, chart) + fmt::format("<figcaption>{}</figcaption></figure>\n", escaped(chart.caption));

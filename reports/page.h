@@ -34,9 +34,9 @@ struct Page {
 [[nodiscard]] std::string any(const nlohmann::json& result, std::initializer_list<std::string_view> path);
 
 /// The chart as an <svg> element.
-[[nodiscard]] std::string still_picture(const Tables& tables, const Chart& chart);
+[[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
 /// The chart in a page, with its title, its caption and the place where the script draws it.
-[[nodiscard]] std::string figure_html(const Tables& tables, const Chart& chart);
+[[nodiscard]] std::string figure_html(const CurveTables& tables, const Chart& chart);
 /// The style and the scripts that draw the charts of a page.
 [[nodiscard]] std::string chart_style();
 [[nodiscard]] std::string chart_scripts(const Picture& drawn);

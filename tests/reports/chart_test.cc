@@ -88,7 +88,7 @@ TEST(Charts, DropRowsWithoutATimeAndTimesThatRunBackwards) {
   const json result{
       {"kind", "simulate"},
       {"curves", {{"best", {{"time_s", {0, 1e-6, nullptr, 0.5e-6, 2e-6}}, {"tip_gap_m", {2e-6, 1e-6, 7, 8, nullptr}}}}}}};
-  const Table table = picture(result).tables.at("best");
+  const CurveTable table = picture(result).tables.at("best");
   EXPECT_EQ(table.at("time_s"), (std::vector<double>{0, 1e-6, 2e-6}));
   EXPECT_EQ(table.at("tip_gap_m")[1], 1e-6);
   EXPECT_TRUE(std::isnan(table.at("tip_gap_m")[2]));
@@ -96,7 +96,7 @@ TEST(Charts, DropRowsWithoutATimeAndTimesThatRunBackwards) {
 
 TEST(Charts, DrawADriveFromRestToTheEndOfTheWindow) {
   const Picture drawn = picture(softland::test::sample_optimize_result(600));
-  const Table& main = drawn.tables.at("best/main");
+  const CurveTable& main = drawn.tables.at("best/main");
   EXPECT_EQ(main.at("time_s"), (std::vector<double>{0, 0, 600e-6}));
   EXPECT_EQ(main.at("level"), (std::vector<double>{0, 28.087, 28.087}));
 }
