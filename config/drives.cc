@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <variant>
 
 #include "base/engineering.h"
 #include "base/require.h"
@@ -69,71 +70,78 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
   return values;
 }
 
-/// A percentage of the base or, for the piezo, of the main hold level.
-double amplitude(const SectionReader& in, std::string_view drive, const PullInVoltages& pull_in, double base,
-                 const std::optional<double>& main_hold) {
-  const Quantity& given = in.quantities("amplitude").front();
-  if (given.dimension != dimension::none || drive == dispersion_drive) return volts(given, pull_in);
-  if (drive != piezo_drive) {
-    in.require(base != 0, "amplitude", "is a percentage of the base, which is 0 V");
+/// What a waveform's keys may refer to.
+struct References {
+  std::string_view drive;
+  const PullInVoltages& pull_in;
+  const std::optional<double>& main_hold;  ///< level at which the main electrode holds the switch [V]
+};
+
+/// Volts, or a percentage of the base or, for the piezo, of the main hold level.
+double swing(const SectionReader& in, std::string_view key, const References& to, double base) {
+  const Quantity& given = in.quantities(key).front();
+  if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
+  if (to.drive != piezo_drive) {
+    in.require(base != 0, key, "is a percentage of the base, which is 0 V");
     return given.value * base;
   }
-  in.require(main_hold.has_value(), "amplitude",
+  in.require(to.main_hold.has_value(), key,
              "is a percentage of the main hold level, but there is neither an electrode 'main' nor only one electrode");
-  in.require(*main_hold != 0, "amplitude", "is a percentage of the main hold level, which is 0 V");
-  return given.value * *main_hold;
+  in.require(*to.main_hold != 0, key, "is a percentage of the main hold level, which is 0 V");
+  return given.value * *to.main_hold;
 }
 
-Table read_rows(const SceneFile::Impl& file, const SectionReader& in, std::string_view drive, const PullInVoltages& pull_in) {
-  if (!in.is_given("file")) return {.time = in.numbers("times"), .voltage = volts(in.quantities("voltages"), pull_in)};
-  const std::string& name = in.text("file");
-  in.require(!name.empty() && name.find('\0') == std::string::npos, "file", "must be the name of a file");
+/// The waveform whose rows stand in a file.
+Waveform read_rows(const SectionReader& in, std::string_view drive) {
+  const std::string& name = in.text(file_key);
+  in.require(!name.empty() && name.find('\0') == std::string::npos, file_key, "must be the name of a file");
   try {
-    return read_table((file.directory / name).string(), std::string(drive));
+    return read_table((in.file().directory / name).string(), std::string(drive));
   } catch (const InvalidInput& error) {
-    file.fail(in.path("file"), error.what());
+    in.file().fail(in.path(file_key), error.what());
   }
 }
 
-Waveform read_waveform(const SceneFile::Impl& file, const SectionReader& in, std::string_view drive,
-                       const PullInVoltages& pull_in, const std::optional<double>& main_hold) {
-  const std::string& name = in.text("family");
-  if (name == "step") {
-    return Step{.level = volts(in.quantities("level").front(), pull_in), .rise_time = in.number("rise_time")};
+template <class Family>
+Waveform read_parameters(const SectionReader& in, const References& to) {
+  Family waveform;
+  double base = 0;  // the level before a swing
+  for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
+    if (const auto* list = std::get_if<std::vector<double> Family::*>(&p.member)) {
+      waveform.*(*list) = p.meaning == Meaning::level ? volts(in.quantities(p.name), to.pull_in) : in.numbers(p.name);
+      continue;
+    }
+    double& value = waveform.*std::get<double Family::*>(p.member);
+    if (p.meaning == Meaning::level) {
+      value = base = volts(in.quantities(p.name).front(), to.pull_in);
+    } else if (p.meaning == Meaning::swing) {
+      value = swing(in, p.name, to, base);
+    } else if (p.meaning == Meaning::angular_frequency && in.is_given(frequency_key)) {
+      value = 2 * std::numbers::pi * in.number(frequency_key);
+    } else if (in.has_value(p.name)) {
+      value = in.number(p.name);
+    }
   }
-  if (name == "harmonic") {
-    const double base = volts(in.quantities("base").front(), pull_in);
-    return Harmonic{.base = base,
-                    .rise_time = in.number("rise_time"),
-                    .amplitude = amplitude(in, drive, pull_in, base, main_hold),
-                    .angular_frequency =
-                        in.is_given("frequency") ? 2 * std::numbers::pi * in.number("frequency") : in.number("angular_frequency"),
-                    .phase = in.number("phase"),
-                    .start = in.number("start"),
-                    .end = in.is_given("end") ? in.number("end") : std::numeric_limits<double>::infinity(),
-                    .fade = in.number("fade")};
-  }
-  if (name == "pulse") {
-    return Pulse{.levels = volts(in.quantities("levels"), pull_in), .times = in.numbers("times"), .edge = in.number("edge")};
-  }
-  return read_rows(file, in, drive, pull_in);
+  return waveform;
 }
 
-/// The key a message of a waveform family is about: such a message begins with its parameter ("fade of ...", "time 2 of ...").
-std::optional<std::string> blamed_key(const SectionReader& in, const std::string& message) {
-  const std::string word = message.substr(0, message.find(' '));
-  for (const std::string& key : {word, word + "s"}) {
-    if (in.is_given(key)) return key;
-  }
-  return std::nullopt;
+Waveform read_waveform(const SectionReader& in, const References& to) {
+  if (in.is_given(file_key)) return read_rows(in, to.drive);
+  std::optional<Waveform> waveform;
+  for_each_family([&]<class Family>(const Family&) {
+    if (in.text("family") == FamilyOf<Family>::name) waveform = read_parameters<Family>(in, to);
+  });
+  return waveform.value();
 }
 
-Signal compile(const SceneFile::Impl& file, const SectionReader& in, const Waveform& waveform) {
+Signal compile(const SectionReader& in, const Waveform& waveform) {
   try {
     return signal(waveform);
+  } catch (const InvalidParameter& error) {
+    in.require(!in.is_given(error.parameter()), error.parameter(), error.what());
+    in.fail(error.what());
   } catch (const InvalidInput& error) {
-    if (const auto key = blamed_key(in, error.what())) file.fail(in.path(*key), error.what());
-    file.fail_section(in.path(), error.what());
+    in.fail(error.what());
   }
 }
 
@@ -195,9 +203,9 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    Waveform waveform = read_waveform(file, in, drive, known, main_hold);
+    Waveform waveform = read_waveform(in, {.drive = drive, .pull_in = known, .main_hold = main_hold});
     if (drive == dispersion_drive) waveform = raised(std::move(waveform), -1);
-    const Signal compiled = compile(file, in, waveform);
+    const Signal compiled = compile(in, waveform);
     if (const double peak = compiled.peak(); drive != dispersion_drive && !any_voltage().contains(peak)) {
       file.fail_section(in.path(), fmt::format("reaches {}: {}", engineering(peak, "V"), any_voltage().rule("V")));
     }
@@ -216,15 +224,35 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
 }  // namespace
 
+Dimension dimension_of(Meaning meaning) {
+  switch (meaning) {
+    case Meaning::level:
+    case Meaning::swing:
+      break;
+    case Meaning::time:
+    case Meaning::end_time:
+      return dimension::time;
+    case Meaning::angular_frequency:
+      return dimension::angular_frequency;
+    case Meaning::angle:
+      return dimension::angle;
+  }
+  return dimension::voltage;
+}
+
 Waveform raised(Waveform waveform, double by) {
-  if (auto* step = std::get_if<Step>(&waveform)) step->level += by;
-  if (auto* harmonic = std::get_if<Harmonic>(&waveform)) harmonic->base += by;
-  if (auto* pulse = std::get_if<Pulse>(&waveform)) {
-    for (double& level : pulse->levels) level += by;
-  }
-  if (auto* table = std::get_if<Table>(&waveform)) {
-    for (double& value : table->voltage) value += by;
-  }
+  std::visit(
+      [&]<class Family>(Family& w) {
+        for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
+          if (p.meaning != Meaning::level) continue;
+          if (const auto* one = std::get_if<double Family::*>(&p.member)) {
+            w.*(*one) += by;
+          } else {
+            for (double& level : w.*std::get<std::vector<double> Family::*>(p.member)) level += by;
+          }
+        }
+      },
+      waveform);
   return waveform;
 }
 

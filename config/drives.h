@@ -7,11 +7,20 @@
 
 #include "config/scene.h"
 #include "config/scene_file_impl.h"
+#include "config/units.h"
+#include "waveforms/waveform.h"
 
 namespace softland::internal {
 
 /// The name of the force factor among the drives. Its values inside are the factor less one, so that every drive rests at 0.
 inline constexpr std::string_view dispersion_drive = "dispersion";
+
+/// Keys that a parameter's own may be replaced by.
+inline constexpr std::string_view frequency_key = "frequency";  ///< of an angular frequency
+inline constexpr std::string_view file_key = "file";            ///< of the rows of a table
+
+/// The unit of a parameter in a scene; a level's is decided by its drive.
+[[nodiscard]] Dimension dimension_of(Meaning meaning);
 
 /// The waveform with every level raised by `by`.
 [[nodiscard]] Waveform raised(Waveform waveform, double by);

@@ -426,53 +426,25 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   const bool is_factor = drive == internal::dispersion_drive;
   const Waveform waveform = is_factor ? internal::raised(given, 1) : given;
   toml::table table{{"family", std::string(family(waveform))}};
-  const auto insert_level = [&](std::string_view key, double value) {
-    if (is_factor) {
-      table.insert(key, value);
-    } else {
-      table.insert(key, quantity_text(value, dimension::voltage));
-    }
-  };
-  const auto insert_levels = [&](std::string_view key, const std::vector<double>& values) {
-    toml::array array;
-    for (const double value : values) {
-      if (is_factor) {
-        array.push_back(value);
-      } else {
-        array.push_back(quantity_text(value, dimension::voltage));
-      }
-    }
-    table.insert(key, std::move(array));
-  };
-  const auto insert = [&](std::string_view key, double value, const Dimension& unit) {
-    table.insert(key, quantity_text(value, unit));
-  };
-  const auto insert_times = [&](const std::vector<double>& values) {
-    toml::array array;
-    for (const double value : values) array.push_back(quantity_text(value, dimension::time));
-    table.insert("times", std::move(array));
-  };
-  if (const auto* step = std::get_if<Step>(&waveform)) {
-    insert_level("level", step->level);
-    insert("rise_time", step->rise_time, dimension::time);
-  } else if (const auto* harmonic = std::get_if<Harmonic>(&waveform)) {
-    insert_level("base", harmonic->base);
-    insert("rise_time", harmonic->rise_time, dimension::time);
-    insert_level("amplitude", harmonic->amplitude);
-    insert("angular_frequency", harmonic->angular_frequency, dimension::angular_frequency);
-    insert("phase", harmonic->phase, dimension::angle);
-    insert("start", harmonic->start, dimension::time);
-    if (std::isfinite(harmonic->end)) insert("end", harmonic->end, dimension::time);
-    insert("fade", harmonic->fade, dimension::time);
-  } else if (const auto* pulse = std::get_if<Pulse>(&waveform)) {
-    insert_levels("levels", pulse->levels);
-    insert_times(pulse->times);
-    insert("edge", pulse->edge, dimension::time);
-  } else {
-    const Table& rows = std::get<Table>(waveform);
-    insert_times(rows.time);
-    insert_levels("voltages", rows.voltage);
-  }
+  std::visit(
+      [&]<class Family>(const Family& w) {
+        for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
+          const bool plain = is_factor && (p.meaning == Meaning::level || p.meaning == Meaning::swing);
+          const auto put = [&](auto&& insert, double value) {
+            plain ? insert(value) : insert(quantity_text(value, internal::dimension_of(p.meaning)));
+          };
+          if (const auto* one = std::get_if<double Family::*>(&p.member)) {
+            if (std::isfinite(w.*(*one))) put([&](const auto& value) { table.insert(p.name, value); }, w.*(*one));
+            continue;
+          }
+          toml::array array;
+          for (const double v : w.*std::get<std::vector<double> Family::*>(p.member)) {
+            put([&](const auto& value) { array.push_back(value); }, v);
+          }
+          table.insert(p.name, std::move(array));
+        }
+      },
+      waveform);
   toml::table* waveforms = impl_->root["waveform"].as_table();
   if (!waveforms) waveforms = impl_->root.insert_or_assign("waveform", toml::table{}).first->second.as_table();
   waveforms->insert_or_assign(drive, std::move(table));

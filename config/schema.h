@@ -2,14 +2,22 @@
 // scenes.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/units.h"
 
+namespace softland {
+struct Scene;
+}
+
 namespace softland::internal {
+
+class SectionReader;
 
 enum class KeyType { text, flag, integer, choice, quantity, quantities };
 
@@ -23,6 +31,17 @@ struct Range {
   [[nodiscard]] bool contains(double value) const;
   /// "must be in [1 pm, 1 m]", "must be in [0, 1)"
   [[nodiscard]] std::string rule(std::string_view unit) const;
+};
+
+/// The member of a scene that a key sets, by its kind: of these at most one is there (for two numbers, `number` and `last`). The
+/// second argument tells which electrode is meant.
+struct Bound {
+  double& (*number)(Scene&, std::size_t) = nullptr;
+  double& (*last)(Scene&, std::size_t) = nullptr;
+  bool& (*flag)(Scene&, std::size_t) = nullptr;
+  int& (*integer)(Scene&, std::size_t) = nullptr;
+  std::string& (*text)(Scene&, std::size_t) = nullptr;
+  void (*choose)(Scene&, std::size_t, std::string_view) = nullptr;
 };
 
 struct Key {
@@ -39,6 +58,13 @@ struct Key {
   std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty: all
   std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
   std::string_view about = {};                    ///< one line for people
+  Bound bound = {};
+
+  // What the makers of keys (config/schema/sections.h) leave open.
+  [[nodiscard]] Key needed() && { return required = true, std::move(*this); }
+  [[nodiscard]] Key by_default(std::string_view toml) && { return fallback = toml, std::move(*this); }
+  [[nodiscard]] Key of(std::vector<std::string_view> owners) && { return only_for = std::move(owners), std::move(*this); }
+  [[nodiscard]] Key instead(std::string_view other) && { return instead_of.push_back(other), std::move(*this); }
 
   /// The range for a value of this dimension: ends that `range` leaves open are those of the dimension.
   [[nodiscard]] Range range_of(const Dimension& dimension) const;
@@ -57,6 +83,11 @@ struct Section {
   std::string_view selector = {};  ///< the key whose choice decides which other keys there are
   std::vector<Key> keys = {};
   std::string_view about = {};
+  /// Makes the part of the scene that the keys set, [section.NAME] being its name, and tells the number of an electrode. Null
+  /// where the keys set no member: waveforms, drivers and spread are read by code of their own.
+  std::size_t (*begin)(Scene& scene, const SectionReader& in, std::string_view name) = nullptr;
+  /// Looks at what one key alone cannot decide, when the keys are set. Throws InvalidInput.
+  void (*check)(Scene& scene, const SectionReader& in, std::size_t entry) = nullptr;
 
   /// Null when there is none. Of keys with the same name the one that belongs to `choice` of the selector wins.
   [[nodiscard]] const Key* find(std::string_view key, std::string_view choice = {}) const;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/require.h"
+#include "config/scene.h"
 
 namespace softland::internal {
 namespace {
@@ -240,6 +241,38 @@ toml::table SectionReader::with_defaults() const {
     }
   }
   return table;
+}
+
+void SectionReader::set_members(Scene& scene, std::size_t entry) const {
+  for (const auto& [name, value] : values_) {
+    const Bound& bound = find(name)->bound;
+    if (bound.last != nullptr) {
+      bound.number(scene, entry) = quantities(name)[0].value;
+      bound.last(scene, entry) = quantities(name)[1].value;
+    } else if (bound.number != nullptr) {
+      bound.number(scene, entry) = number(name);
+    } else if (bound.flag != nullptr) {
+      bound.flag(scene, entry) = flag(name);
+    } else if (bound.integer != nullptr) {
+      if (!is_word(name)) bound.integer(scene, entry) = integer(name);
+    } else if (bound.text != nullptr) {
+      bound.text(scene, entry) = text(name);
+    } else if (bound.choose != nullptr) {
+      bound.choose(scene, entry, text(name));
+    }
+  }
+}
+
+void SectionReader::require_of_plate(std::string_view key, std::string_view needed) const {
+  const SectionReader structure(file_, "structure");
+  require(structure.text("kind") != name_of(structure_kinds, StructureKind::plate) || structure.is_given(needed), key,
+          fmt::format("needs structure.{} on a plate", needed));
+}
+
+void SectionReader::require_on_beam(std::string_view key) const {
+  const SectionReader structure(file_, "structure");
+  require(quantities(key)[0].value < quantities(key)[1].value, key, "the end must lie beyond the begin");
+  require(quantities(key)[1].value <= structure.number("length"), key, "must end on the beam: " + structure.written("length"));
 }
 
 }  // namespace softland::internal

@@ -1,6 +1,7 @@
 // One section of a scene, checked against the schema key by key. Internal to config/.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -46,10 +47,21 @@ class SectionReader {
   /// Every key that is in force with its TOML value: as written, or the default.
   [[nodiscard]] toml::table with_defaults() const;
 
+  /// Sets the members of the scene that the keys in force are bound to; `entry` is the number of an electrode.
+  void set_members(Scene& scene, std::size_t entry) const;
+
   /// Throws InvalidInput about this key unless the rule holds.
   void require(bool holds, std::string_view key, std::string_view rule) const {
     if (!holds) file_.fail(path(key), rule);
   }
+  /// Throws InvalidInput about the section.
+  [[noreturn]] void fail(std::string_view rule) const { file_.fail_section(path_, rule); }
+  /// Throws InvalidInput about this key on a plate that lacks a key of [structure].
+  void require_of_plate(std::string_view key, std::string_view needed) const;
+  /// Throws InvalidInput unless the two lengths of this key increase and lie on the beam.
+  void require_on_beam(std::string_view key) const;
+
+  [[nodiscard]] const SceneFile::Impl& file() const { return file_; }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::string path(std::string_view key) const { return join_path(path_, key); }
   /// `gap.electrode = "3.5 um"`

@@ -181,7 +181,7 @@ class Run {
     }
     if (const auto& contact = model_.device().contact; contact && out_.deepest_penetration > largest_interference(*contact)) {
       out_.warnings.push_back(fmt::format("contact law {}: interference {} exceeds the asperity height {}",
-                                          to_string(contact->model), engineering(out_.deepest_penetration, "m", 3),
+                                          name_of(contact_laws, contact->model), engineering(out_.deepest_penetration, "m", 3),
                                           engineering(largest_interference(*contact), "m", 3)));
     }
   }

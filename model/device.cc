@@ -8,7 +8,9 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/beam.h"
-#include "model/contact/adhesive_repulsive.h"
+#include "model/contact/contact_law.h"
+#include "model/forces/electrostatic.h"
+#include "model/gas/gas_law.h"
 #include "model/surface.h"
 
 namespace softland {
@@ -48,28 +50,6 @@ void validate(const SurfacePressure& p, double contact_gap) {
 
 }  // namespace
 
-std::string_view to_string(ContactModel model) {
-  switch (model) {
-    case ContactModel::linear:
-      return "linear";
-    case ContactModel::asperity_gaussian:
-      return "asperity-gaussian";
-    case ContactModel::adhesive:
-      return "adhesive";
-    case ContactModel::hysteretic:
-      return "hysteretic";
-    case ContactModel::elastic_plastic:
-      return "elastic-plastic";
-    case ContactModel::rigid:
-      return "rigid";
-    case ContactModel::adhesive_repulsive:
-      return "adhesive-repulsive";
-    case ContactModel::asperity_uniform:
-      break;
-  }
-  return "asperity-uniform";
-}
-
 std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const std::vector<Electrode>& electrodes) {
   const double rounding = 1e-12 * s.length;
   for (const Side side : {Side::near, Side::far}) {
@@ -107,20 +87,9 @@ std::string why_not_along_pad(const Structure& structure, const Contact& contact
     return "needs a cantilever, whose tilted pad is straight and touches first with its free end; between two clamps the pad "
            "lies flat about the middle";
   }
-  const std::string not_with = fmt::format("not with model = \"{}\"", to_string(contact.model));
-  switch (contact.model) {
-    case ContactModel::linear:
-    case ContactModel::asperity_uniform:
-    case ContactModel::asperity_gaussian:
-    case ContactModel::adhesive:
-      break;
-    case ContactModel::hysteretic:
-    case ContactModel::elastic_plastic:
-      return not_with + ": every point of the pad would keep a dent of its own";
-    case ContactModel::adhesive_repulsive:
-      return not_with + ", which acts before the free end touches";
-    case ContactModel::rigid:
-      return not_with + ", whose impacts have no force";
+  const ContactRow& law = row_of(contact_laws, contact.model);
+  if (!law.not_along_pad.empty()) {
+    return fmt::format("not with model = \"{}\"{} {}", law.name, law.not_along_pad == many_dents ? ":" : ",", law.not_along_pad);
   }
   if (contact.pad_length > longest * structure.length * (1 + 1e-12)) {
     return fmt::format("the pad counts as straight, so pad_length must not exceed a tenth of the beam's length, {}",
@@ -166,9 +135,7 @@ void validate(const Device& d) {
   for (const Electrode& e : d.electrodes) {
     span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
     if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
-    if (e.fringing == Fringing::meijs_fokkema || e.fringing == Fringing::bao_2001) {
-      positive(s.thickness, "m", "structure.thickness");
-    }
+    if (row_of(fringing_laws, e.fringing).needs_thickness) positive(s.thickness, "m", "structure.thickness");
   }
   if (const auto conflict = electrode_conflict(s, d.electrodes)) {
     throw InvalidInput(fmt::format("electrode.{}: {}", d.electrodes[conflict->electrode].name, conflict->why));
@@ -180,7 +147,7 @@ void validate(const Device& d) {
     };
     positive(g.pressure, "Pa", "gas.pressure");
     positive(g.temperature, "K", "gas.temperature");
-    if (g.model == GasModel::guo_alexeenko) positive(s.thickness, "m", "structure.thickness");
+    if (row_of(gas_laws, g.model).needs_thickness) positive(s.thickness, "m", "structure.thickness");
     positive_if_given(g.viscosity, "Pa s", "gas.viscosity");
     positive_if_given(g.mean_free_path, "m", "gas.mean_free_path");
     positive_if_given(g.film_length, "m", "gas.film_length");
@@ -201,44 +168,39 @@ void validate(const Device& d) {
     require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
     require(!rigid || !d.gas || !is_compressible(d.gas->model),
             "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
-    const bool rough = c.model != ContactModel::linear && c.model != ContactModel::hysteretic && !rigid;
-    const bool no_pad = plate && !rough && c.pad_length == 0;  // only its area would count
+    const ContactRow& law = row_of(contact_laws, c.model);
+    const bool no_pad = plate && !law.per_area && c.pad_length == 0;  // only its area would count
     require(no_pad || (c.pad_length > 0 && c.pad_length < s.length),
             fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
                         engineering(c.pad_length, "m"), engineering(s.length, "m")));
-    if (c.model == ContactModel::linear || c.model == ContactModel::hysteretic) {
-      positive(c.stiffness, "N/m", "contact.stiffness");
-    } else if (rigid) {
-      require(c.restitution >= 0 && c.restitution < 1, fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution));
-    } else if (c.model == ContactModel::adhesive_repulsive) {
-      validate(c.pressure, d.gap.contact);
-    } else {
-      positive(c.asperity_radius, "m", "contact.asperity_radius");
-      positive(c.asperity_density, "1/m^2", "contact.asperity_density");
-      positive(c.effective_modulus, "Pa", "contact.effective_modulus");
-      if (c.model == ContactModel::asperity_gaussian) {
-        positive(c.asperity_deviation, "m", "contact.asperity_deviation");
-      } else {
-        positive(c.asperity_height, "m", "contact.asperity_height");
-      }
-    }
-    if (c.model == ContactModel::hysteretic) {
+    const auto positive_if_used = [&](const char* key, double value, const char* unit) {
+      if (law.keys.contain(key)) positive(value, unit, (std::string("contact.") + key).c_str());
+    };
+    positive_if_used("stiffness", c.stiffness, "N/m");
+    positive_if_used("asperity_radius", c.asperity_radius, "m");
+    positive_if_used("asperity_density", c.asperity_density, "1/m^2");
+    positive_if_used("effective_modulus", c.effective_modulus, "Pa");
+    positive_if_used("asperity_deviation", c.asperity_deviation, "m");
+    positive_if_used("asperity_height", c.asperity_height, "m");
+    positive_if_used("hardness", c.hardness, "Pa");
+    positive_if_used("adhesion_energy", c.adhesion_energy, "J/m^2");
+    if (law.keys.contain("unloading_stiffness")) {
       require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30,
               fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}, and below 1e30 N/m",
                           engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m")));
     }
-    if (c.model == ContactModel::elastic_plastic) positive(c.hardness, "Pa", "contact.hardness");
-    if (c.model == ContactModel::adhesive) positive(c.adhesion_energy, "J/m^2", "contact.adhesion_energy");
+    if (law.keys.contain("restitution")) {
+      require(c.restitution >= 0 && c.restitution < 1, fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution));
+    }
+    if (law.keys.contain("reach")) validate(c.pressure, d.gap.contact);
     if (c.distribution == ContactDistribution::pad) {
       const std::string wrong = why_not_along_pad(s, c);
       require(wrong.empty(), "contact.distribution = pad: " + wrong);
     }
     require(c.damping >= 0 && c.damping < 1e6,
             fmt::format("contact.damping = {}: must be in [0 s/m, 1e6 s/m)", engineering(c.damping, "s/m")));
-    require(
-        c.damping == 0 || c.model == ContactModel::linear || c.model == ContactModel::asperity_uniform ||
-            c.model == ContactModel::asperity_gaussian,
-        fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), to_string(c.model)));
+    require(c.damping == 0 || law.keys.contain("damping"),
+            fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), law.name));
   }
   if (d.piezo) {
     const Piezo& p = *d.piezo;

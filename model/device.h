@@ -11,12 +11,18 @@
 #include <utility>
 #include <vector>
 
+#include "base/choice.h"
+
 namespace softland {
 
 /// Of a beam: the formulas of higher mode shapes lose their digits.
 inline constexpr int most_modes = 20;
 
 enum class StructureKind { cantilever, clamped_clamped, plate };
+inline constexpr auto structure_kinds = std::to_array<Named<StructureKind>>({{StructureKind::cantilever, "cantilever"},
+                                                                             {StructureKind::clamped_clamped, "clamped-clamped"},
+                                                                             {StructureKind::plate, "plate"}});
+static_assert(is_complete<structure_kinds>());
 
 /// What moves: a beam of rectangular section (Euler-Bernoulli), clamped at one end or both, or a rigid plate on springs.
 struct Structure {
@@ -42,10 +48,13 @@ struct Gap {
   double contact = 0;    ///< dt, rest distance contact point to contact plane [m]
 };
 
+/// Laws of the fringing field: their table is in model/forces/electrostatic.h.
 enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
 /// The contact's side of the moving part, towards which deflections are positive, the other one, or both.
 enum class Side { near, far, both };
+inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
+static_assert(is_complete<sides>());
 
 struct Electrode {
   std::string name = {};
@@ -56,6 +65,7 @@ struct Electrode {
   double gap = 0;  ///< far, both: rest distance of the face on the far side to the moving part [m]
 };
 
+/// Laws of the squeeze film: their table is in model/gas/gas_law.h.
 enum class GasModel { strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, reynolds, linear };
 
 /// A film that can be compressed, with pressures as states of their own: see model/gas/reynolds_film.h.
@@ -76,6 +86,7 @@ struct Gas {
   double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };
 
+/// Laws of the contact force: their table is in model/contact/contact_law.h.
 enum class ContactModel {
   linear,
   asperity_uniform,
@@ -86,15 +97,11 @@ enum class ContactModel {
   rigid,
   adhesive_repulsive
 };
-
-inline constexpr std::array all_contact_models{
-    ContactModel::linear,   ContactModel::asperity_uniform,  ContactModel::asperity_gaussian,
-    ContactModel::adhesive, ContactModel::hysteretic,        ContactModel::elastic_plastic,
-    ContactModel::rigid,    ContactModel::adhesive_repulsive};
-[[nodiscard]] std::string_view to_string(ContactModel model);
-
 /// Law of one asperity of an elastic-plastic contact.
 enum class Plasticity { zmc, kogut_etsion };
+inline constexpr auto plasticities =
+    std::to_array<Named<Plasticity>>({{Plasticity::zmc, "zmc"}, {Plasticity::kogut_etsion, "ke"}});
+static_assert(is_complete<plasticities>());
 
 /// Pressure between the surfaces of an adhesive-repulsive contact: see model/contact/adhesive_repulsive.h. Pressures of
 /// asperities and adhesion at a nanometre of approach.
@@ -112,6 +119,9 @@ struct SurfacePressure {
 
 /// Where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
 enum class ContactDistribution { centre, pad };
+inline constexpr auto contact_distributions =
+    std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
+static_assert(is_complete<contact_distributions>());
 
 struct Contact {
   ContactModel model = ContactModel::asperity_uniform;
@@ -143,7 +153,15 @@ struct Piezo {
 };
 
 enum class DispersionModel { casimir, van_der_waals, automatic };
+inline constexpr auto dispersion_models =
+    std::to_array<Named<DispersionModel>>({{DispersionModel::casimir, "casimir"},
+                                           {DispersionModel::van_der_waals, "van-der-waals"},
+                                           {DispersionModel::automatic, "auto"}});
+static_assert(is_complete<dispersion_models>());
+
 enum class Conductor { ideal, gold };
+inline constexpr auto conductors = std::to_array<Named<Conductor>>({{Conductor::ideal, "ideal"}, {Conductor::gold, "gold"}});
+static_assert(is_complete<conductors>());
 
 /// Casimir and van der Waals forces between beam and electrode plane, over the whole length.
 struct Dispersion {
@@ -154,7 +172,14 @@ struct Dispersion {
 };
 
 enum class SurfaceFaces { all, wide };
+inline constexpr auto surface_faces =
+    std::to_array<Named<SurfaceFaces>>({{SurfaceFaces::all, "all"}, {SurfaceFaces::wide, "wide"}});
+static_assert(is_complete<surface_faces>());
+
 enum class ResidualLoad { none, compression };
+inline constexpr auto residual_loads =
+    std::to_array<Named<ResidualLoad>>({{ResidualLoad::none, "none"}, {ResidualLoad::compression, "compression"}});
+static_assert(is_complete<residual_loads>());
 
 /// Skins of a thin beam: see model/surface.h.
 struct Surface {

@@ -30,20 +30,11 @@ std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double f
   return std::make_shared<const DistributedLawOf<Law>>(law, range.begin, range.end, floor);
 }
 
-// Calls `make` with the law of an electrode.
+// Calls `make` with the force law of an electrode.
 template <class Make>
 std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, Make&& make) {
-  switch (fringing) {
-    case Fringing::none:
-      return make(ElectrostaticForce<NoFringing>{{.width = s.width}});
-    case Fringing::linear:
-      return make(ElectrostaticForce<LinearFringing>{{.width = s.width}});
-    case Fringing::bao_2001:
-      return make(ElectrostaticForce<Bao2001Fringing>{{.width = s.width, .thickness = s.thickness}});
-    case Fringing::meijs_fokkema:
-      break;
-  }
-  return make(ElectrostaticForce<MeijsFokkemaFringing>{{.width = s.width, .thickness = s.thickness}});
+  return std::visit([&](const auto& law) { return make(ElectrostaticForce<std::decay_t<decltype(law)>>{law}); },
+                    row_of(fringing_laws, fringing).make(s));
 }
 
 std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, double width, PointRange range, double floor) {

@@ -43,7 +43,7 @@ Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, con
            .warnings = t.warnings};
   if (!gas) return e;
   const double closed = described.gap.electrode - described.gap.contact;
-  e.choice = entry(gas->model).name;
+  e.choice = name_of(gas_laws, gas->model);
   e.magnitude.value = damping_per_length(*device.gas(), closed);
   if (gas->model != GasModel::linear) e.group.value = mean_free_path(*gas) / closed;
   return e;
@@ -75,12 +75,12 @@ Effects compare_effects(const Prepared& prepared, const Watch& watch) {
   const std::optional<Gas>& own = prepared.scene.device.gas;
   Effects found;
   std::vector<std::optional<Gas>> laws{std::nullopt};
-  for (const GasModelEntry& e : gas_models) {
+  for (const GasRow& e : gas_laws) {
     Gas gas = own.value_or(Gas{});
-    const bool in_scene = own && own->model == e.model;
+    const bool in_scene = own && own->model == e.value;
     // A damper and a slit are not there for the taking: only where the scene describes them.
-    if ((e.model == GasModel::linear || e.model == GasModel::strip_slit) && !in_scene) continue;
-    gas.model = e.model;
+    if ((e.value == GasModel::linear || e.value == GasModel::strip_slit) && !in_scene) continue;
+    gas.model = e.value;
     if (const std::string reason = refusal(prepared.scene.device, gas); !reason.empty()) {
       found.not_compared.push_back({.choice = std::string(e.name), .reason = reason});
       continue;

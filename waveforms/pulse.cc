@@ -4,32 +4,32 @@
 
 #include <utility>
 
-#include "base/require.h"
 #include "waveforms/coincide.h"
 
 namespace softland {
 
 Signal signal(const Pulse& pulse) {
   const std::size_t count = pulse.levels.size();
-  require(count >= 1, "levels of a pulse are empty; there must be at least one");
-  require(pulse.times.size() + 1 == count,
-          fmt::format("times of a pulse are {} for {} levels; there must be one fewer than levels", pulse.times.size(), count));
-  require(pulse.edge >= 0 && std::isfinite(pulse.edge),
-          fmt::format("edge of a pulse is {} s; it must be finite and >= 0", pulse.edge));
+  require_of("levels", count >= 1, "levels of a pulse are empty; there must be at least one");
+  require_of(
+      "times", pulse.times.size() + 1 == count,
+      fmt::format("times of a pulse are {} for {} levels; there must be one fewer than levels", pulse.times.size(), count));
+  require_of("edge", pulse.edge >= 0 && std::isfinite(pulse.edge),
+             fmt::format("edge of a pulse is {} s; it must be finite and >= 0", pulse.edge));
   for (std::size_t k = 0; k < count; ++k) {
-    require(std::isfinite(pulse.levels[k]),
-            fmt::format("level {} of a pulse is {} V; it must be finite", k + 1, pulse.levels[k]));
+    require_of("levels", std::isfinite(pulse.levels[k]),
+               fmt::format("level {} of a pulse is {} V; it must be finite", k + 1, pulse.levels[k]));
   }
 
   std::vector<std::pair<double, double>> points{{0, 0}};
   double edge_end = pulse.edge;
   for (std::size_t k = 0; k + 1 < count; ++k) {
     const double time = pulse.times[k];
-    require(std::isfinite(time), fmt::format("time {} of a pulse is {} s; it must be finite", k + 1, time));
+    require_of("times", std::isfinite(time), fmt::format("time {} of a pulse is {} s; it must be finite", k + 1, time));
     const bool meets = internal::coincide(edge_end, time);
-    require(meets || time > edge_end,
-            fmt::format("time {} of a pulse is {} s; it must be at least {} s, where the edge before it ends", k + 1, time,
-                        edge_end));
+    require_of("times", meets || time > edge_end,
+               fmt::format("time {} of a pulse is {} s; it must be at least {} s, where the edge before it ends", k + 1, time,
+                           edge_end));
     if (!meets) points.emplace_back(edge_end, pulse.levels[k]);
     points.emplace_back(time, pulse.levels[k]);
     edge_end = time + pulse.edge;

@@ -1,6 +1,9 @@
 // Step: 0 V before t = 0, a linear rise to `level` on [0, rise_time], then constant.
 #pragma once
 
+#include <array>
+
+#include "waveforms/parameter.h"
 #include "waveforms/signal.h"
 
 namespace softland {
@@ -8,6 +11,15 @@ namespace softland {
 struct Step {
   double level = 0;      ///< [V]
   double rise_time = 0;  ///< [s], >= 0
+};
+
+template <>
+struct FamilyOf<Step> {
+  static constexpr std::string_view name = "step";
+  static constexpr auto parameters = std::to_array<Parameter<Step>>({
+      {"level", Meaning::level, &Step::level, true, "held for ever"},
+      {"rise_time", Meaning::time, &Step::rise_time, false, "linear rise from 0 V"},
+  });
 };
 
 [[nodiscard]] Signal signal(const Step& step);

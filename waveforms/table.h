@@ -1,10 +1,12 @@
 // Table: measured or exported voltages, linear between rows, the last value held for ever. Two rows of the same time are a jump.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "waveforms/parameter.h"
 #include "waveforms/signal.h"
 
 namespace softland {
@@ -12,6 +14,16 @@ namespace softland {
 struct Table {
   std::vector<double> time = {};     ///< [s], from 0 on, not decreasing
   std::vector<double> voltage = {};  ///< [V]
+};
+
+template <>
+struct FamilyOf<Table> {
+  static constexpr std::string_view name = "table";
+  static constexpr bool from_file = true;
+  static constexpr auto parameters = std::to_array<Parameter<Table>>({
+      {"times", Meaning::time, &Table::time, true, "of the rows, from 0 s on"},
+      {"voltages", Meaning::level, &Table::voltage, true, "of the rows; linear between them"},
+  });
 };
 
 [[nodiscard]] Signal signal(const Table& table);

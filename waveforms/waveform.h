@@ -1,8 +1,10 @@
 // The waveform families. Each family is a small aggregate in its own file that compiles to a Signal.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "waveforms/harmonic.h"
@@ -19,5 +21,12 @@ using Waveform = std::variant<Step, Harmonic, Pulse, Table>;
 [[nodiscard]] Signal signal(const Waveform& waveform);
 /// step | harmonic | pulse | table
 [[nodiscard]] std::string_view family(const Waveform& waveform);
+
+/// Calls f with a default waveform of every family, in the order of the variant.
+template <class F>
+void for_each_family(F&& f) {
+  [&]<std::size_t... i>(std::index_sequence<i...>) { (f(std::variant_alternative_t<i, Waveform>{}), ...); }
+  (std::make_index_sequence<std::variant_size_v<Waveform>>());
+}
 
 }  // namespace softland

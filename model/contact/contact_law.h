@@ -3,12 +3,17 @@
 // built.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <limits>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "base/choice.h"
+#include "model/constants.h"
 #include "model/contact/adhesive.h"
 #include "model/contact/adhesive_repulsive.h"
 #include "model/contact/asperity_gaussian.h"
@@ -26,12 +31,128 @@ using ContactLaw = std::variant<UniformAsperityContact, LinearContact, GaussianA
                                 HuntCrossley<GaussianAsperityContact>, HystereticContact, PlasticAsperityContact<ZmcAsperity>,
                                 PlasticAsperityContact<KogutEtsionAsperity>, RigidContact, AdhesiveRepulsiveContact>;
 
+/// A law of the contact force: its name and its own keys in a scene, its limits, and its maker, which takes the width of the pad.
+struct ContactRow {
+  ContactModel value;
+  std::string_view name;
+  Words keys;
+  /// Why it cannot act along the pad; empty when it can.
+  std::string_view not_along_pad = {};
+  /// Acts per area of the pad, so that a plate needs a width and a length of the pad.
+  bool per_area = false;
+  /// Interference up to which it is physics [m].
+  double (*largest_interference)(const Contact&) = [](const Contact&) { return std::numeric_limits<double>::infinity(); };
+  ContactLaw (*make)(const Contact&, double width);
+};
+
+namespace internal {
+/// Summits under the pad.
+[[nodiscard]] inline double summits(const Contact& c, double width) { return c.asperity_density * width * c.pad_length; }
+/// Force of all summits over d^1.5, by Hertz [N/m^1.5].
+[[nodiscard]] inline double hertz(const Contact& c, double width) {
+  return summits(c, width) * c.effective_modulus * std::sqrt(c.asperity_radius);
+}
+[[nodiscard]] inline UniformAsperityContact uniform(const Contact& c, double width) {
+  return {.strength = hertz(c, width) / c.asperity_height, .height = c.asperity_height};
+}
+template <class Elastic>
+[[nodiscard]] ContactLaw damped(Elastic law, const Contact& c) {
+  if (c.damping > 0) return HuntCrossley<Elastic>{.elastic = law, .damping = c.damping};
+  return law;
+}
+template <class Asperity>
+[[nodiscard]] ContactLaw plastic(const Contact& c, double width) {
+  return PlasticAsperityContact<Asperity>{
+      .loading = {summits(c, width), c.asperity_height, c.asperity_radius, c.hardness, c.effective_modulus},
+      .elastic = uniform(c, width)};
+}
+[[nodiscard]] constexpr double asperity_height(const Contact& c) { return c.asperity_height; }
+}  // namespace internal
+
+/// What describes a rough surface.
+inline constexpr Words summit_keys{"asperity_radius", "asperity_density", "effective_modulus"};
+inline constexpr std::string_view many_dents = "every point of the pad would keep a dent of its own";
+
+inline constexpr auto contact_laws = std::to_array<ContactRow>({
+    {.value = ContactModel::linear,
+     .name = "linear",
+     .keys = {"stiffness", "damping"},
+     .make = [](const Contact& c, double) { return internal::damped(LinearContact{.stiffness = c.stiffness}, c); }},
+    {.value = ContactModel::asperity_uniform,
+     .name = "asperity-uniform",
+     .keys = summit_keys + Words{"asperity_height", "damping"},
+     .per_area = true,
+     .largest_interference = internal::asperity_height,
+     .make = [](const Contact& c, double width) { return internal::damped(internal::uniform(c, width), c); }},
+    {.value = ContactModel::asperity_gaussian,
+     .name = "asperity-gaussian",
+     .keys = summit_keys + Words{"asperity_deviation", "damping"},
+     .per_area = true,
+     .largest_interference = [](const Contact& c) { return GaussianAsperityContact::first_touch * c.asperity_deviation; },
+     .make =
+         [](const Contact& c, double width) {
+           const double sigma = c.asperity_deviation;
+           return internal::damped(
+               GaussianAsperityContact{.strength = 4.0 / 3 * internal::hertz(c, width) * sigma * std::sqrt(sigma),
+                                       .deviation = sigma},
+               c);
+         }},
+    {.value = ContactModel::adhesive,
+     .name = "adhesive",
+     .keys = summit_keys + Words{"asperity_height", "adhesion_energy"},
+     .per_area = true,
+     .largest_interference = internal::asperity_height,
+     .make = [](const Contact& c, double width) -> ContactLaw {
+       return AdhesiveAsperityContact{
+           .repulsion = internal::uniform(c, width),
+           .attraction = 2 * pi * c.asperity_radius * c.adhesion_energy * internal::summits(c, width) / c.asperity_height};
+     }},
+    {.value = ContactModel::hysteretic,
+     .name = "hysteretic",
+     .keys = {"stiffness", "unloading_stiffness"},
+     .not_along_pad = many_dents,
+     .make = [](const Contact& c, double) -> ContactLaw {
+       return HystereticContact{.loading = {.stiffness = c.stiffness}, .elastic = {.stiffness = c.unloading_stiffness}};
+     }},
+    {.value = ContactModel::elastic_plastic,
+     .name = "elastic-plastic",
+     .keys = summit_keys + Words{"asperity_height", "hardness", "plasticity"},
+     .not_along_pad = many_dents,
+     .per_area = true,
+     .largest_interference = internal::asperity_height,
+     .make =
+         [](const Contact& c, double width) {
+           return c.plasticity == Plasticity::zmc ? internal::plastic<ZmcAsperity>(c, width)
+                                                  : internal::plastic<KogutEtsionAsperity>(c, width);
+         }},
+    {.value = ContactModel::rigid,
+     .name = "rigid",
+     .keys = {"restitution"},
+     .not_along_pad = "whose impacts have no force",
+     .make = [](const Contact& c, double) -> ContactLaw { return RigidContact{.restitution = c.restitution}; }},
+    {.value = ContactModel::adhesive_repulsive,
+     .name = "adhesive-repulsive",
+     .keys = {"asperity_pressure", "asperity_distance", "wall_pressure", "wall_range", "adhesion_pressure", "adhesion_range",
+              "hamaker_constant", "smoothing_distance", "reach"},
+     .not_along_pad = "which acts before the free end touches",
+     .per_area = true,
+     .largest_interference = [](const Contact& c) { return AdhesiveRepulsiveContact(c.pressure, 1).touch_distance(); },
+     .make = [](const Contact& c, double width) -> ContactLaw {
+       return AdhesiveRepulsiveContact(c.pressure, width * c.pad_length);
+     }},
+});
+static_assert(is_complete<contact_laws>());
+
 /// The law of a valid device's contact.
-[[nodiscard]] ContactLaw contact_law(const Contact& contact, double width);
+[[nodiscard]] inline ContactLaw contact_law(const Contact& contact, double width) {
+  return row_of(contact_laws, contact.model).make(contact, width);
+}
 
 /// Interference at which all asperities of a law touch, or four standard deviations of Gaussian ones [m]: beyond, the law is no
 /// longer physics. Infinite for a spring.
-[[nodiscard]] double largest_interference(const Contact& contact);
+[[nodiscard]] inline double largest_interference(const Contact& contact) {
+  return row_of(contact_laws, contact.model).largest_interference(contact);
+}
 
 /// std::visit for the hot path: with more than eleven laws that one calls through a table, which the compiler cannot see through.
 template <std::size_t I = 0, class F>

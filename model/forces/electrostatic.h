@@ -16,10 +16,15 @@
 // it shifts a charge, never a force.
 #pragma once
 
+#include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <string_view>
+#include <variant>
 
+#include "base/choice.h"
 #include "model/constants.h"
+#include "model/device.h"
 
 namespace softland {
 
@@ -80,9 +85,30 @@ struct Bao2001Fringing {
   }
 };
 
-template <class FringingLaw>
+using FringingLaw = std::variant<NoFringing, Bao2001Fringing, MeijsFokkemaFringing, LinearFringing>;
+
+/// A law of the fringing field: its name in a scene, what it needs to know of a plate, and its maker.
+struct FringingRow {
+  Fringing value;
+  std::string_view name;
+  bool needs_width = true;
+  bool needs_thickness = false;
+  FringingLaw (*make)(const Structure&);
+};
+
+inline constexpr auto fringing_laws = std::to_array<FringingRow>({
+    {Fringing::none, "none", false, false, [](const Structure& s) -> FringingLaw { return NoFringing{.width = s.width}; }},
+    {Fringing::bao_2001, "bao-2001", true, true,
+     [](const Structure& s) -> FringingLaw { return Bao2001Fringing{.width = s.width, .thickness = s.thickness}; }},
+    {Fringing::meijs_fokkema, "meijs-fokkema", true, true,
+     [](const Structure& s) -> FringingLaw { return MeijsFokkemaFringing{.width = s.width, .thickness = s.thickness}; }},
+    {Fringing::linear, "linear", true, false, [](const Structure& s) -> FringingLaw { return LinearFringing{.width = s.width}; }},
+});
+static_assert(is_complete<fringing_laws>());
+
+template <class Law>
 struct ElectrostaticForce {
-  FringingLaw fringing;
+  Law fringing;
   static constexpr bool driven = true;
 
   /// [N / (m V^2)]

@@ -7,38 +7,20 @@
 
 namespace softland {
 
-const GasModelEntry& entry(GasModel model) {
-  return *std::find_if(gas_models.begin(), gas_models.end(), [&](const GasModelEntry& e) { return e.model == model; });
-}
-
 double end_flow(double ratio) {
   double sum = 0;
   for (int n = 39; n > 0; n -= 2) sum += std::tanh(n * pi / (2 * ratio)) / std::pow(n, 5);
   return 1 - 192 / std::pow(pi, 5) * ratio * sum;
 }
 
-GasLaw gas_law(const Gas& gas, const Structure& s, double damping_of_unit_quality) {
-  const double mu = viscosity(gas) * (std::isnan(gas.film_length) ? 1 : end_flow(s.width / gas.film_length));
-  const double lambda = mean_free_path(gas);
-  switch (gas.model) {
-    case GasModel::strip_slit:
-      return StripOverSlit{.viscosity = mu, .width = s.width, .slit_height = gas.slit_height, .slit_length = gas.slit_length};
-    case GasModel::veijola:
-      return VeijolaFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
-    case GasModel::gallis_torczynski:
-      return GallisTorczynskiFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
-    case GasModel::near_contact:
-      return NearContactFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
-    case GasModel::guo_alexeenko:
-      return GuoAlexeenkoFilm{.mean_free_path = lambda, .width = s.width, .thickness = s.thickness};
-    case GasModel::reynolds:
-      return SlipFilm{.viscosity = mu, .mean_free_path = lambda, .width = s.width};
-    case GasModel::linear:
-      return LinearDamper{.damping = std::isnan(gas.damping) ? damping_of_unit_quality / gas.quality_factor : gas.damping};
-    case GasModel::strip:
-      break;
-  }
-  return StripSqueezeFilm{.viscosity = mu, .width = s.width};
+GasLaw gas_law(const Gas& gas, const Structure& s, double unit_quality) {
+  const double kept = std::isnan(gas.film_length) ? 1 : end_flow(s.width / gas.film_length);
+  return row_of(gas_laws, gas.model)
+      .make({.gas = gas,
+             .structure = s,
+             .viscosity = viscosity(gas) * kept,
+             .mean_free_path = mean_free_path(gas),
+             .unit_quality = unit_quality});
 }
 
 double squeeze_number(const Gas& gas, double width, double gap, double rate) {
@@ -47,14 +29,14 @@ double squeeze_number(const Gas& gas, double width, double gap, double rate) {
 
 double squeeze_number(const Device& device, const TrajectoryPoint& point) {
   const double h = device.gap.electrode - point.position;
-  if (!device.gas || !std::isfinite(entry(device.gas->model).most_squeeze) || !(h > 0)) return 0;
+  if (!device.gas || !std::isfinite(row_of(gas_laws, device.gas->model).most_squeeze) || !(h > 0)) return 0;
   return squeeze_number(*device.gas, device.structure.width, h, std::abs(point.velocity) / h);
 }
 
 std::vector<std::string> gas_warnings(const Device& device, double smallest_gap, double largest_squeeze) {
   std::vector<std::string> warnings;
   if (!device.gas) return warnings;
-  const GasModelEntry& law = entry(device.gas->model);
+  const GasRow& law = row_of(gas_laws, device.gas->model);
   const double lambda = mean_free_path(*device.gas);
   if (const double kn = lambda / smallest_gap; kn > law.most_knudsen) {
     warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} exceeds {:.2g}", law.name, kn, law.most_knudsen));
@@ -65,7 +47,7 @@ std::vector<std::string> gas_warnings(const Device& device, double smallest_gap,
   if (largest_squeeze > law.most_squeeze) {
     warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: {}", law.name, largest_squeeze,
                                    law.most_squeeze,
-                                   is_compressible(law.model) ? "its boundary layers are too thin to be resolved"
+                                   is_compressible(law.value) ? "its boundary layers are too thin to be resolved"
                                                               : "the film is compressed, not squeezed out"));
   }
   return warnings;

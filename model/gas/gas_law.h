@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "base/choice.h"
 #include "model/gas/air.h"
 #include "model/gas/gallis_torczynski.h"
 #include "model/gas/guo_alexeenko.h"
@@ -24,31 +26,97 @@ namespace softland {
 using GasLaw = std::variant<StripSqueezeFilm, StripOverSlit, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm, GuoAlexeenkoFilm,
                             SlipFilm, LinearDamper>;
 
-/// Name in a scene, and where the law holds.
-struct GasModelEntry {
-  GasModel model;
-  std::string_view name;
-  double least_knudsen = 0;
-  double most_knudsen = std::numeric_limits<double>::infinity();
-  double most_squeeze = std::numeric_limits<double>::infinity();  ///< 12 mu a^2 omega / (p h^2)
+/// What a law is made of.
+struct Film {
+  const Gas& gas;
+  const Structure& structure;
+  double viscosity;       ///< that of the gas, less what the open ends of a film let out [Pa s]
+  double mean_free_path;  ///< [m]
+  double unit_quality;    ///< damping per length that gives the first mode a quality factor of one [N s/m^2]
 };
 
 inline constexpr double incompressible = 10;  ///< squeeze number up to which a strip film is; the strip's cut-off is pi^2
 
-inline constexpr std::array gas_models{
-    GasModelEntry{.model = GasModel::strip, .name = "strip", .most_knudsen = 0.1, .most_squeeze = incompressible},
-    GasModelEntry{.model = GasModel::strip_slit, .name = "strip-slit", .most_knudsen = 0.1, .most_squeeze = incompressible},
-    GasModelEntry{.model = GasModel::veijola, .name = "veijola", .most_knudsen = 880, .most_squeeze = incompressible},
-    GasModelEntry{.model = GasModel::gallis_torczynski, .name = "gallis-torczynski", .most_squeeze = incompressible},
-    GasModelEntry{.model = GasModel::near_contact,
-                  .name = "near-contact",
-                  .least_knudsen = 1 / NearContactFilm::rarefied,
-                  .most_squeeze = incompressible},
-    GasModelEntry{.model = GasModel::guo_alexeenko, .name = "guo-alexeenko"},
-    GasModelEntry{.model = GasModel::reynolds, .name = "reynolds", .most_knudsen = 0.1, .most_squeeze = 1000},
-    GasModelEntry{.model = GasModel::linear, .name = "linear"}};
+/// A law of the squeeze film: its name and its own keys in a scene, where it holds, and its maker.
+struct GasRow {
+  GasModel value;
+  std::string_view name;
+  Words keys;
+  double least_knudsen = 0;
+  double most_knudsen = std::numeric_limits<double>::infinity();
+  double most_squeeze = std::numeric_limits<double>::infinity();  ///< 12 mu a^2 omega / (p h^2)
+  bool needs_thickness = false;                                   ///< of the moving part
+  GasLaw (*make)(const Film&);
+};
 
-[[nodiscard]] const GasModelEntry& entry(GasModel model);
+/// What describes a gas film.
+inline constexpr Words film_keys{"viscosity", "pressure", "temperature", "mean_free_path"};
+
+inline constexpr auto gas_laws = std::to_array<GasRow>({
+    {.value = GasModel::strip,
+     .name = "strip",
+     .keys = film_keys + Words{"film_length", "far_gap"},
+     .most_knudsen = 0.1,
+     .most_squeeze = incompressible,
+     .make = [](const Film& f) -> GasLaw { return StripSqueezeFilm{.viscosity = f.viscosity, .width = f.structure.width}; }},
+    {.value = GasModel::strip_slit,
+     .name = "strip-slit",
+     .keys = film_keys + Words{"film_length", "slit_height", "slit_length", "far_gap"},
+     .most_knudsen = 0.1,
+     .most_squeeze = incompressible,
+     .make = [](const Film& f) -> GasLaw {
+       return StripOverSlit{.viscosity = f.viscosity,
+                            .width = f.structure.width,
+                            .slit_height = f.gas.slit_height,
+                            .slit_length = f.gas.slit_length};
+     }},
+    {.value = GasModel::veijola,
+     .name = "veijola",
+     .keys = film_keys + Words{"film_length", "far_gap"},
+     .most_knudsen = 880,
+     .most_squeeze = incompressible,
+     .make = [](const Film& f) -> GasLaw {
+       return VeijolaFilm{.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.structure.width};
+     }},
+    {.value = GasModel::gallis_torczynski,
+     .name = "gallis-torczynski",
+     .keys = film_keys + Words{"far_gap"},
+     .most_squeeze = incompressible,
+     .make = [](const Film& f) -> GasLaw {
+       return GallisTorczynskiFilm{.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.structure.width};
+     }},
+    {.value = GasModel::near_contact,
+     .name = "near-contact",
+     .keys = film_keys + Words{"far_gap"},
+     .least_knudsen = 1 / NearContactFilm::rarefied,
+     .most_squeeze = incompressible,
+     .make = [](const Film& f) -> GasLaw {
+       return NearContactFilm{.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.structure.width};
+     }},
+    {.value = GasModel::guo_alexeenko,
+     .name = "guo-alexeenko",
+     .keys = film_keys + Words{"far_gap"},
+     .needs_thickness = true,
+     .make = [](const Film& f) -> GasLaw {
+       return GuoAlexeenkoFilm{
+           .mean_free_path = f.mean_free_path, .width = f.structure.width, .thickness = f.structure.thickness};
+     }},
+    {.value = GasModel::reynolds,
+     .name = "reynolds",
+     .keys = film_keys,
+     .most_knudsen = 0.1,
+     .most_squeeze = 1000,
+     .make = [](const Film& f) -> GasLaw {
+       return SlipFilm{.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.structure.width};
+     }},
+    {.value = GasModel::linear,
+     .name = "linear",
+     .keys = {"damping", "quality_factor"},
+     .make = [](const Film& f) -> GasLaw {
+       return LinearDamper{.damping = std::isnan(f.gas.damping) ? f.unit_quality / f.gas.quality_factor : f.gas.damping};
+     }},
+});
+static_assert(is_complete<gas_laws>());
 
 /// Damping of a rectangular film over that of a strip of the same length, whose ends would be closed; `ratio` is width over
 /// length.
@@ -57,9 +125,8 @@ inline constexpr std::array gas_models{
 /// Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
-/// Of the compressible film its incompressible limit. `damping_of_unit_quality` is the damping per length that gives the first
-/// mode a quality factor of one [N s/m^2].
-[[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double damping_of_unit_quality);
+/// Of the compressible film its incompressible limit.
+[[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 
 /// c in f = -c v [N s/m^2] at this gap [m].
 [[nodiscard]] inline double damping_per_length(const GasLaw& law, double gap) {

@@ -58,12 +58,12 @@ TEST(Scene, EverySectionOfTheSmallSceneArrives) {
 
 TEST(Scene, GasModelsAreThoseOfTheScene) {
   const std::string section = "model = \"strip\"\nviscosity = \"1.86e-5 Pa s\"";
-  for (const GasModelEntry& e : gas_models) {
-    std::string keys = e.model == GasModel::linear ? "\nquality_factor = 7" : "\npressure = \"1 kPa\"";
-    if (e.model == GasModel::strip_slit) keys += "\nslit_height = \"2 um\"\nslit_length = \"3 um\"";
+  for (const GasRow& e : gas_laws) {
+    std::string keys = e.value == GasModel::linear ? "\nquality_factor = 7" : "\npressure = \"1 kPa\"";
+    if (e.value == GasModel::strip_slit) keys += "\nslit_height = \"2 um\"\nslit_length = \"3 um\"";
     const Gas gas = *read(edited(small_scene, section, fmt::format("model = \"{}\"{}", e.name, keys))).device.gas;
-    EXPECT_EQ(gas.model, e.model);
-    EXPECT_EQ(gas.pressure, e.model == GasModel::linear ? Gas{}.pressure : 1000);
+    EXPECT_EQ(gas.model, e.value);
+    EXPECT_EQ(gas.pressure, e.value == GasModel::linear ? Gas{}.pressure : 1000);
     EXPECT_TRUE(std::isnan(gas.viscosity)) << "that of air";
   }
   const Gas gas = *read(edited(small_scene, section, R"(model = "veijola"

@@ -64,7 +64,7 @@ std::vector<Case> cases() {
     all.push_back({fmt::format("asperities {:g} times as stiff", times), d, {Signal::constant(step_level)}, 70_us});
   }
   for (const Contact& contact : test::contacts()) {
-    all.push_back({fmt::format("no gas, no damping, contact {} {}", to_string(contact.model), contact.damping),
+    all.push_back({fmt::format("no gas, no damping, contact {} {}", name_of(contact_laws, contact.model), contact.damping),
                    gold_on(contact),
                    {Signal::constant(step_level)},
                    120_us});

@@ -58,7 +58,7 @@ void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int k
   const Trajectory t =
       simulate_closing(device, waveforms(kind, layer ? 28_V : step_level, layer), {.duration = 150_us, .tolerance = tolerance});
   const std::string name = fmt::format("piezo {}, loss {}, contact {} {}, waveform {}", layer, loss.name,
-                                       to_string(contact.model), contact.damping, kind);
+                                       name_of(contact_laws, contact.model), contact.damping, kind);
   ASSERT_EQ(t.status, Status::done) << name;
   EXPECT_GE(t.touches.size(), contact.model == ContactModel::adhesive_repulsive ? 2u : 3u) << name;  // it also holds
   EXPECT_GT(t.energy.source_work, 0) << name;
@@ -89,7 +89,7 @@ TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryPair) {
   std::map<std::string, int> next;  // waveform, per contact
   for_every_switch([&](bool layer, const Loss& loss, const Contact& contact) {
     const std::string name =
-        fmt::format("{} {} {}", to_string(contact.model), contact.damping, static_cast<int>(contact.plasticity));
+        fmt::format("{} {} {}", name_of(contact_laws, contact.model), contact.damping, static_cast<int>(contact.plasticity));
     const auto [at, fresh] = next.try_emplace(name, static_cast<int>(next.size()));
     expect_balanced(layer, loss, contact, at->second++ % 3);
   });
@@ -108,7 +108,7 @@ TEST(EnergyBalance, ClosesForEveryContactAlongThePad) {
       if (!gas) d.gas.reset();
       d.contact = contact;
       const Trajectory t = simulate_closing(Switch(d), waveforms(1, step_level, false), {.duration = 100_us, .tolerance = 1e-9});
-      const std::string name = fmt::format("gas {}, contact {} {}", gas, to_string(contact.model), contact.damping);
+      const std::string name = fmt::format("gas {}, contact {} {}", gas, name_of(contact_laws, contact.model), contact.damping);
       ASSERT_EQ(t.status, Status::done) << name;
       EXPECT_GE(t.touches.size(), 2u) << name;
       EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << name;
@@ -129,11 +129,11 @@ TEST(EnergyBalance, ClosesForEveryFringingFactor) {
 }
 
 TEST(EnergyBalance, ClosesForEveryGasModel) {
-  for (const GasModelEntry& e : gas_models) {
+  for (const GasRow& e : gas_laws) {
     Device d = test::gold_cantilever();
-    d.gas->model = e.model;
-    if (e.model == GasModel::linear) d.gas->quality_factor = 5;
-    if (e.model == GasModel::strip_slit) d.gas->slit_height = d.gas->slit_length = 2_um;
+    d.gas->model = e.value;
+    if (e.value == GasModel::linear) d.gas->quality_factor = 5;
+    if (e.value == GasModel::strip_slit) d.gas->slit_height = d.gas->slit_length = 2_um;
     const std::vector<Signal> drives = waveforms(1, step_level, false);
     const Trajectory t = simulate_closing(Switch(d), drives, {.duration = 100_us, .tolerance = 1e-9});
     ASSERT_EQ(t.status, Status::done) << e.name;

@@ -359,10 +359,10 @@ TEST(SmallerOfBoth, ChangesOverWhereTheLimitsAreEqual) {
 // A film of air under a strip of this width; the linear damper is as strong as the strip film at 2 um.
 template <class Law>
 Law gas_law_of_type(double width, double free_path, double viscosity = 1.86e-5_Pa_s) {
-  for (const GasModelEntry& e : gas_models) {
-    Gas gas{.model = e.model, .viscosity = viscosity, .mean_free_path = free_path};
-    if (e.model == GasModel::linear) gas.damping = viscosity * 1000;
-    if (e.model == GasModel::strip_slit) gas.slit_height = gas.slit_length = width / 8;
+  for (const GasRow& e : gas_laws) {
+    Gas gas{.model = e.value, .viscosity = viscosity, .mean_free_path = free_path};
+    if (e.value == GasModel::linear) gas.damping = viscosity * 1000;
+    if (e.value == GasModel::strip_slit) gas.slit_height = gas.slit_length = width / 8;
     const GasLaw law = gas_law(gas, {.width = width, .thickness = 4_um}, 1);
     if (const Law* found = std::get_if<Law>(&law)) return *found;
   }

@@ -57,7 +57,7 @@ Eigen::VectorXd velocities(const Switch& device, std::mt19937_64& random) {
 }
 
 std::string named(const Contact& c, const std::pair<double, double>& tilt) {
-  return fmt::format("{} {}, {} m, slope {}", to_string(c.model), c.damping, tilt.first, tilt.second);
+  return fmt::format("{} {}, {} m, slope {}", name_of(contact_laws, c.model), c.damping, tilt.first, tilt.second);
 }
 
 const std::vector<double>& no_volts() {

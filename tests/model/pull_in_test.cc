@@ -324,15 +324,15 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
     d.contact = contact;
     const Switch device(d);
     const auto closed = closed_equilibrium(device, volts);
-    ASSERT_TRUE(closed.has_value()) << to_string(contact.model);
+    ASSERT_TRUE(closed.has_value()) << name_of(contact_laws, contact.model);
     EXPECT_GT(closed->contact_force, 0);
     Switch::Workspace work = device.workspace();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
     Eigen::VectorXd left(device.modes());
     device.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
     constexpr double digits = 1e-6;  // of the contact force
-    EXPECT_LT(left.norm(), digits * closed->contact_force * device.contact_shape().norm()) << to_string(contact.model);
-    EXPECT_GT(release_voltage(device, 0), 0) << to_string(contact.model);
+    EXPECT_LT(left.norm(), digits * closed->contact_force * device.contact_shape().norm()) << name_of(contact_laws, contact.model);
+    EXPECT_GT(release_voltage(device, 0), 0) << name_of(contact_laws, contact.model);
   }
 }
 

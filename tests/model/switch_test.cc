@@ -38,20 +38,20 @@ std::vector<Combination> combinations() {
             d.contact = contact;
             d.contact->pressure.asperity_distance = 60_nm;  // its corners lie beyond the states looked at
             all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {} {}", static_cast<int>(fringing),
-                                       layer, gas, damping, to_string(contact.model), contact.damping),
+                                       layer, gas, damping, name_of(contact_laws, contact.model), contact.damping),
                            d});
           }
         }
       }
     }
   }
-  for (const GasModelEntry& e : gas_models) {
-    if (is_compressible(e.model)) continue;  // a system with more states: reynolds_film_test.cc
+  for (const GasRow& e : gas_laws) {
+    if (is_compressible(e.value)) continue;  // a system with more states: reynolds_film_test.cc
     for (const bool layer : {false, true}) {
       Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
-      d.gas->model = e.model;
-      if (e.model == GasModel::linear) d.gas->quality_factor = 5;
-      if (e.model == GasModel::strip_slit) d.gas->slit_height = d.gas->slit_length = 2_um;
+      d.gas->model = e.value;
+      if (e.value == GasModel::linear) d.gas->quality_factor = 5;
+      if (e.value == GasModel::strip_slit) d.gas->slit_height = d.gas->slit_length = 2_um;
       all.push_back({fmt::format("gas {}, piezo {}", e.name, layer), d});
     }
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/literals.h"
+#include "model/contact/contact_law.h"
 #include "model/device.h"
 
 namespace softland::test {
@@ -31,12 +32,12 @@ namespace softland::test {
 [[nodiscard]] inline std::vector<Contact> contacts() {
   using namespace literals;
   std::vector<Contact> all;
-  for (const ContactModel model : all_contact_models) {
+  for (const ContactRow& law : contact_laws) {
     for (const double damping : {0.0, 0.5}) {
-      if (damping > 0 && model > ContactModel::asperity_gaussian) continue;
-      if (model == ContactModel::rigid) continue;  // a plate's only
+      if (damping > 0 && !law.keys.contain("damping")) continue;
+      if (law.value == ContactModel::rigid) continue;  // a plate's only
       Contact c = *gold_cantilever().contact;
-      c.model = model;
+      c.model = law.value;
       c.stiffness = 1e4_N_m;
       c.unloading_stiffness = 1.5e4_N_m;
       c.hardness = 1_GPa;
@@ -44,7 +45,7 @@ namespace softland::test {
       c.adhesion_energy = 0.05_N_m;
       c.damping = damping;
       all.push_back(c);
-      if (model == ContactModel::elastic_plastic) {
+      if (law.value == ContactModel::elastic_plastic) {
         c.plasticity = Plasticity::kogut_etsion;
         all.push_back(c);
       }

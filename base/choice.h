@@ -1,0 +1,99 @@
+// Choices by name: one table per enumeration, with a row per enumerator that says what it is called and whatever else belongs to
+// it. A table that misses an enumerator, or has one twice, does not compile.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+namespace softland {
+
+/// A row of a table of names alone. Other tables have rows of their own with these two members.
+template <class E>
+struct Named {
+  E value;
+  std::string_view name;
+};
+
+/// A short list of words in a row of such a table.
+class Words {
+ public:
+  constexpr Words(std::initializer_list<std::string_view> words) {
+    for (const std::string_view word : words) words_.at(size_++) = word;
+  }
+  [[nodiscard]] constexpr const std::string_view* begin() const { return words_.data(); }
+  [[nodiscard]] constexpr const std::string_view* end() const { return words_.data() + size_; }
+  [[nodiscard]] constexpr bool contain(std::string_view word) const { return std::find(begin(), end(), word) != end(); }
+  friend constexpr Words operator+(Words words, const Words& more) {
+    for (const std::string_view word : more) words.words_.at(words.size_++) = word;
+    return words;
+  }
+
+ private:
+  std::array<std::string_view, 12> words_{};
+  std::size_t size_ = 0;
+};
+
+namespace internal {
+template <auto value>
+[[nodiscard]] consteval bool is_enumerator() {
+  // What has no name is printed as a number in brackets: "[value = softland::Side::far]", "[value = (softland::Side)3]".
+  constexpr std::string_view text = __PRETTY_FUNCTION__, what = "value = ";
+  return text[text.find(what) + what.size()] != '(';
+}
+}  // namespace internal
+
+/// Whether the rows stand for all enumerators, in the order of the enumeration, and have names of their own. Every table asserts
+/// it.
+template <const auto& rows>
+[[nodiscard]] consteval bool is_complete() {
+  using E = decltype(rows[0].value);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].value != static_cast<E>(i) || rows[i].name.empty()) return false;
+    for (std::size_t k = 0; k < i; ++k) {
+      if (rows[k].name == rows[i].name) return false;
+    }
+  }
+  return !internal::is_enumerator<static_cast<E>(rows.size())>();
+}
+
+template <class Row, std::size_t n>
+[[nodiscard]] constexpr const Row& row_of(const std::array<Row, n>& rows, decltype(Row::value) value) {
+  return rows.at(static_cast<std::size_t>(value));
+}
+
+template <class Row, std::size_t n>
+[[nodiscard]] constexpr std::string_view name_of(const std::array<Row, n>& rows, decltype(Row::value) value) {
+  return row_of(rows, value).name;
+}
+
+/// Null when there is none.
+template <class Row, std::size_t n>
+[[nodiscard]] constexpr const Row* find_named(const std::array<Row, n>& rows, std::string_view name) {
+  for (const Row& row : rows) {
+    if (row.name == name) return &row;
+  }
+  return nullptr;
+}
+
+template <class Row, std::size_t n>
+[[nodiscard]] std::vector<std::string_view> names_of(const std::array<Row, n>& rows) {
+  std::vector<std::string_view> names;
+  for (const Row& row : rows) names.push_back(row.name);
+  return names;
+}
+
+/// The names of the rows whose `keys` hold this one.
+template <class Row, std::size_t n>
+[[nodiscard]] std::vector<std::string_view> with_key(const std::array<Row, n>& rows, std::string_view key) {
+  std::vector<std::string_view> names;
+  for (const Row& row : rows) {
+    if (row.keys.contain(key)) names.push_back(row.name);
+  }
+  return names;
+}
+
+}  // namespace softland

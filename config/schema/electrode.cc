@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include "config/drives.h"
+#include "config/schema/sections.h"
+#include "config/section_reader.h"
+#include "model/forces/electrostatic.h"
+
+namespace softland::internal {
+namespace {
+
+Electrode& electrode(Scene& scene, std::size_t k) { return scene.device.electrodes[k]; }
+using OfElectrode = Of<electrode>;
+
+std::size_t begin_electrode(Scene& scene, const SectionReader& in, std::string_view name) {
+  check_drive_name(in.file(), std::string(name));
+  scene.device.electrodes.push_back({.name = std::string(name)});
+  return scene.device.electrodes.size() - 1;
+}
+
+/// A plate counts the length that gives the electrode's area.
+void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
+  if (s.kind == StructureKind::plate) {
+    in.require(!in.is_given("span"), "span", "belongs to a beam; the electrode of a plate has an area");
+    e.begin = 0;
+    e.end = s.length;
+    if (!in.is_given("area")) return;
+    const SectionReader structure(in.file(), "structure");
+    in.require(in.number("area") <= structure.number("area"), "area", "must not exceed " + structure.written("area"));
+    e.end = in.number("area") / s.width;
+    return;
+  }
+  in.require(!in.is_given("area"), "area", "belongs to a plate; the electrode of a beam has a span");
+  if (!in.is_given("span")) in.fail(R"(missing key 'span' (a list such as ["2 um", "2 um"]))");
+  in.require_on_beam("span");
+}
+
+void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
+  if (s.kind != StructureKind::plate) return;
+  const FringingRow& law = row_of(fringing_laws, e.fringing);
+  const SectionReader structure(in.file(), "structure");
+  if ((law.needs_width && !structure.is_given("width")) || (law.needs_thickness && !structure.is_given("thickness"))) {
+    in.fail(fmt::format("fringing = {} needs structure.width{} on a plate; fringing = \"none\" does not", toml_string(law.name),
+                        law.needs_thickness ? " and structure.thickness" : ""));
+  }
+}
+
+void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {
+  Electrode& e = scene.device.electrodes[k];
+  check_extent(scene.device.structure, e, in);
+  check_fringing(scene.device.structure, e, in);
+  in.require(e.side != Side::near || !in.is_given("gap"), "gap",
+             "belongs to side = \"far\" or \"both\"; on the near side the distance is gap.electrode");
+  if (e.side != Side::near && !in.is_given("gap")) {
+    in.fail(fmt::format("side = {} needs 'gap' (a length such as \"2 um\"): the rest distance on the far side",
+                        toml_string(name_of(sides, e.side))));
+  }
+}
+
+}  // namespace
+
+Section electrode_section() {
+  return {.name = "electrode",
+          .is_named = true,
+          .may_vary = true,
+          .keys = {OfElectrode::span<&Electrode::begin, &Electrode::end>(
+                       "span", "begin and end, from the clamped end; beams only and required there"),
+                   number("area", {dimension::area}, positive, "plates only; absent: that of the plate"),
+                   OfElectrode::choice<sides, &Electrode::side>(
+                       "side", "of the beam: near is that of the contact; far pulls away from it")
+                       .by_default("'near'"),
+                   OfElectrode::number<&Electrode::gap>(
+                       "gap", dimension::length, positive,
+                       "far, both: rest distance of the face on the far side to the beam; required there"),
+                   OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
+                       .by_default("'meijs-fokkema'")},
+          .about = "an electrode under the beam",
+          .begin = begin_electrode,
+          .check = check_electrode};
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include "config/schema/sections.h"
+#include "config/section_reader.h"
+
+namespace softland::internal {
+namespace {
+
+Gap& gap(Scene& scene, std::size_t) { return scene.device.gap; }
+using OfGap = Of<gap>;
+
+void check_gap(Scene& scene, const SectionReader& in, std::size_t) {
+  const Gap& gap = scene.device.gap;
+  in.require(gap.contact < gap.electrode, "contact", "must be less than " + in.written("electrode"));
+  // A run that comes within a hundredth of the electrode gap of the electrode has failed: see Switch::gap_floor().
+  constexpr double most = 0.99;
+  in.require(gap.contact < most * gap.electrode, "contact",
+             fmt::format("must be less than {:g} times {}: nearer than a hundredth of that gap no force law holds", most,
+                         in.written("electrode")));
+}
+
+}  // namespace
+
+Section gap_section() {
+  return {
+      .name = "gap",
+      .required = true,
+      .may_vary = true,
+      .keys =
+          {OfGap::number<&Gap::electrode>("electrode", dimension::length, positive, "rest distance beam to electrode").needed(),
+           OfGap::number<&Gap::contact>("contact", dimension::length, positive, "rest distance contact point to contact plane")
+               .needed()},
+      .about = "rest distances",
+      .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
+      .check = check_gap};
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,42 @@
+#include "config/schema/sections.h"
+#include "config/section_reader.h"
+
+namespace softland::internal {
+namespace {
+
+Piezo& piezo(Scene& scene, std::size_t) { return *scene.device.piezo; }
+using OfPiezo = Of<piezo>;
+
+std::size_t begin_piezo(Scene& scene, const SectionReader& in, std::string_view) {
+  const StructureKind kind = scene.device.structure.kind;
+  if (kind == StructureKind::plate) in.fail("a plate does not bend; a layer needs a beam");
+  if (in.file().find({"surface"})) in.fail("covers a face of the beam; [surface] is for a bare beam");
+  if (kind == StructureKind::clamped_clamped) {
+    in.fail(
+        "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its "
+        "middle "
+        "line; a layer needs a cantilever");
+  }
+  scene.device.piezo.emplace();
+  return 0;
+}
+
+}  // namespace
+
+Section piezo_section() {
+  return {
+      .name = "piezo",
+      .may_vary = true,
+      .keys = {OfPiezo::span<&Piezo::begin, &Piezo::end>("span", "begin and end, from the clamped end").needed(),
+               OfPiezo::number<&Piezo::thickness>("thickness", dimension::length, positive, "of the layer").needed(),
+               OfPiezo::number<&Piezo::youngs_modulus>("youngs_modulus", dimension::pressure, positive, "of the layer").needed(),
+               OfPiezo::number<&Piezo::density>("density", dimension::density, positive, "of the layer").needed(),
+               OfPiezo::number<&Piezo::d31>("d31", dimension::piezo_coefficient, any,
+                                            "negative for the usual ceramics: a positive voltage lifts the tip")
+                   .needed()},
+      .about = "a piezoelectric layer on the face away from the electrode",
+      .begin = begin_piezo,
+      .check = [](Scene&, const SectionReader& in, std::size_t) { in.require_on_beam("span"); }};
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,132 @@
+#include "config/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "base/engineering.h"
+#include "config/schema/sections.h"
+
+namespace softland::internal {
+namespace {
+
+/// The sizes [SI unit] that a quantity of a dimension can have in a scene: far beyond any switch, and so that no product of a few
+/// of them leaves double precision.
+struct Extent {
+  Dimension dimension;
+  double smallest;  ///< of what must be positive
+  double largest;   ///< in absolute value
+};
+constexpr std::array extents{
+    Extent{dimension::none, 1e-12, 1e12},
+    Extent{dimension::length, 1e-12, 1},
+    Extent{dimension::mass, 1e-30, 1e3},
+    Extent{dimension::time, 1e-15, 1e3},
+    Extent{dimension::temperature, 1e-3, 1e5},
+    Extent{dimension::angle, 1e-12, 1e6},
+    Extent{dimension::static_pull_in, 1e-12, 1e3},
+    Extent{dimension::dynamic_pull_in, 1e-12, 1e3},
+    Extent{dimension::area, 1e-24, 1},
+    Extent{dimension::area_density, 1, 1e24},
+    Extent{dimension::density, 1e-6, 1e6},
+    Extent{dimension::frequency, 1e-6, 1e15},
+    Extent{dimension::angular_frequency, 1e-6, 1e15},
+    Extent{dimension::energy, 1e-30, 1},
+    Extent{dimension::pressure, 1e-12, 1e15},
+    Extent{dimension::viscosity, 1e-18, 1e6},
+    Extent{dimension::stiffness, 1e-12, 1e12},
+    Extent{dimension::slowness, 1e-12, 1e5},
+    Extent{dimension::voltage, 1e-12, 1e9},
+    Extent{dimension::slew_rate, 1e-6, 1e24},
+    Extent{dimension::piezo_coefficient, 1e-18, 1e-6},
+};
+
+/// Edits (insertion, deletion, substitution, swap of neighbours) from `a` to `b`.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  std::iota(d[0].begin(), d[0].end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  return (least_open ? value > least : value >= least) && (most_open ? value < most : value <= most);
+}
+
+std::string Range::rule(std::string_view unit) const {
+  return fmt::format("must be in {}{}, {}{}", least_open ? '(' : '[', engineering(least, unit), engineering(most, unit),
+                     most_open ? ')' : ']');
+}
+
+Range Key::range_of(const Dimension& dimension) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto found =
+      std::find_if(extents.begin(), extents.end(), [&](const Extent& extent) { return extent.dimension == dimension; });
+  if (type == KeyType::integer || found == extents.end()) return range;
+  Range closed = range;
+  if (closed.most == infinity) closed.most = found->largest;
+  if (closed.least == -infinity) closed.least = -found->largest;
+  if (closed.least == 0 && closed.least_open) {
+    closed.least = found->smallest;
+    closed.least_open = false;
+  }
+  return closed;
+}
+
+bool Key::is_bare_number() const {
+  const bool is_quantity = type == KeyType::quantity || type == KeyType::quantities;
+  return is_quantity && dimensions.size() == 1 && dimensions.front() == dimension::none;
+}
+
+bool Key::belongs_to(std::string_view choice) const {
+  return only_for.empty() || std::find(only_for.begin(), only_for.end(), choice) != only_for.end();
+}
+
+const Key* Section::find(std::string_view key, std::string_view choice) const {
+  const Key* found = nullptr;
+  for (const Key& candidate : keys) {
+    if (candidate.name != key) continue;
+    if (candidate.belongs_to(choice)) return &candidate;
+    if (!found) found = &candidate;
+  }
+  return found;
+}
+
+const std::vector<Section>& schema() {
+  static const std::vector<Section> sections{
+      title_section(),        structure_section(), gap_section(),        electrode_section(), gas_section(),
+      contact_section(),      piezo_section(),     dispersion_section(), surface_section(),   waveform_section(),
+      force_factor_section(), driver_section(),    simulate_section(),   metrics_section(),   spread_section()};
+  return sections;
+}
+
+const Section* find_section(std::string_view name, std::string_view entry) {
+  const Section* found = nullptr;
+  for (const Section& section : schema()) {
+    if (section.name == name && (section.entry.empty() || section.entry == entry)) found = &section;
+  }
+  return found;
+}
+
+std::string hint(std::string_view word, const std::vector<std::string_view>& known) {
+  if (known.empty()) return {};
+  constexpr std::size_t longest_word = 64;  // a longer one is no slip of the pen, and the distance costs the product of lengths
+  if (word.size() <= longest_word) {
+    const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
+    const auto nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
+    if (distance(nearest) <= std::max<std::size_t>(2, nearest.size() / 3)) return fmt::format(" (did you mean '{}'?)", nearest);
+  }
+  return fmt::format(" (known: {})", fmt::join(known, ", "));
+}
+
+}  // namespace softland::internal

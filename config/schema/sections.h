@@ -1,0 +1,95 @@
+// Makers of sections and keys: every section of a scene has a file beside this one.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include "base/choice.h"
+#include "config/scene.h"
+#include "config/schema.h"
+
+namespace softland::internal {
+
+// Ends that these leave open are closed by the extent of the dimension.
+inline constexpr Range any{};
+inline constexpr Range positive{.least = 0, .least_open = true};
+inline constexpr Range not_negative{.least = 0};
+inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
+inline constexpr Range below_one{.least = 0, .most = 1, .most_open = true};
+
+/// Structures that bend.
+inline const std::vector<std::string_view> beams{"cantilever", "clamped-clamped"};
+
+/// An electrode's voltages may be multiples of its pull-in voltages.
+inline const std::vector<Dimension> drive_voltage{dimension::voltage, dimension::static_pull_in, dimension::dynamic_pull_in};
+
+/// A number that sets no member.
+[[nodiscard]] inline Key number(std::string_view name, std::vector<Dimension> dimensions, Range range, std::string_view about) {
+  return {.name = name, .dimensions = std::move(dimensions), .range = range, .about = about};
+}
+[[nodiscard]] inline Key numbers(std::string_view name, std::vector<Dimension> dimensions, Range range, std::string_view about) {
+  Key key = number(name, std::move(dimensions), range, about);
+  key.type = KeyType::quantities;
+  return key;
+}
+[[nodiscard]] inline Key words(std::string_view name, std::string_view about) {
+  return {.name = name, .type = KeyType::text, .about = about};
+}
+[[nodiscard]] inline Key one_of(std::string_view name, std::vector<std::string_view> choices, std::string_view about) {
+  return {.name = name, .type = KeyType::choice, .choices = std::move(choices), .about = about};
+}
+
+/// Keys that set members of one part of a scene: `part` gives it, Structure& of a Scene& and the number of an electrode, say.
+template <auto part>
+struct Of {
+  template <auto member>
+  [[nodiscard]] static Key number(std::string_view name, const Dimension& dimension, Range range, std::string_view about) {
+    Key key = internal::number(name, {dimension}, range, about);
+    key.bound.number = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*member; };
+    return key;
+  }
+  /// Begin and end.
+  template <auto first, auto last>
+  [[nodiscard]] static Key span(std::string_view name, std::string_view about) {
+    Key key = internal::numbers(name, {dimension::length}, not_negative, about);
+    key.count = 2;
+    key.bound.number = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*first; };
+    key.bound.last = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*last; };
+    return key;
+  }
+  template <auto member>
+  [[nodiscard]] static Key flag(std::string_view name, std::string_view about) {
+    return {.name = name, .type = KeyType::flag, .about = about, .bound = {.flag = [](Scene& scene, std::size_t entry) -> bool& {
+                                                                   return part(scene, entry).*member;
+                                                                 }}};
+  }
+  /// One of the names in a table.
+  template <const auto& rows, auto member>
+  [[nodiscard]] static Key choice(std::string_view name, std::string_view about) {
+    Key key = one_of(name, names_of(rows), about);
+    key.bound.choose = [](Scene& scene, std::size_t entry, std::string_view chosen) {
+      part(scene, entry).*member = find_named(rows, chosen)->value;
+    };
+    return key;
+  }
+};
+
+[[nodiscard]] Section title_section();
+[[nodiscard]] Section structure_section();
+[[nodiscard]] Section gap_section();
+[[nodiscard]] Section electrode_section();
+[[nodiscard]] Section gas_section();
+[[nodiscard]] Section contact_section();
+[[nodiscard]] Section piezo_section();
+[[nodiscard]] Section dispersion_section();
+[[nodiscard]] Section surface_section();
+/// Of every drive without a section of its own, which is that of the force factor.
+[[nodiscard]] Section waveform_section();
+[[nodiscard]] Section force_factor_section();
+[[nodiscard]] Section driver_section();
+[[nodiscard]] Section simulate_section();
+[[nodiscard]] Section metrics_section();
+[[nodiscard]] Section spread_section();
+
+}  // namespace softland::internal

@@ -1,0 +1,90 @@
+#include "waveforms/waveform.h"
+
+#include "config/drives.h"
+#include "config/schema/sections.h"
+
+namespace softland::internal {
+namespace {
+
+/// The keys of one parameter of a family: two where it may be given in another way.
+template <class Family>
+std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<Dimension>& level, bool factor) {
+  Key key = std::holds_alternative<double Family::*>(parameter.member) ? number(parameter.name, level, any, parameter.about)
+                                                                       : numbers(parameter.name, level, any, parameter.about);
+  key.required = parameter.required;
+  key.only_for = {FamilyOf<Family>::name};
+  const auto take = [&](const Dimension& dimension, Range range, std::string_view fallback) {
+    key.dimensions = {dimension};
+    key.range = range;
+    if (!key.required) key.fallback = key.type == KeyType::quantities ? "[]" : fallback;
+  };
+  switch (parameter.meaning) {
+    case Meaning::level:
+      if (!key.required) key.fallback = factor ? "1.0" : "'0 V'";
+      break;
+    case Meaning::swing:
+      if (!factor) key.dimensions.push_back(dimension::none);  // a percentage
+      break;
+    case Meaning::time:
+      take(dimension::time, not_negative, "'0 s'");
+      break;
+    case Meaning::end_time:
+      take(dimension::time, positive, {});
+      break;
+    case Meaning::angle:
+      take(dimension::angle, any, "'0 rad'");
+      break;
+    case Meaning::angular_frequency: {
+      take(dimension::angular_frequency, positive, {});
+      Key other = std::move(Key(key)).instead(key.name);
+      other.name = frequency_key;
+      other.dimensions = {dimension::frequency};
+      return {std::move(key).instead(frequency_key), std::move(other)};
+    }
+  }
+  return {std::move(key)};
+}
+
+/// Waveforms of the drive `entry`, or of all without a section of their own, with levels of these dimensions.
+Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
+  std::vector<std::string_view> names;
+  std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed()};
+  for_each_family([&]<class Family>(const Family&) {
+    names.push_back(FamilyOf<Family>::name);
+    std::vector<Key> own;
+    for (const Parameter<Family>& parameter : FamilyOf<Family>::parameters) {
+      for (Key& key : keys_of(parameter, level, !entry.empty())) own.push_back(std::move(key));
+    }
+    if constexpr (requires { FamilyOf<Family>::from_file; }) {
+      Key file = words(file_key, "CSV with time_s and a column named after the drive, relative to the scene").needed();
+      file.only_for = {FamilyOf<Family>::name};
+      for (Key& key : own) {
+        file.instead_of.push_back(key.name);
+        key.instead_of.push_back(file_key);
+      }
+      own.insert(own.begin(), std::move(file));
+    }
+    for (Key& key : own) keys.push_back(std::move(key));
+  });
+  keys.front().choices = std::move(names);
+  return {.name = "waveform",
+          .entry = entry,
+          .is_named = true,
+          .may_vary = true,
+          .selector = "family",
+          .keys = std::move(keys),
+          .about = about};
+}
+
+}  // namespace
+
+Section waveform_section() {
+  return section_of({}, drive_voltage, "voltage of an electrode or of the piezo; a drive without one stays at 0 V");
+}
+
+Section force_factor_section() {
+  return section_of(dispersion_drive, {dimension::none},
+                    "factor of the dispersion force, nominally 1; without one it stays there");
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,56 @@
+// What a waveform family is called and what its parameters are: a scene reads, checks and writes a waveform by these tables.
+#pragma once
+
+#include <source_location>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/require.h"
+
+namespace softland {
+
+/// What a parameter is of the signal: this decides its unit, and how a scene may give it.
+enum class Meaning {
+  level,              ///< [V]
+  swing,              ///< [V] about a level; a scene may give a percentage of that level
+  time,               ///< [s]
+  end_time,           ///< [s], after 0; absent from a scene: never
+  angular_frequency,  ///< [rad/s]; a scene may give the frequency instead
+  angle,              ///< [rad]
+};
+
+/// One parameter of a family: a number or, for levels and times, several. One that is not required has the family's default.
+template <class Family>
+struct Parameter {
+  std::string_view name;
+  Meaning meaning;
+  std::variant<double Family::*, std::vector<double> Family::*> member;
+  bool required = false;
+  std::string_view about = {};
+};
+
+/// Specialised beside each family, with its `name` and its `parameters`; `from_file` where the rows may stand in a file.
+template <class Family>
+struct FamilyOf;
+
+/// A parameter that breaks its family's rules.
+class InvalidParameter : public InvalidInput {
+ public:
+  InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)
+      : InvalidInput(message, where), parameter_(parameter) {}
+  /// The name of the parameter.
+  [[nodiscard]] const std::string& parameter() const noexcept { return parameter_; }
+
+ private:
+  std::string parameter_;
+};
+
+/// Throws InvalidParameter with `message` unless `rule_holds`. Write the rule so that NaN fails it.
+inline void require_of(std::string_view parameter, bool rule_holds, const std::string& message,
+                       std::source_location where = std::source_location::current()) {
+  if (!rule_holds) throw InvalidParameter(parameter, message, where);
+}
+
+}  // namespace softland
