@@ -26,7 +26,7 @@ void result(std::string_view input) {
 
   static const std::size_t own_scripts = scripts(html_report({{"kind", "simulate"}}));
   check(scripts(html_report(read)) <= own_scripts, "a result brings a script into its page");
-  const std::string fault = testing::xml_fault(svg_gap_chart(read));
+  const std::string fault = test::xml_fault(svg_gap_chart(read));
   check(fault.empty(), "the picture of a result is not XML: " + fault);
   static_cast<void>(text_report(read));
 
