@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
+
 namespace softland {
 
 const GasModelEntry& entry(GasModel model) {
@@ -52,11 +54,12 @@ std::vector<std::string> gas_warnings(const Device& device, const Trajectory& tr
   const GasModelEntry& law = entry(gas.model);
   const double rest = device.gap.electrode;
   const double lambda = mean_free_path(gas);
+  const auto number = [](double value) { return engineering(value, "", 2); };
   if (const double kn = lambda / trajectory.smallest_gap; kn > law.most_knudsen) {
-    warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} exceeds {:.2g}", law.name, kn, law.most_knudsen));
+    warnings.push_back(fmt::format("gas law {}: Knudsen number {} exceeds {}", law.name, number(kn), number(law.most_knudsen)));
   }
   if (const double kn = lambda / rest; kn < law.least_knudsen) {
-    warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} is below {:.2g}", law.name, kn, law.least_knudsen));
+    warnings.push_back(fmt::format("gas law {}: Knudsen number {} is below {}", law.name, number(kn), number(law.least_knudsen)));
   }
   if (!std::isfinite(law.most_squeeze)) return warnings;
   double largest = 0;
@@ -65,7 +68,8 @@ std::vector<std::string> gas_warnings(const Device& device, const Trajectory& tr
     if (h > 0) largest = std::max(largest, squeeze_number(gas, device.structure.width, h, std::abs(p.velocity) / h));
   }
   if (largest > law.most_squeeze) {
-    warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: {}", law.name, largest, law.most_squeeze,
+    warnings.push_back(fmt::format("gas law {}: squeeze number {} exceeds {}: {}", law.name, number(largest),
+                                   number(law.most_squeeze),
                                    is_compressible(law.model) ? "its boundary layers are too thin to be resolved"
                                                               : "the film is compressed, not squeezed out"));
   }
