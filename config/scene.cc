@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "config/drives.h"
 #include "config/section_reader.h"
@@ -314,6 +315,15 @@ SimulateOptions read_simulate(const SectionReader& in) {
   return options;
 }
 
+MetricsOptions read_metrics(const SectionReader& in, const SectionReader& gap) {
+  const MetricsOptions options{.significant_rebound = in.number("significant_rebound")};
+  const bool seen = options.significant_rebound < gap.number("contact");
+  in.require(seen || !in.is_given("significant_rebound"), "significant_rebound", "must be less than " + gap.written("contact"));
+  gap.require(seen, "contact",
+              "must exceed metrics.significant_rebound, which is " + engineering(options.significant_rebound, "m"));
+  return options;
+}
+
 /// The key that [spread."NAME"] varies. Throws InvalidInput unless it is a number that is in force in this scene.
 const internal::Key& varied_key(const SceneFile::Impl& file, const SectionReader& in, const std::string& name) {
   std::vector<std::string> parts;
@@ -389,7 +399,7 @@ Scene read_scene(const SceneFile& file) {
               .device = read_device(impl),
               .simulate = read_simulate(SectionReader(impl, "simulate")),
               .auto_modes = SectionReader(impl, "structure").is_word("modes"),
-              .metrics = {.significant_rebound = SectionReader(impl, "metrics").number("significant_rebound")},
+              .metrics = read_metrics(SectionReader(impl, "metrics"), SectionReader(impl, "gap")),
               .need_pull_in = {},
               .warnings = {},
               .file = file};
