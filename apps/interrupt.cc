@@ -3,11 +3,12 @@
 namespace softland::apps {
 namespace {
 
-std::atomic<bool> requested{false};
+std::atomic<bool> requested{false}, by_key{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void on_signal(int number) {
-  if (!requested.exchange(true)) return;
+  requested = true;
+  if (number != SIGINT || !by_key.exchange(true)) return;
   std::signal(number, SIG_DFL);
   std::raise(number);
 }

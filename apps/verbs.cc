@@ -18,6 +18,7 @@
 #include "apps/search_log.h"
 #include "apps/shell_word.h"
 #include "apps/streams.h"
+#include "base/printable.h"
 #include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
@@ -94,6 +95,38 @@ int status_code(Status s) {
   }
 }
 
+// The dynamic pull-in voltage; a step that damping lets not overshoot needs no less than the static one.
+std::string dynamic_words(const json& pull_in) {
+  const json &statically = pull_in["static_V"], &dynamically = pull_in["dynamic_V"];
+  const bool overdamped = statically.is_number() && dynamically.is_number() &&
+                          dynamically.get<double>() >= (1 - dynamic_pull_in_precision) * statically.get<double>();
+  return volts(dynamically) + (overdamped ? " (overdamped: equals the static one)" : "");
+}
+
+constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
+
+bool collapsed(const json& pull_in) { return pull_in["status"] == to_string(Status::collapsed_at_rest); }
+
+// At which factor the dispersion force closes the switch.
+std::string dispersion_words(const Prepared& p, const Watch& watch) {
+  const std::size_t k = p.scene.device.electrodes.size();
+  const StaticPullIn statically = static_pull_in(p.device, k);
+  const auto factor = [](double value) { return plain_number(1 + value, 4); };
+  const bool known = std::isfinite(statically.voltage);
+  if (!p.device.rest()) {
+    return "no open state: " +
+           (known ? fmt::format("closes by itself from {} of its nominal strength on", factor(statically.voltage))
+                  : std::string("closes by itself"));
+  }
+  const std::string rest =
+      fmt::format("tip at rest {} down; ", quantity(p.device.contact_deflection(p.device.rest()->data()), "m"));
+  if (!known) return rest + "no strength was found at which it closes by itself";
+  const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically, watch);
+  const std::string step =
+      std::isfinite(dynamically.voltage) ? fmt::format(" or a step to {} (dynamic)", factor(dynamically.voltage)) : "";
+  return fmt::format("{}closes by itself at {} (static){} of its nominal strength", rest, factor(statically.voltage), step);
+}
+
 // As the shell takes it: an empty value is seen.
 std::string shown(const std::string& text) { return text.empty() ? "''" : text; }
 
@@ -148,7 +181,8 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
-// The scene of a result: a folder that --out named, a result.json, or a scene file itself.
+// The scene of a result: a folder that --out named, a result.json, or a scene file itself. Of what a folder holds its result.json
+// is the newest, whichever verb left it; a search that is not done has only its best.toml.
 SceneFile scene_of_result(const std::string& result) {
   fs::path path = result;
   if (is_folder(path)) {
@@ -157,7 +191,7 @@ SceneFile scene_of_result(const std::string& result) {
       return fs::exists(fs::path(result) / name, ignored);
     };
     require(here("best.toml") || here("result.json"), fmt::format("{}: holds neither best.toml nor result.json", result));
-    path /= here("best.toml") ? "best.toml" : "result.json";
+    path /= here("result.json") ? "result.json" : "best.toml";
   }
   if (path.extension() != ".json") return SceneFile::load(path);
   const json j = read_result(path);
@@ -220,11 +254,13 @@ int pull_in_verb(const Common& c) {
       if (electrodes.size() > 1) all[electrodes[k].name] = std::move(one);
       continue;
     }
-    text +=
-        fmt::format("electrode {}\n  static pull-in   {} ({})\n  dynamic pull-in  {}\n", electrodes[k].name, volts(p["static_V"]),
-                    p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
-                                                                  : "the contact point reaches the contact first",
-                    volts(p["dynamic_V"]));
+    text += fmt::format("electrode {}\n", electrodes[k].name);
+    text += collapsed(one)
+                ? fmt::format("  {}\n", no_open_state)
+                : fmt::format("  static pull-in   {} ({})\n  dynamic pull-in  {}\n", volts(p["static_V"]),
+                              p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
+                                                                            : "the contact point reaches the contact first",
+                              dynamic_words(p));
     if (prepared.device.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
     failed = failed || one["status"] != "done";
     if (electrodes.size() == 1) {
@@ -261,7 +297,8 @@ int check_verb(const Common& c) {
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Prepared p = prepare(file, true, work->watch());
   const Structure& s = p.scene.device.structure;
-  std::string text = fmt::format("{}: valid{}\n\n", c.scene, p.scene.title.empty() ? "" : " (" + shortened(p.scene.title) + ")");
+  const std::string title = shortened(printable_line(p.scene.title));
+  std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
   std::vector<std::string> frequencies;
   for (const double omega : p.device.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
@@ -275,21 +312,12 @@ int check_verb(const Common& c) {
     const auto found = pull_in_of(p, k, work->watch());
     const json& v = found["pull_in"];
     add("electrode " + p.scene.device.electrodes[k].name,
-        fmt::format("Vsp {}, Vdp {}{}", volts(v["static_V"]), volts(v["dynamic_V"]),
-                    p.device.has_contact() ? ", release " + volts(v["release_V"]) : ""));
+        (collapsed(found) ? no_open_state : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(v))) +
+            (p.device.has_contact() ? ", release " + volts(v["release_V"]) : ""));
   }
   if (p.scene.device.dispersion) {
-    const std::size_t k = p.scene.device.electrodes.size();
-    const StaticPullIn statically = static_pull_in(p.device, k);
-    const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically, work->watch());
-    const auto factor = [](double value) { return std::isfinite(value) ? plain_number(1 + value, 4) : std::string("none"); };
-    add("dispersion force",
-        fmt::format("{}; closes by itself at {} (static) or a step to {} (dynamic) of its nominal strength",
-                    p.device.rest()
-                        ? fmt::format("tip at rest {} down", quantity(p.device.contact_deflection(p.device.rest()->data()), "m"))
-                        : std::string("no open state at rest"),
-                    factor(statically.voltage), factor(dynamically.voltage)));
-    add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[k].hold_level(), 5));
+    add("dispersion force", dispersion_words(p, work->watch()));
+    add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
   }
   if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
     const Gas& gas = *p.scene.device.gas;
@@ -457,6 +485,7 @@ int export_verb(const Common& c, const std::string& result, const std::string& f
 int report_verb(const Common& given, const std::string& result) {
   const fs::path path = is_folder(result) ? fs::path(result) / "result.json" : fs::path(result);
   const json j = read_result(path);
+  require_reportable(j, path.string());
   Common c = given;
   if (c.out.empty()) c.out = path.has_parent_path() ? path.parent_path().string() : ".";
   const std::vector<std::string> files{"report.html", "gap.svg"};

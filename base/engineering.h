@@ -1,6 +1,7 @@
 // Numbers in messages as a scene writes them: "60 um", "78 GPa".
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -11,15 +12,18 @@
 namespace softland {
 
 /// `value` [unit] with the prefix, femto to giga, that leaves one to three digits before the point: 6e-05, "m" -> "60 um". At
-/// most `digits` significant digits; twelve do not show what arithmetic leaves behind in a number that was typed. No prefix for
-/// 0, for values beyond the prefixes, and for a unit that takes none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
+/// most `digits` significant digits, but up to a million all of those before the point: 2500 stays 2500. Twelve do not show what
+/// arithmetic leaves behind in a number that was typed. No prefix for 0, for values beyond the prefixes, and for a unit that
+/// takes none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
 [[nodiscard]] inline std::string engineering(double value, std::string_view unit, int digits = 12) {
   constexpr std::array<std::pair<int, std::string_view>, 9> prefixes{
       {{9, "G"}, {6, "M"}, {3, "k"}, {0, ""}, {-3, "m"}, {-6, "u"}, {-9, "n"}, {-12, "p"}, {-15, "f"}}};
   const auto text = [digits](double number) {
+    const double size = std::abs(number);
+    const int whole = size >= 1 && size < 1e6 ? static_cast<int>(std::log10(size)) + 1 : 1;
     std::array<char, 32> buffer;
-    std::string shown(buffer.data(),
-                      static_cast<std::size_t>(std::snprintf(buffer.data(), buffer.size(), "%.*g", digits, number)));
+    std::string shown(buffer.data(), static_cast<std::size_t>(
+                                         std::snprintf(buffer.data(), buffer.size(), "%.*g", std::max(digits, whole), number)));
     if (const std::size_t e = shown.find('e'); e != std::string::npos) {  // 1e-06 is 1e-6
       const std::size_t first = shown.find_first_of("123456789", e);
       shown.replace(e + 1, first - e - 1, shown[e + 1] == '-' ? "-" : "");

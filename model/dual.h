@@ -30,8 +30,8 @@ struct DualOf {
   }
   friend DualOf exp(DualOf a) {
     using std::exp;
-    const T value = exp(a.value);
-    return {value, a.slope * value};
+    const T raised = exp(a.value);
+    return {raised, a.slope * raised};
   }
   friend DualOf log(DualOf a) {
     using std::log;

@@ -66,13 +66,13 @@ CurveTable curve_table(const json& curve) {
   return table;
 }
 
-/// [[x, y], ...] without what is not finite.
+/// [[x, y], ...] without what cannot be drawn.
 Points points_of(const json& pairs) {
   Points points;
   if (!pairs.is_array()) return points;
   for (const json& pair : pairs) {
     if (!pair.is_array() || pair.size() != 2) continue;
-    const std::array<double, 2> point{number(pair[0]), number(pair[1])};
+    const std::array<double, 2> point{drawable(pair[0]), drawable(pair[1])};
     if (std::isfinite(point[0]) && std::isfinite(point[1])) points.push_back(point);
   }
   return points;
@@ -112,7 +112,7 @@ std::vector<Mark> rebound_marks(const json& result) {
     if (!list.is_array()) continue;
     for (const json& rebound : list) {
       if (!rebound.is_array() || rebound.size() < 4) continue;
-      const Mark mark{number(rebound[3]), number(rebound[2]), role, ""};
+      const Mark mark{drawable(rebound[3]), drawable(rebound[2]), role, ""};
       if (!std::isfinite(mark.x) || !(mark.y > significant_rebound(result))) continue;
       if (own.empty() || mark.y > own[highest].y) highest = own.size();
       own.push_back(mark);
@@ -182,7 +182,8 @@ std::optional<std::array<double, 2>> plane_band(const json& result, const CurveT
   }
   if (lowest == 0) return std::nullopt;
   constexpr double margin = 1.15;
-  return std::array{margin * lowest, margin * std::fmax(-2 * lowest, number(best_metrics(result), {"major_bounce_height_m"}))};
+  const double height = drawable(at(best_metrics(result), {"major_bounce_height_m"}));
+  return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
 }
 
 void add_time_charts(const json& result, Picture& out) {
@@ -260,7 +261,7 @@ void add_time_charts(const json& result, Picture& out) {
     const DriveLimits limits = drive_limits(result, drive);
     for (const auto& [name, level] :
          {std::pair{"most the driver gives", limits.highest}, {"least the driver gives", limits.lowest}}) {
-      if (!std::isfinite(level) || level == 0) continue;  // the axis shows 0
+      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows 0
       const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
       add_columns(out.tables[table], "time_s", "level", {{0, level}, {window, level}});
       chart.series.push_back({table, "level", name, Role::limit});
@@ -293,7 +294,7 @@ void add_search_chart(const json& result, Picture& out) {
     for (auto& [index, value] : *points) index = evaluations_until(indices, index);
   }
   double last = std::max(tried.empty() ? 0.0 : tried.back()[0], best.empty() ? 0.0 : best.back()[0]);
-  last = std::fmax(last, number(result, {"evaluations"}));
+  last = std::fmax(last, drawable(at(result, {"evaluations"})));
   bool positive = true;
   for (const Points* points : {&tried, &best}) {
     positive = positive && std::all_of(points->begin(), points->end(), [](const auto& point) { return point[1] > 0; });

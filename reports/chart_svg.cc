@@ -61,8 +61,10 @@ struct Axis {
 
   [[nodiscard]] double transformed(double value) const { return scale == Scale::linear ? value : std::log10(value); }
   [[nodiscard]] double pixel(double value) const {
+    constexpr double farthest = 1e7;  // any paper ends before
     const double from = transformed(low);
-    return pixel_low + (transformed(value) - from) / (transformed(high) - from) * (pixel_high - pixel_low);
+    const double at = pixel_low + (transformed(value) - from) / (transformed(high) - from) * (pixel_high - pixel_low);
+    return std::clamp(at, -farthest, farthest);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "reports/findings.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/quantity.h"
@@ -109,6 +110,15 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
 std::string effects_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
   std::string text = effects.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
+  if (!std::isfinite(own.metrics.initial_contact_time)) {
+    const json closing{{"kind", "simulate"},
+                       {"status", to_string(own.metrics.status)},
+                       {"metrics", metrics_json(own.metrics)},
+                       {"curves", {{"best", {{"time_s", {effects.window}}}}}}};
+    text += wrapped(internal::headline(closing).main +
+                    " So there are no figures to compare; below stand the size and the cost of each effect.") +
+            "\n\n";
+  }
   text += omissions_text(effects);
   const auto row = [](const auto&... cells) {
     return fmt::format("{:<20}{:>16}{:>8}{:>10}{:>9}{:>12}{:>9}{:>10}{:>9}{:>9}\n", cells...);

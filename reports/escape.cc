@@ -1,11 +1,13 @@
 #include "reports/escape.h"
 
+#include "base/printable.h"
+
 namespace softland::internal {
 
 std::string escaped(std::string_view text) {
   std::string out;
   out.reserve(text.size() + text.size() / 8);
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     switch (c) {
       case '&':
         out += "&amp;";
@@ -22,10 +24,8 @@ std::string escaped(std::string_view text) {
       case '\'':
         out += "&#39;";
         break;
-      default: {
-        const auto byte = static_cast<unsigned char>(c);
-        out += byte < 0x20 && c != '\n' && c != '\t' ? ' ' : c;
-      }
+      default:
+        out += c;
     }
   }
   return out;

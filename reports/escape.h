@@ -7,8 +7,8 @@
 
 namespace softland::internal {
 
-/// & < > " ' as entities: safe in element text and in quoted attributes of HTML and XML. Control characters that XML forbids
-/// become spaces.
+/// & < > " ' as entities: safe in element text and in quoted attributes of HTML and XML. Control characters, which XML forbids,
+/// become the escapes of printable().
 [[nodiscard]] std::string escaped(std::string_view text);
 
 /// JSON for the inside of <script type="application/json">: every < is written \u003c, so that neither </script nor <!-- can

@@ -27,7 +27,7 @@ constexpr double few_rebounds = 5;
 
 constexpr int figure_digits = 4;  // of the tables, where the error does not allow fewer
 
-std::string times_word(double count) { return count == 1 ? "once" : fmt::format("{:.0f} times", count); }
+std::string times_word(double count) { return count == 1 ? "once" : whole(count) + " times"; }
 
 std::string within(double window) { return std::isfinite(window) ? " within " + quantity(window, "s") : std::string(); }
 
@@ -240,7 +240,8 @@ std::string cloud_text(const json& result, const Figure& figure) {
   const auto value = [&](const char* key) {
     return quantity_beside(number(cloud, {key}), number(cloud, {"high"}), figure.unit, figure_digits);
   };
-  return fmt::format("median {}, {} to {} in {:.0f} runs", value("median"), value("low"), value("high"), number(cloud, {"runs"}));
+  return fmt::format("median {}, {} to {} in {} runs", value("median"), value("low"), value("high"),
+                     whole(number(cloud, {"runs"})));
 }
 
 std::string error_heading(const json& result) {
@@ -258,12 +259,12 @@ std::string certificate_caption(const json& result) {
   if (certified.empty())
     return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance, quadrature and pull-in voltages.";
   std::string words = fmt::format(
-      "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {:.0f} runs whose drives "
+      "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {} runs whose drives "
       "differ by one part in 1e9 to 1e7.",
-      number(result, {"cloud", "runs"}));
+      whole(number(result, {"cloud", "runs"})));
   const json& grazing = at(result, {"cloud", "grazing_rebound"});
   if (!grazing.is_object()) return words;
-  words += fmt::format(" The runs part at rebound {:.0f} ({}, {} high)", number(grazing, {"rebound"}),
+  words += fmt::format(" The runs part at rebound {} ({}, {} high)", whole(number(grazing, {"rebound"})),
                        quantity(number(grazing, {"time_s"}), "s", 4), quantity(number(grazing, {"height_m"}), "m"));
   return words + (truth(grazing, {"at_significant_height"}).value_or(false)
                       ? ", near the height from which rebounds count."
@@ -409,11 +410,12 @@ std::string search_caption(const json& result) {
   words += std::isfinite(step) ? fmt::format("; the plain step's is {}.", plain_number(step)) : ".";
   if (!std::isfinite(first)) return words;
   const double evaluations = number(result, {"evaluations"});
-  words += std::isfinite(evaluations) ? fmt::format(" In {:.0f} evaluations the {}", evaluations, name) : " The " + name;
+  words += std::isfinite(evaluations) ? fmt::format(" In {} evaluations the {}", whole(evaluations), name) : " The " + name;
   words += last < first ? fmt::format(" fell from {} to {}{}", plain_number(first), plain_number(last),
                                       in_brackets(change(first, last, true)))
                         : " stayed at " + plain_number(first);
-  return words + fmt::format("; the winner is number {:.0f} of them.", evaluations_until(evaluation_indices(result), found_at));
+  return words +
+         fmt::format("; the winner is number {} of them.", whole(evaluations_until(evaluation_indices(result), found_at)));
 }
 
 bool checks_agree(const json& result) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/printable.h"
 #include "base/require.h"
 #include "reports/chart.h"
 #include "reports/escape.h"
@@ -172,7 +173,7 @@ std::string list_of(const json& lines, std::string_view heading, std::string_vie
       out += fmt::format("<li>… and {} more</li>\n", lines.size() - most_lines);
       break;
     }
-    out += fmt::format("<li>{}</li>\n", escaped(shortened(line.get<std::string>())));
+    out += fmt::format("<li>{}</li>\n", escaped(shortened(printable_line(line.get<std::string>()))));
   }
   return out + "</ul></section>\n";
 }

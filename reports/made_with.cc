@@ -6,10 +6,12 @@
 #include <link.h>
 
 #include <cstring>
-#include <fstream>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
+#include "base/read_file.h"
+#include "base/require.h"
 #include "reports/result_view.h"
 #include "version.h"
 
@@ -65,10 +67,13 @@ std::string build_id() {
 }
 
 std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  try {
+    std::istringstream lines(read_file("/proc/cpuinfo"));
+    for (std::string line; std::getline(lines, line);) {
+      const std::size_t colon = line.find(": ");
+      if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+    }
+  } catch (const InvalidInput&) {  // not every machine tells
   }
   return {};
 }

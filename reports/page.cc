@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "base/printable.h"
 #include "reports/escape.h"
 #include "reports/made_with.h"
 #include "reports/page_files.h"
@@ -102,18 +103,18 @@ std::string scene(const json& result) {
 }
 
 std::string page(const Page& parts) {
-  return filled(page_file("page/page.html"),
-                {{"page_title", escaped(parts.title.empty() ? "softland report" : parts.title + " – softland")},
-                 {"style", parts.style},
-                 {"css", std::string(page_file("page/page.css"))},
-                 {"origin", escaped(parts.origin)},
-                 {"title", escaped(parts.title)},
-                 {"headline", escaped(parts.headline)},
-                 {"headline_rest", escaped(parts.headline_rest)},
-                 {"doubt", escaped(parts.doubt)},
-                 {"keys", parts.keys},
-                 {"body", parts.body},
-                 {"scripts", parts.scripts}});
+  const std::string title = escaped(printable_line(parts.title));
+  return filled(page_file("page/page.html"), {{"page_title", title.empty() ? "softland report" : title + " – softland"},
+                                              {"style", parts.style},
+                                              {"css", std::string(page_file("page/page.css"))},
+                                              {"origin", escaped(parts.origin)},
+                                              {"title", title},
+                                              {"headline", escaped(parts.headline)},
+                                              {"headline_rest", escaped(parts.headline_rest)},
+                                              {"doubt", escaped(parts.doubt)},
+                                              {"keys", parts.keys},
+                                              {"body", parts.body},
+                                              {"scripts", parts.scripts}});
 }
 
 }  // namespace softland::internal

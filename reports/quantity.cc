@@ -16,6 +16,8 @@ constexpr std::array prefixes{Prefix{1e-24, "y"}, Prefix{1e-21, "z"}, Prefix{1e-
                               Prefix{1e-9, "n"},  Prefix{1e-6, "µ"},  Prefix{1e-3, "m"},  Prefix{1.0, ""},    Prefix{1e3, "k"},
                               Prefix{1e6, "M"},   Prefix{1e9, "G"},   Prefix{1e12, "T"}};
 
+constexpr double beyond_prefixes = 1e15;
+
 constexpr const char* no_break_space = "\u00a0";
 constexpr const char* none = "—";
 constexpr double most_times = 1000;
@@ -30,13 +32,15 @@ double rounded(double value, int place) {
   const int digits = exponent_of(value) - place;  // after the first
   if (digits < -1) return 0;
   if (digits < 0) return std::abs(value) < 0.5 * std::pow(10, place) ? 0 : std::copysign(std::pow(10, place), value);
-  return std::strtod(fmt::format("{:.{}e}", value, digits).c_str(), nullptr);
+  const double near = std::strtod(fmt::format("{:.{}e}", value, digits).c_str(), nullptr);
+  return std::isfinite(near) ? near : value;
 }
 
 /// The least multiple of 10^place that is not below a positive error: an error that covers still does.
 double rounded_up(double error, int place) {
   const double last = std::pow(10, place);
-  return std::ceil(error / last * (1 - 1e-9)) * last;
+  if (last == 0) return error;  // as small as numbers are
+  return std::min(std::ceil(error / last * (1 - 1e-9)) * last, std::numeric_limits<double>::max());
 }
 
 /// The decimal place of the last digit of an error: of the first digit, or of the second when the first is 1.
@@ -56,6 +60,10 @@ int last_place(double value, double error, std::string_view unit, int digits) {
 
 /// `value` [unit] with `prefix`, to the digit 10^place.
 std::string in_prefix(double value, int place, Prefix prefix, std::string_view unit) {
+  const double size = std::abs(value);
+  if (size >= beyond_prefixes || (size > 0 && size < prefixes.front().factor))
+    return scientific(value, std::max(1, exponent_of(value) - place + 1)) +
+           (unit.empty() ? "" : no_break_space + std::string(unit));
   const int decimals = std::max(0, exponent_of(prefix.factor) - place);
   return with_true_minus(fmt::format("{:.{}f}", value == 0 ? 0.0 : value / prefix.factor, value == 0 ? 0 : decimals)) +
          (unit.empty() ? "" : fmt::format("{}{}{}", no_break_space, prefix.symbol, unit));
@@ -79,7 +87,7 @@ Shown shown(double value, double error, std::string_view unit, int digits) {
 }
 
 std::string without_trailing_zeros(std::string number) {
-  if (number.find('.') == std::string::npos) return number;
+  if (number.find('.') == std::string::npos || number.find('e') != std::string::npos) return number;
   number.erase(number.find_last_not_of('0') + 1);
   if (number.ends_with('.')) number.pop_back();
   return number;
@@ -146,6 +154,11 @@ std::string plain_number(double value, int digits) {
   if (size != 0 && (size < 1e-4 || size >= 1e6)) return scientific(value, digits);
   const int whole_digits = size >= 1 ? exponent_of(size) + 1 : 1;  // 2500 stays 2500 however few digits are asked for
   return with_true_minus(fmt::format("{:.{}g}", value == 0 ? 0.0 : value, std::max(digits, whole_digits)));
+}
+
+std::string whole(double count) {
+  if (!std::isfinite(count)) return none;
+  return std::abs(count) < beyond_prefixes ? with_true_minus(fmt::format("{:.0f}", count)) : scientific(count);
 }
 
 std::string scientific(double value, int digits) {

@@ -29,7 +29,7 @@ struct Prefix {
 
 /// `value` with `digits` significant digits and the prefix that suits it: 4.45e-05, "s" -> "44.5 µs". Non-finite: an em dash; 0:
 /// "0 s"; positive and below the resolution: "< 1 fs"; negative and above minus the resolution: "0 s". An empty unit gives a
-/// plain number without prefix.
+/// plain number without prefix; what is beyond the prefixes has an exponent: "1e300 s".
 [[nodiscard]] std::string quantity(double value, std::string_view unit, int digits = 3);
 
 /// As above, but a 0 gets the prefix of `neighbour`, beside which it is read: "803 nm" and "0 nm".
@@ -47,6 +47,9 @@ struct Prefix {
 
 /// `value` with at most `digits` significant digits and no trailing zeros; an exponent, as in 1.41e7, only beyond 1e-4 and 1e6.
 [[nodiscard]] std::string plain_number(double value, int digits = 3);
+
+/// A count with all its digits: "2500"; an exponent only from 1e15 on.
+[[nodiscard]] std::string whole(double count);
 
 /// With one digit before the point and an exponent as a scene writes it: "1e-4", "2.6e-9". Non-finite: an em dash.
 [[nodiscard]] std::string scientific(double value, int digits = 2);

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/require.h"
+#include "base/shortened.h"
+#include "reports/result_view.h"
+#include "version.h"
 
 namespace softland {
 
@@ -21,6 +24,18 @@ json parse_result(std::string_view content, const std::string& name) {
       result.is_object() && result.contains("kind") && (result["kind"] == "simulate" || result["kind"] == "optimize");
   require(is_result, fmt::format("{}: is not a result.json of softland", name));
   return result;
+}
+
+void require_reportable(const json& result, const std::string& name) {
+  using internal::at;
+  const std::string made_by = internal::text(result, {"version"});
+  require(!made_by.empty(), fmt::format("{}: does not say of which version of softland it is: \"version\" is missing", name));
+  require(made_by == version,
+          fmt::format("{}: is a result of softland {}, of which softland {} makes no report", name, shortened(made_by), version));
+  for (const char* part : {internal::is_optimize(result) ? "baseline" : "metrics", "curves", "scene"}) {
+    require(at(result, {part}).is_object(),
+            fmt::format("{}: \"{}\" is missing; name the result.json in the folder that --out named", name, part));
+  }
 }
 
 }  // namespace softland

@@ -11,4 +11,8 @@ namespace softland {
 /// missing or of another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
 [[nodiscard]] nlohmann::json parse_result(std::string_view content, const std::string& name);
 
+/// Throws InvalidInput unless a report can be made of this result: it is of this version of softland and has figures, curves and
+/// a scene.
+void require_reportable(const nlohmann::json& result, const std::string& name);
+
 }  // namespace softland

@@ -28,6 +28,14 @@ double number(const json& value) { return value.is_number() ? value.get<double>(
 
 double number(const json& value, std::initializer_list<std::string_view> path) { return number(at(value, path)); }
 
+double drawable(double value) {
+  constexpr double most = 1e100;
+  if (!(std::abs(value) <= most)) return std::numeric_limits<double>::quiet_NaN();
+  return std::abs(value) < 1 / most ? 0 : value;
+}
+
+double drawable(const json& value) { return drawable(number(value)); }
+
 std::string text(const json& value, std::initializer_list<std::string_view> path) {
   const json& found = at(value, path);
   return found.is_string() ? found.get<std::string>() : std::string();
@@ -42,7 +50,7 @@ std::vector<double> numbers(const json& value) {
   std::vector<double> out;
   if (!value.is_array()) return out;
   out.reserve(value.size());
-  for (const json& element : value) out.push_back(number(element));
+  for (const json& element : value) out.push_back(drawable(element));
   return out;
 }
 
@@ -62,7 +70,7 @@ double window_end(const json& result) {
   double end = std::numeric_limits<double>::quiet_NaN();
   for (const char* run : {"best", "baseline"}) {
     const json& times = at(result, {"curves", run, "time_s"});
-    if (times.is_array() && !times.empty()) end = std::fmax(end, number(times.back()));
+    if (times.is_array() && !times.empty()) end = std::fmax(end, drawable(times.back()));
   }
   return end;
 }

@@ -19,7 +19,11 @@ namespace softland::internal {
 [[nodiscard]] std::string text(const nlohmann::json& value, std::initializer_list<std::string_view> path);
 /// Not set unless the value is true or false.
 [[nodiscard]] std::optional<bool> truth(const nlohmann::json& value, std::initializer_list<std::string_view> path);
-/// Numbers of an array, NaN for what is not a number; empty unless the value is an array.
+/// A number as a chart takes it: NaN beyond 1e100 and 0 within 1e-100 of 0. Nothing of a switch is like that, and what a damaged
+/// file holds would overflow on its way to the picture.
+[[nodiscard]] double drawable(double value);
+[[nodiscard]] double drawable(const nlohmann::json& value);
+/// The drawable numbers of an array, NaN for what is none; empty unless the value is an array.
 [[nodiscard]] std::vector<double> numbers(const nlohmann::json& value);
 
 [[nodiscard]] bool is_optimize(const nlohmann::json& result);

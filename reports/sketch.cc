@@ -98,7 +98,7 @@ std::string sketch(const json& result) {
   }
   // The contact stands at the centre of the pad, of a beam between two clamps and of a plate in the middle.
   const double pad = quantity_of(at(scene, {"contact", "pad_length"}));
-  const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? pad / length / 2 : 0);
+  const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
   const double plane = bottom + gap * std::min(1.0, contact_gap / electrode_gap);
   if (electrodes.is_object()) {
     for (const auto& [name, one] : electrodes.items()) {
@@ -136,9 +136,11 @@ std::string parameter_drawing(const json& result, const std::string& drive) {
   std::vector<std::array<double, 2>> points;
   double lowest = 0, highest = 0, moves = 0;
   for (const json& pair : shape) {
-    if (!pair.is_array() || pair.size() != 2 || !std::isfinite(number(pair[0])) || !std::isfinite(number(pair[1]))) continue;
-    if (!points.empty() && number(pair[1]) != points.back()[1]) moves = std::max(moves, number(pair[0]));
-    points.push_back({number(pair[0]), number(pair[1])});
+    if (!pair.is_array() || pair.size() != 2) continue;
+    const double time = drawable(pair[0]), level = drawable(pair[1]);
+    if (!std::isfinite(time) || !std::isfinite(level)) continue;
+    if (!points.empty() && level != points.back()[1]) moves = std::max(moves, time);
+    points.push_back({time, level});
     lowest = std::min(lowest, points.back()[1]);
     highest = std::max(highest, points.back()[1]);
   }
@@ -164,7 +166,9 @@ std::string parameter_drawing(const json& result, const std::string& drive) {
   } else if (std::isfinite(parameter("rise_time_s"))) {
     spans = {{"rise_time", 0, moves}};
   }
-  if (spans.empty()) return {};
+  const bool known =
+      std::all_of(spans.begin(), spans.end(), [](const Place& one) { return std::isfinite(one.from) && std::isfinite(one.to); });
+  if (spans.empty() || !known) return {};
 
   constexpr double left = 40, right = 600, top = 34, bottom = 150, row = 22;
   const double end = 1.2 * moves;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/printable.h"
 #include "base/require.h"
 #include "reports/chart.h"
 #include "reports/escape.h"
@@ -15,7 +16,8 @@ namespace softland {
 namespace {
 
 /// Words in lines of at most `columns` bytes; a longer word stands alone.
-std::vector<std::string> wrapped(const std::string& words, std::size_t columns) {
+std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
+  const std::string words = printable_line(text);
   std::vector<std::string> lines{""};
   for (std::size_t begin = 0; begin < words.size();) {
     const std::size_t end = std::min(words.find(' ', begin), words.size());
@@ -72,7 +74,7 @@ std::string svg_page(const std::string& headline, const std::string& words, cons
       "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n<rect width=\"100%\" "
       "height=\"100%\" fill=\"#fff\"/>\n"
       "<g transform=\"translate({3} {4})\">\n{5}</g>\n</svg>\n",
-      width, top + row_height + margin, escaped(headline), margin, 10, body);
+      width, top + row_height + margin, escaped(printable_line(headline)), margin, 10, body);
 }
 
 std::string svg_gap_chart(const nlohmann::json& result) {

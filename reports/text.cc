@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/printable.h"
 #include "reports/findings.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
@@ -26,7 +27,9 @@ std::string padded(const std::string& text, std::size_t columns) {
 
 }  // namespace
 
-std::string wrapped(std::string_view text, std::size_t columns) {
+std::string wrapped(std::string_view paragraph, std::size_t columns) {
+  const std::string clean = printable_line(paragraph);
+  std::string_view text = clean;
   std::string out;
   std::size_t used = 0;
   while (!text.empty()) {

@@ -11,7 +11,8 @@ namespace softland {
 /// warnings of a result.json.
 [[nodiscard]] std::string text_report(const nlohmann::json& result);
 
-/// Blanks turned into line breaks so that lines have at most `columns` characters where words permit it.
-[[nodiscard]] std::string wrapped(std::string_view text, std::size_t columns = 100);
+/// Blanks turned into line breaks so that lines have at most `columns` characters where words permit it. Line breaks, tabs and
+/// what acts on a terminal are escaped: they come from names of files and folders.
+[[nodiscard]] std::string wrapped(std::string_view paragraph, std::size_t columns = 100);
 
 }  // namespace softland

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/engineering.h"
 #include "model/closing.h"
 #include "model/constants.h"
 #include "objectives/metrics.h"
@@ -65,10 +66,10 @@ std::string AutoModes::note() const {
       touches ? "t_i, v_i, the highest rebound of the first period after contact and the pull-in voltages"
               : "the pull-in voltages, the only figures that are judged since the closing does not touch in its window,";
   const std::string not_judged = "later rebounds, and with them B_H, N_B and t_p, are not judged and may move more";
-  return settled() ? fmt::format(R"(structure.modes = "auto": {} mode{}; further ones move {} by at most {:.2g} %; {})", modes,
-                                 modes == 1 ? "" : "s", judged, 100 * moved, not_judged)
-                   : fmt::format(R"(structure.modes = "auto": {} mode{}, but further ones still move one of {} by {:.2g} %; {})",
-                                 modes, modes == 1 ? "" : "s", judged, 100 * moved, not_judged);
+  return settled() ? fmt::format(R"(structure.modes = "auto": {} mode{}; further ones move {} by at most {}; {})", modes,
+                                 modes == 1 ? "" : "s", judged, engineering(100 * moved, "%", 2), not_judged)
+                   : fmt::format(R"(structure.modes = "auto": {} mode{}, but further ones still move one of {} by {}; {})", modes,
+                                 modes == 1 ? "" : "s", judged, engineering(100 * moved, "%", 2), not_judged);
 }
 
 AutoModes choose_modes(const SceneFile& file, const Watch& watch) {

@@ -73,7 +73,7 @@ double relative_change(const Effect& effect, const Effect& own, double Metrics::
 
 Effects compare_effects(const Prepared& prepared, const Watch& watch) {
   const std::optional<Gas>& own = prepared.scene.device.gas;
-  Effects found;
+  Effects found{.window = prepared.duration};
   std::vector<std::optional<Gas>> laws{std::nullopt};
   for (const GasRow& e : gas_laws) {
     Gas gas = own.value_or(Gas{});

@@ -35,6 +35,7 @@ struct Effects {
   std::vector<Effect> list;               ///< the laws of the gas
   std::vector<NotCompared> not_compared;  ///< those that the scene cannot have
   std::vector<Omission> omissions;
+  double window = 0;         ///< of every closing [s]
   bool interrupted = false;  ///< asked to stop: the lists hold only what was complete by then, the scene's own closing at least
 
   /// What the scene itself says in this section.

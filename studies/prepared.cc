@@ -68,8 +68,8 @@ void check_window(const Prepared& p) {
     const std::string section = "waveform." + name + ".";
     const bool in_hertz = file.json()["waveform"][name].contains("frequency");
     file.refuse(section + (in_hertz ? "frequency" : "angular_frequency"),
-                fmt::format("makes {:.3g} periods in the window of {}; there may be {:g}", periods, engineering(p.duration, "s"),
-                            most_periods));
+                fmt::format("makes {} periods in the window of {}; there may be {}", engineering(periods, "", 3),
+                            engineering(p.duration, "s"), engineering(most_periods, "")));
   }
 }
 

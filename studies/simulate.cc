@@ -105,7 +105,7 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   const auto run = [&](const Switch& device, double tolerance, const SwitchOptions& quadrature, long max_steps) {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
     const std::string what =
-        runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {:.0e}, for its errors", tolerance);
+        runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
     r.trajectory = simulate_closing(device, signals,
                                     {.duration = prepared.duration,
                                      .tolerance = tolerance,
@@ -196,9 +196,9 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
     c.metrics.status = Status::interrupted;
     c.errors = {};
     c.judge.reset();
-    c.warnings = {complete ? fmt::format("interrupted: the figures are those of a complete closing at tolerance {:.0e}, but how "
+    c.warnings = {complete ? fmt::format("interrupted: the figures are those of a complete closing at tolerance {}, but how "
                                          "far they are from the truth was not found out",
-                                         c.tolerance)
+                                         engineering(c.tolerance, "", 1))
                            : std::string("interrupted: the figures are those of the part of the closing that was simulated")};
   }
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());

@@ -1,10 +1,20 @@
+#include "base/engineering.h"
 #include "config/schema/sections.h"
+#include "config/section_reader.h"
 
 namespace softland::internal {
 namespace {
 
 MetricsOptions& metrics_options(Scene& scene, std::size_t) { return scene.metrics; }
 using OfMetrics = Of<metrics_options>;
+
+void check_metrics(Scene& scene, const SectionReader& in, std::size_t) {
+  const double rebound = scene.metrics.significant_rebound;
+  if (rebound < scene.device.gap.contact) return;
+  const SectionReader gap(in.file(), "gap");
+  in.require(!in.is_given("significant_rebound"), "significant_rebound", "must be less than " + gap.written("contact"));
+  gap.require(false, "contact", "must exceed metrics.significant_rebound, which is " + engineering(rebound, "m"));
+}
 
 }  // namespace
 
@@ -15,7 +25,8 @@ Section metrics_section() {
                                                                            "a rebound counts when it is higher")
                        .by_default("'1 nm'")},
           .about = "figures of merit",
-          .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; }};
+          .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
+          .check = check_metrics};
 }
 
 }  // namespace softland::internal

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
+
 namespace softland {
 
 double end_flow(double ratio) {
@@ -38,15 +40,16 @@ std::vector<std::string> gas_warnings(const Device& device, double smallest_gap,
   if (!device.gas) return warnings;
   const GasRow& law = row_of(gas_laws, device.gas->model);
   const double lambda = mean_free_path(*device.gas);
+  const auto number = [](double value) { return engineering(value, "", 2); };
   if (const double kn = lambda / smallest_gap; kn > law.most_knudsen) {
-    warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} exceeds {:.2g}", law.name, kn, law.most_knudsen));
+    warnings.push_back(fmt::format("gas law {}: Knudsen number {} exceeds {}", law.name, number(kn), number(law.most_knudsen)));
   }
   if (const double kn = lambda / device.gap.electrode; kn < law.least_knudsen) {
-    warnings.push_back(fmt::format("gas law {}: Knudsen number {:.2g} is below {:.2g}", law.name, kn, law.least_knudsen));
+    warnings.push_back(fmt::format("gas law {}: Knudsen number {} is below {}", law.name, number(kn), number(law.least_knudsen)));
   }
   if (largest_squeeze > law.most_squeeze) {
-    warnings.push_back(fmt::format("gas law {}: squeeze number {:.2g} exceeds {:.2g}: {}", law.name, largest_squeeze,
-                                   law.most_squeeze,
+    warnings.push_back(fmt::format("gas law {}: squeeze number {} exceeds {}: {}", law.name, number(largest_squeeze),
+                                   number(law.most_squeeze),
                                    is_compressible(law.value) ? "its boundary layers are too thin to be resolved"
                                                               : "the film is compressed, not squeezed out"));
   }

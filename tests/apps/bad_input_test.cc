@@ -26,6 +26,8 @@ class BadInput : public ::testing::Test {
     file("empty.json", "{}");
     file("nonsense.json", "nonsense");
     file("odd.json", R"({"kind": 3})");
+    file("bare.json", R"({"kind": "simulate", "version": "0.1.0"})");
+    file("foreign.json", R"({"kind": "simulate", "version": "9.1"})");
     fs::create_directory(here->path() / "folder");
     fs::create_directory(here->path() / "earlier");
     for (const char* name : earlier_files) file((std::string("earlier/") + name).c_str(), "of an earlier search");
@@ -220,6 +222,8 @@ TEST_F(BadInput, Results) {
       {{"report", "odd"}, "odd/result.json: is a folder, it must be a regular file"},
       {{"report", "gold.toml"}, "gold.toml: is not a result.json of softland"},
       {{"report", "odd.json"}, "odd.json: is not a result.json of softland"},
+      {{"report", "bare.json"}, "bare.json: \"metrics\" is missing; name the result.json in the folder that --out named"},
+      {{"report", "foreign.json"}, "foreign.json: is a result of softland 9.1, of which softland 0.1.0 makes no report"},
       {{"new", "magnet"},
        "new magnet: must be one of cantilever, cantilever-pzt, clamped-clamped, nem-cantilever, nem-casimir, plate, "
        "two-electrodes"},

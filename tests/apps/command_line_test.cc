@@ -181,6 +181,30 @@ TEST(PullIn, PrintsTheAgreedJson) {
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
 }
 
+TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne) {
+  const Workplace here;
+  EXPECT_THAT(here.run({"pull-in", "gold.toml"}).out, Not(HasSubstr("overdamped")));
+  for (const char* verb : {"pull-in", "check"}) {
+    const std::string text = here.run({verb, "gold.toml", "--set", "gas.viscosity=0.1 Pa s"}).out;
+    EXPECT_THAT(text, HasSubstr("(overdamped: equals the static one)")) << verb;
+  }
+}
+
+TEST(Check, SaysWhenTheSwitchHasNoOpenState) {
+  const Workplace here;
+  write(here.path() / "casimir.toml", shipped("nem-casimir.toml"));
+  EXPECT_THAT(here.run({"check", "casimir.toml", "--set", "gap.electrode=45 nm"}).out,
+              HasSubstr("dispersion force     no open state: closes by itself from 0.7253 of its nominal strength on\n"));
+  write(here.path() / "tin.toml", shipped("nem-tin.toml"));
+  for (const char* verb : {"check", "pull-in"}) {
+    const std::string text = here.run({verb, "tin.toml", "--set", "gap.electrode=3 nm", "--set", "gap.contact=2 nm", "--set",
+                                       "waveform.main.level=1 V", "--set", "driver.main.max_voltage=2 V"})
+                                 .out;
+    EXPECT_THAT(text, HasSubstr("no pull-in voltage: the switch has no open state")) << verb;
+    EXPECT_THAT(text, Not(HasSubstr("none"))) << verb;
+  }
+}
+
 TEST(Modes, PrintsTheAgreedJson) {
   const Workplace here;
   const Outcome o = here.run({"modes", "gold.toml", "--quiet", "--set", "structure.modes=6", "--json", "-"});
@@ -271,6 +295,13 @@ TEST(Effects, PrintATableAndTheAgreedJson) {
                                                            "relative_change", "influence", "rhs_s"}));
   EXPECT_EQ(j["left_out"][2]["effect"], "gas");
   EXPECT_THAT(table.out, HasSubstr("left out"));
+}
+
+TEST(Effects, SayFirstThatTheSwitchDoesNotCloseAndEndWithFour) {
+  const Workplace here;
+  const Outcome o = here.run({"effects", "gold.toml", "--set", "waveform.main.level=5 V", "--set", "simulate.duration=60 us"});
+  EXPECT_EQ(o.status, 4) << o.err;
+  EXPECT_THAT(o.out, testing::StartsWith("The switch does not close within 60.0\u00a0µs. So there are no figures"));
 }
 
 TEST(Effects, AreChosenByTheSceneAndSaidInTheResult) {

@@ -218,6 +218,32 @@ TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo) {
   }
 }
 
+// A terminal that closes sends SIGHUP twice, `timeout` SIGTERM, the kernel SIGXCPU every second.
+TEST_F(Faults, ASignalThatComesAgainLetsResultsBeSaved) {
+  for (const int signal : {SIGTERM, SIGHUP, SIGXCPU}) {
+    const auto place = workplace();
+    const pid_t child = place->start(words("simulate", calls()["simulate"].slow + std::vector<std::string>{"--out", "out"}));
+    wait_until_it_computes(child);
+    for (int i = 0; i < 50; ++i) {
+      kill(child, signal);
+      std::this_thread::sleep_for(2ms);
+    }
+    EXPECT_EQ(place->finish(child).status, interrupted) << "signal " << signal;
+    EXPECT_EQ(json::parse(read(place->path() / "out/result.json"), nullptr, false).value("status", ""), "interrupted");
+  }
+}
+
+TEST_F(Faults, ASecondCtrlCEndsAtOnce) {
+  const FullPipe pipe;
+  const pid_t child = here->start({"new", "plate"}, SOFTLAND_PROGRAM, pipe.end());
+  wait_until_it_waits(child);
+  for (int i = 0; i < 100 && process_state(child).state != 'Z'; ++i) {
+    kill(child, SIGINT);
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_EQ(here->finish(child).status, -SIGINT);
+}
+
 // A bar on a terminal, which goes away when the verb has ended; nothing with --quiet.
 TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs) {
   for (const bool quiet : {false, true}) {
@@ -379,6 +405,23 @@ TEST_F(Faults, NothingThatActsOnATerminalReachesIt) {
   const Outcome o = here->run({evil});
   EXPECT_EQ(o.status, bad_input);
   EXPECT_FALSE(acts_on_a_terminal(o.err));
+}
+
+TEST_F(Faults, NoNameAndNoTitleBeginsALineOfItsOwn) {
+  const std::string name = "a\nforged\tb", scene = shipped("mem-gold.toml");
+  write(here->path() / name, "title = \"t\\nforged\\tu\"" + scene.substr(scene.find('\n', scene.find("title = "))));
+  const Outcome made = here->run({"simulate", name, "--set", "simulate.duration=60 us", "--out", name + ".out", "--json", "-"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(json::parse(made.out)["command"].get<std::string>(), HasSubstr("softland simulate $'a\\012forged\\011b' --set "));
+  for (const std::string& verb : verbs) {
+    std::vector<std::string> more = calls()[verb].quick;
+    more.front() = verb == "report" ? name + ".out" : name;
+    if (takes(verb, "--out")) more = more + std::vector<std::string>{"--out", name + "." + verb};
+    const Outcome o = here->run(words(verb, more));
+    EXPECT_THAT(o.out + o.err, Not(HasSubstr("\nforged"))) << verb;
+  }
+  for (const char* file : {"report.html", "gap.svg"})
+    EXPECT_THAT(read(here->path() / (name + ".out") / file), Not(HasSubstr("\nforged"))) << file;
 }
 
 TEST_F(Faults, TwoRunsDoNotWorkInOneFolder) {

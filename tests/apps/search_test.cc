@@ -113,6 +113,15 @@ TEST_F(Search, LeavesASceneThatSimulateRunsToTheSameDigits) {
   EXPECT_EQ(here->run({"export", "one"}).out, read(here->path() / "one/best.csv"));
 }
 
+TEST_F(Search, IsNotExportedOnceASimulationHasLeftItsResultInTheFolder) {
+  search(*here, "mixed", {}, "6");
+  EXPECT_EQ(here->run({"export", "mixed"}).out, read(here->path() / "mixed/best.csv"));
+  ASSERT_EQ(here->run({"simulate", "gold.toml", "--quiet", "--out", "mixed"}).status, 0);
+  EXPECT_EQ(here->run({"export", "mixed"}).out, here->run({"export", "gold.toml"}).out);
+  fs::remove(here->path() / "mixed/result.json");  // as a search that was killed leaves its folder
+  EXPECT_EQ(here->run({"export", "mixed"}).out, read(here->path() / "mixed/best.csv"));
+}
+
 TEST_F(Search, FindsTheSameBitsWithTwoJobs) {
   EXPECT_EQ(search(*here, "two", {"--jobs", "2"}).status, first().status);
   EXPECT_EQ(read(here->path() / "one/best.toml"), read(here->path() / "two/best.toml"));

@@ -45,6 +45,9 @@ TEST(Engineering, LeavesOutWhatDoesNotSuit) {
 TEST(Engineering, RoundsToFewerDigitsWhenAsked) {
   EXPECT_EQ(engineering(31.4159e-9, "m", 3), "31.4 nm");
   EXPECT_EQ(engineering(3.2e-10, "", 1), "3e-10");
+  EXPECT_EQ(engineering(1234.5, "", 2), "1234") << "and not 1.2e3";
+  EXPECT_EQ(engineering(1000, "", 2), "1000");
+  EXPECT_EQ(engineering(123e6, "", 2), "1.2e8");
 }
 
 TEST(Engineering, KeepsNumbersApartThatDiffer) {

@@ -148,7 +148,9 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     Edit{R"(accuracy = 1e-5)", "effects = \"some\"", R"(x.toml:39: simulate.effects = "some": unknown value (known: all, auto))"},
     Edit{R"(accuracy = 1e-5)", "effects_tolerance = 0", "x.toml:39: simulate.effects_tolerance = 0: must be in [1e-12, 0.1]"},
     Edit{R"(accuracy = 1e-5)", "accuracy = 1e-5\ntolerance = 1e-9", "x.toml:39: simulate.accuracy = 1e-05: cannot stand beside simulate.tolerance = 1e-09: give one of them"},
-    Edit{R"(accuracy = 1e-5)", "[metrics]\nsignificant_rebound = \"0 nm\"", R"(x.toml:40: metrics.significant_rebound = "0 nm": must be in [1 pm, 1 m])"}));
+    Edit{R"(accuracy = 1e-5)", "[metrics]\nsignificant_rebound = \"0 nm\"", R"(x.toml:40: metrics.significant_rebound = "0 nm": must be in [1 pm, 1 m])"},
+    Edit{R"(accuracy = 1e-5)", "[metrics]\nsignificant_rebound = \"2 um\"", R"(x.toml:40: metrics.significant_rebound = "2 um": must be less than gap.contact = "2 um")"},
+    Edit{R"(contact = "2 um")", R"(contact = "1 nm")", R"(x.toml:11: gap.contact = "1 nm": must exceed metrics.significant_rebound, which is 1 nm)"}));
 
 const std::string casimir = "[dispersion]\nmodel = \"casimir\"\n";
 const std::string factor = "[waveform.dispersion]\nfamily = \"step\"\n";

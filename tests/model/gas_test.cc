@@ -73,6 +73,9 @@ TEST(GasLimits, ThatATrajectoryLeavesAreWarnings) {
   EXPECT_THAT(closing({.pressure = 1e4}).warnings, ElementsAre("gas law strip: Knudsen number 0.45 exceeds 0.1"));
   EXPECT_THAT(closing({.model = GasModel::near_contact, .mean_free_path = 10_nm}).warnings,
               ElementsAre("gas law near-contact: Knudsen number 0.0029 is below 0.0047"));
+  // Four digits, and not 4.5e+03.
+  EXPECT_THAT(closing({.pressure = 1}).warnings,
+              testing::Contains(testing::ContainsRegex("Knudsen number [0-9]{4} exceeds 0.1")));
   // Squeeze numbers of 12 mu a^2 v / (p h^3): about 0.025 at 101325 Pa.
   const auto thin = closing({.model = GasModel::veijola, .pressure = 100, .mean_free_path = 65_nm}).warnings;
   ASSERT_EQ(thin.size(), 1u);

@@ -229,5 +229,16 @@ TEST(Times, EndAtAThousand) {
   EXPECT_EQ(relative_change(1e6), "> × 1000");
 }
 
+TEST(Quantity, BeyondThePrefixesHasAnExponent) {
+  EXPECT_EQ(quantity(1e300, "s"), "1e300\u00a0s");
+  EXPECT_EQ(quantity(-1.797e308, "V"), "−1.8e308\u00a0V") << "rounded it would be infinite";
+  EXPECT_EQ(quantity(2.5e-300, "Hz"), "2.5e-300\u00a0Hz");
+  EXPECT_EQ(given_quantity(1.5e20, "m"), "1.5e20\u00a0m");
+  EXPECT_EQ(error_of(1e300, 3e297, "s", 4), "3e297\u00a0s");
+  EXPECT_EQ(error_of(5e-324, 5e-324, ""), "5e-324");
+  EXPECT_EQ(whole(12345678), "12345678");
+  EXPECT_EQ(whole(1e300), "1e300");
+}
+
 }  // namespace
 }  // namespace softland::internal

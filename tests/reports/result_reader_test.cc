@@ -30,6 +30,31 @@ TEST(ParseResult, RefusesWhatIsNoResult) {
   }
 }
 
+TEST(RequireReportable, TakesWhatTheVerbsWriteAndSaysWhatIsMissing) {
+  const auto answer = [](const nlohmann::json& result) -> std::string {
+    try {
+      require_reportable(result, "x.json");
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (const nlohmann::json& whole : {test::sample_optimize_result(10), test::sample_simulate_result(10)}) {
+    EXPECT_EQ(answer(whole), "");
+    for (const char* part : {whole["kind"] == "optimize" ? "baseline" : "metrics", "curves", "scene"}) {
+      nlohmann::json result = whole;
+      result[part] = nullptr;
+      EXPECT_EQ(answer(result),
+                std::string("x.json: \"") + part + "\" is missing; name the result.json in the folder that --out named");
+    }
+    nlohmann::json result = whole;
+    result["version"] = "0.2.0";
+    EXPECT_EQ(answer(result), "x.json: is a result of softland 0.2.0, of which softland 0.1.0 makes no report");
+    result.erase("version");
+    EXPECT_EQ(answer(result), "x.json: does not say of which version of softland it is: \"version\" is missing");
+  }
+}
+
 // 300 000 brackets among the parameters once overflowed the stack of the report.
 TEST(ParseResult, RefusesNestingThatNoReportCanWalkThrough) {
   const auto nested = [](std::size_t depth) {

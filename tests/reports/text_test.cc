@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 
 #include "reports/html.h"
+#include "reports/svg.h"
 #include "sample_result.h"
 #include "tests/support/printed.h"
 
@@ -25,6 +27,7 @@ TEST(Wrapped, BreaksAtBlanksOnly) {
   EXPECT_EQ(wrapped("one two", 7), "one two");
   EXPECT_EQ(wrapped("one two", 6), "one\ntwo");
   EXPECT_EQ(wrapped("a longer-than-that word", 6), "a\nlonger-than-that\nword");
+  EXPECT_EQ(wrapped("a\nb\tc\x1b", 100), "a\\u000ab\\u0009c\\u001b") << "of a name";
   EXPECT_EQ(wrapped("µµ µµ µ", 5), "µµ µµ\nµ") << "columns, not bytes";
 }
 
@@ -60,6 +63,44 @@ TEST(EveryReport, SaysNoMoreThanIsKnown) {
     result["best"]["parameters"]["piezo.phase_rad"] = -1.23456789012;
     EXPECT_EQ(absurd_number(text_report(result)), "") << text_report(result);
     EXPECT_EQ(absurd_number(read_aloud(html_report(result))), "");
+  }
+}
+
+/// Every number of `value` whose turn it is of `period` replaced; `turn` counts them.
+void damage(json& value, double absurd, int period, int& turn) {
+  if (value.is_structured()) {
+    for (json& inner : value) damage(inner, absurd, period, turn);
+  } else if (value.is_number() && ++turn % period == 0) {
+    value = absurd;
+  }
+}
+
+/// What in a report is no number that people read; empty when all is well.
+std::string misshapen(const std::string& report) {
+  static const std::regex none(".{0,40}\\b(nan|inf)\\b"), long_number(".{0,40}[0-9]{26}");
+  std::string text = report;
+  for (std::size_t begin = 0; (begin = text.find("<script", begin)) != std::string::npos;)
+    text.erase(begin, text.find("</script>", begin) - begin);
+  std::smatch found;
+  return std::regex_search(text, found, none) || std::regex_search(text, found, long_number) ? found.str() : std::string();
+}
+
+TEST(EveryReport, DrawsAndPrintsWhatNoSwitchHas) {
+  for (json whole : {sample_optimize_result(60), softland::test::sample_simulate_result(60)}) {
+    whole["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
+    whole["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};
+    whole["scene"]["contact"] = {{"pad_length", "1e300 um"}};
+    whole["scene"]["waveform"]["piezo"] = {{"family", "pulse"}, {"times", {"1e300 s", "x"}}, {"edge", "5 us"}};
+    whole["scene"]["driver"]["main"] = {{"min_voltage", "0 V"}, {"max_voltage", "1e300 V"}};
+    for (const double absurd : {1e300, -1e308, 1.797e308, 5e-324, -1e-300, 1e99}) {
+      for (const int period : {1, 2, 3, 5, 7}) {
+        json result = whole;
+        int turn = 0;
+        damage(result, absurd, period, turn);
+        for (const std::string& report : {text_report(result), svg_gap_chart(result), html_report(result)})
+          EXPECT_EQ(misshapen(report), "") << absurd << ", every " << period << "th number of a result of " << whole["kind"];
+      }
+    }
   }
 }
 

@@ -89,6 +89,19 @@ TEST(Optimize, ComparesWithAPlainStepToTheSameHoldLevel) {
   EXPECT_EQ(baseline.duration, log.result.scene.duration);
 }
 
+TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel) {
+  SceneFile file = gold_pzt({"simulate.duration=150 us", "waveform.piezo.family=step", "waveform.piezo.level=-6 V",
+                             "waveform.piezo.rise_time=20 us", "driver.piezo.min_voltage=-12 V", "driver.piezo.max_voltage=12 V",
+                             "driver.piezo.max_slew=2 V/us"});
+  for (const char* section : {"electrode.main", "waveform.main", "driver.main"}) file = without(file, section);
+  const Log log = search(file, {.actuator = Actuator::pzt}, 40);
+  const auto& piezo = std::get<Step>(log.result.baseline_scene.drives.waveforms.at("piezo"));
+  EXPECT_DOUBLE_EQ(piezo.level, -6);
+  EXPECT_DOUBLE_EQ(piezo.rise_time, 3e-6);
+  EXPECT_GT(log.result.baseline.metrics.initial_contact_time, 0) << "it closes the switch";
+  EXPECT_LT(log.result.baseline_cost, 4);
+}
+
 TEST(Optimize, PricesTheBaselineAtAboutOne) {
   for (const Target target : {Target::bounce, Target::settling, Target::rebound, Target::count, Target::impact, Target::energy}) {
     const double cost = search(quick(), {.target = target}, 3).result.baseline_cost;
