@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "model/device.h"
@@ -15,6 +16,9 @@
 #include "waveforms/waveform.h"
 
 namespace softland {
+
+/// What a key can be given: a number in the key's SI unit, a flag, a whole number or a choice.
+using SceneValue = std::variant<double, bool, int, std::string>;
 
 /// The text of a scene with its source positions, and the changes made to it on the command line. A value: copies are
 /// independent.
@@ -30,6 +34,8 @@ class SceneFile {
   /// such a key name the option ("--set gap.contact=...") instead of file and line. Throws InvalidInput for an assignment that is
   /// none.
   void set(std::string_view assignment);
+  /// Gives a key this value; a number counts in the key's SI unit. Throws std::logic_error for a key that no scene has.
+  void assign(const std::string& path, const SceneValue& value);
   /// Takes a section or a key out, if it is there.
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a

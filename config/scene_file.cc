@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "base/printable.h"
@@ -328,6 +330,30 @@ void SceneFile::Impl::fail_section(std::string_view path, std::string_view rule)
   throw InvalidInput(fmt::format("{}: [{}]: {}", place.text, shortened(path), printable_line(rule)));
 }
 
+void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::node& value, const Origin& place) {
+  toml::table* table = &root;
+  std::string parent, path_text;
+  for (const std::string& key : path) {
+    parent = std::exchange(path_text, join_path(path_text, key));
+    if (&key == &path.back()) break;
+    if (!table->contains(key)) table->insert(key, toml::table{});
+    table = table->get(key)->as_table();
+    if (!table) throw InvalidInput(fmt::format("{}: {} is not a section", place.text, written(path_text)));
+  }
+  if (const internal::Section* section = internal::find_section(path.front(), path.size() > 1 ? path[1] : std::string());
+      section && path.size() == (section->is_named ? 3 : 2)) {
+    for (const internal::Key& key : section->keys) {
+      if (key.name != path.back()) continue;
+      for (const std::string_view other : key.instead_of) {
+        if (table->erase(other) > 0) forget(join_path(parent, other));
+      }
+    }
+  }
+  value.visit([&](const auto& node) { table->insert_or_assign(path.back(), node); });
+  forget(path_text);
+  origins[path_text] = place;
+}
+
 std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) const {
   std::vector<std::string> names;
   const toml::node* node = find({section});
@@ -389,29 +415,24 @@ void SceneFile::set(std::string_view assignment) {
     }
   }
 
-  toml::table* table = &impl_->root;
-  std::string path_text;
-  for (const std::string& key : path) {
-    path_text = join_path(path_text, key);
-    if (&key == &path.back()) break;
-    if (!table->contains(key)) table->insert(key, toml::table{});
-    table = table->get(key)->as_table();
-    if (!table) throw InvalidInput(fmt::format("{}: {} is not a section", option, impl_->written(path_text)));
-  }
-  // An option that gives a quantity in one of two ways takes the place of the other way.
-  if (const internal::Section* section = internal::find_section(path.front(), path.size() > 1 ? path[1] : std::string());
-      section && path.size() == (section->is_named ? 3 : 2)) {
-    const std::string parent = path_text.substr(0, path_text.size() - join_path("", path.back()).size() - 1);
-    for (const internal::Key& key : section->keys) {
-      if (key.name != path.back()) continue;
-      for (const std::string_view other : key.instead_of) {
-        if (table->erase(other) > 0) impl_->forget(join_path(parent, other));
-      }
-    }
-  }
-  parsed.get(internal::value_key)->visit([&](const auto& node) { table->insert_or_assign(path.back(), node); });
-  impl_->forget(path_text);
-  impl_->origins[path_text] = {option, true};
+  impl_->insert(path, *parsed.get(internal::value_key), {option, true});
+}
+
+void SceneFile::assign(const std::string& path, const SceneValue& value) {
+  const std::vector<std::string> parts = internal::split_path(path);
+  const internal::Section* section = internal::find_section(parts.front(), parts.size() > 1 ? parts[1] : std::string());
+  const internal::Key* key = section ? section->find(parts.back()) : nullptr;
+  if (key == nullptr) throw std::logic_error("no scene has the key " + path);
+  toml::table holder;
+  std::visit(
+      [&]<class Value>(const Value& v) {
+        if constexpr (std::is_same_v<Value, double>) {
+          if (!key->is_bare_number()) return void(holder.insert(internal::value_key, quantity_text(v, key->dimensions.front())));
+        }
+        holder.insert(internal::value_key, v);
+      },
+      value);
+  impl_->insert(parts, *holder.get(internal::value_key), {impl_->name});
 }
 
 void SceneFile::erase(const std::string& path) {

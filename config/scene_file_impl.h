@@ -58,6 +58,9 @@ struct SceneFile::Impl {
   /// NAME of every [section.NAME], sorted. Throws InvalidInput when something else stands there.
   [[nodiscard]] std::vector<std::string> names_in(const std::string& section) const;
 
+  /// Puts a value at this path, which comes from `place`, and makes the sections on the way. A value that can be given in one of
+  /// two ways takes the place of the other way. Throws InvalidInput where no section can be.
+  void insert(const std::vector<std::string>& path, const toml::node& value, const Origin& place);
   /// Forgets where the keys at and below `path` were written.
   void forget(std::string_view path);
   [[nodiscard]] Origin origin(std::string_view path) const;

@@ -25,8 +25,9 @@ struct Figure {
 
 std::vector<Figure> figures(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
-  with.set(fmt::format("structure.modes={}", modes));
-  with.set("simulate.effects=all");  // every number of modes is judged on the same effects; they are chosen after
+  with.assign("structure.modes", modes);
+  with.assign("simulate.effects",
+              std::string("all"));  // every number of modes is judged on the same effects; they are chosen after
   const Prepared p = prepare(with, false, watch);
   const double omega = p.device.angular_frequencies()[0], gap = p.scene.device.gap.contact;
   const Trajectory t = simulate_closing(p.device, p.signals(),

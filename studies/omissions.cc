@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/closing.h"
+#include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
 #include "studies/timing.h"
 #include "studies/watched.h"
@@ -62,20 +63,20 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
          .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.device.angular_frequencies()[s.modes - 1]},
          .group = {.name = "over the first",
                    .value = prepared.device.angular_frequencies()[s.modes - 1] / prepared.device.angular_frequencies()[0]},
-         .instead = "1",
+         .instead = 1,
          .automatic = false});
   }
   if (s.damping_ratio > 0) {
     list.push_back({.effect = "structure.damping_ratio",
                     .magnitude = {.name = "quality factor", .value = 1 / (2 * s.damping_ratio)},
                     .group = {.name = "damping ratio", .value = s.damping_ratio},
-                    .instead = "0.0"});
+                    .instead = 0.0});
   }
   if (s.kind == StructureKind::clamped_clamped && s.stretching) {
     list.push_back({.effect = "structure.stretching",
                     .magnitude = {.name = "contact gap", .unit = "m", .value = d.gap.contact},
                     .group = {.name = "(gap / thickness)^2", .value = std::pow(d.gap.contact / s.thickness, 2)},
-                    .instead = "false"});
+                    .instead = false});
   }
   if (s.kind == StructureKind::clamped_clamped && s.residual_stress != 0) {
     Device without = d;
@@ -83,7 +84,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     list.push_back({.effect = "structure.residual_stress",
                     .magnitude = {.name = "stress", .unit = "Pa", .value = s.residual_stress},
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
-                    .instead = "'0 Pa'"});
+                    .instead = 0.0});
   }
   if (d.surface) {
     Device without = d;
@@ -101,7 +102,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     list.push_back({.effect = "electrode." + e.name + ".fringing",
                     .magnitude = {.name = "force added, at rest", .value = force_at_rest(d, k) / force_at_rest(without, k) - 1},
                     .group = {.name = "gap / width", .value = d.gap.electrode / s.width},
-                    .instead = "'none'"});
+                    .instead = std::string(name_of(fringing_laws, Fringing::none))});
   }
   if (d.gas) {
     const double omega = prepared.device.angular_frequencies()[0];
@@ -131,7 +132,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     list.push_back({.effect = "contact.distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
                     .group = {.name = "over the interference", .value = rise / prepared.device.penetration_scale()},
-                    .instead = "'centre'",
+                    .instead = std::string(name_of(contact_distributions, ContactDistribution::centre)),
                     .automatic = false});
   }
   if (d.contact && d.contact->damping > 0) {
@@ -156,16 +157,16 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
 Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects) {
   const SceneFile frozen = resolved(prepared.scene, prepared.voltage_units());
   SceneFile file = SceneFile::parse(frozen.text(), prepared.scene.file.name());
-  file.set("simulate.effects=all");
+  file.assign("simulate.effects", std::string("all"));
   for (const Omissible& e : effects) {
     // A key of a section that goes goes with it.
     const bool inside = std::any_of(effects.begin(), effects.end(),
                                     [&](const Omissible& other) { return e.effect.starts_with(other.effect + "."); });
     if (inside) continue;
-    if (e.instead.empty()) {
-      file.erase(e.effect);
+    if (e.instead) {
+      file.assign(e.effect, *e.instead);
     } else {
-      file.set(e.effect + "=" + e.instead);
+      file.erase(e.effect);
     }
   }
   Prepared p = prepare(file);

@@ -2,6 +2,7 @@
 // voltages. `effects = "auto"` in [simulate] leaves out what does not matter.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,8 @@ struct Omissible {
   std::string choice = {};  ///< what the scene says there: "strip", "meijs-fokkema"
   NamedNumber magnitude;
   NamedNumber group;  ///< the dimensionless group that says how large it is
-  /// What the key becomes in a scene without the effect, as TOML; empty: key or section disappears.
-  std::string instead;
+  /// What the key becomes in a scene without the effect; nothing: key or section disappears.
+  std::optional<SceneValue> instead;
   bool automatic = true;  ///< whether effects = "auto" may leave it out
 };
 

@@ -78,7 +78,7 @@ Prepared as_described(const SceneFile& given, bool default_limits, const Watch& 
   Scene scene = read_scene(file);
   if (scene.auto_modes) {
     const AutoModes chosen = choose_modes(file, watch);
-    file.set(fmt::format("structure.modes={}", chosen.modes));
+    file.assign("structure.modes", chosen.modes);
     scene = read_scene(file);
     scene.warnings.push_back(chosen.note());
   }

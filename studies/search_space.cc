@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/engineering.h"
@@ -64,6 +65,28 @@ void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
   for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2});
 }
 
+void add_step(DriveSearch& s, const Prepared&, double t0) {
+  s.variables = {{"rise_time_s", 0, 2.5 * t0}};
+  s.starts = {{0.5 * t0}};
+}
+
+/// The families that have parameters to search.
+struct SearchedFamily {
+  std::string_view name;
+  void (*add)(DriveSearch&, const Prepared&, double first_touch);
+};
+constexpr auto searched_families = std::to_array<SearchedFamily>(
+    {{FamilyOf<Step>::name, add_step}, {FamilyOf<Pulse>::name, add_pulse}, {FamilyOf<Harmonic>::name, add_harmonic}});
+
+void add_variables(DriveSearch& s, const Prepared& p, double first_touch) {
+  std::vector<std::string_view> known;
+  for (const SearchedFamily& family : searched_families) {
+    if (family.name == s.family) return family.add(s, p, first_touch);
+    known.push_back(family.name);
+  }
+  throw InvalidInput(fmt::format("--waveform {}: only {} have parameters to search", s.family, fmt::join(known, ", ")));
+}
+
 }  // namespace
 
 std::string searched_electrode(const Device& device) {
@@ -90,8 +113,8 @@ std::vector<std::string> braking_electrodes(const Prepared& prepared) {
 
 Waveform DriveSearch::waveform(std::span<const double> x) const {
   const double slew = limits.max_slew;  // infinite where there is no limit
-  if (family == "step") return Step{.level = hold, .rise_time = std::max(x[0], std::abs(hold) / slew)};
-  if (family == "harmonic") {
+  if (family == FamilyOf<Step>::name) return Step{.level = hold, .rise_time = std::max(x[0], std::abs(hold) / slew)};
+  if (family == FamilyOf<Harmonic>::name) {
     // Under a slew limit the sine waits for the base, and fades for as long as its amplitude needs: the slope of the envelope
     // adds to that of the sine. Half the duration is the longest fade; what is too steep even then is made smaller.
     const double omega = x[1], duration = x[4], rise = std::abs(hold) / slew, start = std::max(x[3], rise);
@@ -149,15 +172,7 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
                   .starts = {}};
     require(s.limits.max_voltage > s.limits.min_voltage,
             fmt::format("driver.{}: max_voltage must exceed min_voltage to search between them", drive));
-    if (family == "pulse") {
-      add_pulse(s, prepared, first_touch);
-    } else if (family == "harmonic") {
-      add_harmonic(s, prepared, first_touch);
-    } else {
-      require(family == "step", fmt::format("--waveform {}: only step, pulse and harmonic have parameters to search", family));
-      s.variables = {{"rise_time_s", 0, 2.5 * first_touch}};
-      s.starts = {{0.5 * first_touch}};
-    }
+    add_variables(s, prepared, first_touch);
     drives_.push_back(std::move(s));
   };
   if (actuator != Actuator::pzt) {

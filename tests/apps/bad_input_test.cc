@@ -140,8 +140,8 @@ TEST_F(BadInput, Searches) {
   expect_refused({
       {search({"--target", "softness"}), "--target softness: must be bounce, settling, rebound, count, impact or energy"},
       {search({"--actuator", "magnetic"}), "--actuator magnetic: must be electrostatic, pzt or both"},
-      {search({"--waveform", "table"}), "--waveform table: only step, pulse and harmonic have parameters to search"},
-      {search({"--waveform", "spline"}), "--waveform spline: only step, pulse and harmonic have parameters to search"},
+      {search({"--waveform", "table"}), "--waveform table: only step, pulse, harmonic have parameters to search"},
+      {search({"--waveform", "spline"}), "--waveform spline: only step, pulse, harmonic have parameters to search"},
       {search({"--optimizer", "magic"}),
        "optimizer \"magic\" is unknown; there are auto, bobyqa, sbplx, nelder-mead, slsqp, mma, ccsaq, ipopt, cma-es, crs2, "
        "isres, "

@@ -54,7 +54,7 @@ TEST(Omissible, KnowsItsSize) {
   EXPECT_EQ(all[1].choice, "meijs-fokkema") << "the default, too";
   EXPECT_EQ(all[2].choice, "strip");
   EXPECT_EQ(omissible_effects(prepare(gold({"gas.far_gap=3 um"}))).back().choice, "3 um");
-  EXPECT_EQ(all[0].instead, "1");
+  EXPECT_EQ(all[0].instead, SceneValue(1));
   EXPECT_FALSE(all[0].automatic);
   // van der Meijs & Fokkema at h = 3.5 um, a = 20 um, b = 2 um.
   EXPECT_NEAR(all[1].magnitude.value, 0.265 * std::pow(3.5 / 20, 0.75) + 0.53 * 3.5 / 20 * std::sqrt(2 / 3.5), 1e-9);

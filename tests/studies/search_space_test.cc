@@ -171,7 +171,7 @@ TEST(SearchSpace, RefusesThePiezoOfASceneThatHasNone) {
 TEST(SearchSpace, RefusesFamiliesWithoutParameters) {
   for (const std::string family : {"table", "spline", ""})
     EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
-              "--waveform " + family + ": only step, pulse and harmonic have parameters to search");
+              "--waveform " + family + ": only step, pulse, harmonic have parameters to search");
 }
 
 TEST(SearchSpace, RefusesADitherWithoutRoomAboutTheHoldLevel) {

@@ -1,0 +1,140 @@
+// What the keys of a scene are bound to. The list of keys is the schema itself.
+#include "config/schema.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "config/scene.h"
+#include "tests/config/small_scene.h"
+
+namespace softland::internal {
+namespace {
+
+using testing::UnorderedElementsAre;
+
+/// A scene in which every part is there to be set.
+Scene whole_scene() {
+  Scene scene{.title = {},
+              .device = {.electrodes = {{.name = "main"}}},
+              .simulate = {},
+              .metrics = {},
+              .need_pull_in = {},
+              .warnings = {},
+              .file = SceneFile::parse("", "x.toml")};
+  scene.device.gas.emplace();
+  scene.device.contact.emplace();
+  scene.device.piezo.emplace();
+  scene.device.dispersion.emplace();
+  scene.device.surface.emplace();
+  return scene;
+}
+
+bool is_bound(const Bound& b) {
+  return b.number != nullptr || b.flag != nullptr || b.integer != nullptr || b.text != nullptr || b.choose != nullptr;
+}
+
+TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
+  std::vector<std::string> without_member;
+  for (const Section& section : schema()) {
+    if (section.begin == nullptr) continue;
+    for (const Key& key : section.keys) {
+      if (!is_bound(key.bound)) without_member.push_back(fmt::format("{}.{}", section.name, key.name));
+    }
+  }
+  // They decide lengths together with a width.
+  EXPECT_THAT(without_member, UnorderedElementsAre("structure.area", "electrode.area"));
+}
+
+TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
+  for (const Section& section : schema()) {
+    for (const Key& key : section.keys) {
+      if (!is_bound(key.bound)) continue;
+      SCOPED_TRACE(fmt::format("{}.{}", section.name, key.name));
+      EXPECT_EQ(key.bound.number != nullptr, key.type == KeyType::quantity || key.type == KeyType::quantities);
+      EXPECT_EQ(key.bound.last != nullptr, key.type == KeyType::quantities);
+      EXPECT_EQ(key.bound.flag != nullptr, key.type == KeyType::flag);
+      EXPECT_EQ(key.bound.integer != nullptr, key.type == KeyType::integer);
+      EXPECT_EQ(key.bound.text != nullptr, key.type == KeyType::text);
+      EXPECT_EQ(key.bound.choose != nullptr, key.type == KeyType::choice);
+    }
+  }
+}
+
+TEST(Schema, NoTwoKeysSetTheSameMember) {
+  Scene scene = whole_scene();
+  std::map<const void*, std::string> owners;
+  int members = 0;
+  for (const Section& section : schema()) {
+    std::set<std::string_view> seen;
+    for (const Key& key : section.keys) {
+      if (!seen.insert(key.name).second) continue;  // the same key of another kind of structure
+      const Bound& b = key.bound;
+      for (const void* member : {b.number != nullptr ? static_cast<const void*>(&b.number(scene, 0)) : nullptr,
+                                 b.last != nullptr ? static_cast<const void*>(&b.last(scene, 0)) : nullptr,
+                                 b.flag != nullptr ? static_cast<const void*>(&b.flag(scene, 0)) : nullptr,
+                                 b.integer != nullptr ? static_cast<const void*>(&b.integer(scene, 0)) : nullptr}) {
+        if (member == nullptr) continue;
+        const auto [owner, is_new] = owners.emplace(member, fmt::format("{}.{}", section.name, key.name));
+        EXPECT_TRUE(is_new) << section.name << "." << key.name << " sets the member of " << owner->second;
+        ++members;
+      }
+    }
+  }
+  EXPECT_GT(members, 60);
+}
+
+TEST(Schema, EveryChoiceHasAKeyOrIsASelectorThatOthersBelongTo) {
+  for (const Section& section : schema()) {
+    const Key* selector = section.selector.empty() ? nullptr : section.find(section.selector);
+    for (const Key& key : section.keys) {
+      for (const std::string_view owner : key.only_for) {
+        ASSERT_NE(selector, nullptr) << section.name;
+        EXPECT_THAT(selector->choices, testing::Contains(owner)) << section.name << "." << key.name;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+namespace {
+
+TEST(Assign, GivesANumberInTheUnitOfItsKey) {
+  SceneFile file = SceneFile::parse(small_scene, "x.toml");
+  const Scene before = read_scene(file);
+  file.assign("structure.length", 1.5 * before.device.structure.length);
+  file.assign("structure.modes", 2);
+  file.assign("structure.damping_ratio", 0.25);
+  file.assign("structure.plate_strain", true);
+  file.assign("structure.poissons_ratio", 0.3);
+  file.assign("electrode.main.fringing", std::string("none"));
+  const Scene after = read_scene(file);
+  EXPECT_EQ(after.device.structure.length, 1.5 * before.device.structure.length);
+  EXPECT_EQ(after.device.structure.modes, 2);
+  EXPECT_EQ(after.device.structure.damping_ratio, 0.25);
+  EXPECT_TRUE(after.device.structure.plate_strain);
+  EXPECT_EQ(after.device.electrodes[0].fringing, Fringing::none);
+}
+
+TEST(Assign, TakesThePlaceOfTheOtherWayToSayTheSame) {
+  SceneFile file = SceneFile::parse(small_scene, "x.toml");
+  file.assign("simulate.accuracy", 1e-3);
+  file.assign("simulate.tolerance", 1e-7);
+  EXPECT_EQ(read_scene(file).simulate.tolerance, 1e-7);
+  EXPECT_EQ(file.json()["simulate"].count("accuracy"), 0U);
+}
+
+TEST(Assign, RefusesAKeyThatNoSceneHas) {
+  SceneFile file = SceneFile::parse(small_scene, "x.toml");
+  EXPECT_THROW(file.assign("structure.colour", 1.0), std::logic_error);
+  EXPECT_THROW(file.assign("furniture.length", 1.0), std::logic_error);
+}
+
+}  // namespace
+}  // namespace softland::internal
