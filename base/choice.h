@@ -57,7 +57,7 @@ template <const auto& rows>
       if (rows[k].name == rows[i].name) return false;
     }
   }
-  return !internal::is_enumerator<static_cast<E>(rows.size())>();
+  return internal::is_enumerator<static_cast<E>(rows.size() - 1)>() && !internal::is_enumerator<static_cast<E>(rows.size())>();
 }
 
 template <class Row, std::size_t n>

@@ -101,10 +101,6 @@ TEST(Schema, EveryChoiceHasAKeyOrIsASelectorThatOthersBelongTo) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 TEST(Assign, GivesANumberInTheUnitOfItsKey) {
   SceneFile file = SceneFile::parse(small_scene, "x.toml");
   const Scene before = read_scene(file);
