@@ -27,7 +27,7 @@ std::string figure(const std::string& headline, const std::string& words, const 
     double first = std::numeric_limits<double>::infinity(), last = -first;
     for (const Curve& curve : panel.curves) {
       const std::string name = fmt::format("{}/{}", chart.id, chart.series.size());
-      Table& table = drawn.tables[name];
+      CurveTable& table = drawn.tables[name];
       for (const auto& [x, y] : curve.points) {
         if (!std::isfinite(y)) continue;
         table["x"].push_back(x);
