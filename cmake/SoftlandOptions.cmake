@@ -4,9 +4,9 @@ include(CheckCXXSourceRuns)
 add_library(softland_options INTERFACE)
 target_include_directories(softland_options INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/generated)
 # Aggregates are filled with designated initializers and rely on the defaults of what is left out.
-target_compile_options(softland_options INTERFACE -Wall -Wextra -Wconversion -Wno-missing-field-initializers)
-# Files that are compiled as one see each other's names.
-target_compile_options(softland_options INTERFACE $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>)
+# Files that are compiled as one see each other's names, and would be warned of shadows.
+set(shadow $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>)
+target_compile_options(softland_options INTERFACE -Wall -Wextra ${shadow} -Wconversion -Wno-missing-field-initializers)
 # GCC 12 takes assignments of literals to std::string for overlapping copies (GCC PR 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(softland_options INTERFACE -Wno-restrict)
