@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "scenes.h"
+#include "studies/simulate.h"
 
 namespace softland {
 namespace {
