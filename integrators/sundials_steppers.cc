@@ -207,7 +207,7 @@ class SundialsStepper : public Stepper {
   std::string message_, said_;
 };
 
-constexpr long unbounded_steps = -1;  // the caller bounds the work
+constexpr long unbounded_steps = -1;               // the caller bounds the work
 constexpr double smallest_change_of_step = 1e-10;  // relative; larger ones factorise anew
 constexpr int predictor_of_falling_order = 2;      // of each stage from the last step: a fifth of the time of a compressible film
 
@@ -272,8 +272,8 @@ class DirkStepper final : public SundialsStepper {
            ok(ARKStepWFtolerances(memory_, &SundialsStepper::error_weights), "ARKStepWFtolerances") &&
            ok(ARKStepSetLinearSolver(memory_, solver_.get(), matrix_.get()), "ARKStepSetLinearSolver") &&
            ok(ARKStepSetJacFn(memory_, &SundialsStepper::jacobian), "ARKStepSetJacFn") &&
-           // The library remembers how fast its iterations converge for as long as it keeps a factorisation. Where one hits by luck
-           // it would take the next ones for converged that are not, with stages a thousand times the tolerance off.
+           // The library remembers how fast its iterations converge for as long as it keeps a factorisation. Where one hits by
+           // luck it would take the next ones for converged that are not, with stages a thousand times the tolerance off.
            ok(ARKStepSetDeltaGammaMax(memory_, smallest_change_of_step), "ARKStepSetDeltaGammaMax") &&
            ok(ARKStepSetPredictorMethod(memory_, predictor_of_falling_order), "ARKStepSetPredictorMethod") &&
            ok(ARKStepSetMaxNumSteps(memory_, unbounded_steps), "ARKStepSetMaxNumSteps");
