@@ -8,6 +8,9 @@ target_compile_options(softland_options INTERFACE -Wall -Wextra -Wshadow -Wconve
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(softland_options INTERFACE -Wno-restrict)
 endif()
+if(CMAKE_UNITY_BUILD)  # files compiled as one see each other's names
+  target_compile_options(softland_options INTERFACE -Wno-shadow)
+endif()
 if(SOFTLAND_WERROR)
   target_compile_options(softland_options INTERFACE -Werror)
 endif()

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "base/lanes.h"
 
@@ -18,17 +19,17 @@ struct Turn {
 
 /// Taylor series of cosine and sine at half the phase; the first term left out is below 1e-18.
 [[nodiscard]] inline Turn turn(const Lane& phase) {
-  constexpr int degree = 18;
+  constexpr std::size_t degree = 18;
   constexpr auto factors = [] {  // (-1)^(k/2) / k!, even and odd k in turn
     std::array<double, degree + 2> f{1, 1};
-    for (int k = 2; k < degree + 2; ++k) f[k] = -f[k - 2] / (k * (k - 1));
+    for (std::size_t k = 2; k < degree + 2; ++k) f[k] = -f[k - 2] / static_cast<double>(k * (k - 1));
     return f;
   }();
   const Lane x = phase / 2, x2 = x * x;
   Lane cosine = Lane::Constant(factors[degree]), over_x = Lane::Constant(factors[degree + 1]);
-  for (int k = degree - 2; k >= 0; k -= 2) {
-    cosine = cosine * x2 + factors[k];
-    over_x = over_x * x2 + factors[k + 1];
+  for (std::size_t k = degree; k > 0; k -= 2) {
+    cosine = cosine * x2 + factors[k - 2];
+    over_x = over_x * x2 + factors[k - 1];
   }
   const Lane sine = x * over_x, slack = 2 * sine * sine;
   return {.cosine = 1 - slack, .sine = 2 * sine * cosine, .slack = slack};

@@ -30,8 +30,8 @@ struct DualOf {
   }
   friend DualOf exp(DualOf a) {
     using std::exp;
-    const T value = exp(a.value);
-    return {value, a.slope * value};
+    const T grown = exp(a.value);
+    return {grown, a.slope * grown};
   }
   friend DualOf log(DualOf a) {
     using std::log;
