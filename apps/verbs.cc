@@ -163,12 +163,14 @@ void read_budget(const std::string& text, OptimizeOptions& options) {
   }
 }
 
-// Where the shipped scenes are: beside the sources, or beside the program in an unpacked tree.
+// Where the shipped scenes are: installed with the program, in the tree it was built from, or in an unpacked tree around it.
 fs::path shipped_scene(const std::string& name) {
-  const fs::path from_source = fs::path(SOFTLAND_SCENES) / name;
   std::error_code error;
-  if (fs::exists(from_source, error)) return from_source;
-  for (fs::path up = fs::read_symlink("/proc/self/exe", error).parent_path(); up.has_relative_path(); up = up.parent_path()) {
+  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& folder : {here / SOFTLAND_INSTALLED_SCENES, fs::path(SOFTLAND_SCENES)}) {
+    if (fs::exists(folder / name, error)) return (folder / name).lexically_normal();
+  }
+  for (fs::path up = here; up.has_relative_path(); up = up.parent_path()) {
     if (fs::exists(up / "scenes" / name, error)) return up / "scenes" / name;
   }
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));

@@ -36,9 +36,9 @@ int modes_verb(const Common& common);
 int check_verb(const Common& common);
 int effects_verb(const Common& common);
 int accuracy_verb(const Common& common);
-int optimize_verb(const Common& common, const OptimizeRequest& request);
+int optimize_verb(const Common& given, const OptimizeRequest& request);
 int new_verb(const std::string& kind);
 int export_verb(const Common& common, const std::string& result, const std::string& format);
-int report_verb(const Common& common, const std::string& result);
+int report_verb(const Common& given, const std::string& result);
 
 }  // namespace softland::apps

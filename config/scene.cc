@@ -43,7 +43,7 @@ void check_section_names(const SceneFile::Impl& file) {
     const internal::Section* section = internal::find_section(name.str());
     if (!section || name.str().empty()) {
       if (node.is_table()) file.fail_section(path, "unknown section" + internal::hint(name.str(), known));
-      known.push_back("title");
+      known.emplace_back("title");
       file.fail(path, "unknown key" + internal::hint(name.str(), known));
     }
   }
@@ -136,7 +136,7 @@ std::pair<double, double> read_extent(const SceneFile::Impl& file, const Section
 }
 
 double read_pad_length(const SceneFile::Impl& file, const SectionReader& in, const SectionReader& structure, const Structure& s) {
-  const std::string model = in.text("model");
+  const std::string& model = in.text("model");
   const bool is_rough = model != "linear" && model != "hysteretic" && model != "rigid";  // or has an area
   if (!in.is_given("pad_length")) {
     if (is_plate(structure) && !is_rough) return 0;  // only the area of a plate's pad would count

@@ -469,7 +469,7 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
     insert_times(pulse->times);
     insert("edge", pulse->edge, dimension::time);
   } else {
-    const Table& rows = std::get<Table>(waveform);
+    const auto& rows = std::get<Table>(waveform);
     insert_times(rows.time);
     insert_levels("voltages", rows.voltage);
   }

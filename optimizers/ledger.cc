@@ -15,7 +15,6 @@ namespace softland::internal {
 namespace {
 
 constexpr std::size_t kNoTask = std::numeric_limits<std::size_t>::max();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Libraries square and subtract values: beyond this size only the order is kept, so that nothing overflows inside them.
 constexpr double kLargeValue = 1e12;

@@ -158,7 +158,7 @@ Closing certify(const Prepared& prepared, const Watch& watch) {
   Closing c = simulate(prepared, true, watch);
   if (!c.judge) return c;
   if (c.judge->status != Status::done) {
-    c.warnings.push_back("the figures could not be certified: there is no other run to judge them by");
+    c.warnings.emplace_back("the figures could not be certified: there is no other run to judge them by");
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
