@@ -9,8 +9,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "base/random.h"
 #include "optimizers/backends.h"
-#include "optimizers/seeding.h"
 
 namespace softland::internal {
 namespace {
@@ -72,8 +72,8 @@ class Normals {
  public:
   explicit Normals(std::uint64_t seed) : seed_(seed) {}
   double operator()() {
-    const double radius = std::sqrt(-2 * std::log(1 - draw_uniform(seed_, Draw::normals, next_)));
-    const double angle = 2 * std::numbers::pi * draw_uniform(seed_, Draw::normals, next_ + 1);
+    const double radius = std::sqrt(-2 * std::log(1 - random_uniform(seed_, Stream::normals, next_)));
+    const double angle = 2 * std::numbers::pi * random_uniform(seed_, Stream::normals, next_ + 1);
     next_ += 2;
     return radius * std::cos(angle);
   }
