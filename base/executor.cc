@@ -74,37 +74,39 @@ class Workers {
   // Gives every worker a task that lasts until all have one: for that each must have been started.
   void start(int count) {
     permit(count);
-    struct Meeting {
-      std::mutex mutex;
-      std::condition_variable changed;
-      int missing;
-      void attend() {
-        // A worker that is busy in another loop may come too late, but it was started.
-        constexpr std::chrono::seconds patience{1};
-        std::unique_lock lock(mutex);
-        changed.wait_for(lock, patience, [this] { return missing == 0; });
-      }
-      void arrive() {
-        {
-          const std::scoped_lock lock(mutex);
-          --missing;
-        }
-        changed.notify_all();
-        attend();
-      }
-    };
-    const auto meeting = std::make_shared<Meeting>();
-    meeting->missing = count;
+    {
+      const std::scoped_lock lock(meeting_);
+      missing_ = count;
+    }
     tbb::task_arena arena(count + 1);
-    for (int k = 0; k < count; ++k) arena.enqueue([meeting] { meeting->arrive(); });
-    meeting->attend();
+    for (int k = 0; k < count; ++k) arena.enqueue([this] { meet(1); });
+    meet(0);
   }
 
-  std::mutex mutex_;
+  void meet(int arriving) {
+    // A worker that is busy in another loop may come too late, but it was started.
+    constexpr std::chrono::seconds patience{1};
+    std::unique_lock lock(meeting_);
+    missing_ -= arriving;
+    if (missing_ <= 0) all_here_.notify_all();
+    all_here_.wait_for(lock, patience, [this] { return missing_ <= 0; });
+  }
+
+  std::mutex mutex_;  // of provide()
   int count_ = 0;
   std::unique_ptr<tbb::global_control> limit_;
   tbb::task_arena kept_{1};  // oneTBB ends its threads when the last arena goes
+
+  std::mutex meeting_;
+  std::condition_variable all_here_;
+  int missing_ = 0;
 };
+
+// Makes what one thread did before visible to the next. oneTBB does so too, but the thread sanitizer cannot look into it.
+void hand_over() {
+  static std::mutex mutex;
+  const std::scoped_lock lock(mutex);
+}
 
 // Threads of the loop whose task the current thread runs; 0 outside of any.
 thread_local int threads_of_loop = 0;
@@ -136,9 +138,16 @@ class Loop {
 
   // work() on all threads of the arena, as far as there are tasks for them.
   void work_together() {
+    hand_over();
+    const auto help = [this] {
+      hand_over();
+      work();
+      hand_over();
+    };
     tbb::task_group helpers;
-    for (std::size_t k = 1; k < std::min(count_, static_cast<std::size_t>(threads_)); ++k) helpers.run([this] { work(); });
+    for (std::size_t k = 1; k < std::min(count_, static_cast<std::size_t>(threads_)); ++k) helpers.run(help);
     helpers.run_and_wait([this] { work(); });
+    hand_over();
   }
 
   // The number of tasks that were begun.

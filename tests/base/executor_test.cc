@@ -5,12 +5,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <mutex>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -270,6 +271,23 @@ TEST(RunTasks, MakeDoWithTheThreadsThatTheMachineHas) {
     };
     EXPECT_EXIT(run(), testing::ExitedWithCode(0), "150 tasks, done") << further;
   }
+}
+
+TEST(RunTasks, HaveTheirThreadsFromTheFirstLoopOn) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto run = [] {
+    run_tasks(1, 4, [](std::size_t) {});
+    limit_threads(0);
+    Crowd crowd;
+    run_tasks(50, 4, [&](std::size_t) {
+      crowd.enter();
+      static_cast<void>(crowd.wait_for(4));
+      crowd.leave();
+    });
+    std::fprintf(stderr, "%d at once", crowd.most());
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(run(), testing::ExitedWithCode(0), "4 at once");
 }
 
 }  // namespace
