@@ -141,6 +141,11 @@ Number whole_number(const char* option, const std::string& text, Number least) {
   return value;
 }
 
+// Threads, one per core unless the option says how many.
+int job_count(const std::optional<std::string>& option) {
+  return option ? whole_number("--jobs", *option, 1) : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
 // "2500" evaluations or "90 s".
 void read_budget(const std::string& text, OptimizeOptions& options) {
   const auto rule = [&](bool ok) {
@@ -215,13 +220,14 @@ void log_time_saved(const Prepared& chosen) {
 
 }  // namespace
 
-int simulate_verb(const Common& c, bool certified) {
+int simulate_verb(const Common& c, bool certified, const std::optional<std::string>& jobs_option) {
+  const int jobs = job_count(jobs_option);
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Prepared prepared = prepare(file, false, work->watch());
   const std::vector<std::string> files{"report.html", "gap.svg", "result.json", "trajectory.csv"};
   std::optional<ResultFolder> folder = claim_places(c, files);
-  const Closing closing = certified ? certify(prepared, work->watch()) : simulate(prepared, true, work->watch());
+  const Closing closing = certified ? certify(prepared, work->watch(), jobs) : simulate(prepared, true, work->watch());
   work.reset();
   const json result = result_json(prepared, closing, {.command = c.command});
   const bool interrupted = closing.metrics.status == Status::interrupted;
@@ -409,8 +415,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
     require(request.actuator == "electrostatic",
             fmt::format("--actuator {}: must be electrostatic, pzt or both", request.actuator));
   }
-  options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  if (request.jobs) options.jobs = whole_number("--jobs", *request.jobs, 1);
+  options.jobs = job_count(request.jobs);
   if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
   options.max_evaluations = default_budget(options.target, options.actuator);
   if (request.budget) read_budget(*request.budget, options);

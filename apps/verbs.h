@@ -30,7 +30,8 @@ struct OptimizeRequest {
   std::optional<std::string> jobs;    ///< default: one per core
 };
 
-int simulate_verb(const Common& common, bool certified);
+/// `jobs`: threads of a certified run; default: one per core.
+int simulate_verb(const Common& common, bool certified, const std::optional<std::string>& jobs);
 int pull_in_verb(const Common& common);
 int modes_verb(const Common& common);
 int check_verb(const Common& common);
