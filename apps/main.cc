@@ -112,6 +112,8 @@ int run(int argc, char** argv) {
   option(simulate, "--out", common.out, "FOLDER", "folder for report.html, gap.svg, result.json and trajectory.csv");
   bool certified = false;
   simulate->add_flag("--certify", certified, "errors that cover the true ones, and clouds of runs for ill-conditioned figures");
+  optional(simulate, "--jobs", request.jobs, "N",
+           "threads of --certify (default: one per core); the result does not depend on them");
   simulate->footer("Example:\n  softland simulate scenes/mem-gold.toml --set waveform.main.level=\"1.1 Vdp\" --json -");
 
   CLI::App* pull_in = add_verb("pull-in", "static and dynamic pull-in voltage and release voltage of every electrode");
@@ -208,7 +210,7 @@ int run(int argc, char** argv) {
   }
 
   try {
-    if (*simulate) return simulate_verb(common, certified);
+    if (*simulate) return simulate_verb(common, certified, request.jobs);
     if (*pull_in) return pull_in_verb(common);
     if (*modes) return modes_verb(common);
     if (*check) return check_verb(common);

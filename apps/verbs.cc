@@ -141,6 +141,11 @@ Number whole_number(const char* option, const std::string& text, Number least) {
   return value;
 }
 
+// Threads, one per core unless the option says how many.
+int job_count(const std::optional<std::string>& option) {
+  return option ? whole_number("--jobs", *option, 1) : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
 // "2500" evaluations or "90 s".
 void read_budget(const std::string& text, OptimizeOptions& options) {
   const auto rule = [&](bool ok) {
@@ -163,12 +168,14 @@ void read_budget(const std::string& text, OptimizeOptions& options) {
   }
 }
 
-// Where the shipped scenes are: beside the sources, or beside the program in an unpacked tree.
+// Where the shipped scenes are: installed with the program, in the tree it was built from, or in an unpacked tree around it.
 fs::path shipped_scene(const std::string& name) {
-  const fs::path from_source = fs::path(SOFTLAND_SCENES) / name;
   std::error_code error;
-  if (fs::exists(from_source, error)) return from_source;
-  for (fs::path up = fs::read_symlink("/proc/self/exe", error).parent_path(); up.has_relative_path(); up = up.parent_path()) {
+  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& folder : {here / SOFTLAND_INSTALLED_SCENES, fs::path(SOFTLAND_SCENES)}) {
+    if (fs::exists(folder / name, error)) return (folder / name).lexically_normal();
+  }
+  for (fs::path up = here; up.has_relative_path(); up = up.parent_path()) {
     if (fs::exists(up / "scenes" / name, error)) return up / "scenes" / name;
   }
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
@@ -213,13 +220,14 @@ void log_time_saved(const Prepared& chosen) {
 
 }  // namespace
 
-int simulate_verb(const Common& c, bool certified) {
+int simulate_verb(const Common& c, bool certified, const std::optional<std::string>& jobs_option) {
+  const int jobs = job_count(jobs_option);
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Prepared prepared = prepare(file, false, work->watch());
   const std::vector<std::string> files{"report.html", "gap.svg", "result.json", "trajectory.csv"};
   std::optional<ResultFolder> folder = claim_places(c, files);
-  const Closing closing = certified ? certify(prepared, work->watch()) : simulate(prepared, true, work->watch());
+  const Closing closing = certified ? certify(prepared, work->watch(), jobs) : simulate(prepared, true, work->watch());
   work.reset();
   const json result = result_json(prepared, closing, {.command = c.command});
   const bool interrupted = closing.metrics.status == Status::interrupted;
@@ -407,8 +415,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
     require(request.actuator == "electrostatic",
             fmt::format("--actuator {}: must be electrostatic, pzt or both", request.actuator));
   }
-  options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  if (request.jobs) options.jobs = whole_number("--jobs", *request.jobs, 1);
+  options.jobs = job_count(request.jobs);
   if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
   options.max_evaluations = default_budget(options.target, options.actuator);
   if (request.budget) read_budget(*request.budget, options);

@@ -30,15 +30,16 @@ struct OptimizeRequest {
   std::optional<std::string> jobs;    ///< default: one per core
 };
 
-int simulate_verb(const Common& common, bool certified);
+/// `jobs`: threads of a certified run; default: one per core.
+int simulate_verb(const Common& common, bool certified, const std::optional<std::string>& jobs);
 int pull_in_verb(const Common& common);
 int modes_verb(const Common& common);
 int check_verb(const Common& common);
 int effects_verb(const Common& common);
 int accuracy_verb(const Common& common);
-int optimize_verb(const Common& common, const OptimizeRequest& request);
+int optimize_verb(const Common& given, const OptimizeRequest& request);
 int new_verb(const std::string& kind);
 int export_verb(const Common& common, const std::string& result, const std::string& format);
-int report_verb(const Common& common, const std::string& result);
+int report_verb(const Common& given, const std::string& result);
 
 }  // namespace softland::apps

@@ -16,7 +16,7 @@ class Interrupted : public std::exception {
 
 struct Watch {
   const std::atomic<bool>* stop = nullptr;  ///< set from outside (Ctrl-C): the computation ends with what there is
-  /// Told often, from the thread that computes, what is being computed and which part of it is done, 0 to 1.
+  /// Told often, from the threads that compute, one at a time, what is being computed and which part of it is done, 0 to 1.
   std::function<void(std::string_view what, double part)> progress = {};
 
   [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }

@@ -3,10 +3,15 @@ include(CheckCXXSourceRuns)
 
 add_library(softland_options INTERFACE)
 # Aggregates are filled with designated initializers and rely on the defaults of what is left out.
-target_compile_options(softland_options INTERFACE -Wall -Wextra -Wshadow -Wconversion -Wno-missing-field-initializers)
+# Files that are compiled as one see each other's names, and would be warned of shadows.
+set(shadow $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>)
+target_compile_options(softland_options INTERFACE -Wall -Wextra ${shadow} -Wconversion -Wno-missing-field-initializers)
 # GCC 12 takes assignments of literals to std::string for overlapping copies (GCC PR 105651).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(softland_options INTERFACE -Wno-restrict)
+endif()
+if(CMAKE_UNITY_BUILD)  # files compiled as one see each other's names
+  target_compile_options(softland_options INTERFACE -Wno-shadow)
 endif()
 if(SOFTLAND_WERROR)
   target_compile_options(softland_options INTERFACE -Werror)
@@ -16,9 +21,12 @@ endif()
 set(CMAKE_REQUIRED_FLAGS -march=x86-64-v3)
 check_cxx_source_runs("int main() { volatile double a = 2; return __builtin_fma(a, a, -4.0) == 0.0 ? 0 : 1; }" SOFTLAND_RUNS_X86_64_V3)
 unset(CMAKE_REQUIRED_FLAGS)
+# Whoever includes our headers needs the same: Eigen aligns by it.
+set(SOFTLAND_CODE_OPTIONS)
 if(SOFTLAND_RUNS_X86_64_V3)
-  add_compile_options(-march=x86-64-v3)
+  set(SOFTLAND_CODE_OPTIONS -march=x86-64-v3)
 endif()
+add_compile_options(${SOFTLAND_CODE_OPTIONS})
 # -fno-math-errno and -fno-trapping-math change no value: they let sqrt and comparisons be vectorised.
 add_compile_options(-fno-math-errno -fno-trapping-math)
 
@@ -39,7 +47,7 @@ function(softland_offers target scope folder)
   set(view ${PROJECT_BINARY_DIR}/views/${folder})
   file(MAKE_DIRECTORY ${view})
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${view}/${folder} SYMBOLIC)
-  target_include_directories(${target} ${scope} ${view})
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${view}>)
 endfunction()
 
 # softland_library(NAME [FOLDER folder] SOURCES ... USES ...): a static library of the folder, NAME unless it is given, linked only
@@ -50,6 +58,6 @@ function(softland_library name)
     set(ARG_FOLDER ${name})
   endif()
   add_library(softland_${name} STATIC ${ARG_SOURCES})
-  target_link_libraries(softland_${name} PUBLIC softland_options ${ARG_USES})
+  target_link_libraries(softland_${name} PUBLIC $<BUILD_INTERFACE:softland_options> ${ARG_USES})
   softland_offers(softland_${name} PUBLIC ${ARG_FOLDER})
 endfunction()

@@ -25,7 +25,7 @@ void check_section_names(const SceneFile::Impl& file) {
     const internal::Section* section = internal::find_section(name.str());
     if (!section || name.str().empty()) {
       if (node.is_table()) file.fail_section(path, "unknown section" + internal::hint(name.str(), known));
-      known.push_back("title");
+      known.emplace_back("title");
       file.fail(path, "unknown key" + internal::hint(name.str(), known));
     }
   }

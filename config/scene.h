@@ -40,7 +40,7 @@ class SceneFile {
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a
   /// Table stand in the scene itself. Throws InvalidInput for a waveform outside its family's rules.
-  void set_waveform(const std::string& drive, const Waveform& waveform);
+  void set_waveform(const std::string& drive, const Waveform& given);
 
   /// The scene as TOML text: parsing it again gives the same scene, digit for digit.
   [[nodiscard]] std::string text() const;

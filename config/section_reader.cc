@@ -22,7 +22,7 @@ std::string wanted(const Key& key) {
       return "true or false";
     case KeyType::integer:
       return std::accumulate(key.words.begin(), key.words.end(), std::string("a whole number"),
-                             [](std::string all, std::string_view word) { return all + " or " + toml_string(word); });
+                             [](const std::string& all, std::string_view word) { return all + " or " + toml_string(word); });
     case KeyType::choice:
       return fmt::format("one of {}", fmt::join(key.choices, ", "));
     case KeyType::quantity:

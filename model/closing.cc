@@ -87,7 +87,7 @@ class Run {
     audit_.settle(here());
     if (parts_.touches.note(event, p)) {
       if (!model_.has_contact()) {
-        out_.warnings.push_back("no [contact] section: the run ends at first touch");
+        out_.warnings.emplace_back("no [contact] section: the run ends at first touch");
         out_.ends_at_touch = true;
         return end(Status::done);
       }

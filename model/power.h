@@ -23,7 +23,7 @@ namespace softland {
   const auto bits = std::bit_cast<std::int64_t>(x);
   const std::int64_t above = bits - low_root;                          // e in the exponent's place, then what m is above the root
   const std::int64_t mantissa = (above & 0xFFFFFFFFFFFFF) + low_root;  // m
-  const double m = std::bit_cast<double>(mantissa);
+  const auto m = std::bit_cast<double>(mantissa);
   // Shifted as an unsigned number, with a bias that is taken off again: vectors have no signed shift.
   const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
   const double e = std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);

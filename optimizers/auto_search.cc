@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "base/random.h"
 #include "optimizers/backends.h"
-#include "optimizers/seeding.h"
+#include "optimizers/sobol.h"
 
 namespace softland::internal {
 namespace {
@@ -90,7 +91,7 @@ void search(Ledger& ledger, const std::array<const Method*, kSearches>& methods,
   std::uint64_t points_sampled = 0;
   std::uint64_t searches_begun = 0;
   const auto begin_search = [&](const Method& method, const Point& start, double step) {
-    const std::uint64_t seed = draw_bits(ledger.seed(), Draw::library_seed, searches_begun++);
+    const std::uint64_t seed = random_bits(ledger.seed(), Stream::library_seed, searches_begun++);
     return Search{.method = &method, .run = {.start = start, .step = step, .seed = seed}, .best_point = start};
   };
   std::vector<Point> explored;

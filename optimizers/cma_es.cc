@@ -4,103 +4,42 @@
 // jumps. Points beyond a bound are mirrored back into the box.
 // Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, algorithm and default parameters of appendix A,
 // without negative weights.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
+#include <limits>
+#include <vector>
 
+#include "base/random.h"
 #include "optimizers/backends.h"
-#include "optimizers/seeding.h"
 
 namespace softland::internal {
 namespace {
 
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 // In units of the box; below this the spread of the points is lost in the noise of the objective.
 constexpr double kSmallestSpread = 1e-7;
-
-using Matrix = std::vector<double>;  // square, by rows
-
-/// Symmetric `a` = v diag(values) v^T by cyclic Jacobi rotations.
-void eigen_decompose(Matrix a, std::size_t n, Matrix& v, std::vector<double>& values) {
-  v.assign(n * n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) v[i * n + i] = 1;
-  constexpr int kSweeps = 50;
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    double off_diagonal = 0;
-    double diagonal = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      diagonal += a[i * n + i] * a[i * n + i];
-      for (std::size_t j = i + 1; j < n; ++j) off_diagonal += a[i * n + j] * a[i * n + j];
-    }
-    if (off_diagonal <= 1e-30 * diagonal) break;
-    for (std::size_t p = 0; p < n; ++p) {
-      for (std::size_t q = p + 1; q < n; ++q) {
-        if (a[p * n + q] == 0) continue;
-        const double theta = (a[q * n + q] - a[p * n + p]) / (2 * a[p * n + q]);
-        const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
-        const double c = 1 / std::hypot(t, 1.0);
-        const double s = t * c;
-        for (std::size_t k = 0; k < n; ++k) {
-          const double kp = a[k * n + p];
-          const double kq = a[k * n + q];
-          a[k * n + p] = c * kp - s * kq;
-          a[k * n + q] = s * kp + c * kq;
-        }
-        for (std::size_t k = 0; k < n; ++k) {
-          const double pk = a[p * n + k];
-          const double qk = a[q * n + k];
-          a[p * n + k] = c * pk - s * qk;
-          a[q * n + k] = s * pk + c * qk;
-        }
-        for (std::size_t k = 0; k < n; ++k) {
-          const double kp = v[k * n + p];
-          const double kq = v[k * n + q];
-          v[k * n + p] = c * kp - s * kq;
-          v[k * n + q] = s * kp + c * kq;
-        }
-      }
-    }
-  }
-  values.resize(n);
-  for (std::size_t i = 0; i < n; ++i) values[i] = std::max(a[i * n + i], 1e-300);
-}
 
 /// Folds the real line onto [0, 1].
 double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
-class Normals {
- public:
-  explicit Normals(std::uint64_t seed) : seed_(seed) {}
-  double operator()() {
-    const double radius = std::sqrt(-2 * std::log(1 - draw_uniform(seed_, Draw::normals, next_)));
-    const double angle = 2 * std::numbers::pi * draw_uniform(seed_, Draw::normals, next_ + 1);
-    next_ += 2;
-    return radius * std::cos(angle);
-  }
-
- private:
-  std::uint64_t seed_;
-  std::uint64_t next_ = 0;
-};
+/// Weights of the better half of lambda children, the best first; they add up to 1.
+VectorXd recombination_weights(Eigen::Index lambda) {
+  const Eigen::ArrayXd rank = Eigen::ArrayXd::LinSpaced(lambda / 2, 1, static_cast<double>(lambda / 2));
+  const VectorXd weights = std::log((static_cast<double>(lambda) + 1) / 2) - rank.log();
+  return weights / weights.sum();
+}
 
 }  // namespace
 
 RunReport run_cma_es(const Run& run, Strand& strand) {
-  const std::size_t n = run.start.size();
+  const auto n = static_cast<Eigen::Index>(run.start.size());
   const auto dimension = static_cast<double>(n);
-  const auto lambda = 4 + static_cast<std::size_t>(3 * std::log(dimension));
-  const std::size_t mu = lambda / 2;
-  std::vector<double> weights(mu);
-  for (std::size_t i = 0; i < mu; ++i) {
-    weights[i] = std::log((static_cast<double>(lambda) + 1) / 2) - std::log(static_cast<double>(i) + 1);
-  }
-  const double weight_sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  double weight_squares = 0;
-  for (double& weight : weights) {
-    weight /= weight_sum;
-    weight_squares += weight * weight;
-  }
-  const double mu_eff = 1 / weight_squares;
+  const auto lambda = 4 + static_cast<Eigen::Index>(3 * std::log(dimension));
+  const VectorXd weights = recombination_weights(lambda);
+  const double mu_eff = 1 / weights.squaredNorm();
   const double c_sigma = (mu_eff + 2) / (dimension + mu_eff + 5);
   const double d_sigma = 1 + 2 * std::max(0.0, std::sqrt((mu_eff - 1) / (dimension + 1)) - 1) + c_sigma;
   const double c_c = (4 + mu_eff / dimension) / (dimension + 4 + 2 * mu_eff / dimension);
@@ -108,75 +47,56 @@ RunReport run_cma_es(const Run& run, Strand& strand) {
   const double c_mu = std::min(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((dimension + 2) * (dimension + 2) + mu_eff));
   const double chi = std::sqrt(dimension) * (1 - 1 / (4 * dimension) + 1 / (21 * dimension * dimension));
 
-  Normals normal(run.seed);
-  std::vector<double> mean = run.start;
+  const auto evaluate = [&](const VectorXd& point) { return strand({point.data(), run.start.size()}).value; };
+  std::uint64_t drawn = 0;
+  const auto normal = [&] { return random_normal(run.seed, Stream::normals, drawn++); };
+  VectorXd mean = VectorXd::Map(run.start.data(), n);
   double sigma = run.step;
-  Matrix covariance(n * n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) covariance[i * n + i] = 1;
-  Matrix axes = covariance;
-  std::vector<double> lengths(n, 1.0);
-  std::vector<double> path_sigma(n, 0.0);
-  std::vector<double> path_c(n, 0.0);
+  // The points lie about the mean as sigma axes diag(lengths) z does, with z from the standard normal distribution. The
+  // covariance without sigma is axes diag(lengths)^2 axes^T; its lower triangle is kept.
+  MatrixXd covariance = MatrixXd::Identity(n, n), axes = covariance;
+  VectorXd lengths = VectorXd::Ones(n), path_sigma = VectorXd::Zero(n), path_c = path_sigma;
+  Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(n);
 
   struct Child {
-    std::vector<double> step;  // (x - mean) / sigma
+    VectorXd step;  // (point - mean) / sigma
     double value;
   };
-  std::vector<Child> children(lambda);
+  std::vector<Child> children(static_cast<std::size_t>(lambda));
   strand.begin_search();
   try {
-    strand(mean);
+    evaluate(mean);
     for (long generation = 1;; ++generation) {
       for (Child& child : children) {
-        child.step.assign(n, 0.0);
-        for (std::size_t k = 0; k < n; ++k) {
-          const double z = normal() * lengths[k];
-          for (std::size_t i = 0; i < n; ++i) child.step[i] += axes[i * n + k] * z;
-        }
-        Point point(n);
-        for (std::size_t i = 0; i < n; ++i) {
-          point[i] = mirror(mean[i] + sigma * child.step[i]);
-          child.step[i] = (point[i] - mean[i]) / sigma;
-        }
-        child.value = strand(point).value;
+        const VectorXd z = VectorXd::NullaryExpr(n, normal);
+        const VectorXd point = (mean + sigma * axes * lengths.cwiseProduct(z)).unaryExpr(&mirror);
+        child = {.step = (point - mean) / sigma, .value = evaluate(point)};
       }
       std::stable_sort(children.begin(), children.end(), [](const Child& a, const Child& b) { return a.value < b.value; });
 
-      std::vector<double> move(n, 0.0);
-      for (std::size_t j = 0; j < mu; ++j) {
-        for (std::size_t i = 0; i < n; ++i) move[i] += weights[j] * children[j].step[i];
-      }
-      for (std::size_t i = 0; i < n; ++i) mean[i] = std::clamp(mean[i] + sigma * move[i], 0.0, 1.0);
+      VectorXd move = VectorXd::Zero(n);
+      for (Eigen::Index j = 0; j < weights.size(); ++j) move += weights[j] * children[static_cast<std::size_t>(j)].step;
+      mean = (mean + sigma * move).cwiseMax(0.0).cwiseMin(1.0);
 
-      double path_length = 0;
-      std::vector<double> whitened(n, 0.0);
-      for (std::size_t k = 0; k < n; ++k) {
-        double along = 0;
-        for (std::size_t i = 0; i < n; ++i) along += axes[i * n + k] * move[i];
-        for (std::size_t i = 0; i < n; ++i) whitened[i] += axes[i * n + k] * along / lengths[k];
-      }
-      for (std::size_t i = 0; i < n; ++i) {
-        path_sigma[i] = (1 - c_sigma) * path_sigma[i] + std::sqrt(c_sigma * (2 - c_sigma) * mu_eff) * whitened[i];
-        path_length += path_sigma[i] * path_sigma[i];
-      }
-      path_length = std::sqrt(path_length);
+      const VectorXd whitened = axes * (axes.transpose() * move).cwiseQuotient(lengths);
+      path_sigma = (1 - c_sigma) * path_sigma + std::sqrt(c_sigma * (2 - c_sigma) * mu_eff) * whitened;
       const double settled = std::sqrt(1 - std::pow(1 - c_sigma, 2.0 * static_cast<double>(generation)));
-      const bool stalled = path_length / settled >= (1.4 + 2 / (dimension + 1)) * chi;
-      for (std::size_t i = 0; i < n; ++i) {
-        path_c[i] = (1 - c_c) * path_c[i] + (stalled ? 0.0 : std::sqrt(c_c * (2 - c_c) * mu_eff)) * move[i];
-      }
-      const double keep = 1 - c_1 - c_mu + (stalled ? c_1 * c_c * (2 - c_c) : 0.0);
-      for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t k = 0; k < n; ++k) {
-          double rank_mu = 0;
-          for (std::size_t j = 0; j < mu; ++j) rank_mu += weights[j] * children[j].step[i] * children[j].step[k];
-          covariance[i * n + k] = keep * covariance[i * n + k] + c_1 * path_c[i] * path_c[k] + c_mu * rank_mu;
-        }
-      }
-      sigma *= std::exp(std::min(1.0, c_sigma / d_sigma * (path_length / chi - 1)));
-      eigen_decompose(covariance, n, axes, lengths);
-      for (double& length : lengths) length = std::sqrt(length);
-      const double spread = sigma * *std::max_element(lengths.begin(), lengths.end());
+      const bool stalled = path_sigma.norm() / settled >= (1.4 + 2 / (dimension + 1)) * chi;
+      path_c = (1 - c_c) * path_c + (stalled ? 0.0 : std::sqrt(c_c * (2 - c_c) * mu_eff)) * move;
+
+      covariance *= 1 - c_1 - c_mu + (stalled ? c_1 * c_c * (2 - c_c) : 0.0);
+      auto lower = covariance.selfadjointView<Eigen::Lower>();
+      lower.rankUpdate(path_c, c_1);
+      for (Eigen::Index j = 0; j < weights.size(); ++j)
+        lower.rankUpdate(children[static_cast<std::size_t>(j)].step, c_mu * weights[j]);
+      eigen.compute(covariance);
+      axes = eigen.eigenvectors();
+      // Eigenvalues that are smaller still are rounding errors of the largest.
+      const double smallest = std::numeric_limits<double>::epsilon() * eigen.eigenvalues().maxCoeff();
+      lengths = eigen.eigenvalues().cwiseMax(smallest).cwiseSqrt();
+
+      sigma *= std::exp(std::min(1.0, c_sigma / d_sigma * (path_sigma.norm() / chi - 1)));
+      const double spread = sigma * lengths.maxCoeff();
       if (!(spread > kSmallestSpread)) return {.converged = true, .message = "CMA-ES: points have drawn together"};
       if (spread > 2) sigma *= 2 / spread;
     }

@@ -6,16 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <exception>
-#include <system_error>
-#include <thread>
 
-#include "optimizers/seeding.h"
+#include "base/executor.h"
+#include "base/random.h"
 
 namespace softland::internal {
 namespace {
 
 constexpr std::size_t kNoTask = std::numeric_limits<std::size_t>::max();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Libraries square and subtract values: beyond this size only the order is kept, so that nothing overflows inside them.
 constexpr double kLargeValue = 1e12;
@@ -38,7 +36,7 @@ constexpr long kCirclesAllowed = 1000;
 
 std::size_t PointHash::operator()(const Point& point) const noexcept {
   std::uint64_t bits = 0;
-  for (const double coordinate : point) bits = draw_bits(bits, Draw::library_seed, std::bit_cast<std::uint64_t>(coordinate));
+  for (const double coordinate : point) bits = random_bits(bits, Stream::library_seed, std::bit_cast<std::uint64_t>(coordinate));
   return static_cast<std::size_t>(bits);
 }
 
@@ -242,29 +240,16 @@ long Ledger::run(const std::vector<Task>& tasks) {
   }
 
   target_task_ = kNoTask;
-  std::atomic<std::size_t> next_task = 0;
-  const auto work = [&] {
-    for (std::size_t k = next_task++; k < strands.size(); k = next_task++) {
-      try {
-        if (!strands[k].over()) tasks[k].body(strands[k]);
-      } catch (const Cut&) {
-      } catch (const std::exception& exception) {
-        const std::scoped_lock lock(report_mutex_);
-        failure_ = exception.what();
-        end_from_outside(Termination::failure);
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> helpers;
-    const std::size_t threads = std::min(strands.size(), static_cast<std::size_t>(options_.jobs));
+  run_tasks(strands.size(), options_.jobs, [&](std::size_t k) {
     try {
-      while (helpers.size() + 1 < threads) helpers.emplace_back(work);
-    } catch (const std::system_error&) {
-      // The machine is out of threads: those there are, at least this one, do the work.
+      if (!strands[k].over()) tasks[k].body(strands[k]);
+    } catch (const Cut&) {
+    } catch (const std::exception& exception) {
+      const std::scoped_lock lock(report_mutex_);
+      failure_ = exception.what();
+      end_from_outside(Termination::failure);
     }
-    work();
-  }
+  });
 
   const long before = evaluations_;
   settle(strands);

@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include "base/random.h"
 #include "base/require.h"
 #include "optimizers/auto_search.h"
 #include "optimizers/backends.h"
 #include "optimizers/ledger.h"
 #include "optimizers/problem.h"
-#include "optimizers/seeding.h"
+#include "optimizers/sobol.h"
 
 namespace softland {
 namespace internal {
@@ -57,7 +58,7 @@ RunReport search_single_method(Ledger& ledger, const Method& method) {
     for (std::uint64_t k = 0; !strand.over() && idle_runs < kIdleRunsAllowed; ++k) {
       const Run run{
           .start = k < given ? ledger.starts()[k] : sobol_points(ledger.seed(), ledger.dimension(), k - given, 1).front(),
-          .seed = draw_bits(ledger.seed(), Draw::library_seed, k)};
+          .seed = random_bits(ledger.seed(), Stream::library_seed, k)};
       const long before = strand.evaluations();
       if (method.reach == Reach::global) {
         report = run_method(method, run, strand);

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <nlopt.hpp>
 
+#include "base/random.h"
 #include "optimizers/backends.h"
-#include "optimizers/seeding.h"
 
 namespace softland::internal {
 namespace {
@@ -69,7 +69,7 @@ RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
   std::vector<double> x = run.start;
   if (algorithm == nlopt::GN_DIRECT_L) {
     for (std::size_t i = 0; i < x.size(); ++i) {
-      callback.bent_middle.push_back(0.4 + 0.2 * draw_uniform(run.seed, Draw::skew, i));
+      callback.bent_middle.push_back(0.4 + 0.2 * random_uniform(run.seed, Stream::skew, i));
     }
   }
 

@@ -43,6 +43,7 @@ std::string build_id() {
         for (int i = 0; i < object->dlpi_phnum; ++i) {
           const auto& segment = object->dlpi_phdr[i];
           if (segment.p_type != PT_NOTE) continue;
+          // NOLINTNEXTLINE(performance-no-int-to-ptr): the loader tells addresses as numbers
           const auto* at = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
           const char* end = at + segment.p_memsz;
           while (at + sizeof(ElfW(Nhdr)) <= end) {
@@ -51,7 +52,7 @@ std::string build_id() {
             const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
             const char* name = at + sizeof note;
             const char* content = name + padded(note.n_namesz);
-            if (note.n_type == NT_GNU_BUILD_ID && std::string_view(name, note.n_namesz) == std::string_view("GNU", 4)) {
+            if (note.n_type == NT_GNU_BUILD_ID && std::string_view(name, note.n_namesz) == std::string_view("GNU\0", 4)) {
               for (const char* byte = content; byte < content + note.n_descsz; ++byte) {
                 *static_cast<std::string*>(found) += fmt::format("{:02x}", static_cast<unsigned char>(*byte));
               }

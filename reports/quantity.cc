@@ -142,7 +142,7 @@ std::string error_of(double value, double error, std::string_view unit, int digi
 }
 
 std::string given_quantity(double value, std::string_view unit, int digits) {
-  const std::string text = quantity(value, unit, digits);
+  std::string text = quantity(value, unit, digits);
   const std::size_t end = text.find(no_break_space);
   if (end == std::string::npos || text.starts_with('<')) return text;
   return without_trailing_zeros(text.substr(0, end)) + text.substr(end);

@@ -154,11 +154,11 @@ std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, 
   return gentlest(first.rebounds.size());
 }
 
-Closing certify(const Prepared& prepared, const Watch& watch) {
+Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
   Closing c = simulate(prepared, true, watch);
   if (!c.judge) return c;
   if (c.judge->status != Status::done) {
-    c.warnings.push_back("the figures could not be certified: there is no other run to judge them by");
+    c.warnings.emplace_back("the figures could not be certified: there is no other run to judge them by");
     return c;
   }
   const std::vector<Signal> signals = prepared.signals();
@@ -172,7 +172,7 @@ Closing certify(const Prepared& prepared, const Watch& watch) {
   if (std::isfinite(c.metrics.hold_force))
     better.hold_force = hold_force(Switch(prepared.scene.device, c.judge->quadrature), signals);
   const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);
-  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {}, watch);
+  std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, watch);
   if (watch.stopped()) {
     c.metrics.status = Status::interrupted;
     c.warnings.insert(c.warnings.begin(), "interrupted before the figures were certified");

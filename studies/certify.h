@@ -53,6 +53,7 @@ inline constexpr double error_safety = 2;
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);
 
 /// Runs the scene's own waveforms with simulate() and certifies the figures; not those of a run, or of a judge, that is not done.
-[[nodiscard]] Closing certify(const Prepared& prepared, const Watch& watch = {});
+/// `jobs`: threads for the cloud; does not change the result.
+[[nodiscard]] Closing certify(const Prepared& prepared, const Watch& watch = {}, int jobs = 1);
 
 }  // namespace softland

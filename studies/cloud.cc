@@ -2,28 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
-#include "optimizers/seeding.h"
+#include "base/executor.h"
+#include "base/random.h"
 
 namespace softland {
 
 std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const Signal> drives, const ClosingOptions& closing,
                                            const CloudOptions& options, const Watch& watch) {
-  std::vector<Trajectory> runs;
-  std::uint64_t sample = 0;
-  for (int i = 0; i < options.runs; ++i) {
-    watch.tell("cloud of perturbed closings", static_cast<double>(i) / options.runs);
+  std::vector<Trajectory> runs(static_cast<std::size_t>(options.runs));
+  std::mutex telling;
+  int done = 0;
+  const auto run = [&](std::size_t i) {
+    std::uint64_t counter = 2 * drives.size() * i;
     std::vector<Signal> perturbed;
     for (const Signal& drive : drives) {
-      const double size = internal::draw_uniform(options.seed, internal::Draw::perturbation, sample++);
-      const double sign = internal::draw_uniform(options.seed, internal::Draw::perturbation, sample++);
+      const double size = random_uniform(options.seed, Stream::perturbation, counter++);
+      const double sign = random_uniform(options.seed, Stream::perturbation, counter++);
       const double change = options.smallest * std::pow(options.largest / options.smallest, size);
       perturbed.push_back(scaled(drive, 1 + (sign < 0.5 ? -change : change)));
     }
-    Trajectory run = simulate_closing(device, perturbed, closing);
-    if (run.status == Status::interrupted) break;
-    runs.push_back(std::move(run));
-  }
+    runs[i] = simulate_closing(device, perturbed, closing);
+    const std::scoped_lock lock(telling);
+    watch.tell("cloud of perturbed closings", static_cast<double>(++done) / options.runs);
+  };
+  runs.resize(run_tasks(runs.size(), options.jobs, run, closing.stop));
+  const auto interrupted = [](const Trajectory& t) { return t.status == Status::interrupted; };
+  runs.erase(std::find_if(runs.begin(), runs.end(), interrupted), runs.end());
   return runs;
 }
 

@@ -18,9 +18,12 @@ struct CloudOptions {
   int runs = 16;
   double smallest = 1e-9, largest = 1e-7;  ///< relative change of every drive's levels, of either sign; between them by decades
   std::uint64_t seed = 1;
+  int jobs = 1;  ///< threads; does not change the runs
 };
 
-/// The runs in order: a function of the arguments alone. Those that `closing.stop` ends are left out.
+/// The runs in order: a function of the arguments alone, but for those that `closing.stop` ends, which are left out with all
+/// after the first of them. An observer of `closing` is called from several threads at once when jobs > 1; `watch` is told from
+/// one at a time.
 [[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const Signal> drives,
                                                          const ClosingOptions& closing, const CloudOptions& options = {},
                                                          const Watch& watch = {});

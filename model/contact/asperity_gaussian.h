@@ -71,7 +71,7 @@ class GaussianTail {
     if constexpr (requires { h.value; }) {
       return nearest(h.value);
     } else {
-      return static_cast<std::size_t>((h - first) / spacing + 0.5);
+      return static_cast<std::size_t>((h - first) / spacing + 0.5);  // NOLINT(bugprone-incorrect-roundings): never negative
     }
   }
 

@@ -153,6 +153,7 @@ TEST_F(BadInput, Searches) {
       {search({"--budget", "90 m"}), "--budget 90 m" + budget},
       {search({"--budget", "0 s"}), "--budget 0 s" + budget},
       {search({"--budget", ""}), "--budget ''" + budget},
+      {{"simulate", "gold.toml", "--certify", "--jobs", "0"}, "--jobs 0: must be a whole number from 1 on"},
       {search({"--jobs", "0"}), "--jobs 0: must be a whole number from 1 on"},
       {search({"--jobs", "-1"}), "--jobs -1: must be a whole number from 1 on"},
       {search({"--jobs", "two"}), "--jobs two: must be a whole number from 1 on"},

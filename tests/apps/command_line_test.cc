@@ -168,6 +168,19 @@ TEST(Simulate, CertifiesItsFigures) {
   EXPECT_EQ(here.run({"simulate", "gold.toml", "--set", "waveform.main.level=3 V", "--certify"}).status, 4);
 }
 
+TEST(Simulate, CertifiesTheSameOnAnyNumberOfThreads) {
+  const Workplace here;
+  const auto certified = [&](const char* jobs) {
+    const Outcome o = here.run({"simulate", "gold.toml", "--certify", "--jobs", jobs, "--json", "-"});
+    EXPECT_EQ(o.status, 0) << o.err;
+    json j = json::parse(o.out);
+    j.erase("command");
+    j["work"].erase("wall_s");
+    return j;
+  };
+  EXPECT_EQ(certified("1"), certified("3"));
+}
+
 TEST(PullIn, PrintsTheAgreedJson) {
   const Workplace here;
   const Outcome o = here.run({"pull-in", "gold.toml", "--quiet", "--json", "-"});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <set>
 
@@ -26,6 +27,34 @@ TEST(Cloud, IsAFunctionOfItsArgumentsAlone) {
   EXPECT_NE(times, first_touches({.runs = 4, .seed = 2}));
   const std::vector<double> all = first_touches({});
   EXPECT_EQ(std::set<double>(all.begin(), all.end()).size(), 16U) << "one drive is enough for as many runs";
+}
+
+TEST(Cloud, IsTheSameForAnyNumberOfJobs) {
+  const std::vector<double> alone = first_touches({});
+  for (const int jobs : {2, 3, 8}) EXPECT_EQ(first_touches({.jobs = jobs}), alone) << jobs;
+}
+
+TEST(Cloud, AskedToStopKeepsTheRunsThatAreComplete) {
+  const Prepared p = prepare(gold({"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V", "simulate.duration=40 us"}));
+  const auto runs = [&](int jobs, std::atomic<bool>& stop, const Watch& watch) {
+    return perturbed_closings(p.device, p.signals(), {.duration = p.duration, .tolerance = 1e-10, .stop = &stop}, {.jobs = jobs},
+                              watch);
+  };
+  for (const int jobs : {1, 2, 8}) {
+    std::atomic<bool> stop = false;
+    int told = 0;
+    const Watch watch{.progress = [&](std::string_view, double part) {
+      EXPECT_GT(part, 0);
+      EXPECT_LE(part, 1);
+      if (++told == 3) stop = true;
+    }};
+    const std::vector<Trajectory> found = runs(jobs, stop, watch);
+    EXPECT_LT(found.size(), 16u) << jobs;
+    if (jobs == 1) {
+      EXPECT_EQ(found.size(), 3u);
+    }
+    for (const Trajectory& t : found) EXPECT_EQ(t.status, Status::done);
+  }
 }
 
 // A higher step closes sooner: d ln t_i / d ln V is -1.6 at this level.

@@ -84,7 +84,7 @@ TEST(Prepare, RefusesWhatNoComputerWouldSeeTheEndOf) {
     return file;
   };
   EXPECT_EQ(refusal([&] { (void)prepare(with({"waveform.main.frequency=1e15 Hz"})); }),
-            "--set waveform.main.frequency=1e15 Hz: makes 6e+11 periods in the window of 600 us; there may be 100000");
+            "--set waveform.main.frequency=1e15 Hz: makes 6e11 periods in the window of 600 us; there may be 100000");
   EXPECT_THAT(refusal([&] { (void)prepare(with({"waveform.main.angular_frequency=1e15 rad/s"})); }),
               testing::StartsWith("--set waveform.main.angular_frequency=1e15 rad/s: makes "));
   for (const char* quick : {"waveform.main.frequency=100 MHz", "waveform.main.end=1 ns"})

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "base/random.h"
 #include "base/require.h"
 #include "model/constants.h"
 #include "model/pull_in.h"
-#include "optimizers/seeding.h"
 #include "studies/prepared.h"
 
 namespace softland::test {
@@ -21,11 +21,9 @@ namespace {
 class Dice {
  public:
   Dice(std::uint64_t seed, std::uint64_t index, std::uint64_t draw)
-      : key_(internal::draw_bits(internal::draw_bits(seed, internal::Draw::scene, index), internal::Draw::scene, draw)) {}
+      : key_(random_bits(random_bits(seed, Stream::scene, index), Stream::scene, draw)) {}
 
-  double between(double low, double high) {
-    return low + (high - low) * internal::draw_uniform(key_, internal::Draw::scene, count_++);
-  }
+  double between(double low, double high) { return low + (high - low) * random_uniform(key_, Stream::scene, count_++); }
   double log_between(double low, double high) { return low * std::pow(high / low, between(0, 1)); }
   double about() { return log_between(1 / 1.3, 1.3); }  ///< a factor within 30 %
   bool chance(double probability) { return between(0, 1) < probability; }

@@ -1,0 +1,190 @@
+#include "base/executor.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <latch>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+constexpr int most_threads = 256;  // oneTBB has no more on machines of up to 64 cores
+
+// How many further threads the machine gives, `wanted` at most.
+int threads_available(int wanted) {
+  std::latch counted(1);
+  std::vector<std::jthread> probes;
+  probes.reserve(static_cast<std::size_t>(wanted));
+  try {
+    while (static_cast<int>(probes.size()) < wanted) probes.emplace_back([&] { counted.wait(); });
+  } catch (const std::system_error&) {
+    // The machine is out of threads.
+  }
+  counted.count_down();
+  return static_cast<int>(probes.size());
+}
+
+// The threads of oneTBB. It ends the process where it cannot start a thread that it is permitted, and it starts them late, one by
+// one. So it is permitted only as many as the machine has just given, and made to start them all at once.
+class Workers {
+ public:
+  // Its oneTBB threads end with the process, not before.
+  static Workers& instance() {
+    static auto* const workers = new Workers;
+    return *workers;
+  }
+
+  // Sees to it that there are `wanted` threads besides the calling one, or as many as the machine gives. Returns how many.
+  int provide(int wanted) {
+    const std::scoped_lock lock(mutex_);
+    if (wanted > count_) {
+      if (const int more = threads_available(wanted - count_); more > 0) start(count_ + more);
+      wanted = std::min(wanted, count_);
+    }
+    return wanted;
+  }
+
+ private:
+  Workers() {
+    kept_.initialize();
+    permit(0);
+  }
+
+  void permit(int count) {
+    count_ = count;
+    // The lowest of several limits holds, so the new one acts when the old one goes.
+    limit_ =
+        std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count) + 1);
+  }
+
+  // Gives every worker a task that lasts until all have one: for that each must have been started.
+  void start(int count) {
+    permit(count);
+    {
+      const std::scoped_lock lock(meeting_);
+      missing_ = count;
+    }
+    tbb::task_arena arena(count + 1);
+    for (int k = 0; k < count; ++k) arena.enqueue([this] { meet(1); });
+    meet(0);
+  }
+
+  void meet(int arriving) {
+    // A worker that is busy in another loop may come too late, but it was started.
+    constexpr std::chrono::seconds patience{1};
+    std::unique_lock lock(meeting_);
+    missing_ -= arriving;
+    if (missing_ <= 0) all_here_.notify_all();
+    all_here_.wait_for(lock, patience, [this] { return missing_ <= 0; });
+  }
+
+  std::mutex mutex_;  // of provide()
+  int count_ = 0;
+  std::unique_ptr<tbb::global_control> limit_;
+  tbb::task_arena kept_{1};  // oneTBB ends its threads when the last arena goes
+
+  std::mutex meeting_;
+  std::condition_variable all_here_;
+  int missing_ = 0;
+};
+
+// Makes what one thread did before visible to the next. oneTBB does so too, but the thread sanitizer cannot look into it.
+void hand_over() {
+  static std::mutex mutex;
+  const std::scoped_lock lock(mutex);
+}
+
+// Threads of the loop whose task the current thread runs; 0 outside of any.
+thread_local int threads_of_loop = 0;
+
+class Loop {
+ public:
+  Loop(std::size_t count, int threads, const std::function<void(std::size_t)>& task, const std::atomic<bool>* stop)
+      : count_(count), threads_(threads), task_(task), stop_(stop), end_(count) {}
+
+  // Runs tasks until none is left: what every thread of the loop does. Tasks are taken in their order, so that all before one
+  // that throws have been begun.
+  void work() {
+    const int outer = std::exchange(threads_of_loop, threads_);
+    while (stop_ == nullptr || !stop_->load(std::memory_order_relaxed)) {
+      const std::size_t k = next_++;
+      if (k >= end_) break;
+      try {
+        task_(k);
+      } catch (...) {
+        const std::scoped_lock lock(mutex_);
+        if (k < end_) {
+          end_ = k;
+          failure_ = std::current_exception();
+        }
+      }
+    }
+    threads_of_loop = outer;
+  }
+
+  // work() on all threads of the arena, as far as there are tasks for them.
+  void work_together() {
+    hand_over();
+    const auto help = [this] {
+      hand_over();
+      work();
+      hand_over();
+    };
+    tbb::task_group helpers;
+    for (std::size_t k = 1; k < std::min(count_, static_cast<std::size_t>(threads_)); ++k) helpers.run(help);
+    helpers.run_and_wait([this] { work(); });
+    hand_over();
+  }
+
+  // The number of tasks that were begun.
+  [[nodiscard]] std::size_t result() const {
+    if (failure_) std::rethrow_exception(failure_);
+    return std::min(next_.load(), count_);
+  }
+
+ private:
+  std::size_t count_;
+  int threads_;
+  const std::function<void(std::size_t)>& task_;
+  const std::atomic<bool>* stop_;
+  std::atomic<std::size_t> next_ = 0, end_;
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+std::size_t run_tasks(std::size_t count, int jobs, const std::function<void(std::size_t)>& task, const std::atomic<bool>* stop) {
+  require(jobs >= 1, "jobs = " + std::to_string(jobs) + " must be at least 1");
+  if (count == 0) return 0;
+  const bool nested = threads_of_loop > 0;
+  const int threads = nested     ? std::min(jobs, threads_of_loop)
+                      : jobs > 1 ? 1 + Workers::instance().provide(std::min(jobs, most_threads) - 1)
+                                 : 1;
+  Loop loop(count, threads, task, stop);
+  if (threads == 1) {
+    loop.work();
+  } else if (nested) {
+    // While it waits, the thread must not begin a task of the outer loop inside its own.
+    tbb::this_task_arena::isolate([&] { loop.work_together(); });
+  } else {
+    tbb::task_arena(threads).execute([&] { loop.work_together(); });
+  }
+  return loop.result();
+}
+
+}  // namespace softland

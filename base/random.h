@@ -1,0 +1,43 @@
+// Random numbers without a state: every number is a function of (seed, stream, counter), so that neither the order in which
+// numbers are drawn nor the number of threads can change them.
+//
+// The generator is SplitMix64: output n of seed s is mix(s + (n + 1) gamma) with a fixed odd gamma, which makes any output as
+// cheap as the next. A stream is the SplitMix64 sequence whose seed is an output of the sequence of the user's seed. Each
+// sequence has a period of 2^64; those of different streams may overlap, by chance, as much as random ones.
+// Sources: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, section 4 (sequence
+// and splitting); D. Stafford, "Better bit mixing", 2011, variant 13 (mix).
+#pragma once
+
+#include <cstdint>
+
+namespace softland {
+
+/// What a number is drawn for. Each purpose has a number of its own, which keeps the streams of one seed apart; none may change,
+/// or the same seed gives other results than before.
+enum class Stream : std::uint64_t { sobol_shift = 1, skew = 2, library_seed = 3, normals = 4, scene = 5, perturbation = 6 };
+
+/// Output number n, counted from 0, of SplitMix64 with this seed.
+[[nodiscard]] constexpr std::uint64_t split_mix_64(std::uint64_t seed, std::uint64_t n) {
+  std::uint64_t bits = seed + (n + 1) * 0x9e3779b97f4a7c15u;  // 2^64 divided by the golden ratio
+  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+  return bits ^ (bits >> 31);
+}
+
+/// 64 random bits; `counter` numbers the draws of a stream.
+[[nodiscard]] constexpr std::uint64_t random_bits(std::uint64_t seed, Stream stream, std::uint64_t counter) {
+  return split_mix_64(split_mix_64(split_mix_64(seed, 0), static_cast<std::uint64_t>(stream)), counter);
+}
+
+/// A multiple of 2^-53 in [0, 1) from 64 random bits.
+[[nodiscard]] constexpr double to_unit_interval(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
+
+/// Uniform in [0, 1).
+[[nodiscard]] constexpr double random_uniform(std::uint64_t seed, Stream stream, std::uint64_t counter) {
+  return to_unit_interval(random_bits(seed, stream, counter));
+}
+
+/// From the standard normal distribution: its quantile at one of 2^52 equidistant probabilities, so that the size is at most 8.2.
+[[nodiscard]] double random_normal(std::uint64_t seed, Stream stream, std::uint64_t counter);
+
+}  // namespace softland

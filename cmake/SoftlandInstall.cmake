@@ -1,0 +1,51 @@
+# `cmake --install BUILD --prefix PREFIX`: the program with its scenes, manual page and completions; the libraries with their headers,
+# which find each other from include/softland; a CMake package and a pkg-config file. Everything is found relative to its own place.
+include(CMakePackageConfigHelpers)
+
+set(libraries base integrators waveforms model objectives config optimizers studies reports)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
+
+install(TARGETS softland EXPORT softland)
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/softland)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md")
+install(FILES reports/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.uPlot)
+
+# What the program says of itself with --help is written as a manual page and as completions when it is installed.
+foreach(made man_page:softland.1:${CMAKE_INSTALL_MANDIR}/man1 bash_completion:softland:${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  string(REPLACE ":" ";" made ${made})
+  list(GET made 0 maker)
+  list(GET made 1 file)
+  list(GET made 2 folder)
+  set(file ${PROJECT_BINARY_DIR}/from_help/${file})
+  install(CODE "
+    file(MAKE_DIRECTORY \"${PROJECT_BINARY_DIR}/from_help\")
+    execute_process(COMMAND sh \"${PROJECT_SOURCE_DIR}/cmake/${maker}.sh\" \"$<TARGET_FILE:softland>\"
+                    OUTPUT_FILE \"${file}\" COMMAND_ERROR_IS_FATAL ANY)")
+  install(FILES ${file} DESTINATION ${folder})
+endforeach()
+
+foreach(name ${libraries})
+  set_target_properties(softland_${name} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS softland_${name} EXPORT softland INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
+  install(DIRECTORY ${name} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland
+          FILES_MATCHING PATTERN "*.h" PATTERN page EXCLUDE PATTERN uplot EXCLUDE)
+endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/generated/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
+
+install(EXPORT softland NAMESPACE softland:: FILE softlandTargets.cmake DESTINATION ${package_folder})
+configure_package_config_file(cmake/softlandConfig.cmake.in ${PROJECT_BINARY_DIR}/package/softlandConfig.cmake
+                              INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/softlandConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/package/softlandConfig.cmake ${PROJECT_BINARY_DIR}/package/softlandConfigVersion.cmake
+              cmake/SoftlandDependencies.cmake DESTINATION ${package_folder})
+
+# Each library after those that use it.
+set(link_line ${libraries})
+list(REVERSE link_line)
+list(TRANSFORM link_line PREPEND -lsoftland_)
+list(JOIN link_line " " SOFTLAND_LINK_LINE)
+list(JOIN SOFTLAND_CODE_OPTIONS " " SOFTLAND_CODE_OPTIONS_LINE)
+file(RELATIVE_PATH SOFTLAND_PREFIX_FROM_PKGCONFIG ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(cmake/softland.pc.in ${PROJECT_BINARY_DIR}/package/softland.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/package/softland.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

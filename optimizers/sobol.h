@@ -1,0 +1,15 @@
+// Points spread evenly over a box, any of them without those before it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace softland::internal {
+
+/// `count` points of a Sobol sequence in [0, 1)^dimension, from number `first` on, shifted digit by digit (exclusive or) by the
+/// seed: each point is uniform over the box, and together they keep the even spread of the sequence.
+[[nodiscard]] std::vector<std::vector<double>> sobol_points(std::uint64_t seed, std::size_t dimension, std::uint64_t first,
+                                                            std::size_t count);
+
+}  // namespace softland::internal

@@ -1,0 +1,14 @@
+// A user's program against the installed libraries: when does the switch of a scene first touch, and where is a parabola lowest?
+#include <cstdio>
+
+#include "optimizers/problem.h"
+#include "studies/simulate.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const auto closing = softland::simulate(softland::prepare(softland::SceneFile::load(argv[1])), false);
+  std::printf("first contact after %.1f us\n", 1e6 * closing.metrics.initial_contact_time);
+  const auto lowest = softland::minimize(
+      {.variables = {{"x", 0, 1}}, .objective = [](std::span<const double> x) { return (x[0] - 0.25) * (x[0] - 0.25); }}, {});
+  return closing.metrics.status == softland::Status::done && lowest.value < 1e-6 ? 0 : 1;
+}
