@@ -102,16 +102,21 @@ Waveform read_rows(const SectionReader& in, std::string_view drive) {
   }
 }
 
+void read_list(const SectionReader& in, std::string_view key, Meaning meaning, const References& to, std::vector<double>& list) {
+  list = meaning == Meaning::level ? volts(in.quantities(key), to.pull_in) : in.numbers(key);
+}
+
 template <class Family>
 Waveform read_parameters(const SectionReader& in, const References& to) {
   Family waveform;
   double base = 0;  // the level before a swing
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
-    if (const auto* list = std::get_if<std::vector<double> Family::*>(&p.member)) {
-      waveform.*(*list) = p.meaning == Meaning::level ? volts(in.quantities(p.name), to.pull_in) : in.numbers(p.name);
+    const auto* one = std::get_if<double Family::*>(&p.member);
+    if (one == nullptr) {
+      read_list(in, p.name, p.meaning, to, waveform.*std::get<std::vector<double> Family::*>(p.member));
       continue;
     }
-    double& value = waveform.*std::get<double Family::*>(p.member);
+    double& value = waveform.*(*one);
     if (p.meaning == Meaning::level) {
       value = base = volts(in.quantities(p.name).front(), to.pull_in);
     } else if (p.meaning == Meaning::swing) {

@@ -47,6 +47,7 @@ void read_sections(Scene& scene, const SceneFile::Impl& file) {
       continue;
     }
     for (const std::string& name : file.names_in(std::string(section.name))) {
+      internal::check_drive_name(file, name);
       read_section(scene, section, SectionReader(file, section.name, name), name);
     }
   }

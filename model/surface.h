@@ -30,8 +30,8 @@ namespace softland {
 
 /// What the faces add to the bending rigidity [N m^2].
 [[nodiscard]] inline double surface_rigidity(const Surface& surface, const Structure& s) {
-  const double sides = surface.faces == SurfaceFaces::all ? s.thickness / 3 : 0;
-  return surface.elastic_modulus * s.thickness * s.thickness / 2 * (s.width + sides);
+  const double flanks = surface.faces == SurfaceFaces::all ? s.thickness / 3 : 0;
+  return surface.elastic_modulus * s.thickness * s.thickness / 2 * (s.width + flanks);
 }
 
 /// Why the device cannot have its `surface`; empty when it can.

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "config/drives.h"
 #include "config/schema/sections.h"
 #include "config/section_reader.h"
 #include "model/forces/electrostatic.h"
@@ -11,8 +10,7 @@ namespace {
 Electrode& electrode(Scene& scene, std::size_t k) { return scene.device.electrodes[k]; }
 using OfElectrode = Of<electrode>;
 
-std::size_t begin_electrode(Scene& scene, const SectionReader& in, std::string_view name) {
-  check_drive_name(in.file(), std::string(name));
+std::size_t begin_electrode(Scene& scene, const SectionReader&, std::string_view name) {
   scene.device.electrodes.push_back({.name = std::string(name)});
   return scene.device.electrodes.size() - 1;
 }

@@ -10,12 +10,11 @@ using OfPiezo = Of<piezo>;
 std::size_t begin_piezo(Scene& scene, const SectionReader& in, std::string_view) {
   const StructureKind kind = scene.device.structure.kind;
   if (kind == StructureKind::plate) in.fail("a plate does not bend; a layer needs a beam");
-  if (in.file().find({"surface"})) in.fail("covers a face of the beam; [surface] is for a bare beam");
+  if (scene.device.surface) in.fail("covers a face of the beam; [surface] is for a bare beam");
   if (kind == StructureKind::clamped_clamped) {
     in.fail(
         "between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its "
-        "middle "
-        "line; a layer needs a cantilever");
+        "middle line; a layer needs a cantilever");
   }
   scene.device.piezo.emplace();
   return 0;

@@ -583,7 +583,7 @@ std::vector<ContactLaw> remembering() {
           plastic_law(Plasticity::kogut_etsion)};
 }
 
-std::vector<ContactLaw> contact_laws() {
+std::vector<ContactLaw> every_contact_law() {
   std::vector<ContactLaw> laws = remembering();
   laws.push_back(contact_law(pad(ContactModel::adhesive, 0), beam_width));
   for (const ContactModel model : damping_contacts) {
@@ -596,7 +596,7 @@ constexpr std::array interferences{0.1_nm, 3_nm, 40_nm, 99_nm, 101_nm, 250_nm};
 
 TEST(ContactLaw, ForceIsTheSlopeOfTheStoredEnergy) {
   constexpr double differences = 1e-9;
-  for (const ContactLaw& law : contact_laws()) {
+  for (const ContactLaw& law : every_contact_law()) {
     for (const double d : interferences) {
       const double h = std::abs(d - 100_nm) < 2_nm ? 0.05_nm : d / 100;  // not across the end of the asperities
       const double slope = derivative([&](double x) { return contact_energy(law, x); }, d, h);
@@ -608,7 +608,7 @@ TEST(ContactLaw, ForceIsTheSlopeOfTheStoredEnergy) {
 
 TEST(ContactLaw, DualSlopeIsTheStiffness) {
   constexpr double differences = 1e-9;
-  for (const ContactLaw& law : contact_laws()) {
+  for (const ContactLaw& law : every_contact_law()) {
     for (const double sign : {1.0, -1.0}) {
       for (const double d : interferences) {
         const double h = std::abs(d - 100_nm) < 2_nm ? 0.05_nm : d / 100;
@@ -623,7 +623,7 @@ TEST(ContactLaw, DualSlopeIsTheStiffness) {
 }
 
 TEST(ContactLaw, BeginsAtZero) {
-  for (const ContactLaw& law : contact_laws()) {
+  for (const ContactLaw& law : every_contact_law()) {
     for (const double rate : {-0.1, 0.0, 0.1}) EXPECT_EQ(contact_force(law, 0, true, rate), 0);
     EXPECT_EQ(contact_energy(law, 0), 0);
     EXPECT_EQ(contact_dissipation(law, 0, -0.1), 0);
