@@ -353,7 +353,8 @@ TEST(ThroughContact, IsTheSameClosingUnderEveryLawWithoutMemory) {
     const Switch with(device);
     if (!why_always_restarted(with).empty()) continue;
     ++tried;
-    SCOPED_TRACE(fmt::format("{} {} {}", name_of(contact_laws, contact.model), contact.damping, static_cast<int>(contact.distribution)));
+    SCOPED_TRACE(
+        fmt::format("{} {} {}", name_of(contact_laws, contact.model), contact.damping, static_cast<int>(contact.distribution)));
     ClosingOptions options{.duration = 60_us, .tolerance = 1e-9};
     const Trajectory restarted = simulate_closing(with, step(), options);
     options.restart_at_contact = false;

@@ -331,7 +331,8 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
     Eigen::VectorXd left(device.modes());
     device.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
     constexpr double digits = 1e-6;  // of the contact force
-    EXPECT_LT(left.norm(), digits * closed->contact_force * device.contact_shape().norm()) << name_of(contact_laws, contact.model);
+    EXPECT_LT(left.norm(), digits * closed->contact_force * device.contact_shape().norm())
+        << name_of(contact_laws, contact.model);
     EXPECT_GT(release_voltage(device, 0), 0) << name_of(contact_laws, contact.model);
   }
 }
