@@ -105,17 +105,19 @@ static_assert(is_complete<plasticities>());
 
 /// Pressure between the surfaces of an adhesive-repulsive contact: see model/contact/adhesive_repulsive.h. Pressures of
 /// asperities and adhesion at a nanometre of approach.
-struct SurfacePressure {
-  double asperity_pressure = 1.2e3;     ///< c1 [Pa]
-  double asperity_distance = 110e-9;    ///< dc [m]
-  double wall_pressure = 0.5e9;         ///< c2 [Pa]
-  double wall_range = 8.5e-9;           ///< tR [m]
-  double adhesion_pressure = 1e3;       ///< c3 [Pa]
-  double adhesion_range = 2e-9;         ///< ta [m]
-  double hamaker_constant = 0.215e-18;  ///< A [J]
-  double smoothing_distance = 30e-9;    ///< ds [m]
-  double reach = 1e-6;                  ///< xr [m]
+template <class P>
+struct SurfacePressureOf {
+  P asperity_pressure = 1.2e3;     ///< c1 [Pa]
+  P asperity_distance = 110e-9;    ///< dc [m]
+  P wall_pressure = 0.5e9;         ///< c2 [Pa]
+  P wall_range = 8.5e-9;           ///< tR [m]
+  P adhesion_pressure = 1e3;       ///< c3 [Pa]
+  P adhesion_range = 2e-9;         ///< ta [m]
+  P hamaker_constant = 0.215e-18;  ///< A [J]
+  P smoothing_distance = 30e-9;    ///< ds [m]
+  P reach = 1e-6;                  ///< xr [m]
 };
+using SurfacePressure = SurfacePressureOf<double>;
 
 /// Where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
 enum class ContactDistribution { centre, pad };

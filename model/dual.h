@@ -1,19 +1,62 @@
-// Forward-mode dual numbers with one direction: evaluating a law with them gives the law's exact derivative. A dual of duals has
-// two directions: its value.slope and slope.value are the first derivatives, its slope.slope is the mixed second one.
+// Forward-mode dual numbers: evaluating a law with them gives the law's exact derivatives. A plain one has one direction. A dual
+// of duals has two: its value.slope and slope.value are the first derivatives, its slope.slope is the mixed second one. One whose
+// slope is Directions<N> has N at once, for the price of one value.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 
+#include "base/select.h"
 #include "model/power.h"
 
 namespace softland {
 
-template <class T>
+/// Slopes in N directions.
+template <std::size_t N, class T = double>
+struct Directions {
+  std::array<T, N> along = {};
+
+  /// The unit vector of direction k.
+  static constexpr Directions unit(std::size_t k) {
+    Directions d;
+    d.along[k] = T(1);
+    return d;
+  }
+
+  friend constexpr Directions operator+(Directions a, const Directions& b) {
+    for (std::size_t k = 0; k < N; ++k) a.along[k] = a.along[k] + b.along[k];
+    return a;
+  }
+  friend constexpr Directions operator-(Directions a, const Directions& b) {
+    for (std::size_t k = 0; k < N; ++k) a.along[k] = a.along[k] - b.along[k];
+    return a;
+  }
+  friend constexpr Directions operator-(Directions a) {
+    for (T& slope : a.along) slope = -slope;
+    return a;
+  }
+  friend constexpr Directions operator*(Directions a, const T& factor) {
+    for (T& slope : a.along) slope = slope * factor;
+    return a;
+  }
+  friend constexpr Directions operator*(const T& factor, const Directions& a) { return a * factor; }
+  friend constexpr Directions operator/(Directions a, const T& divisor) {
+    for (T& slope : a.along) slope = slope / divisor;
+    return a;
+  }
+  template <class Condition>
+  friend void assign_where(const Condition& condition, Directions& to, const Directions& from) {
+    for (std::size_t k = 0; k < N; ++k) assign_where(condition, to.along[k], from.along[k]);
+  }
+};
+
+template <class T, class Slope = T>
 struct DualOf {
   T value = 0;
-  T slope = 0;
+  Slope slope = {};
 
-  constexpr DualOf(T v = 0, T s = 0) : value(v), slope(s) {}  // NOLINT: plain numbers take part in formulas
+  constexpr DualOf(T v = 0, Slope s = {}) : value(v), slope(s) {}  // NOLINT: plain numbers take part in formulas
 
   friend constexpr DualOf operator+(DualOf a, DualOf b) { return {a.value + b.value, a.slope + b.slope}; }
   friend constexpr DualOf operator-(DualOf a, DualOf b) { return {a.value - b.value, a.slope - b.slope}; }
@@ -26,7 +69,8 @@ struct DualOf {
     using std::sqrt;
     const T root = sqrt(a.value);
     // At 0 the laws use roots only in products that vanish faster than the slope grows: their limit is 0.
-    return {root, root > 0 ? a.slope / (2 * root) : T(0)};
+    return {root, select(
+                      root > 0, [&]() -> Slope { return a.slope / (2 * root); }, [] { return Slope{}; })};
   }
   friend DualOf exp(DualOf a) {
     using std::exp;
@@ -37,16 +81,38 @@ struct DualOf {
     using std::log;
     return {log(a.value), a.slope / a.value};
   }
+  friend DualOf sin(DualOf a) {
+    using std::cos, std::sin;
+    return {sin(a.value), cos(a.value) * a.slope};
+  }
+  friend DualOf cos(DualOf a) {
+    using std::cos, std::sin;
+    return {cos(a.value), -sin(a.value) * a.slope};
+  }
   /// For positive a.
   friend DualOf power(DualOf a, double exponent) {
     const T raised = power(a.value, exponent);
     return {raised, T(exponent) * raised / a.value * a.slope};
   }
-  friend DualOf abs(DualOf a) { return a.value < 0 ? -a : a; }
-  friend constexpr bool operator<(DualOf a, double b) { return a.value < b; }
-  friend constexpr bool operator>(DualOf a, double b) { return a.value > b; }
+  friend DualOf abs(DualOf a) {
+    return select(
+        a.value < 0, [&] { return -a; }, [&] { return a; });
+  }
+  friend constexpr auto operator<(DualOf a, double b) { return a.value < b; }
+  friend constexpr auto operator>(DualOf a, double b) { return a.value > b; }
+  friend constexpr auto operator<(DualOf a, DualOf b) { return a.value < b.value; }
+  friend constexpr auto operator>(DualOf a, DualOf b) { return a.value > b.value; }
+
+  template <class Condition>
+  friend void assign_where(const Condition& condition, DualOf& to, const DualOf& from) {
+    assign_where(condition, to.value, from.value);
+    assign_where(condition, to.slope, from.slope);
+  }
 };
 
 using Dual = DualOf<double>;
+/// With N directions.
+template <std::size_t N>
+using Gradient = DualOf<double, Directions<N>>;
 
 }  // namespace softland

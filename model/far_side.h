@@ -10,21 +10,26 @@
 
 namespace softland {
 
-template <class Law>
+template <class Law, class P = double>
 struct FarSide {
   Law law = {};
-  double both_gaps = 0;                               ///< H [m]
-  double floor = 0;                                   ///< [m]
-  Dual at_floor = law.load(Dual(floor, 1), Dual(1));  ///< the law's tangent there, for v = 1 m/s
+  P both_gaps = 0;  ///< H [m]
+  P floor = 0;      ///< [m]
+  /// The law's tangent there, for v = 1 m/s.
+  DualOf<P> at_floor = law.load(DualOf<P>(floor, 1), DualOf<P>(1));
   static constexpr bool driven = Law::driven;
 
   /// [N/m], per unit of the drive for a driven law
   template <class S>
   S load(S gap, S velocity) const {
     const S far = S(both_gaps) - gap;
-    if (!(far < floor)) return -law.load(far, -velocity);
-    const S tangent = S(at_floor.value) + S(at_floor.slope) * (far - S(floor));
-    return driven ? -tangent : tangent * velocity;
+    return select(
+        far < floor,
+        [&]() -> S {
+          const S tangent = S(at_floor.value) + S(at_floor.slope) * (far - S(floor));
+          return driven ? -tangent : tangent * velocity;
+        },
+        [&]() -> S { return -law.load(far, -velocity); });
   }
   /// [J/m] per unit of the drive; below the floor the parabola that belongs to the tangent.
   [[nodiscard]] double potential(double gap) const requires(Law::driven) {
@@ -35,10 +40,10 @@ struct FarSide {
 };
 
 /// The faces of one electrode on both sides of the moving part.
-template <class Law>
+template <class Law, class P = double>
 struct BothSides {
   Law near = {};
-  FarSide<Law> far = {};
+  FarSide<Law, P> far = {};
   static constexpr bool driven = Law::driven;
 
   template <class S>

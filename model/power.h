@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/select.h"
+
 namespace softland {
 
 // Inlined whatever the size of the caller: a call would keep its loop from becoming vector instructions.
@@ -39,11 +41,15 @@ namespace softland {
   return sum * std::bit_cast<double>(exponent);
 }
 
-/// For other scalars (complex numbers in tests) the library's.
+/// For lanes number by number, for other scalars (complex numbers in tests) the library's.
 template <class S>
 [[nodiscard]] S power(const S& x, double y) {
-  using std::pow;
-  return pow(x, y);
+  if constexpr (LaneOfNumbers<S>) {
+    return one_by_one(x, [y](double one) { return power(one, y); });
+  } else {
+    using std::pow;
+    return pow(x, y);
+  }
 }
 
 }  // namespace softland

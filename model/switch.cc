@@ -10,6 +10,7 @@
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
+#include "model/modal_projection.h"
 #include "model/plate.h"
 
 namespace softland {
@@ -359,9 +360,7 @@ double Switch::film_energy(const double* state, Workspace& work) const {
 }
 
 double Switch::contact_deflection(const double* q) const {
-  double sum = 0;
-  for (int i = 0; i < modes(); ++i) sum += contact_shape_[i] * q[i];
-  return sum;
+  return deflection<double>({contact_shape_.data(), static_cast<std::size_t>(modes())}, q);
 }
 
 double Switch::law_potential(std::size_t drive, const double* q, Workspace& work) const {
@@ -428,7 +427,9 @@ void Switch::add_pad_force(const double* q, const double* v, double* result) con
     force += push;
     moment += push * xi;
   });
-  for (int i = 0; i < modes(); ++i) result[i] -= force * contact_shape_[i] - moment * pad_slope_[i];
+  const auto n = static_cast<std::size_t>(modes());
+  add_modal_force<double>({contact_shape_.data(), n}, -force, result);
+  add_modal_force<double>({pad_slope_.data(), n}, moment, result);
 }
 
 double Switch::contact_push(const double* q, const double* v, const ContactState& contact) const {

@@ -3,24 +3,28 @@
 // [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard switch.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
+#include <vector>
 
 #include "waveforms/parameter.h"
 #include "waveforms/signal.h"
 
 namespace softland {
 
-struct Harmonic {
-  double base = 0;                                       ///< [V]
-  double rise_time = 0;                                  ///< of the base [s], >= 0
-  double amplitude = 0;                                  ///< [V]
-  double angular_frequency = 0;                          ///< [rad/s], > 0
-  double phase = 0;                                      ///< [rad]
-  double start = 0;                                      ///< [s], >= 0
-  double end = std::numeric_limits<double>::infinity();  ///< [s], > start; a finite end needs end - start >= 2 fade
-  double fade = 0;                                       ///< [s], >= 0
+template <class P>
+struct HarmonicOf {
+  P base = 0;                                       ///< [V]
+  P rise_time = 0;                                  ///< of the base [s], >= 0
+  P amplitude = 0;                                  ///< [V]
+  P angular_frequency = 0;                          ///< [rad/s], > 0
+  P phase = 0;                                      ///< [rad]
+  P start = 0;                                      ///< [s], >= 0
+  P end = std::numeric_limits<double>::infinity();  ///< [s], > start; a finite end needs end - start >= 2 fade
+  P fade = 0;                                       ///< [s], >= 0
 };
+using Harmonic = HarmonicOf<double>;
 
 template <>
 struct FamilyOf<Harmonic> {
@@ -38,6 +42,58 @@ struct FamilyOf<Harmonic> {
   });
 };
 
+namespace internal {
+
+/// From 0 to 1 and back.
+template <class P>
+[[nodiscard]] std::vector<Stretch<P>> envelope(const HarmonicOf<P>& h) {
+  const bool ends = decided(h.end < std::numeric_limits<double>::infinity());
+  P faded_in = h.start + h.fade;
+  const P fading_out = ends ? h.end - h.fade : h.end;
+  if (ends && decided(h.fade > 0) && coincide(faded_in, fading_out)) faded_in = fading_out;
+  std::vector<Stretch<P>> line;
+  if (decided(h.start > 0)) line.push_back({.begin = P(0)});
+  if (decided(faded_in > h.start)) line.push_back({.begin = h.start, .value = P(0), .slope = P(1) / (faded_in - h.start)});
+  if (decided(faded_in < fading_out)) line.push_back({.begin = faded_in, .value = P(1)});
+  if (ends && decided(fading_out < h.end)) {
+    line.push_back({.begin = fading_out, .value = P(1), .slope = P(-1) / (h.end - fading_out)});
+  }
+  if (ends) line.push_back({.begin = h.end});
+  return line;
+}
+
+}  // namespace internal
+
+/// Of a valid harmonic.
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h) {
+  const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
+  std::vector<P> begins;
+  for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
+  // In volts and by one division: a ramp whose slope is rounded twice ends beside the base, which would count as a jump.
+  std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
+  if (!internal::vanishes(h.base) && internal::decided(h.rise_time > 0)) {
+    const auto same = std::find_if(begins.begin(), begins.end(), [&](const P& t) { return internal::coincide(t, h.rise_time); });
+    const P risen = same == begins.end() ? h.rise_time : *same;
+    straight_line = {{.begin = P(0), .value = P(0), .slope = h.base / risen}, {.begin = risen, .value = h.base}};
+    const auto later = [&](const P& begin) { return internal::decided(begin > risen); };
+    if (same == begins.end()) begins.insert(std::find_if(begins.begin(), begins.end(), later), risen);
+  }
+  Pieces<P> all;
+  for (const P& begin : begins) {
+    const internal::Stretch<P>& straight = internal::stretch_at(straight_line, begin);
+    const internal::Stretch<P>& swing = internal::stretch_at(envelope, begin);
+    all.push_back({.begin = begin, .value = straight.at(begin), .slope = straight.slope});
+    // Where the envelope is 0 all along there is no sine.
+    if (!internal::decided(swing.value > 0) && !internal::decided(swing.slope > 0)) continue;
+    all.back().amplitude = h.amplitude * swing.at(begin);
+    all.back().amplitude_slope = h.amplitude * swing.slope;
+    all.back().angular_frequency = h.angular_frequency;
+    all.back().phase = h.phase;
+  }
+  return all;
+}
+/// Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Harmonic& harmonic);
 
 }  // namespace softland

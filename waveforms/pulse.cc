@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
-#include "waveforms/coincide.h"
-
 namespace softland {
 
 Signal signal(const Pulse& pulse) {
@@ -21,7 +17,6 @@ Signal signal(const Pulse& pulse) {
                fmt::format("level {} of a pulse is {} V; it must be finite", k + 1, pulse.levels[k]));
   }
 
-  std::vector<std::pair<double, double>> points{{0, 0}};
   double edge_end = pulse.edge;
   for (std::size_t k = 0; k + 1 < count; ++k) {
     const double time = pulse.times[k];
@@ -30,12 +25,9 @@ Signal signal(const Pulse& pulse) {
     require_of("times", meets || time > edge_end,
                fmt::format("time {} of a pulse is {} s; it must be at least {} s, where the edge before it ends", k + 1, time,
                            edge_end));
-    if (!meets) points.emplace_back(edge_end, pulse.levels[k]);
-    points.emplace_back(time, pulse.levels[k]);
     edge_end = time + pulse.edge;
   }
-  points.emplace_back(edge_end, pulse.levels.back());
-  return Signal::piecewise_linear(points);
+  return Signal::piecewise_linear(points(pulse));
 }
 
 }  // namespace softland

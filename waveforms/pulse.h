@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "waveforms/parameter.h"
@@ -10,11 +12,13 @@
 
 namespace softland {
 
-struct Pulse {
-  std::vector<double> levels = {};  ///< [V], n >= 1
-  std::vector<double> times = {};   ///< [s], n - 1, increasing by at least edge; the first at least edge
-  double edge = 0;                  ///< [s], >= 0
+template <class P>
+struct PulseOf {
+  std::vector<P> levels = {};  ///< [V], n >= 1
+  std::vector<P> times = {};   ///< [s], n - 1, increasing by at least edge; the first at least edge
+  P edge = 0;                  ///< [s], >= 0
 };
+using Pulse = PulseOf<double>;
 
 template <>
 struct FamilyOf<Pulse> {
@@ -26,6 +30,25 @@ struct FamilyOf<Pulse> {
   });
 };
 
+/// The points [s, V] that straight lines connect, of a valid pulse.
+template <class P>
+[[nodiscard]] std::vector<std::pair<P, P>> points(const PulseOf<P>& pulse) {
+  std::vector<std::pair<P, P>> all{{P(0), P(0)}};
+  P edge_end = pulse.edge;
+  for (std::size_t k = 0; k < pulse.times.size(); ++k) {
+    const P& time = pulse.times[k];
+    if (!internal::coincide(edge_end, time)) all.emplace_back(edge_end, pulse.levels[k]);
+    all.emplace_back(time, pulse.levels[k]);
+    edge_end = time + pulse.edge;
+  }
+  all.emplace_back(edge_end, pulse.levels.back());
+  return all;
+}
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const PulseOf<P>& pulse) {
+  return internal::straight_pieces(points(pulse));
+}
+/// Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Pulse& pulse);
 
 }  // namespace softland

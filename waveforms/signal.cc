@@ -157,22 +157,14 @@ Signal Signal::piecewise_linear(const std::vector<std::pair<double, double>>& po
   require(!points.empty(), "a piecewise linear signal has no points; it must have at least one");
   std::size_t count = points.size();
   while (count > 1 && points[count - 2].second == points[count - 1].second) --count;
-  std::vector<SignalPiece> pieces;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto& [time, voltage] = points[i];
-    if (i + 1 == count) {
-      pieces.push_back({.begin = time, .value = voltage});
-      break;
-    }
-    const auto& [next_time, next_voltage] = points[i + 1];
+  for (std::size_t i = 1; i < count; ++i) {
+    const double time = points[i - 1].first, next_time = points[i].first;
     if (!(next_time >= time)) {
       throw InvalidInput(
-          fmt::format("the time of point {} is {} s; it must be at least the {} s of the point before", i + 2, next_time, time));
+          fmt::format("the time of point {} is {} s; it must be at least the {} s of the point before", i + 1, next_time, time));
     }
-    if (next_time == time) continue;
-    pieces.push_back({.begin = time, .value = voltage, .slope = (next_voltage - voltage) / (next_time - time)});
   }
-  return Signal(std::move(pieces));
+  return Signal(internal::straight_pieces<double>({points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)}));
 }
 
 std::size_t Signal::piece_at(double time) const {

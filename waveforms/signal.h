@@ -1,8 +1,5 @@
-// A drive voltage against time, compiled from a waveform family into pieces that are smooth inside.
-//
-//   V(t) = value + slope (t - begin) + [amplitude + amplitude_slope (t - begin)] sin(angular_frequency t + phase)
-//
-// on [begin, begin of the next piece); the last piece lasts for ever. V(t) = 0 for t < 0: a run starts at rest under 0 V.
+// A drive voltage against time, compiled from a waveform family into pieces that are smooth inside (pieces.h). V(t) = 0 for
+// t < 0: a run starts at rest under 0 V.
 // Time integration stops at every breakpoint, so that no step crosses a corner or a jump.
 #pragma once
 
@@ -12,34 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "waveforms/pieces.h"
+
 namespace softland {
 
-struct SignalPiece {
-  double begin = 0;              ///< [s]
-  double value = 0;              ///< [V] at begin
-  double slope = 0;              ///< [V/s]
-  double amplitude = 0;          ///< [V] at begin
-  double amplitude_slope = 0;    ///< [V/s]
-  double angular_frequency = 0;  ///< [rad/s]
-  double phase = 0;              ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
-
-  [[nodiscard]] bool oscillates() const { return amplitude != 0 || amplitude_slope != 0; }
-  /// [V]. The formula goes on past both ends of the piece, so that an integrator may look a little beyond a breakpoint.
-  [[nodiscard]] double voltage(double time) const {
-    const double elapsed = time - begin;
-    const double straight = value + slope * elapsed;
-    if (!oscillates()) return straight;
-    return straight + (amplitude + amplitude_slope * elapsed) * std::sin(angular_frequency * time + phase);
-  }
-  /// dV/dt [V/s]
-  [[nodiscard]] double rate(double time) const {
-    if (!oscillates()) return slope;
-    const double angle = angular_frequency * time + phase;
-    const double envelope = amplitude + amplitude_slope * (time - begin);
-    return slope + amplitude_slope * std::sin(angle) + envelope * angular_frequency * std::cos(angle);
-  }
-  bool operator==(const SignalPiece&) const = default;
-};
+using SignalPiece = SignalPieceOf<double>;
 
 class Signal {
  public:

@@ -8,10 +8,12 @@
 
 namespace softland {
 
-struct Step {
-  double level = 0;      ///< [V]
-  double rise_time = 0;  ///< [s], >= 0
+template <class P>
+struct StepOf {
+  P level = 0;      ///< [V]
+  P rise_time = 0;  ///< [s], >= 0
 };
+using Step = StepOf<double>;
 
 template <>
 struct FamilyOf<Step> {
@@ -22,6 +24,12 @@ struct FamilyOf<Step> {
   });
 };
 
+/// Of a valid step.
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const StepOf<P>& step) {
+  return internal::straight_pieces<P>({{P(0), P(0)}, {step.rise_time, step.level}});
+}
+/// Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Step& step);
 
 }  // namespace softland

@@ -20,20 +20,24 @@
 
 namespace softland {
 
-struct AdhesiveAsperityContact {
-  UniformAsperityContact repulsion = {};
-  double attraction = 0;  ///< 2 pi R W eta An / Hm [N/m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct AdhesiveAsperityContactOf {
+  UniformAsperityContactOf<P> repulsion = {};
+  P attraction = 0;  ///< 2 pi R W eta An / Hm [N/m]
 
   template <class S>
   S force(S d) const {
-    return repulsion.force(d) - S(attraction) * (d > repulsion.height    ? S(repulsion.height)
-                                                 : d < -repulsion.height ? S(-repulsion.height)
-                                                                         : d);
+    const auto most = [&] { return S(repulsion.height); };
+    const auto least = [&] { return S(-repulsion.height); };
+    const S bounded = select(d > repulsion.height, most, [&] { return select(d < -repulsion.height, least, [&] { return d; }); });
+    return repulsion.force(d) - S(attraction) * bounded;
   }
   [[nodiscard]] double energy(double d) const {
     const double over = std::max(0.0, std::abs(d) - repulsion.height);
     return repulsion.energy(d) - attraction * (d * d - over * over) / 2;
   }
 };
+using AdhesiveAsperityContact = AdhesiveAsperityContactOf<double>;
 
 }  // namespace softland

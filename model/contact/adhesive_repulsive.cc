@@ -4,25 +4,28 @@
 
 namespace softland {
 
-AdhesiveRepulsiveContact::AdhesiveRepulsiveContact(const SurfacePressure& law, double area)
-    : law_(law), area_(area), end_(far(Dual(law.reach, 1))) {
+template <>
+double AdhesiveRepulsiveContact::find_touch(const SurfacePressure& law) {
+  const AdhesiveRepulsiveContact contact(law, 1, 0);
   // From the reach inwards; at the reach itself the pressure is 0 as well.
   constexpr int looks = 4096;
   for (int i = looks - 2; i > 0; --i) {
-    const double x = law_.reach * i / looks, further = law_.reach * (i + 1) / looks;
-    if (pressure(x) >= 0 && pressure(further) < 0) {
-      touch_ = bracketed_zero([&](double at) { return pressure(at); }, x, further);
-      return;
+    const double x = law.reach * i / looks, further = law.reach * (i + 1) / looks;
+    if (contact.pressure(x) >= 0 && contact.pressure(further) < 0) {
+      return bracketed_zero([&](double at) { return contact.pressure(at); }, x, further);
     }
   }
+  return 0;
 }
 
+template <>
 std::vector<double> AdhesiveRepulsiveContact::kinks() const {
   std::vector<double> all{touch_ - law_.asperity_distance - law_.adhesion_range, touch_ - law_.asperity_distance};
   std::erase_if(all, [](double d) { return !(d > 0); });
   return all;
 }
 
+template <>
 double AdhesiveRepulsiveContact::energy(double d) const {
   const double x = touch_ - d, r = law_.reach, s = law_.smoothing_distance;
   // Antiderivative of 1 / (x^3 + s^3).

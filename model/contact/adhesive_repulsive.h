@@ -21,33 +21,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <vector>
 
+#include "base/select.h"
 #include "model/constants.h"
 #include "model/device.h"
 #include "model/dual.h"
 
 namespace softland {
 
-class AdhesiveRepulsiveContact {
+template <class P>
+class AdhesiveRepulsiveContactOf {
  public:
-  AdhesiveRepulsiveContact() = default;
-  /// `area` An [m^2]
-  AdhesiveRepulsiveContact(const SurfacePressure& law, double area);
+  AdhesiveRepulsiveContactOf() = default;
+  /// `area` An [m^2]; `touch` x0 [m], for other scalars than double to which it is then improved by a step of Newton's: so that
+  /// it has their derivatives.
+  AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area, const P& touch)
+      : law_(law), area_(area), end_(far(DualOf<P>(law.reach, 1))), touch_(touch) {
+    if constexpr (!std::same_as<P, double>) {
+      const DualOf<P> at = pressure(DualOf<P>(touch, 1));
+      touch_ = touch - at.value / at.slope;
+    }
+  }
+  AdhesiveRepulsiveContactOf(const SurfacePressureOf<P>& law, const P& area) requires std::same_as<P, double>
+      : AdhesiveRepulsiveContactOf(law, area, find_touch(law)) {}
 
   /// Pressure at distance x within reach [Pa]
   template <class S>
   S pressure(S x) const {
     using std::sqrt;
-    S p = far(x) - S(end_.value) - S(end_.slope) * (x - S(law_.reach));
-    if (x < law_.asperity_distance) {
-      const S depth = (S(law_.asperity_distance) - x) / S(unit);
-      p = p + S(law_.asperity_pressure) * depth * sqrt(depth);
-    }
-    if (const double onset = law_.asperity_distance + law_.adhesion_range; x < onset) {
-      p = p - S(law_.adhesion_pressure / unit) * (S(onset) - x);
-    }
-    return p;
+    const S from_afar = far(x) - S(end_.value) - S(end_.slope) * (x - S(law_.reach));
+    const S p = select(
+        x < law_.asperity_distance,
+        [&]() -> S {
+          const S depth = (S(law_.asperity_distance) - x) / S(unit);
+          return from_afar + S(law_.asperity_pressure) * depth * sqrt(depth);
+        },
+        [&] { return from_afar; });
+    const P onset = law_.asperity_distance + law_.adhesion_range;
+    return select(
+        x < onset, [&]() -> S { return p - S(law_.adhesion_pressure / unit) * (S(onset) - x); }, [&] { return p; });
   }
   /// Within reach
   template <class S>
@@ -57,7 +71,7 @@ class AdhesiveRepulsiveContact {
   [[nodiscard]] double energy(double d) const;
 
   /// x0 [m]
-  [[nodiscard]] double touch_distance() const { return touch_; }
+  [[nodiscard]] const P& touch_distance() const { return touch_; }
   /// How far above the plane of first touch the law acts [m]
   [[nodiscard]] double reach() const { return law_.reach - touch_; }
   /// Interferences beyond touch at which adhesion begins and asperities meet [m]: the integrator restarts there
@@ -69,15 +83,25 @@ class AdhesiveRepulsiveContact {
   template <class S>
   S far(S x) const {
     using std::exp;
-    const double s = law_.smoothing_distance;
+    const P s = law_.smoothing_distance;
     return S(law_.wall_pressure) * exp(-x / S(law_.wall_range)) -
            S(law_.hamaker_constant / (6 * pi)) / (x * x * x + S(s * s * s));
   }
 
-  SurfacePressure law_ = {};
-  double area_ = 0;
-  Dual end_ = 0;      // of far() at the reach [Pa], [Pa/m]
-  double touch_ = 0;  // [m]
+  static double find_touch(const SurfacePressure& law);
+
+  SurfacePressureOf<P> law_ = {};
+  P area_ = 0;
+  DualOf<P> end_ = P(0);  // of far() at the reach [Pa], [Pa/m]
+  P touch_ = 0;           // [m]
 };
+using AdhesiveRepulsiveContact = AdhesiveRepulsiveContactOf<double>;
+
+template <>
+double AdhesiveRepulsiveContact::energy(double d) const;
+template <>
+std::vector<double> AdhesiveRepulsiveContact::kinks() const;
+template <>
+double AdhesiveRepulsiveContact::find_touch(const SurfacePressure& law);
 
 }  // namespace softland

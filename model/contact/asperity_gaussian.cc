@@ -49,6 +49,7 @@ const GaussianTail& GaussianTail::instance() {
 
 }  // namespace internal
 
+template <>
 double GaussianAsperityContact::next_tail(double h) {
   const Dual at = tail(Dual(h, 1));
   return -at.slope - h * at.value;

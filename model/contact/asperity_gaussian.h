@@ -22,6 +22,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/select.h"
+
 namespace softland {
 namespace internal {
 
@@ -33,6 +35,12 @@ class GaussianTail {
   /// F_1.5(h)
   template <class S>
   S operator()(S h) const {
+    return one_by_one(h, [this](const auto& one) { return of_one(one); });
+  }
+
+ private:
+  template <class S>
+  S of_one(S h) const {
     using std::sqrt;
     if (h > last) return S(0);
     if (h < first) {
@@ -50,7 +58,6 @@ class GaussianTail {
     return sum;
   }
 
- private:
   static constexpr double first = -8, last = 8, spacing = 0.125;
   static constexpr std::size_t degree = 11;
   static constexpr std::size_t nodes = static_cast<std::size_t>((last - first) / spacing) + 1;
@@ -80,9 +87,11 @@ class GaussianTail {
 
 }  // namespace internal
 
-struct GaussianAsperityContact {
-  double strength = 0;   ///< C [N]
-  double deviation = 0;  ///< sigma [m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct GaussianAsperityContactOf {
+  P strength = 0;   ///< C [N]
+  P deviation = 0;  ///< sigma [m]
 
   static constexpr double first_touch = 4;  ///< h0: mean of the summits to the plane of first touch, in sigma
 
@@ -103,5 +112,9 @@ struct GaussianAsperityContact {
     return strength * deviation * ((next_tail(first_touch - x) - next_tail(first_touch)) / 2.5 - tail(first_touch) * x);
   }
 };
+using GaussianAsperityContact = GaussianAsperityContactOf<double>;
+
+template <>
+double GaussianAsperityContact::next_tail(double h);
 
 }  // namespace softland

@@ -16,21 +16,26 @@
 
 namespace softland {
 
-struct UniformAsperityContact {
-  double strength = 0;  ///< eta An E* sqrt(R) / Hm [N / m^2.5]
-  double height = 0;    ///< Hm [m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct UniformAsperityContactOf {
+  P strength = 0;  ///< eta An E* sqrt(R) / Hm [N / m^2.5]
+  P height = 0;    ///< Hm [m]
 
   template <class S>
   S force(S d) const {
     using std::abs;
     using std::sqrt;
-    const S m = abs(d);
-    S p = m * m * sqrt(m);
-    if (m > height) {
-      const S over = m - S(height);
-      p = p - over * over * sqrt(over);
-    }
-    return d < 0 ? -(S(strength * 8 / 15) * p) : S(strength * 8 / 15) * p;
+    const S m = abs(d), all = m * m * sqrt(m);
+    const S p = select(
+        m > height,
+        [&]() -> S {
+          const S over = m - S(height);
+          return all - over * over * sqrt(over);
+        },
+        [&] { return all; });
+    return select(
+        d < 0, [&]() -> S { return -(S(strength * 8 / 15) * p); }, [&]() -> S { return S(strength * 8 / 15) * p; });
   }
   [[nodiscard]] double energy(double d) const {
     const double m = std::abs(d);
@@ -51,5 +56,6 @@ struct UniformAsperityContact {
     return d;
   }
 };
+using UniformAsperityContact = UniformAsperityContactOf<double>;
 
 }  // namespace softland

@@ -10,17 +10,20 @@
 // property of the pair. Source: Hunt & Crossley 1975, eqs. 8 to 11.
 #pragma once
 
+#include "base/select.h"
+
 namespace softland {
 
-template <class Elastic>
+template <class Elastic, class P = double>
 struct HuntCrossley {
   Elastic elastic = {};
-  double damping = 0;  ///< c [s/m]
+  P damping = 0;  ///< c [s/m]
 
   template <class S>
   S force(S d, S rate) const {
     const S factor = S(1) + S(1.5 * damping) * rate;
-    return factor > 0 ? elastic.force(d) * factor : S(0);
+    return select(
+        factor > 0, [&]() -> S { return elastic.force(d) * factor; }, [] { return S(0); });
   }
   /// [W]
   [[nodiscard]] double dissipation(double d, double rate) const { return (force(d, rate) - elastic.force(d)) * rate; }

@@ -16,7 +16,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
+#include "base/select.h"
 #include "model/dual.h"
 #include "model/power.h"
 
@@ -30,9 +32,14 @@ class KogutEtsionAsperity {
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
-    if (!(u > 1)) return S(0.4) * u * u * sqrt(u);
-    const Fit& fit = at(u);
-    return S(fit.first) + S(fit.factor / (fit.exponent + 1)) * power(u, fit.exponent + 1);
+    const auto elastic = [&]() -> S { return S(0.4) * u * u * sqrt(u); };
+    const auto by = [&](std::size_t i) {
+      return
+          [&u, &fit = fits[i]]() -> S { return S(fit.first) + S(fit.factor / (fit.exponent + 1)) * power(u, fit.exponent + 1); };
+    };
+    const auto yielding = [&] { return select(u > fits[1].begin, by(1), by(0)); };
+    return select(
+        u > 1, [&] { return select(u > fits[2].begin, by(2), yielding); }, elastic);
   }
   /// Integral of that.
   static double second_integral(double u) {
@@ -47,10 +54,7 @@ class KogutEtsionAsperity {
     double begin, exponent, factor, first, second;
   };
 
-  template <class S>
-  static const Fit& at(S u) {
-    return u > fits[2].begin ? fits[2] : u > fits[1].begin ? fits[1] : fits[0];
-  }
+  static const Fit& at(double u) { return u > fits[2].begin ? fits[2] : u > fits[1].begin ? fits[1] : fits[0]; }
 
   static inline const std::array<Fit, 3> fits = [] {
     std::array<Fit, 3> all{{{1, 1.425, 0, 0, 0}, {6, 1.263, 0, 0, 0}, {110, 1, 0, 0, 0}}};

@@ -8,8 +8,10 @@
 
 namespace softland {
 
-struct LinearContact {
-  double stiffness = 0;  ///< [N/m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct LinearContactOf {
+  P stiffness = 0;  ///< [N/m]
 
   template <class S>
   S force(S d) const {
@@ -19,5 +21,6 @@ struct LinearContact {
   [[nodiscard]] double interference(double force) const { return force / stiffness; }
   [[nodiscard]] double energy(double d) const { return stiffness * d * d / 2; }
 };
+using LinearContact = LinearContactOf<double>;
 
 }  // namespace softland

@@ -20,21 +20,24 @@
 
 #include <concepts>
 
+#include "base/select.h"
 #include "model/contact/asperity_uniform.h"
 #include "model/contact/linear.h"
 #include "model/contact/plastic_asperity.h"
 
 namespace softland {
 
-/// Where a contact law stands. Laws without memory know only whether they act.
-struct ContactState {
-  constexpr ContactState() = default;
-  constexpr ContactState(std::same_as<bool> auto acts) : active(acts) {}  // NOLINT: for most laws that is all there is
+/// Where a contact law stands. Laws without memory know only whether they act. `Yes` is bool, or the mask of a lane of numbers.
+template <class S, class Yes>
+struct ContactStateOf {
+  constexpr ContactStateOf() = default;
+  constexpr ContactStateOf(std::same_as<Yes> auto acts) : active(acts) {}  // NOLINT: for most laws that is all there is
 
-  bool active = false;
-  bool unloading = false;  ///< along the shifted elastic curve
-  double shift = 0;        ///< s [m], where unloading
+  Yes active = Yes(false);
+  Yes unloading = Yes(false);  ///< along the shifted elastic curve
+  S shift = 0;                 ///< s [m], where unloading
 };
+using ContactState = ContactStateOf<double, bool>;
 
 template <class Loading, class Elastic, bool Heals>
 struct ContactWithMemory {
@@ -50,9 +53,10 @@ struct ContactWithMemory {
   }
   [[nodiscard]] double energy(double d) const { return loading.energy(d); }
 
-  template <class S>
-  S force(S d, const ContactState& state) const {
-    return state.unloading ? elastic.force(d - S(state.shift)) : loading.force(d);
+  template <class S, class Shift, class Yes>
+  S force(S d, const ContactStateOf<Shift, Yes>& state) const {
+    return select(
+        state.unloading, [&]() -> S { return elastic.force(d - S(state.shift)); }, [&]() -> S { return loading.force(d); });
   }
   [[nodiscard]] double stored(double d, const ContactState& state) const {
     return elastic.energy(state.unloading ? d - state.shift : elastic.interference(loading.force(d)));

@@ -23,29 +23,30 @@
 
 namespace softland {
 
-template <class Asperity>
+template <class Asperity, class P = double>
 class PlasticAsperityLoading {
  public:
   PlasticAsperityLoading() = default;
   /// `summits` eta An, `height` Hm [m], `radius` R [m], `hardness` H and `modulus` E* [Pa]
-  PlasticAsperityLoading(double summits, double height, double radius, double hardness, double modulus)
+  PlasticAsperityLoading(const P& summits, const P& height, const P& radius, const P& hardness, const P& modulus)
       : height_(height), yield_(first_yield(radius, hardness, modulus)) {
     strength_ = summits / height * 2 / 3 * pi * Asperity::pressure_factor * hardness * radius * yield_ * yield_;
   }
 
   /// w1 [m]
-  [[nodiscard]] static double first_yield(double radius, double hardness, double modulus) {
-    const double root = pi * Asperity::pressure_factor * hardness / (2 * modulus);
+  [[nodiscard]] static P first_yield(const P& radius, const P& hardness, const P& modulus) {
+    const P root = pi * Asperity::pressure_factor * hardness / (2 * modulus);
     return root * root * radius;
   }
 
   template <class S>
   S force(S d) const {
     using std::abs;
-    const S m = abs(d);
-    S sum = Asperity::first_integral(m / S(yield_));
-    if (m > height_) sum = sum - Asperity::first_integral((m - S(height_)) / S(yield_));
-    return d < 0 ? -(S(strength_) * sum) : S(strength_) * sum;
+    const S m = abs(d), all = Asperity::first_integral(m / S(yield_));
+    const S sum = select(
+        m > height_, [&]() -> S { return all - Asperity::first_integral((m - S(height_)) / S(yield_)); }, [&] { return all; });
+    return select(
+        d < 0, [&]() -> S { return -(S(strength_) * sum); }, [&]() -> S { return S(strength_) * sum; });
   }
   /// Work of loading from first touch to d [J]
   [[nodiscard]] double energy(double d) const {
@@ -55,9 +56,9 @@ class PlasticAsperityLoading {
   }
 
  private:
-  double height_ = 1;    // [m]
-  double yield_ = 1;     // w1 [m]
-  double strength_ = 0;  // (eta An / Hm) P1 w1 [N]
+  P height_ = 1;    // [m]
+  P yield_ = 1;     // w1 [m]
+  P strength_ = 0;  // (eta An / Hm) P1 w1 [N]
 };
 
 }  // namespace softland

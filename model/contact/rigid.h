@@ -16,8 +16,10 @@
 
 namespace softland {
 
-struct RigidContact {
-  double restitution = 0;  ///< e
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct RigidContactOf {
+  P restitution = 0;  ///< e
 
   static constexpr double rest_height = 1e-6;  ///< h_r over the contact gap
 
@@ -33,5 +35,6 @@ struct RigidContact {
   }
   [[nodiscard]] double energy(double) const { return 0; }
 };
+using RigidContact = RigidContactOf<double>;
 
 }  // namespace softland

@@ -15,6 +15,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/select.h"
+
 namespace softland {
 
 class ZmcAsperity {
@@ -25,9 +27,11 @@ class ZmcAsperity {
   template <class S>
   static S first_integral(S u) {
     using std::sqrt;
-    if (!(u > 1)) return S(0.4) * u * u * sqrt(u);
-    if (!(u > ratio)) return S(0.4 - middle<1>(1.0)) + middle<1>(u);
-    return S(first_integral(ratio) - ratio * ratio / k) + u * u * S(1 / k);
+    const auto elastic = [&]() -> S { return S(0.4) * u * u * sqrt(u); };
+    const auto yielding = [&]() -> S { return S(0.4 - middle<1>(1.0)) + middle<1>(u); };
+    const auto plastic = [&]() -> S { return S(first_integral(ratio) - ratio * ratio / k) + u * u * S(1 / k); };
+    return select(
+        u > 1, [&] { return select(u > ratio, plastic, yielding); }, elastic);
   }
   /// Integral of that.
   static double second_integral(double u) {

@@ -16,21 +16,25 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 
+#include "base/select.h"
 #include "model/forces/van_der_waals.h"
 
 namespace softland {
 
-template <class Casimir>
+template <class Casimir, class P = double>
 struct SmallerOfBoth {
   Casimir casimir;
-  VanDerWaals van_der_waals;
-  double crossover = find_crossover();  ///< [m]; 0: none
-  double energy_step = crossover > 0 ? casimir.energy(crossover) - van_der_waals.attraction_energy(crossover) : 0;
+  VanDerWaalsOf<P> van_der_waals;
+  P crossover = find_crossover();  ///< [m]; 0: none
+  double energy_step = find_energy_step();
 
   template <class S>
   S pressure(S h) const {
-    return (h < crossover ? van_der_waals.attraction(h) : casimir.pressure(h)) - van_der_waals.repulsion(h);
+    return select(
+               h < crossover, [&]() -> S { return van_der_waals.attraction(h); }, [&]() -> S { return casimir.pressure(h); }) -
+           van_der_waals.repulsion(h);
   }
   [[nodiscard]] double energy(double h) const {
     return (h < crossover ? energy_step + van_der_waals.attraction_energy(h) : casimir.energy(h)) +
@@ -38,9 +42,24 @@ struct SmallerOfBoth {
   }
 
  private:
+  [[nodiscard]] double find_energy_step() const {
+    if constexpr (std::same_as<P, double>) {
+      if (crossover > 0) return casimir.energy(crossover) - van_der_waals.attraction_energy(crossover);
+    }
+    return 0;
+  }
+  // No force depends on how the crossover moves: it is continuous there.
+  [[nodiscard]] P find_crossover() const {
+    if constexpr (requires { van_der_waals.hamaker_constant.value; }) {
+      return P(crossover_of(van_der_waals.hamaker_constant.value));
+    } else {
+      return one_by_one(van_der_waals.hamaker_constant, [this](double hamaker) { return crossover_of(hamaker); });
+    }
+  }
   // The ratio of Casimir to van der Waals law only falls with the gap: bisection of its logarithm.
-  [[nodiscard]] double find_crossover() const {
-    const auto retarded = [&](double h) { return casimir.pressure(h) < van_der_waals.attraction(h); };
+  [[nodiscard]] double crossover_of(double hamaker) const {
+    const VanDerWaals unretarded{.hamaker_constant = hamaker};
+    const auto retarded = [&](double h) { return casimir.pressure(h) < unretarded.attraction(h); };
     double low = 1e-12, high = 1e-3;
     if (retarded(low)) return 0;
     while (high > low * (1 + 1e-15)) {
@@ -52,10 +71,10 @@ struct SmallerOfBoth {
   }
 };
 
-template <class Pressure>
+template <class Pressure, class P = double>
 struct DispersionForce {
   Pressure law;
-  double width = 0;  ///< a [m]
+  P width = 0;  ///< a [m]
   static constexpr bool driven = true;
 
   /// [N/m] at factor 1

@@ -28,8 +28,9 @@
 
 namespace softland {
 
-struct NoFringing {
-  double width = 0;  ///< [m]
+template <class P>
+struct NoFringingOf {
+  P width = 0;  ///< [m]
 
   template <class S>
   S factor(S) const {
@@ -37,9 +38,11 @@ struct NoFringing {
   }
   [[nodiscard]] double capacitance_over_eps0(double h) const { return width / h; }
 };
+using NoFringing = NoFringingOf<double>;
 
-struct LinearFringing {
-  double width = 0;  ///< [m]
+template <class P>
+struct LinearFringingOf {
+  P width = 0;  ///< [m]
 
   template <class S>
   S factor(S h) const {
@@ -47,12 +50,14 @@ struct LinearFringing {
   }
   [[nodiscard]] double capacitance_over_eps0(double h) const { return width / h - 0.65 * std::log(h / width); }
 };
+using LinearFringing = LinearFringingOf<double>;
 
-struct MeijsFokkemaFringing {
-  double width = 0;      ///< [m]
-  double thickness = 0;  ///< [m]
-  double side = 0.265 / (std::sqrt(width) * std::sqrt(std::sqrt(width)));
-  double face = 0.53 * std::sqrt(thickness) / width;
+template <class P>
+struct MeijsFokkemaFringingOf {
+  P width = 0;      ///< [m]
+  P thickness = 0;  ///< [m]
+  P side = P(0.265) / (root(width) * root(root(width)));
+  P face = P(0.53) * root(thickness) / width;
 
   template <class S>
   S factor(S h) const {
@@ -63,11 +68,19 @@ struct MeijsFokkemaFringing {
   [[nodiscard]] double capacitance_over_eps0(double h) const {
     return width / h + 0.77 + 1.06 * std::sqrt(std::sqrt(width / h)) + 1.06 * std::sqrt(thickness / h);
   }
-};
 
-struct Bao2001Fringing {
-  double width = 0;      ///< [m]
-  double thickness = 0;  ///< [m]
+ private:
+  static P root(const P& x) {
+    using std::sqrt;
+    return sqrt(x);
+  }
+};
+using MeijsFokkemaFringing = MeijsFokkemaFringingOf<double>;
+
+template <class P>
+struct Bao2001FringingOf {
+  P width = 0;      ///< [m]
+  P thickness = 0;  ///< [m]
 
   template <class S>
   S factor(S h) const {
@@ -84,6 +97,7 @@ struct Bao2001Fringing {
     return width / h + (l * l / 2 + 4 * boost::math::quadrature::gauss<double, 30>::integrate(u_coth_u, 0.0, u)) / pi;
   }
 };
+using Bao2001Fringing = Bao2001FringingOf<double>;
 
 using FringingLaw = std::variant<NoFringing, Bao2001Fringing, MeijsFokkemaFringing, LinearFringing>;
 

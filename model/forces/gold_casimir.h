@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/select.h"
 #include "model/forces/casimir.h"
 
 namespace softland {
@@ -61,6 +62,17 @@ struct GoldCasimir {
 
   template <class S>
   S factor(S h) const {
+    return one_by_one(h, [this](const auto& one) { return of_one(one); });
+  }
+  template <class S>
+  S pressure(S h) const {
+    return S(casimir_strength) / (h * h * h * h) * factor(h);
+  }
+  [[nodiscard]] double energy(double h) const;
+
+ private:
+  template <class S>
+  S of_one(S h) const {
     const auto& [begin, e, energy] = table->piece(h);
     const S x = h / S(begin);
     if (h < table->first()) return x * (S(table->near[0]) + S(table->near[1]) * x);
@@ -70,11 +82,6 @@ struct GoldCasimir {
     }
     return S(e[0]) + x * (S(e[1]) + x * (S(e[2]) + x * S(e[3])));
   }
-  template <class S>
-  S pressure(S h) const {
-    return S(casimir_strength) / (h * h * h * h) * factor(h);
-  }
-  [[nodiscard]] double energy(double h) const;
 };
 
 }  // namespace softland

@@ -15,9 +15,11 @@
 
 namespace softland {
 
-struct VanDerWaals {
-  double hamaker_constant = 0;      ///< A [J]
-  double equilibrium_distance = 0;  ///< h0 [m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct VanDerWaalsOf {
+  P hamaker_constant = 0;      ///< A [J]
+  P equilibrium_distance = 0;  ///< h0 [m]
 
   template <class S>
   S pressure(S h) const {
@@ -37,5 +39,6 @@ struct VanDerWaals {
   [[nodiscard]] double attraction_energy(double h) const { return -hamaker_constant / (12 * pi * h * h); }
   [[nodiscard]] double repulsion_energy(double h) const { return h * repulsion(h) / 8; }
 };
+using VanDerWaals = VanDerWaalsOf<double>;
 
 }  // namespace softland

@@ -11,10 +11,12 @@
 
 namespace softland {
 
-struct GallisTorczynskiFilm {
-  double viscosity = 0;       ///< [Pa s]
-  double mean_free_path = 0;  ///< [m]
-  double width = 0;           ///< [m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct GallisTorczynskiFilmOf {
+  P viscosity = 0;       ///< [Pa s]
+  P mean_free_path = 0;  ///< [m]
+  P width = 0;           ///< [m]
   static constexpr bool driven = false;
 
   /// [N/m]
@@ -27,5 +29,6 @@ struct GallisTorczynskiFilm {
     return S(-viscosity) * velocity * (S(1) + x * (S(6) * pressure + S(12) * flow * x)) / (x * x * x * (S(1) + S(6) * slip * kn));
   }
 };
+using GallisTorczynskiFilm = GallisTorczynskiFilmOf<double>;
 
 }  // namespace softland

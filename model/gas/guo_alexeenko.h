@@ -10,17 +10,20 @@
 #pragma once
 
 #include <cmath>
+#include <concepts>
 
 #include "model/power.h"
 
 namespace softland {
 
-struct GuoAlexeenkoFilm {
-  double mean_free_path = 0;                                             ///< [m]
-  double width = 0;                                                      ///< [m]
-  double thickness = 0;                                                  ///< [m]
-  double strength = 10.39 * thickness;                                   // A b [N s/m^2]
-  double rarefaction = 1.374 * std::pow(mean_free_path / width, 0.966);  // B (lambda/a)^e
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct GuoAlexeenkoFilmOf {
+  P mean_free_path = 0;                                              ///< [m]
+  P width = 0;                                                       ///< [m]
+  P thickness = 0;                                                   ///< [m]
+  P strength = 10.39 * thickness;                                    // A b [N s/m^2]
+  P rarefaction = P(1.374) * raised(mean_free_path / width, 0.966);  // B (lambda/a)^e
   static constexpr bool driven = false;
 
   /// [N/m]
@@ -29,6 +32,17 @@ struct GuoAlexeenkoFilm {
     const S ratio = S(width) / gap;
     return S(-strength) * velocity * power(ratio, 3.100) / (S(1) + S(rarefaction) * power(ratio, 1.825));
   }
+
+ private:
+  /// By the library, to the last bit.
+  static P raised(const P& x, double exponent) {
+    if constexpr (std::same_as<P, double>) {
+      return std::pow(x, exponent);
+    } else {
+      return power(x, exponent);
+    }
+  }
 };
+using GuoAlexeenkoFilm = GuoAlexeenkoFilmOf<double>;
 
 }  // namespace softland

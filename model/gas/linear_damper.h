@@ -10,8 +10,10 @@
 
 namespace softland {
 
-struct LinearDamper {
-  double damping = 0;  ///< c [N s/m^2]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct LinearDamperOf {
+  P damping = 0;  ///< c [N s/m^2]
   static constexpr bool driven = false;
 
   /// [N/m]
@@ -20,5 +22,6 @@ struct LinearDamper {
     return S(-damping) * velocity;
   }
 };
+using LinearDamper = LinearDamperOf<double>;
 
 }  // namespace softland

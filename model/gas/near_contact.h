@@ -12,12 +12,16 @@
 // presumably Parkos et al., J. Microelectromech. Syst. 22 (2013), which was not read.
 #pragma once
 
+#include "base/select.h"
+
 namespace softland {
 
-struct NearContactFilm {
-  double viscosity = 0;       ///< [Pa s]
-  double mean_free_path = 0;  ///< [m]
-  double width = 0;           ///< [m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct NearContactFilmOf {
+  P viscosity = 0;       ///< [Pa s]
+  P mean_free_path = 0;  ///< [m]
+  P width = 0;           ///< [m]
   static constexpr bool driven = false;
   static constexpr double near = 0.015;       ///< h/a below which g is continued by its tangent
   static constexpr double rarefied = 210.79;  ///< E is that of rarefied gas for Kn well above one over this
@@ -35,12 +39,17 @@ struct NearContactFilm {
   /// g(x) with z = 6 Z and e = 12 E.
   template <class S>
   static S shape(S x, S z, S e) {
-    if (!(x < near)) return (S(1) + x * (z + e * x)) / (x * x * x);
     constexpr double r = 1 / near;
-    const S value = S(r) * (S(r) * (S(r) + z) + e);
-    const S slope = S(-r * r) * (S(r) * (S(3 * r) + S(2) * z) + e);
-    return value + slope * (x - S(near));
+    return select(
+        x < near,
+        [&]() -> S {
+          const S value = S(r) * (S(r) * (S(r) + z) + e);
+          const S slope = S(-r * r) * (S(r) * (S(3 * r) + S(2) * z) + e);
+          return value + slope * (x - S(near));
+        },
+        [&]() -> S { return (S(1) + x * (z + e * x)) / (x * x * x); });
   }
 };
+using NearContactFilm = NearContactFilmOf<double>;
 
 }  // namespace softland

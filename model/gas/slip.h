@@ -10,10 +10,12 @@
 
 namespace softland {
 
-struct SlipFilm {
-  double viscosity = 0;       ///< [Pa s]
-  double mean_free_path = 0;  ///< [m]
-  double width = 0;           ///< [m]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct SlipFilmOf {
+  P viscosity = 0;       ///< [Pa s]
+  P mean_free_path = 0;  ///< [m]
+  P width = 0;           ///< [m]
   static constexpr bool driven = false;
 
   /// [N/m]
@@ -22,5 +24,6 @@ struct SlipFilm {
     return S(-viscosity * width * width * width) * velocity / (gap * gap * (gap + S(6 * mean_free_path)));
   }
 };
+using SlipFilm = SlipFilmOf<double>;
 
 }  // namespace softland

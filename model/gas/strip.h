@@ -10,10 +10,12 @@
 
 namespace softland {
 
-struct StripSqueezeFilm {
-  double viscosity = 0;  ///< [Pa s]
-  double width = 0;      ///< [m]
-  double mu_a3 = viscosity * width * width * width;
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct StripSqueezeFilmOf {
+  P viscosity = 0;  ///< [Pa s]
+  P width = 0;      ///< [m]
+  P mu_a3 = viscosity * width * width * width;
   static constexpr bool driven = false;
 
   /// [N/m]
@@ -22,5 +24,6 @@ struct StripSqueezeFilm {
     return S(-mu_a3) * velocity / (gap * gap * gap);
   }
 };
+using StripSqueezeFilm = StripSqueezeFilmOf<double>;
 
 }  // namespace softland

@@ -14,13 +14,15 @@
 
 namespace softland {
 
-struct StripOverSlit {
-  double viscosity = 0;    ///< [Pa s]
-  double width = 0;        ///< [m]
-  double slit_height = 0;  ///< [m]
-  double slit_length = 0;  ///< [m]
-  double mu_a3 = viscosity * width * width * width;
-  double passing = width * slit_height * slit_height * slit_height / slit_length;  ///< r h^3 [m^3]
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct StripOverSlitOf {
+  P viscosity = 0;    ///< [Pa s]
+  P width = 0;        ///< [m]
+  P slit_height = 0;  ///< [m]
+  P slit_length = 0;  ///< [m]
+  P mu_a3 = viscosity * width * width * width;
+  P passing = width * slit_height * slit_height * slit_height / slit_length;  ///< r h^3 [m^3]
   static constexpr bool driven = false;
 
   /// [N/m]
@@ -30,5 +32,6 @@ struct StripOverSlit {
     return S(-mu_a3) * velocity * (S(4) * cube + S(passing)) / (cube * (cube + S(passing)));
   }
 };
+using StripOverSlit = StripOverSlitOf<double>;
 
 }  // namespace softland

@@ -12,11 +12,13 @@
 
 namespace softland {
 
-struct VeijolaFilm {
-  double viscosity = 0;       ///< [Pa s]
-  double mean_free_path = 0;  ///< [m]
-  double width = 0;           ///< [m]
-  double mu_a3 = viscosity * width * width * width;
+/// Over the scalar of its parameters; that of the state is one they convert to.
+template <class P>
+struct VeijolaFilmOf {
+  P viscosity = 0;       ///< [Pa s]
+  P mean_free_path = 0;  ///< [m]
+  P width = 0;           ///< [m]
+  P mu_a3 = viscosity * width * width * width;
   static constexpr bool driven = false;
 
   /// [N/m]
@@ -25,5 +27,6 @@ struct VeijolaFilm {
     return S(-mu_a3) * velocity / (gap * gap * gap * (S(1) + S(9.638) * power(S(mean_free_path) / gap, 1.159)));
   }
 };
+using VeijolaFilm = VeijolaFilmOf<double>;
 
 }  // namespace softland

@@ -1,0 +1,29 @@
+// Between modal coordinates and what happens at one place of the beam, over the scalar of the state and that of the mode shapes.
+//
+//   y(x) = sum over modes of phi_i(x) q_i        Q_i += phi_i(x) F
+//
+// phi mass-normalised modes [kg^(-1/2)], q modal coordinates [m kg^(1/2)], y deflection [m], F force at x [N], or load per length
+// times a quadrature weight, Q modal force [N kg^(-1/2)]. The right-hand side of one device does both for many places at once, in
+// lanes of places (switch.cc): this is the same for duals and for lanes of devices.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace softland {
+
+/// y of coordinates, or the velocity of rates.
+template <class P, class S>
+[[nodiscard]] S deflection(std::span<const P> shape, const S* q) {
+  S sum = S(0);
+  for (std::size_t i = 0; i < shape.size(); ++i) sum = sum + S(shape[i]) * q[i];
+  return sum;
+}
+
+/// Adds what a force does to every mode.
+template <class P, class S>
+void add_modal_force(std::span<const P> shape, const S& force, S* modal) {
+  for (std::size_t i = 0; i < shape.size(); ++i) modal[i] = modal[i] + S(shape[i]) * force;
+}
+
+}  // namespace softland

@@ -1,0 +1,122 @@
+// The smooth pieces that a signal is made of, over the scalar of its levels and times: a double, a dual number whose slopes are
+// those of a waveform's parameters, or a lane with one device to a number.
+//
+//   V(t) = value + slope (t - begin) + [amplitude + amplitude_slope (t - begin)] sin(angular_frequency t + phase)
+//
+// on [begin, begin of the next piece); the last piece lasts for ever.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/require.h"
+#include "base/select.h"
+
+namespace softland {
+
+namespace internal {
+
+/// Whether a number is 0 for good. One with slopes, or one of several, is not: it may be a parameter that stands at 0.
+template <class P>
+[[nodiscard]] bool vanishes(const P& x) {
+  if constexpr (std::is_same_v<P, double>) {
+    return x == 0;
+  } else {
+    return false;
+  }
+}
+
+}  // namespace internal
+
+template <class P>
+struct SignalPieceOf {
+  P begin = 0;              ///< [s]
+  P value = 0;              ///< [V] at begin
+  P slope = 0;              ///< [V/s]
+  P amplitude = 0;          ///< [V] at begin
+  P amplitude_slope = 0;    ///< [V/s]
+  P angular_frequency = 0;  ///< [rad/s]
+  P phase = 0;              ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
+
+  [[nodiscard]] bool oscillates() const { return !internal::vanishes(amplitude) || !internal::vanishes(amplitude_slope); }
+  /// [V]. The formula goes on past both ends of the piece, so that an integrator may look a little beyond a breakpoint.
+  [[nodiscard]] P voltage(P time) const {
+    using std::sin;
+    const P elapsed = time - begin;
+    const P straight = value + slope * elapsed;
+    if (!oscillates()) return straight;
+    return straight + (amplitude + amplitude_slope * elapsed) * sin(angular_frequency * time + phase);
+  }
+  /// dV/dt [V/s]
+  [[nodiscard]] P rate(P time) const {
+    using std::cos, std::sin;
+    if (!oscillates()) return slope;
+    const P angle = angular_frequency * time + phase;
+    const P envelope = amplitude + amplitude_slope * (time - begin);
+    return slope + amplitude_slope * sin(angle) + envelope * angular_frequency * cos(angle);
+  }
+  bool operator==(const SignalPieceOf&) const = default;
+};
+template <class P>
+using Pieces = std::vector<SignalPieceOf<P>>;
+
+namespace internal {
+
+/// Whether a condition on a waveform's times holds. Throws InvalidInput where it holds for some devices of a lane only: their
+/// signals do not have the same pieces.
+template <class Condition>
+[[nodiscard]] bool decided(const Condition& condition) {
+  if constexpr (std::is_same_v<Condition, bool>) {
+    return condition;
+  } else {
+    require(all_of(condition) || none_of(condition), "the signals of a lane of devices do not have the same pieces");
+    return all_of(condition);
+  }
+}
+
+/// True when two times [s] that a user means to be one, such as an edge that ends where the next one begins, differ by no more
+/// than the rounding of one sum and of their decimal text. A piece between them would be shorter than any integrator can step.
+template <class P>
+[[nodiscard]] bool coincide(const P& time, const P& other) {
+  using std::abs;
+  constexpr double roundings = 4, epsilon = 0x1p-52;
+  return !decided(abs(time - other) > roundings * epsilon * abs(other));
+}
+
+/// Straight connections of points [s, V], times in order; two points of the same time are a jump.
+template <class P>
+[[nodiscard]] Pieces<P> straight_pieces(const std::vector<std::pair<P, P>>& points) {
+  Pieces<P> pieces;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const auto& [time, voltage] = points[i];
+    const auto& [next_time, next_voltage] = points[i + 1];
+    if (!decided(next_time > time)) continue;
+    pieces.push_back({.begin = time, .value = voltage, .slope = (next_voltage - voltage) / (next_time - time)});
+  }
+  pieces.push_back({.begin = points.back().first, .value = points.back().second});
+  return pieces;
+}
+
+/// One stretch of a broken line: it holds until the next one begins.
+template <class P>
+struct Stretch {
+  P begin = 0;  ///< [s]
+  P value = 0;  ///< at begin
+  P slope = 0;  ///< [1/s]
+
+  [[nodiscard]] P at(const P& time) const { return value + slope * (time - begin); }
+};
+
+/// The stretch that holds from `time` on; the first one begins at 0.
+template <class P>
+[[nodiscard]] const Stretch<P>& stretch_at(const std::vector<Stretch<P>>& line, const P& time) {
+  std::size_t found = 0;
+  while (found + 1 < line.size() && !decided(time < line[found + 1].begin)) ++found;
+  return line[found];
+}
+
+}  // namespace internal
+}  // namespace softland
