@@ -12,7 +12,7 @@ namespace softland {
 namespace {
 
 /// Knots this close to the first-touch plane, relative to the contact gap, are on it: the integrator stops there to rounding.
-constexpr double kPlaneTolerance = 1e-12;
+constexpr double plane_tolerance = 1e-12;
 
 /// True when the control points of the quintic's Bernstein form are in order: a cheap proof that nothing turns between the knots.
 bool surely_monotone(const TrajectoryPoint& a, const TrajectoryPoint& b) {
@@ -52,7 +52,7 @@ std::size_t usable_points(const Trajectory& trajectory) {
 /// Knots, turning points and crossings of the plane, in order. At every change of side there is a node with separation 0.
 std::vector<Node> nodes(const Trajectory& trajectory) {
   const double gap = trajectory.contact_gap;
-  const double tolerance = kPlaneTolerance * std::abs(gap);
+  const double tolerance = plane_tolerance * std::abs(gap);
   const auto snapped = [&](double value) { return std::abs(value) <= tolerance ? 0.0 : value; };
   const auto knot = [&](const TrajectoryPoint& point) { return Node{point.time, snapped(gap - point.position), point.velocity}; };
 

@@ -12,18 +12,18 @@ namespace softland::internal {
 namespace {
 
 // Shares of the budget of an epoch.
-constexpr double kSampling = 0.15;
-constexpr double kFirstHeat = 0.4;
-constexpr double kLaterHeat = 0.2;
+constexpr double sampling = 0.15;
+constexpr double first_heat = 0.4;
+constexpr double later_heat = 0.2;
 
-constexpr long kLongestEpoch = 5000;  // evaluations: beyond that, other starts promise more than longer searches
-constexpr std::size_t kSearches = 4;
-constexpr long kShortestHeat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
+constexpr long longest_epoch = 5000;  // evaluations: beyond that, other starts promise more than longer searches
+constexpr std::size_t searches_at_once = 4;
+constexpr long shortest_heat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
 
 // Fractions of the box.
-constexpr double kSeparation = 0.15;
-constexpr double kFirstStep = 0.25;
-constexpr double kPolishingStep = 0.02;
+constexpr double largest_separation = 0.15;
+constexpr double first_step = 0.25;
+constexpr double polishing_step = 0.02;
 
 struct Search {
   const Method* method;
@@ -47,11 +47,11 @@ std::vector<Point> promising_points(std::vector<Ledger::Known> known, const std:
     const auto far = [&](const Point& other) { return distance(candidate, other) > separation; };
     return std::all_of(chosen.begin(), chosen.end(), far) && std::all_of(explored.begin(), explored.end(), far);
   };
-  constexpr int kHalvings = 10;
-  double separation = kSeparation;
-  for (int i = 0; i < kHalvings && chosen.size() < kSearches; ++i, separation /= 2) {
+  constexpr int halvings = 10;
+  double separation = largest_separation;
+  for (int i = 0; i < halvings && chosen.size() < searches_at_once; ++i, separation /= 2) {
     for (const Ledger::Known& candidate : known) {
-      if (chosen.size() == kSearches) break;
+      if (chosen.size() == searches_at_once) break;
       if (apart(candidate.point, separation)) chosen.push_back(candidate.point);
     }
   }
@@ -83,11 +83,12 @@ void advance(Ledger& ledger, std::vector<Search>& searches, long budget) {
 }
 
 long share_of(long budget, double share, std::size_t searches) {
-  return std::max(kShortestHeat, static_cast<long>(share * static_cast<double>(budget) / static_cast<double>(searches)));
+  return std::max(shortest_heat, static_cast<long>(share * static_cast<double>(budget) / static_cast<double>(searches)));
 }
 
 /// `finisher`: takes over from the searches after their first heat, where it is another method.
-void search(Ledger& ledger, const std::array<const Method*, kSearches>& methods, const Method* finisher, const Method& polisher) {
+void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
+            const Method& polisher) {
   std::uint64_t points_sampled = 0;
   std::uint64_t searches_begun = 0;
   const auto begin_search = [&](const Method& method, const Point& start, double step) {
@@ -98,33 +99,33 @@ void search(Ledger& ledger, const std::array<const Method*, kSearches>& methods,
 
   while (!ledger.over()) {
     const long before = ledger.remaining();
-    const long budget = std::min(before, kLongestEpoch);
-    const auto samples = static_cast<std::size_t>(std::ceil(kSampling * static_cast<double>(budget)));
+    const long budget = std::min(before, longest_epoch);
+    const auto samples = static_cast<std::size_t>(std::ceil(sampling * static_cast<double>(budget)));
     sample(ledger, points_sampled, samples);
     points_sampled += samples;
 
     std::vector<Search> running;
     for (const Point& start : promising_points(ledger.known(), explored)) {
-      running.push_back(begin_search(*methods[running.size()], start, kFirstStep));
+      running.push_back(begin_search(*methods[running.size()], start, first_step));
     }
-    double share = kFirstHeat;
+    double share = first_heat;
     while (!running.empty() && !ledger.over()) {
       advance(ledger, running, share_of(budget, share, running.size()));
       for (const Search& search : running) explored.push_back(search.best_point);
       if (running.size() == 1) break;
       std::stable_sort(running.begin(), running.end(), [](const Search& a, const Search& b) { return a.best < b.best; });
       running.resize((running.size() + 1) / 2);
-      if (finisher != nullptr && share == kFirstHeat) {
-        for (Search& each : running) each = begin_search(*finisher, each.best_point, kPolishingStep);
+      if (finisher != nullptr && share == first_heat) {
+        for (Search& each : running) each = begin_search(*finisher, each.best_point, polishing_step);
       }
-      share = kLaterHeat;
+      share = later_heat;
     }
 
     const auto& known = ledger.known();
     const auto best = std::min_element(known.begin(), known.end(),
                                        [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
     if (best != known.end() && best->answer.feasible) {
-      std::vector<Search> polish{begin_search(polisher, best->point, kPolishingStep)};
+      std::vector<Search> polish{begin_search(polisher, best->point, polishing_step)};
       advance(ledger, polish, budget);
     }
     if (ledger.remaining() == before) return;

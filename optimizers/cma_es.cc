@@ -20,7 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // In units of the box; below this the spread of the points is lost in the noise of the objective.
-constexpr double kSmallestSpread = 1e-7;
+constexpr double smallest_spread = 1e-7;
 
 /// Folds the real line onto [0, 1].
 double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
@@ -97,7 +97,7 @@ RunReport run_cma_es(const Run& run, Strand& strand) {
 
       sigma *= std::exp(std::min(1.0, c_sigma / d_sigma * (path_sigma.norm() / chi - 1)));
       const double spread = sigma * lengths.maxCoeff();
-      if (!(spread > kSmallestSpread)) return {.converged = true, .message = "CMA-ES: points have drawn together"};
+      if (!(spread > smallest_spread)) return {.converged = true, .message = "CMA-ES: points have drawn together"};
       if (spread > 2) sigma *= 2 / spread;
     }
   } catch (const Cut&) {

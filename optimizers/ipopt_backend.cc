@@ -18,7 +18,7 @@ std::mutex& one_solve_at_a_time() {
   static std::mutex mutex;
   return mutex;
 }
-constexpr std::chrono::milliseconds kLookUp{1};  // while waiting: how often to see whether it is our turn, or too late
+constexpr std::chrono::milliseconds look_up{1};  // while waiting: how often to see whether it is our turn, or too late
 
 class BoxProblem final : public Ipopt::TNLP {
  public:
@@ -101,7 +101,7 @@ RunReport run_ipopt(const Run& run, Strand& strand) {
   std::unique_lock turn(one_solve_at_a_time(), std::defer_lock);
   while (!turn.try_lock()) {
     if (strand.over()) return {.converged = false, .message = "Ipopt: stopped by us while waiting for another solve"};
-    std::this_thread::sleep_for(kLookUp);
+    std::this_thread::sleep_for(look_up);
   }
   strand.begin_search();
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);

@@ -13,24 +13,24 @@
 namespace softland::internal {
 namespace {
 
-constexpr std::size_t kNoTask = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t no_task = std::numeric_limits<std::size_t>::max();
 
 // Libraries square and subtract values: beyond this size only the order is kept, so that nothing overflows inside them.
-constexpr double kLargeValue = 1e12;
+constexpr double large_value = 1e12;
 double compress(double value) {
   const double size = std::abs(value);
-  if (size <= kLargeValue) return value;
-  return std::copysign(kLargeValue * (1 + std::log(size / kLargeValue)), value);
+  if (size <= large_value) return value;
+  return std::copysign(large_value * (1 + std::log(size / large_value)), value);
 }
 // Above compress(x) for every finite x (the largest is 6.8e14).
-constexpr double kPenaltyInTheDark = 1e15;
+constexpr double penalty_in_the_dark = 1e15;
 
 // Short, because the smooth pieces of an objective may be: those of the cost of a closing are narrower than a thousandth of the
 // box. The noise of about 1e-9 that objectives carry is then 1e-4 of a slope of order 1.
-constexpr double kDifferenceStep = 1e-5;
+constexpr double difference_step = 1e-5;
 
 // A search that is continued first walks through its own past, so the limit grows with what is known.
-constexpr long kCirclesAllowed = 1000;
+constexpr long circles_allowed = 1000;
 
 }  // namespace
 
@@ -64,7 +64,7 @@ Answer Strand::operator()(std::span<const double> point) {
   if (known == nullptr) known = recall(memory_);
   if (known != nullptr) {
     const auto points_known = static_cast<long>(ledger_.memory_.size() + memory_.size());
-    if (++repeats_ > kCirclesAllowed + points_known) throw Cut{};
+    if (++repeats_ > circles_allowed + points_known) throw Cut{};
     return *known;
   }
 
@@ -104,7 +104,7 @@ Answer Strand::remember(const Point& point, double value) {
 
 // Above everything seen, yet of the same size: a wall of 1e15 next to values of order 1 would blind the methods that fit models.
 double Strand::penalty() const {
-  if (worst_seen_ < best_seen_) return kPenaltyInTheDark;
+  if (worst_seen_ < best_seen_) return penalty_in_the_dark;
   const double spread = worst_seen_ - best_seen_;
   return worst_seen_ + (spread > 0 ? std::max(spread, 1e-3 * std::abs(worst_seen_)) : std::max(1.0, std::abs(worst_seen_)));
 }
@@ -114,10 +114,10 @@ void Strand::gradient(std::span<const double> point, std::span<double> gradient)
   Point moved(point.begin(), point.end());
   for (std::size_t i = 0; i < point.size(); ++i) {
     // Two offsets from here; both to the same side next to a bound.
-    double a = -kDifferenceStep;
-    double b = kDifferenceStep;
-    if (point[i] + a < 0) a = 2 * kDifferenceStep;
-    if (point[i] + b > 1) b = -2 * kDifferenceStep;
+    double a = -difference_step;
+    double b = difference_step;
+    if (point[i] + a < 0) a = 2 * difference_step;
+    if (point[i] + b > 1) b = -2 * difference_step;
     const auto probe = [&](double offset) {
       moved[i] = point[i] + offset;
       return (*this)(moved);
@@ -138,7 +138,7 @@ void Strand::gradient(std::span<const double> point, std::span<double> gradient)
 }
 
 Ledger::Ledger(const Problem& problem, const OptimizerOptions& options)
-    : problem_(problem), options_(options), begin_(std::chrono::steady_clock::now()), target_task_(kNoTask) {
+    : problem_(problem), options_(options), begin_(std::chrono::steady_clock::now()), target_task_(no_task) {
   for (std::size_t i = 0; i < problem.variables.size(); ++i) {
     if (problem.variables[i].lower < problem.variables[i].upper) free_.push_back(i);
   }
@@ -239,7 +239,7 @@ long Ledger::run(const std::vector<Task>& tasks) {
     next_index_ += budget;
   }
 
-  target_task_ = kNoTask;
+  target_task_ = no_task;
   run_tasks(strands.size(), options_.jobs, [&](std::size_t k) {
     try {
       if (!strands[k].over()) tasks[k].body(strands[k]);
@@ -276,7 +276,7 @@ void Ledger::settle(const std::vector<Strand>& strands) {
       }
     }
   }
-  target_reached_ = last != kNoTask;
+  target_reached_ = last != no_task;
 }
 
 OptimizerResult Ledger::result(bool converged, const std::string& message) const {

@@ -12,7 +12,7 @@ namespace softland {
 namespace internal {
 namespace {
 
-constexpr std::array kMethods = {
+constexpr std::array all_methods = {
     Method{"auto", Backend::search_auto, Reach::global, -1, false,
            "samples the box, then local searches from several good points; runs on all jobs (default)"},
     Method{"bobyqa", Backend::nlopt, Reach::local, nlopt::LN_BOBYQA, false,
@@ -45,7 +45,7 @@ struct Refusal {
   std::string_view name;
   std::string_view reason;
 };
-constexpr std::array kRefusals = {
+constexpr std::array refused_methods = {
     Refusal{"ags", "it crashes on non-finite values"},
     Refusal{"stogo", "it swallows exceptions and reports success"},
     Refusal{"newuoa", "it hangs on non-finite values"},
@@ -57,13 +57,14 @@ constexpr std::array kRefusals = {
 }  // namespace
 
 const Method& find_method(std::string_view name) {
-  const auto found = std::find_if(kMethods.begin(), kMethods.end(), [&](const Method& method) { return method.name == name; });
-  if (found != kMethods.end()) return *found;
+  const auto found =
+      std::find_if(all_methods.begin(), all_methods.end(), [&](const Method& method) { return method.name == name; });
+  if (found != all_methods.end()) return *found;
   const std::string there_are = fmt::format("there are {}", fmt::join(optimizer_names(), ", "));
   std::string plain(name);
   for (char& letter : plain)
     letter = letter == '_' ? '-' : letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
-  for (const Refusal& refusal : kRefusals) {
+  for (const Refusal& refusal : refused_methods) {
     if (refusal.name == plain) {
       throw InvalidInput(fmt::format("optimizer \"{}\" is refused: {}; {}", name, refusal.reason, there_are));
     }
@@ -74,13 +75,13 @@ const Method& find_method(std::string_view name) {
 }  // namespace internal
 
 std::span<const std::string_view> optimizer_names() {
-  static constexpr auto kNames = [] {
-    std::array<std::string_view, internal::kMethods.size()> names;
-    std::transform(internal::kMethods.begin(), internal::kMethods.end(), names.begin(),
+  static constexpr auto names_of_all = [] {
+    std::array<std::string_view, internal::all_methods.size()> names;
+    std::transform(internal::all_methods.begin(), internal::all_methods.end(), names.begin(),
                    [](const internal::Method& method) { return method.name; });
     return names;
   }();
-  return kNames;
+  return names_of_all;
 }
 
 std::string_view optimizer_description(std::string_view name) { return internal::find_method(name).description; }

@@ -44,10 +44,10 @@ void check(const Problem& problem, const OptimizerOptions& options) {
 }
 
 // A search begun at an infeasible point sees a plateau: it is worth a few evaluations to begin elsewhere.
-constexpr std::uint64_t kInfeasibleStartsSkipped = 20;
+constexpr std::uint64_t infeasible_starts_skipped = 20;
 
 // Runs that end without a single new evaluation: the method has nothing more to offer, from anywhere.
-constexpr int kIdleRunsAllowed = 20;
+constexpr int idle_runs_allowed = 20;
 
 RunReport search_single_method(Ledger& ledger, const Method& method) {
   RunReport report;
@@ -55,7 +55,7 @@ RunReport search_single_method(Ledger& ledger, const Method& method) {
     int idle_runs = 0;
     std::uint64_t skipped = 0;
     const std::size_t given = ledger.starts().size();
-    for (std::uint64_t k = 0; !strand.over() && idle_runs < kIdleRunsAllowed; ++k) {
+    for (std::uint64_t k = 0; !strand.over() && idle_runs < idle_runs_allowed; ++k) {
       const Run run{
           .start = k < given ? ledger.starts()[k] : sobol_points(ledger.seed(), ledger.dimension(), k - given, 1).front(),
           .seed = random_bits(ledger.seed(), Stream::library_seed, k)};
@@ -64,7 +64,7 @@ RunReport search_single_method(Ledger& ledger, const Method& method) {
         report = run_method(method, run, strand);
         return;
       }
-      if (!strand(run.start).feasible && skipped < kInfeasibleStartsSkipped) {
+      if (!strand(run.start).feasible && skipped < infeasible_starts_skipped) {
         ++skipped;
         continue;
       }

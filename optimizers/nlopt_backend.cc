@@ -16,9 +16,9 @@ namespace softland::internal {
 namespace {
 
 // In units of the box. Far below what the noise of an objective allows to resolve, so that no method gives up on a narrow valley.
-constexpr double kStepTolerance = 1e-7;
+constexpr double step_tolerance = 1e-7;
 // MLSL polishes many minima and needs only to tell them apart.
-constexpr double kStepToleranceInsideMlsl = 1e-4;
+constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
   Strand& strand;
@@ -84,10 +84,10 @@ RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
     opt.set_upper_bounds(1.0);
     opt.set_min_objective(call, &callback);
     opt.set_initial_step(run.step);
-    opt.set_xtol_abs(kStepTolerance);
+    opt.set_xtol_abs(step_tolerance);
     if (is_mlsl) {
       nlopt::opt local(nlopt::LN_BOBYQA, dimension);
-      local.set_xtol_abs(kStepToleranceInsideMlsl);
+      local.set_xtol_abs(step_tolerance_inside_mlsl);
       local.set_initial_step(run.step);
       opt.set_local_optimizer(local);
     }

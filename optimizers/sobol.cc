@@ -9,14 +9,14 @@ namespace softland::internal {
 namespace {
 
 // Boost's tables end at 3667 dimensions; far earlier, a Sobol sequence of any affordable length is no better than random points.
-constexpr std::size_t kSobolDimensions = 64;
+constexpr std::size_t most_dimensions = 64;
 
 }  // namespace
 
 std::vector<std::vector<double>> sobol_points(std::uint64_t seed, std::size_t dimension, std::uint64_t first, std::size_t count) {
   std::vector<std::vector<double>> points(count, std::vector<double>(dimension));
   if (dimension == 0 || count == 0) return points;
-  const std::size_t sobol_dimensions = std::min(dimension, kSobolDimensions);
+  const std::size_t sobol_dimensions = std::min(dimension, most_dimensions);
   boost::random::sobol sequence(sobol_dimensions);
   sequence.seed(first);
   for (std::size_t k = 0; k < count; ++k) {

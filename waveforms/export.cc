@@ -14,7 +14,7 @@ namespace softland {
 namespace {
 
 /// Sines become polylines this far from them, relative to the signal's peak: below the step of a 12-bit generator.
-constexpr double kSineTolerance = 1e-4;
+constexpr double sine_tolerance = 1e-4;
 
 void require_signals(const std::map<std::string, Signal>& signals) {
   require(!signals.empty(), "there is no waveform to export; there must be at least one");
@@ -85,7 +85,7 @@ std::string csv(const std::map<std::string, Signal>& signals, double end) {
                 "the name of a drive is \"{}\"; in a CSV file it must not be empty nor hold a comma, quote, hash or line break",
                 drive));
     text += "," + drive;
-    for (const auto& [time, voltage] : polyline(signal, end, kSineTolerance * signal.peak(), 0)) {
+    for (const auto& [time, voltage] : polyline(signal, end, sine_tolerance * signal.peak(), 0)) {
       times.insert(time);
       if (signal.voltage_before(time) != signal.voltage(time)) jumps.insert(time);
     }
@@ -121,7 +121,7 @@ std::string spice_pwl(const std::map<std::string, Signal>& signals, double end) 
             fmt::format("the name of a drive is \"{}\"; another one has the same SPICE name {}", drive, name));
     fmt::format_to(std::back_inserter(text), ".subckt {} plus minus\nVdrive plus minus PWL(\n", name);
     double last = -1;
-    for (const auto& [time, voltage] : polyline(signal, end, kSineTolerance * signal.peak(), jump_time)) {
+    for (const auto& [time, voltage] : polyline(signal, end, sine_tolerance * signal.peak(), jump_time)) {
       // Only jumps a rounding error apart can meet here; SPICE wants times that increase.
       if (!(time > last)) continue;
       fmt::format_to(std::back_inserter(text), "+ {} {}\n", time, voltage);

@@ -10,7 +10,7 @@
 namespace softland {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// The end value [V] whose straight connection from (piece.begin, piece.value) has the piece's slope bit for bit, where there is
 /// one; `favourite` is tried first. A table that jumps after a ramp, and its export, need it: value + slope * duration is off by
@@ -43,7 +43,7 @@ double rounding_at_end(const SignalPiece& piece, double end) {
   const double duration = end - piece.begin;
   const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
   const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
-  return roundings * kEpsilon * (straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)));
+  return roundings * epsilon * (straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)));
 }
 
 /// Where `function` changes sign in (low, high): bisection to the last bit that matters, nothing if it does not change sign.
