@@ -16,7 +16,7 @@ using Lane = Eigen::Array<double, lanes, 1>;
   return values;
 }
 
-/// Of a padded array.
+/// The lane of a padded array that begins there.
 inline Eigen::Map<Lane> lane(std::vector<double>& values, std::size_t begin) { return Eigen::Map<Lane>(values.data() + begin); }
 inline Eigen::Map<const Lane> lane(const std::vector<double>& values, std::size_t begin) {
   return Eigen::Map<const Lane>(values.data() + begin);

@@ -23,19 +23,19 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
     }
   }
   const Prepared prepared = prepare(file);
-  const Switch& device = prepared.device;
+  const Switch& model = prepared.device;
   std::vector<double> volts;
   for (const Signal& signal : prepared.signals()) volts.push_back(signal.peak());
 
   // The contact point a nanometre beyond the plane, by the first mode, and on its way.
-  const auto n = static_cast<std::size_t>(device.modes());
-  std::vector<double> state(2 * n + device.film_states()), rates(n + device.film_states());
-  state[0] = (device.device().gap.contact + 1e-9) / device.contact_shape()[0];
-  state[n] = device.angular_frequencies()[0] * state[0];
-  Switch::Workspace work = device.workspace();
+  const auto n = static_cast<std::size_t>(model.modes());
+  std::vector<double> state(2 * n + model.film_states()), rates(n + model.film_states());
+  state[0] = (model.device().gap.contact + 1e-9) / model.contact_shape()[0];
+  state[n] = model.angular_frequencies()[0] * state[0];
+  Switch::Workspace work = model.workspace();
   double sum = 0;
   for (long i = 0; i < calls; ++i) {
-    device.rates(state.data(), volts, device.has_contact(), work, rates.data());
+    model.rates(state.data(), volts, model.has_contact(), work, rates.data());
     sum += rates[0];
   }
   return std::isfinite(sum) ? 0 : 3;  // also keeps the loop alive

@@ -140,7 +140,7 @@ void report(const std::vector<Outcome>& all, const std::string& command, std::ui
       "Shipped scenes varied in everything a scene can say (`tests/support/random_scenes.h`), each run at its own tolerance and, "
       "where it\n"
       "ends well and has no compressible film, at a hundredth of it. Every run is held to `tests/support/invariants.h`: no "
-      "energy from nowhere, no falling "
+      "energy without a source, no falling "
       "through,\n"
       "no event missed, no number that is not one, bounded work, and a reason where a run fails; and it lands as the tighter run "
       "does.\n\n"

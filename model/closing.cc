@@ -208,32 +208,29 @@ class Recorder final : public ClosingObserver {
 
 }  // namespace
 
-Integrator automatic_integrator(const Switch& device) {
-  return device.film_states() > 0 ? Integrator::esdirk : Integrator::lawson;
-}
+Integrator automatic_integrator(const Switch& model) { return model.film_states() > 0 ? Integrator::esdirk : Integrator::lawson; }
 
-std::string why_always_restarted(const Switch& device) {
-  if (device.rigid_contact() != nullptr) return "an impact on a rigid contact is no force";
-  if (device.has_contact() && has_memory(device.contact())) return "a contact law with memory turns at the deepest point";
+std::string why_always_restarted(const Switch& model) {
+  if (model.rigid_contact() != nullptr) return "an impact on a rigid contact is no force";
+  if (model.has_contact() && has_memory(model.contact())) return "a contact law with memory turns at the deepest point";
   return {};
 }
 
-Trajectory observe_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options,
+Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                            ClosingObserver& observer) {
-  require(drives.size() == device.drives(),
-          fmt::format("{} signals for a switch with {} drives", drives.size(), device.drives()));
+  require(drives.size() == model.drives(), fmt::format("{} signals for a switch with {} drives", drives.size(), model.drives()));
   require(options.duration > 0 && options.duration < 1e6,
           fmt::format("duration = {} s: must be greater than 0 s and below 1e6 s", options.duration));
   require(options.tolerance > 0 && options.tolerance <= 0.1,
           fmt::format("tolerance = {}: must be in (0, 0.1]", options.tolerance));
-  require(options.restart_at_contact || why_always_restarted(device).empty(),
-          fmt::format("restart_at_contact = false: {}", why_always_restarted(device)));
-  return Run(device, drives, options, observer).run();
+  require(options.restart_at_contact || why_always_restarted(model).empty(),
+          fmt::format("restart_at_contact = false: {}", why_always_restarted(model)));
+  return Run(model, drives, options, observer).run();
 }
 
-Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options) {
+Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options) {
   Recorder recorder;
-  Trajectory t = observe_closing(device, drives, options, recorder);
+  Trajectory t = observe_closing(model, drives, options, recorder);
   t.points = std::move(recorder.points);
   t.touches = std::move(recorder.touches);
   return t;

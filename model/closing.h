@@ -13,8 +13,8 @@
 // Steps that are short for the stability of the explicit method and not for the tolerance, as in a thick film in a gap that is
 // all but closed, a thousand of them and more, make an `automatic` run go over to BDF, with a hundredth of the tolerance.
 //
-// Every run keeps the books of its energy, dissipation by Simpson's rule over each step, and more exactly from where they are off
-// by 1e-4 of the energy that bends the beam by the contact gap: an integrator that loses the contact
+// Every run audits its energy (closing/energy_audit.h), dissipation by Simpson's rule over each step, and more exactly from where
+// the balance is off by 1e-4 of the energy that bends the beam by the contact gap: an integrator that loses the contact
 // between two steps, or a tolerance too loose for a stiff one, shows as energy that no source supplied. A residual above 1 % of
 // the energy that bends the beam by the contact gap is a warning, above 20 % the run is a numerical failure.
 //
@@ -38,7 +38,7 @@
 namespace softland {
 
 /// What `automatic` begins with: lawson, or esdirk where a gas film is compressible.
-[[nodiscard]] Integrator automatic_integrator(const Switch& device);
+[[nodiscard]] Integrator automatic_integrator(const Switch& model);
 
 struct ClosingOptions {
   double duration = 0;      ///< window [s]
@@ -61,14 +61,14 @@ struct ClosingOptions {
 };
 
 /// Why a closing of this switch cannot be run with restart_at_contact = false; empty when it can.
-[[nodiscard]] std::string why_always_restarted(const Switch& device);
+[[nodiscard]] std::string why_always_restarted(const Switch& model);
 
 /// Never throws for numerical trouble: see Trajectory::status. Throws InvalidInput unless there is one signal per drive of the
 /// switch, duration and tolerance are positive and tolerance <= 0.1; or where restart_at_contact is false and cannot be.
-[[nodiscard]] Trajectory simulate_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options);
+[[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
 /// The same for an observer, who alone receives points and touches: those of the result stay empty.
-[[nodiscard]] Trajectory observe_closing(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options,
+[[nodiscard]] Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                                          ClosingObserver& observer);
 
 }  // namespace softland

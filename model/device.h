@@ -15,7 +15,7 @@
 
 namespace softland {
 
-/// Of a beam: the formulas of higher mode shapes lose their digits.
+/// The most modes of a beam: the formulas of higher mode shapes lose their digits.
 inline constexpr int most_modes = 20;
 
 enum class StructureKind { cantilever, clamped_clamped, plate };

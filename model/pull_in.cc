@@ -25,29 +25,29 @@ struct Held {
 
 class Statics {
  public:
-  explicit Statics(const Switch& device)
-      : device_(device),
-        work_(device.workspace()),
-        rest_(Eigen::VectorXd::Zero(device.modes())),
-        squares_(device.angular_frequencies().cwiseAbs2()) {}
+  explicit Statics(const Switch& model)
+      : model_(model),
+        work_(model.workspace()),
+        rest_(Eigen::VectorXd::Zero(model.modes())),
+        squares_(model.angular_frequencies().cwiseAbs2()) {}
 
   // Shape under a force at the contact point, scaled to the deflection s there.
   [[nodiscard]] Eigen::VectorXd pushed(double s) const {
-    const Eigen::VectorXd shape = device_.contact_shape().cwiseQuotient(squares_);
-    return shape * (s / device_.contact_shape().dot(shape));
+    const Eigen::VectorXd shape = model_.contact_shape().cwiseQuotient(squares_);
+    return shape * (s / model_.contact_shape().dot(shape));
   }
 
   // `drive` alone holds the contact point at s against the contact force P(s - dt).
   std::optional<Held> on_branch(std::size_t drive, double s, Held start) {
     // The force at unit strength as a difference: taken near the strength sought, where it does not drown in the others.
     const double scale = start.unknown > 0 ? start.unknown : 1;
-    std::vector<double> some(device_.drives(), 0.0), none = some;
-    some[drive] = device_.value_of_strength(drive, scale);
-    none[drive] = device_.value_of_strength(drive, 0);
-    const Eigen::VectorXd& shape = device_.contact_shape();
-    const double d = s - device_.device().gap.contact;
-    const bool acts = device_.has_contact() && !device_.has_pad_contact() && d > -device_.contact_reach();
-    const double push = acts ? contact_force(device_.contact(), d) : 0;
+    std::vector<double> some(model_.drives(), 0.0), none = some;
+    some[drive] = model_.value_of_strength(drive, scale);
+    none[drive] = model_.value_of_strength(drive, 0);
+    const Eigen::VectorXd& shape = model_.contact_shape();
+    const double d = s - model_.device().gap.contact;
+    const bool acts = model_.has_contact() && !model_.has_pad_contact() && d > -model_.contact_reach();
+    const double push = acts ? contact_force(model_.contact(), d) : 0;
     Eigen::VectorXd others;
     Eigen::MatrixXd others_by_q;
     return newton(s, std::move(start),
@@ -70,8 +70,8 @@ class Statics {
       const auto next =
           newton(s, h, [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
             evaluate(at.q, part, residual, by_q);
-            residual -= at.unknown * device_.contact_shape();
-            by_unknown = -device_.contact_shape();
+            residual -= at.unknown * model_.contact_shape();
+            by_unknown = -model_.contact_shape();
           });
       if (!next) return std::nullopt;
       h = *next;
@@ -80,25 +80,25 @@ class Statics {
   }
 
   double potential(const Eigen::VectorXd& q, std::span<const double> volts) {
-    return device_.potential(q.data(), volts, device_.untouched(q.data()), work_);
+    return model_.potential(q.data(), volts, model_.untouched(q.data()), work_);
   }
 
  private:
   // Static modal forces and their derivative, without a contact that acts at the point that is held.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
-    const auto n = device_.modes();
+    const auto n = model_.modes();
     force.resize(n);
     by_q.resize(n, n);
     Eigen::MatrixXd by_v(n, n);
-    const ContactState contact = device_.has_pad_contact();
-    device_.accelerations(q.data(), rest_.data(), volts, contact, work_, force.data());
-    device_.jacobian(q.data(), rest_.data(), volts, contact, work_, by_q, by_v);
+    const ContactState contact = model_.has_pad_contact();
+    model_.accelerations(q.data(), rest_.data(), volts, contact, work_, force.data());
+    model_.jacobian(q.data(), rest_.data(), volts, contact, work_, by_q, by_v);
   }
 
   template <class Equations>
   std::optional<Held> newton(double s, Held h, Equations&& equations) {
-    const Eigen::Index n = device_.modes();
-    const Eigen::VectorXd& shape = device_.contact_shape();
+    const Eigen::Index n = model_.modes();
+    const Eigen::VectorXd& shape = model_.contact_shape();
     const double largest = shape.cwiseAbs().maxCoeff();
     Eigen::VectorXd residual, by_unknown;
     Eigen::MatrixXd by_q, bordered(n + 1, n + 1);
@@ -117,15 +117,15 @@ class Statics {
       h.q += step.head(n);
       h.unknown += step[n];
       const double moved = step.head(n).cwiseProduct(shape).cwiseAbs().sum();
-      if (moved < 1e-13 * device_.device().gap.electrode) {
+      if (moved < 1e-13 * model_.device().gap.electrode) {
         // Below the floor the laws are no longer physics: a state there is none.
-        return Switch::smallest_gap(work_) > device_.gap_floor() ? std::optional(h) : std::nullopt;
+        return Switch::smallest_gap(work_) > model_.gap_floor() ? std::optional(h) : std::nullopt;
       }
     }
     return std::nullopt;
   }
 
-  const Switch& device_;
+  const Switch& model_;
   Switch::Workspace work_;
   Eigen::VectorXd rest_, squares_;
 };
@@ -133,7 +133,7 @@ class Statics {
 // The static branch of one drive as a function of the contact point's deflection.
 class EquilibriumBranch {
  public:
-  EquilibriumBranch(const Switch& device, std::size_t drive) : statics_(device), drive_(drive) {}
+  EquilibriumBranch(const Switch& model, std::size_t drive) : statics_(model), drive_(drive) {}
 
   // Strength at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
   double operator()(double s) {
@@ -207,15 +207,15 @@ bool pulls_in(const Device& device, std::size_t drive) {
 
 std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? "fold" : "contact"; }
 
-StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
-  if (!pulls_in(device.device(), drive)) return {.status = Status::no_contact};
+StaticPullIn static_pull_in(const Switch& model, std::size_t drive) {
+  if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
   // The branch of the dispersion force begins at the straight beam and factor 0, that of an electrode where the switch rests at 0
   // V.
-  const bool from_straight = device.drive_kind(drive) == DriveKind::dispersion;
-  if (!from_straight && !device.rest()) return {.status = Status::collapsed_at_rest};
-  EquilibriumBranch branch(device, drive);
-  const double end = device.device().gap.contact;
-  const double begin = from_straight ? 0 : device.contact_deflection(device.rest()->data());
+  const bool from_straight = model.drive_kind(drive) == DriveKind::dispersion;
+  if (!from_straight && !model.rest()) return {.status = Status::collapsed_at_rest};
+  EquilibriumBranch branch(model, drive);
+  const double end = model.device().gap.contact;
+  const double begin = from_straight ? 0 : model.contact_deflection(model.rest()->data());
   const auto place = [&](double k) { return begin + (end - begin) * k / branch_steps; };
   double best = 0;
   for (int k = 1; k <= branch_steps; ++k) {
@@ -227,29 +227,29 @@ StaticPullIn static_pull_in(const Switch& device, std::size_t drive) {
       const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
                                                                      std::max(1e-6, place(k - 2) / end), s / end, 30);
       return {.status = Status::done,
-              .voltage = device.value_of_strength(drive, -value),
+              .voltage = model.value_of_strength(drive, -value),
               .deflection = at * end,
               .kind = StaticKind::fold};
     }
     best = strength;
   }
   return {
-      .status = Status::done, .voltage = device.value_of_strength(drive, best), .deflection = end, .kind = StaticKind::contact};
+      .status = Status::done, .voltage = model.value_of_strength(drive, best), .deflection = end, .kind = StaticKind::contact};
 }
 
-double release_voltage(const Switch& device, std::size_t drive) {
-  if (!device.has_contact() || !pulls_in(device.device(), drive)) return nan;
-  EquilibriumBranch branch(device, drive);
-  const double plane = device.device().gap.contact;
+double release_voltage(const Switch& model, std::size_t drive) {
+  if (!model.has_contact() || !pulls_in(model.device(), drive)) return nan;
+  EquilibriumBranch branch(model, drive);
+  const double plane = model.device().gap.contact;
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
-  if (device.rigid_contact() != nullptr) {
+  if (model.rigid_contact() != nullptr) {
     const double square = branch(plane);
     return std::isfinite(square) ? std::sqrt(std::max(square, 0.0)) : nan;
   }
-  if (device.contact_reach() > 0) {
+  if (model.contact_reach() > 0) {
     // Adhesion inside may make a deeper well than the first.
     constexpr int looks = 256;
-    const double step = largest_interference(*device.device().contact) / looks;
+    const double step = largest_interference(*model.device().contact) / looks;
     double best = branch(plane), at = 0;
     for (int k = 1; k < looks; ++k) {
       const double value = branch(plane + k * step);
@@ -263,26 +263,26 @@ double release_voltage(const Switch& device, std::size_t drive) {
     return std::isfinite(best) ? std::sqrt(std::max(best, 0.0)) : nan;
   }
   // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
-  const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, device.penetration_scale() / 16);
+  const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, model.penetration_scale() / 16);
   return lowest ? std::sqrt(std::max(lowest->value, 0.0)) : nan;
 }
 
-std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts) {
-  if (!device.has_contact()) return std::nullopt;
-  Statics statics(device);
-  const double plane = device.device().gap.contact, step = device.penetration_scale() / 16;
-  Switch::Workspace work = device.workspace();
-  if (device.rigid_contact() != nullptr) {
+std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts) {
+  if (!model.has_contact()) return std::nullopt;
+  Statics statics(model);
+  const double plane = model.device().gap.contact, step = model.penetration_scale() / 16;
+  Switch::Workspace work = model.workspace();
+  if (model.rigid_contact() != nullptr) {
     const auto held = statics.pinned(volts, plane);
     if (!held || !(held->unknown > 0)) return std::nullopt;
     return ClosedEquilibrium{
-        .q = held->q, .contact_force = held->unknown, .potential = device.potential(held->q.data(), volts, true, work)};
+        .q = held->q, .contact_force = held->unknown, .potential = model.potential(held->q.data(), volts, true, work)};
   }
   // What the contact carries at a depth, less the force with which the beam presses there.
   const auto excess = [&](double depth) {
     const auto held = statics.pinned(volts, plane + depth);
     if (!held) return nan;
-    return (device.has_pad_contact() ? 0 : contact_force(device.contact(), depth)) - held->unknown;
+    return (model.has_pad_contact() ? 0 : contact_force(model.contact(), depth)) - held->unknown;
   };
   // Where the beam presses hardest it must overcome the contact; the equilibrium is where, deeper, the contact takes over.
   const auto hardest = first_minimum(excess, step);
@@ -292,21 +292,21 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::s
   const double depth = bracketed_zero(excess, over->last, over->next);
   const auto held = statics.pinned(volts, plane + depth);
   if (!held) return std::nullopt;
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(device.modes());
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   return ClosedEquilibrium{.q = held->q,
-                           .contact_force = device.contact_push(held->q.data(), still.data(), true),
-                           .potential = device.potential(held->q.data(), volts, true, work)};
+                           .contact_force = model.contact_push(held->q.data(), still.data(), true),
+                           .potential = model.potential(held->q.data(), volts, true, work)};
 }
 
-DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result, const Watch& watch,
+DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, const Watch& watch,
                               double tolerance) {
   if (static_result.status != Status::done) return {.status = static_result.status};
-  if (!device.rest()) return {.status = Status::collapsed_at_rest};
-  Statics statics(device);
-  EquilibriumBranch branch(device, drive);
-  const double plane = device.device().gap.contact;
-  const Eigen::VectorXd& rest = *device.rest();
-  Switch::Workspace work = device.workspace();
+  if (!model.rest()) return {.status = Status::collapsed_at_rest};
+  Statics statics(model);
+  EquilibriumBranch branch(model, drive);
+  const double plane = model.device().gap.contact;
+  const Eigen::VectorXd& rest = *model.rest();
+  Switch::Workspace work = model.workspace();
 
   // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane before it is over it never
   // gets there. The pass is the unstable equilibrium, or the state held at the plane where that comes first. Where the contact
@@ -315,7 +315,7 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     double deflection, potential;
   };
   const auto pass = [&](double value, std::span<const double> all) -> Pass {
-    const double strength = device.strength(drive, value);
+    const double strength = model.strength(drive, value);
     if (static_result.kind == StaticKind::fold && branch(plane) < strength) {
       const double s = bracketed_zero([&](double x) { return branch(x) - strength; }, static_result.deflection, plane);
       branch(s);
@@ -328,13 +328,13 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
   const double halvings = std::log2(0.5 / dynamic_pull_in_precision);  // of the bracket
   double done = 0;
   const auto reaches = [&](double value) {
-    std::vector<double> all(device.drives(), 0.0);
+    std::vector<double> all(model.drives(), 0.0);
     all[drive] = value;
     const Pass barrier = pass(value, all);
-    if (device.potential(rest.data(), all, false, work) < barrier.potential) return false;
-    std::vector<Signal> signals(device.drives());
+    if (model.potential(rest.data(), all, false, work) < barrier.potential) return false;
+    std::vector<Signal> signals(model.drives());
     signals[drive] = Signal::constant(value);
-    ClosingOptions options{.duration = 100 * 2 * pi / device.angular_frequencies()[0],
+    ClosingOptions options{.duration = 100 * 2 * pi / model.angular_frequencies()[0],
                            .tolerance = tolerance,
                            .after_contact = 0,
                            .stop = watch.stop};
@@ -342,11 +342,11 @@ DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const Sta
     options.observer = [&](double time, const double* q, const double* v) {
       if (++step % 8 != 0) return false;  // looking more often costs more than it saves
       watch.tell("dynamic pull-in voltage", std::min(1.0, (done + time / options.duration) / halvings));
-      return device.contact_deflection(q) < barrier.deflection &&
-             device.kinetic_energy(v) + device.potential(q, all, device.untouched(q), work) + device.film_energy(q, work) <
+      return model.contact_deflection(q) < barrier.deflection &&
+             model.kinetic_energy(v) + model.potential(q, all, model.untouched(q), work) + model.film_energy(q, work) <
                  barrier.potential;
     };
-    return !simulate_closing(device, signals, options).touches.empty();
+    return !simulate_closing(model, signals, options).touches.empty();
   };
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;

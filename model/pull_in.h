@@ -21,7 +21,7 @@ enum class StaticKind { fold, contact };
 [[nodiscard]] std::string_view to_string(StaticKind kind);
 
 /// Whether this drive pulls towards the contact: an electrode on the far side has no pull-in voltage.
-[[nodiscard]] bool pulls_in(const Device& device, std::size_t drive);
+[[nodiscard]] bool pulls_in(const Device& model, std::size_t drive);
 
 struct StaticPullIn {
   Status status = Status::not_run;
@@ -34,12 +34,12 @@ struct StaticPullIn {
 /// The branch of an electrode begins at the switch's rest, status collapsed_at_rest where there is none, no_contact for one on
 /// the far side; that of the dispersion force at factor 0, so that a negative answer says how much too strong the nominal force
 /// is.
-[[nodiscard]] StaticPullIn static_pull_in(const Switch& device, std::size_t drive);
+[[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive);
 
 /// Release voltage [V]: the smallest voltage with a closed equilibrium, 0 where the dispersion force keeps the switch closed by
 /// itself. NaN where there is no contact law, where the contact is
 /// too soft to keep the beam off the electrode at any voltage, or where the branch could not be followed.
-[[nodiscard]] double release_voltage(const Switch& device, std::size_t drive);
+[[nodiscard]] double release_voltage(const Switch& model, std::size_t drive);
 
 /// Where the beam comes to rest on the contact.
 struct ClosedEquilibrium {
@@ -50,7 +50,7 @@ struct ClosedEquilibrium {
 /// The closed equilibrium under constant voltages nearest to the contact plane, if there is one with a contact force above zero.
 /// With one electrode at V and all other drives at 0 V there is one above the release voltage, up to where the beam is pulled
 /// onto the electrode.
-[[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& device, std::span<const double> volts);
+[[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts);
 
 /// How closely a dynamic pull-in voltage is bracketed, relative; the upper end is given.
 inline constexpr double dynamic_pull_in_precision = 1e-7;
@@ -62,7 +62,7 @@ struct DynamicPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; of the dispersion force its factor less one
 };
-[[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& device, std::size_t drive, const StaticPullIn& static_result,
+[[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result,
                                             const Watch& watch = {}, double tolerance = 1e-8);
 
 }  // namespace softland

@@ -152,7 +152,8 @@ class Switch {
   [[nodiscard]] double dissipated_power(const double* v, Workspace& work, const double* film = nullptr) const;
   /// Stored in the film in a state (q, v, film) [J]; 0 where there is none.
   [[nodiscard]] double film_energy(const double* state, Workspace& work) const;
-  /// Of a contact in a state in which it is active: force on the beam [N], what it stores [J], and the power it takes out [W].
+  /// What a contact does in a state in which it is active: its force on the beam [N], what it stores [J], the power it takes out
+  /// [W].
   [[nodiscard]] double contact_push(const double* q, const double* v, const ContactState& contact) const;
   [[nodiscard]] double contact_stored(const double* q, const ContactState& contact) const;
   [[nodiscard]] double contact_dissipation(const double* q, const double* v) const;

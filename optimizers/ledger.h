@@ -1,4 +1,4 @@
-// The books of one minimisation: every evaluation is made, counted and remembered here, never by a library.
+// The record of one minimisation: every evaluation is made, counted and remembered here, never by a library.
 //
 // Work comes in rounds of tasks. A task is sequential and has a fixed budget; the tasks of a round run in parallel. The order of
 // evaluations is (round, task, position within the task), whatever thread made them when: "first", "best so far" and "already

@@ -9,34 +9,33 @@
 
 namespace softland {
 
-double right_hand_side_seconds(const Switch& device, const std::vector<Signal>& signals, double duration, int repeats) {
+double right_hand_side_seconds(const Switch& model, const std::vector<Signal>& signals, double duration, int repeats) {
   using Clock = std::chrono::steady_clock;
-  const auto n = static_cast<std::size_t>(device.modes());
-  const std::size_t size = 2 * n + device.film_states();
+  const auto n = static_cast<std::size_t>(model.modes());
+  const std::size_t size = 2 * n + model.film_states();
   std::vector<double> states;  // q, v and what follows them, one after the other
   ClosingOptions options{.duration = duration, .tolerance = 1e-6};
   options.observer = [&](double, const double* q, const double*) {
     states.insert(states.end(), q, q + size);
     return false;
   };
-  (void)simulate_closing(device, signals, options);
+  (void)simulate_closing(model, signals, options);
   const std::size_t count = states.size() / size;
   if (count == 0) return Metrics::unset;
   std::vector<char> touching(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double* q = &states[size * i];
-    touching[i] =
-        device.has_contact() && (device.contact_deflection(q) > device.device().gap.contact || device.untouched(q).active);
+    touching[i] = model.has_contact() && (model.contact_deflection(q) > model.device().gap.contact || model.untouched(q).active);
   }
   std::vector<double> volts;
   for (const Signal& signal : signals) volts.push_back(signal.hold_level());
-  Switch::Workspace work = device.workspace();
+  Switch::Workspace work = model.workspace();
   std::vector<double> result(size), times;
   double sum = 0;
   for (int r = 0; r < repeats; ++r) {
     const auto start = Clock::now();
     for (std::size_t i = 0; i < count; ++i) {
-      device.rates(&states[size * i], volts, touching[i] != 0, work, result.data());
+      model.rates(&states[size * i], volts, touching[i] != 0, work, result.data());
       sum += result[0];
     }
     times.push_back(std::chrono::duration<double>(Clock::now() - start).count() / static_cast<double>(count));

@@ -64,7 +64,7 @@ template <class P>
 
 }  // namespace internal
 
-/// Of a valid harmonic.
+/// The pieces of a valid harmonic.
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h) {
   const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);

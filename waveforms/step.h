@@ -24,7 +24,7 @@ struct FamilyOf<Step> {
   });
 };
 
-/// Of a valid step.
+/// The pieces of a valid step.
 template <class P>
 [[nodiscard]] Pieces<P> pieces(const StepOf<P>& step) {
   return internal::straight_pieces<P>({{P(0), P(0)}, {step.rise_time, step.level}});

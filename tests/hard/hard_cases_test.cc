@@ -267,7 +267,7 @@ TEST(HardCases, AreEitherRightOrRefusedAtEveryTolerance) {
   }
 }
 
-// The rates of the stiff film are its error times its stiffness: what the books make of them must not fail a good run.
+// The rates of the stiff film are its error times its stiffness: what the energy audit makes of them must not fail a good run.
 TEST(HardCases, ACompressibleFilmKeepsItsBooksAtEveryTolerance) {
   Device d = test::gold_cantilever();
   d.gas = Gas{.model = GasModel::reynolds, .viscosity = 1.86e-5_Pa_s};

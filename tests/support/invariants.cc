@@ -174,16 +174,16 @@ void check_figures(const Metrics& m, const std::string& message, bool has_contac
 
 CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options, double energy,
                        const MetricsOptions& metrics_options) {
-  Energy books(device, drives);
+  Energy energies(device, drives);
   ClosingOptions observed = options;
   observed.observer = [&](double t, const double* q, const double* v) {
-    books.step(t, q, v);
+    energies.step(t, q, v);
     return false;
   };
   CheckedRun run{.trajectory = simulate_closing(device, drives, observed)};
   const Trajectory& t = run.trajectory;
   run.metrics = metrics(t, metrics_options);
-  run.surplus = books.surplus() / device.bending_energy();
+  run.surplus = energies.surplus() / device.bending_energy();
   Findings found;
   const bool rigid = device.rigid_contact() != nullptr, completed = t.status == Status::done;
   // Where a run fails its steps need not fit together.
@@ -193,11 +193,12 @@ CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, con
                t.touches.size());
   check_figures(run.metrics, t.message, device.has_contact(), rigid, found);
   if (completed) {
-    found.expect(books.surplus() <= energy * std::max(device.bending_energy(), books.moved()),
+    found.expect(energies.surplus() <= energy * std::max(device.bending_energy(), energies.moved()),
                  "the energy balance is off by {:.3g} of the bending energy", run.surplus);
     found.expect(t.smallest_gap > 0, "smallest gap {} m", t.smallest_gap);
     if (device.has_contact() && !device.has_pad_contact()) {
-      run.largest_penetration = rigid ? 1e-9 * t.contact_gap : takes_up(device.contact(), 2 * books.available(), t.contact_gap);
+      run.largest_penetration =
+          rigid ? 1e-9 * t.contact_gap : takes_up(device.contact(), 2 * energies.available(), t.contact_gap);
       found.expect(t.deepest_penetration <= run.largest_penetration,
                    "interference {:.3g} m, and no more than {:.3g} m is possible", t.deepest_penetration,
                    run.largest_penetration);
