@@ -101,11 +101,6 @@ std::string clause(const Actor& actor, const json& metrics, const json& errors, 
   return words + " and has not settled when the window ends" + (std::isfinite(window) ? " at " + quantity(window, "s") : "");
 }
 
-std::string capitalised(std::string words) {
-  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
-  return words;
-}
-
 /// The status of the winner or single run as far as it is about that run: an interrupted search still has a sound winner.
 std::string run_status(const json& result) {
   const std::string own = text(best_metrics(result), {"status"});
@@ -157,6 +152,11 @@ constexpr const char* step_subject = "the plain step";
 
 }  // namespace
 
+std::string capitalised(std::string words) {
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words;
+}
+
 std::string best_label(const json& result) { return is_optimize(result) ? own_subject : "closing"; }
 
 std::string baseline_label() { return "plain step"; }
@@ -203,25 +203,8 @@ Change change(double before, double after, bool lower_is_better, Kind kind) {
   return {times(ratio) + " " + word, verdict};
 }
 
-const std::vector<Figure>& figures() {
-  static const std::vector<Figure> all{{"initial_contact_time_s", "First contact", "s", false},
-                                       {"permanent_contact_time_s", "Permanent contact (settling time)", "s", true},
-                                       {"bounce_time_s", "Bounce time", "s", true},
-                                       {"bounce_count", "Rebounds", "", true},
-                                       {"major_bounce_height_m", "Highest rebound", "m", true},
-                                       {"impact_velocity_m_s", "Impact speed", "m/s", true},
-                                       {"peak_contact_force_N", "Peak contact force", "N", true},
-                                       {"impact_energy_J", "Impact energy", "J", true},
-                                       {"hold_force_N", "Hold force", "N", false},
-                                       {"drive_energy_J", "Drive energy", "J", false},
-                                       {"peak_voltage_V", "Peak voltage", "V", false},
-                                       {"peak_slew_V_s", "Peak slew", "V/s", false},
-                                       {"settled", "Settled", "bool", false}};
-  return all;
-}
-
 std::string figure_text(const json& metrics, const json& errors, const json& beside, const Figure& figure) {
-  if (figure.unit == "bool") {
+  if (figure.is_yes_or_no()) {
     const auto value = truth(metrics, {figure.key});
     return value ? (*value ? "yes" : "no") : "—";
   }
@@ -272,28 +255,28 @@ std::string certificate_caption(const json& result) {
                                     quantity(number(grazing, {"impact_velocity_m_s"}), "m/s")));
 }
 
-std::string missing_reason(const json& metrics, std::string_view key) {
-  if (!metrics.is_object() || std::isfinite(number(metrics, {key}))) return {};
+std::string missing_reason(const json& metrics, const Figure& figure) {
+  if (!metrics.is_object() || std::isfinite(number(metrics, {figure.key}))) return {};
   if (!touches(metrics)) return "no contact";
   if (ends_at_touch(metrics)) return "not known";
-  return key == "permanent_contact_time_s" && !settles(metrics) ? "not settled" : "";
+  return figure.conditioning == Conditioning::last_rebound && !settles(metrics) ? "not settled" : "";
 }
 
 Change figure_change(const json& before, const json& after, const Figure& figure) {
-  return change(number(before, {figure.key}), number(after, {figure.key}), figure.lower_is_better, figure.kind());
+  const Kind kind = figure.unit == "s" ? Kind::time : figure.is_count() ? Kind::count : Kind::size;
+  return change(number(before, {figure.key}), number(after, {figure.key}), figure.better == Better::lower, kind);
 }
 
-std::string goal_text(const json& result, std::string_view key) {
-  const std::string target = text(result, {"target"});
-  if (target.empty()) return {};
-  if (key == "settled") return "yes";
-  if (key == "bounce_count") return target == "bounce" || target == "rebound" || target == "count" ? "0" : "";
-  const auto below = [&](std::string_view of, std::string_view figure, std::string_view unit) -> std::string {
-    const double step = number(baseline_metrics(result), {figure});
-    return target == of && key == figure && std::isfinite(step) ? "below " + quantity(step, unit, 4) : "";
-  };
-  return below("settling", "permanent_contact_time_s", "s") + below("impact", "impact_velocity_m_s", "m/s") +
-         below("energy", "impact_energy_J", "J");
+std::string goal_text(const json& result, const Figure& figure) {
+  const std::string name = text(result, {"target"});
+  if (name.empty()) return {};
+  if (figure.is_yes_or_no()) return "yes";
+  const std::optional<Target> target = target_from(name);
+  if (!target) return {};
+  if (figure.is_count()) return has_own_cost(*target) ? "" : "0";
+  const double step = number(baseline_metrics(result), {figure.key});
+  const bool wanted = has_own_cost(*target) && figure_of(*target).member == figure.member && std::isfinite(step);
+  return wanted ? "below " + quantity(step, figure.unit, 4) : "";
 }
 
 std::string gap_caption(const json& result) {

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
-#include <vector>
+
+#include "objectives/figures.h"
 
 namespace softland::internal {
 
@@ -40,15 +40,6 @@ enum class Kind { size, time, count };
 /// `lower_is_better`: otherwise the change is neutral, neither good nor bad.
 [[nodiscard]] Change change(double before, double after, bool lower_is_better, Kind kind = Kind::size);
 
-/// One line of the table of figures.
-struct Figure {
-  std::string key;  ///< as in result.json
-  std::string label;
-  std::string unit;  ///< empty: a count; "bool": yes or no
-  bool lower_is_better = false;
-  [[nodiscard]] Kind kind() const { return unit == "s" ? Kind::time : unit.empty() ? Kind::count : Kind::size; }
-};
-[[nodiscard]] const std::vector<Figure>& figures();
 /// The value of a figure as text, rounded to its error where that is known; an em dash when not available; `beside` are the
 /// metrics shown next to it.
 [[nodiscard]] std::string figure_text(const nlohmann::json& metrics, const nlohmann::json& errors, const nlohmann::json& beside,
@@ -56,7 +47,7 @@ struct Figure {
 /// Its error beside that text; an em dash when not known.
 [[nodiscard]] std::string error_text(const nlohmann::json& metrics, const nlohmann::json& errors, const Figure& figure);
 /// The same in words when a number is not available but the reason is: "no contact", "not settled"; else empty.
-[[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, std::string_view key);
+[[nodiscard]] std::string missing_reason(const nlohmann::json& metrics, const Figure& figure);
 /// Of an ill-conditioned figure of a certified result: "median 305.5 µs, 280.5 µs to 336.1 µs in 16 runs"; else empty.
 [[nodiscard]] std::string cloud_text(const nlohmann::json& result, const Figure& figure);
 /// What the errors of the figures are errors of.
@@ -64,8 +55,11 @@ struct Figure {
 /// What a certificate says of the figures and of the rebound at which the runs part, in a sentence or two; empty without one.
 [[nodiscard]] std::string certificate_caption(const nlohmann::json& result);
 /// What the search wanted of a figure: "0", "yes", "below 323.1 µs"; empty where it wanted nothing.
-[[nodiscard]] std::string goal_text(const nlohmann::json& result, std::string_view key);
+[[nodiscard]] std::string goal_text(const nlohmann::json& result, const Figure& figure);
 [[nodiscard]] Change figure_change(const nlohmann::json& before, const nlohmann::json& after, const Figure& figure);
+
+/// With a capital letter at the beginning.
+[[nodiscard]] std::string capitalised(std::string words);
 
 /// "Softland's waveform" and "plain step", or "closing" for a single run.
 [[nodiscard]] std::string best_label(const nlohmann::json& result);

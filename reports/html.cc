@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <span>
 
 #include "base/printable.h"
 #include "base/require.h"
@@ -38,22 +38,23 @@ std::string verdict_class(Verdict verdict) {
   return "neutral";
 }
 
-const Figure& figure(std::string_view key) {
-  return *std::find_if(figures().begin(), figures().end(), [&](const Figure& one) { return one.key == key; });
-}
+// What a landing is judged by: in the table of confirmations, and but for the first above everything else.
+constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
+                                     figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
+                                     figure_of(&Metrics::impact_velocity)};
 
-std::string key_number(const json& result, std::string_view key, std::string_view label) {
-  const Figure& shown = figure(key);
+std::string key_number(const json& result, const Figure& shown) {
   const json& own = best_metrics(result);
   const json& step = baseline_metrics(result);
   const auto words = [&](const json& metrics, const json& beside) {
-    const std::string reason = missing_reason(metrics, key);
-    return reason.empty() ? quantity_beside(number(metrics, {key}), number(beside, {key}), shown.unit) : reason;
+    const std::string reason = missing_reason(metrics, shown);
+    return reason.empty() ? quantity_beside(number(metrics, {shown.key}), number(beside, {shown.key}), shown.unit) : reason;
   };
-  std::string out = fmt::format("<div class=\"key\"><dt>{}</dt><dd>", label);
+  std::string out =
+      fmt::format("<div class=\"key\"><dt>{}</dt><dd>", capitalised(std::string(shown.also.empty() ? shown.name : shown.also)));
   if (is_optimize(result) && step.is_object())
     out += fmt::format("<span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> ", words(step, own));
-  out += fmt::format("<span class=\"after{}\">{}</span>", missing_reason(own, key).empty() ? "" : " words", words(own, step));
+  out += fmt::format("<span class=\"after{}\">{}</span>", missing_reason(own, shown).empty() ? "" : " words", words(own, step));
   if (const Change changed = figure_change(step, own, shown); !changed.words.empty()) {
     out += fmt::format("<span class=\"change {}\">{}</span>", verdict_class(changed.verdict), changed.words);
   }
@@ -61,10 +62,10 @@ std::string key_number(const json& result, std::string_view key, std::string_vie
 }
 
 std::string key_numbers(const json& result) {
-  if (!baseline_metrics(result).is_object() && !missing_reason(best_metrics(result), "initial_contact_time_s").empty()) return {};
-  return key_number(result, "permanent_contact_time_s", "Settling time") + key_number(result, "bounce_count", "Rebounds") +
-         key_number(result, "major_bounce_height_m", "Highest rebound") +
-         key_number(result, "impact_velocity_m_s", "Impact speed");
+  if (!baseline_metrics(result).is_object() && !missing_reason(best_metrics(result), leading_figures.front()).empty()) return {};
+  std::string out;
+  for (const Figure& one : std::span(leading_figures).subspan(1)) out += key_number(result, one);
+  return out;
 }
 
 /// What every drive demands of its source, where there are several.
@@ -107,12 +108,12 @@ std::string figures_table(const json& result) {
   out += pair ? "<th scope=\"col\">Softland</th><th scope=\"col\">Change</th>" : "<th scope=\"col\">Value</th>";
   if (estimated) out += fmt::format("<th scope=\"col\">{}</th>", error_heading(result));
   out += "</tr></thead><tbody>\n";
-  for (const Figure& one : figures()) {
+  for (const Figure& one : all_figures) {
     if (at(own, {one.key}).is_null() && at(step, {one.key}).is_null()) continue;
-    out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label);
+    out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label());
     if (pair)
       out += fmt::format("<td>{}</td><td>{}</td>", figure_text(step, at(result, {"baseline", "errors"}), own, one),
-                         goal_text(result, one.key));
+                         goal_text(result, one));
     out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, errors, step, one));
     if (pair) {
       const Change changed = figure_change(step, own, one);
@@ -181,18 +182,14 @@ std::string list_of(const json& lines, std::string_view heading, std::string_vie
 std::string checks_table(const json& result) {
   const json& checks = at(result, {"checks"});
   if (!checks.is_array() || checks.empty()) return {};
-  const std::vector<std::string_view> keys{"initial_contact_time_s", "permanent_contact_time_s", "bounce_count",
-                                           "major_bounce_height_m", "impact_velocity_m_s"};
   std::string out = "<section id=\"checks\"><h2>Confirmations</h2>\n<p>" + escaped(checks_caption(result)) +
                     "</p>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Simulated with</th>";
-  for (const char* label : {"First contact", "Permanent contact", "Rebounds", "Highest rebound", "Impact speed"}) {
-    out += fmt::format("<th scope=\"col\">{}</th>", label);
-  }
+  for (const Figure& one : leading_figures) out += fmt::format("<th scope=\"col\">{}</th>", one.name);
   out += "</tr></thead><tbody>\n";
   const auto row = [&](const std::string& name, const json& metrics) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(name));
-    for (const std::string_view key : keys)
-      out += fmt::format("<td>{}</td>", figure_text(metrics, json(), baseline_metrics(result), figure(key)));
+    for (const Figure& one : leading_figures)
+      out += fmt::format("<td>{}</td>", figure_text(metrics, json(), baseline_metrics(result), one));
     out += "</tr>\n";
   };
   row("as searched", best_metrics(result));

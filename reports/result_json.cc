@@ -16,6 +16,21 @@ namespace {
 using internal::json_number;
 using nlohmann::json;
 
+json figure_json(const Figure& figure, double value) {
+  if (!std::isfinite(value)) return nullptr;
+  if (figure.is_yes_or_no()) return value != 0;
+  return figure.is_count() ? json(std::llround(value)) : json(value);
+}
+
+// With what only the drives tell, which not every run is asked for.
+json all_metrics_json(const Metrics& m) {
+  json all = metrics_json(m);
+  for (const Figure& figure : all_figures) {
+    if (figure.conditioning == Conditioning::drives) all[std::string(figure.key)] = figure_json(figure, figure.value(m));
+  }
+  return all;
+}
+
 json pull_in_json(const Prepared& p) {
   if (p.pull_in.empty()) return nullptr;
   const auto one = [](const ElectrodePullIn& e) {
@@ -84,19 +99,11 @@ json curves_json(const Trajectory& t, const MetricsOptions& options) {
           {"rebounds", std::move(bounces)}};
 }
 
-json figures_json(const Closing& c) {
-  json m = metrics_json(c.metrics);
-  m["peak_voltage_V"] = json_number(c.peak_voltage);
-  m["peak_slew_V_s"] = json_number(c.peak_slew);
-  return m;
-}
-
-json errors_json(const Closing& c) {
-  json e = metrics_json(c.errors);
-  e.erase("settled");
-  e.erase("status");
-  e["bounce_count"] = c.bounce_count_error ? json(*c.bounce_count_error) : json(nullptr);
-  e["peak_voltage_V"] = e["peak_slew_V_s"] = nullptr;
+json errors_json(const FigureValues& errors) {
+  json e = json::object();
+  for (const Figure& figure : all_figures) {
+    if (!figure.is_yes_or_no()) e[std::string(figure.key)] = figure_json(figure, errors[figure]);
+  }
   return e;
 }
 
@@ -104,10 +111,10 @@ json errors_json(const Closing& c) {
 json certified_json(const Certificate& certificate) {
   json all = json::object();
   for (const IllConditioned& f : certificate.ill_conditioned) {
-    all[std::string(f.key)] = {{"median", json_number(f.spread.median)},
-                               {"low", json_number(f.spread.low)},
-                               {"high", json_number(f.spread.high)},
-                               {"runs", f.spread.runs}};
+    all[std::string(f.figure.key)] = {{"median", json_number(f.spread.median)},
+                                      {"low", json_number(f.spread.low)},
+                                      {"high", json_number(f.spread.high)},
+                                      {"runs", f.spread.runs}};
   }
   return all;
 }
@@ -167,29 +174,20 @@ std::string_view to_string(Actuator actuator) {
 }
 
 json metrics_json(const Metrics& m) {
-  const bool seen = std::isfinite(m.major_bounce_height);  // what the switch does after its first touch
-  const bool unknown = !seen && std::isfinite(m.initial_contact_time);
-  return {{"status", to_string(m.status)},
-          {"initial_contact_time_s", json_number(m.initial_contact_time)},
-          {"permanent_contact_time_s", json_number(m.permanent_contact_time)},
-          {"bounce_time_s", json_number(m.bounce_time)},
-          {"bounce_count", seen ? json(m.bounce_count) : json(nullptr)},
-          {"major_bounce_height_m", json_number(m.major_bounce_height)},
-          {"impact_velocity_m_s", json_number(m.impact_velocity)},
-          {"peak_contact_force_N", json_number(m.peak_contact_force)},
-          {"impact_energy_J", json_number(m.impact_energy)},
-          {"hold_force_N", json_number(m.hold_force)},
-          {"drive_energy_J", json_number(m.drive_energy)},
-          {"settled", unknown ? json(nullptr) : json(m.settled)}};
+  json all{{"status", to_string(m.status)}};
+  for (const Figure& figure : all_figures) {
+    if (figure.conditioning != Conditioning::drives) all[std::string(figure.key)] = figure_json(figure, figure.value(m));
+  }
+  return all;
 }
 
 json result_json(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {
   json j = started("simulate", provenance);
   j["status"] = to_string(closing.metrics.status);
   if (!closing.trajectory.message.empty()) j["message"] = closing.trajectory.message;
-  j["metrics"] = figures_json(closing);
+  j["metrics"] = all_metrics_json(closing.metrics);
   j["metrics"].erase("status");
-  j["errors"] = errors_json(closing);
+  j["errors"] = errors_json(closing.errors);
   if (closing.certificate) {
     j["certified"] = certified_json(*closing.certificate);
     j["cloud"] = {{"runs", closing.certificate->runs}, {"grazing_rebound", grazing_json(closing.certificate->grazing)}};
@@ -197,7 +195,7 @@ json result_json(const Prepared& prepared, const Closing& closing, const Provena
   j["pull_in"] = pull_in_json(prepared);
   j["work"] = work_json(closing.trajectory.work);
   j["warnings"] = closing.warnings;
-  j["best"] = {{"metrics", figures_json(closing)}, {"waveforms", waveforms_json(prepared, prepared.duration)}};
+  j["best"] = {{"metrics", all_metrics_json(closing.metrics)}, {"waveforms", waveforms_json(prepared, prepared.duration)}};
   j["curves"] = {{"best", curves_json(closing.trajectory, prepared.scene.metrics)}};
   add_scene(j, prepared);
   j["tolerance"] = closing.tolerance;
@@ -221,8 +219,8 @@ json result_json(const OptimizeResult& r, const OptimizeOptions& options, const 
   j["goal_met"] = r.goal_met;
   j["better_than_baseline"] = r.better_than_baseline;
   j["pull_in"] = pull_in_json(r.scene);
-  j["baseline"] = {{"metrics", figures_json(r.baseline)},
-                   {"errors", errors_json(r.baseline)},
+  j["baseline"] = {{"metrics", all_metrics_json(r.baseline.metrics)},
+                   {"errors", errors_json(r.baseline.errors)},
                    {"waveforms", waveforms_json(r.baseline_scene, r.baseline_scene.duration)},
                    {"cost", json_number(r.baseline_cost)}};
   j["curves"] = {{"baseline", curves_json(r.baseline.trajectory, r.scene.scene.metrics)}};
@@ -236,13 +234,13 @@ json result_json(const OptimizeResult& r, const OptimizeOptions& options, const 
     add_scene(j, r.scene);
     return j;
   }
-  j["metrics"] = figures_json(*r.best);
+  j["metrics"] = all_metrics_json(r.best->metrics);
   j["metrics"].erase("status");
-  j["errors"] = errors_json(*r.best);
+  j["errors"] = errors_json(r.best->errors);
   j["work"] = work_json(r.best->trajectory.work);
   j["best"] = {{"parameters", r.parameters},
                {"bounds", bounds_json(r)},
-               {"metrics", figures_json(*r.best)},
+               {"metrics", all_metrics_json(r.best->metrics)},
                {"waveforms", waveforms_json(*r.best_scene, r.best_scene->duration)},
                {"cost", json_number(r.best_cost)}};
   j["curves"]["best"] = curves_json(r.best->trajectory, r.scene.scene.metrics);

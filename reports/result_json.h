@@ -24,6 +24,7 @@ struct Provenance {
 /// What --json gives: a result without what is large (curves, the text of the scene, the log of the search) or said twice.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json result);
 
+/// Status and figures of a run, but for those of the drives.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 [[nodiscard]] std::string_view to_string(Actuator actuator);
 

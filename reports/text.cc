@@ -55,20 +55,20 @@ std::string text_report(const json& result) {
   const json& baseline_errors = internal::at(result, {"baseline", "errors"});
   out += compares ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
                   : fmt::format("{:<36}{:>16}   {}\n", "", "value", internal::error_heading(result));
-  for (const internal::Figure& f : internal::figures()) {
+  for (const Figure& f : all_figures) {
     if (internal::at(best, {f.key}).is_null() && internal::at(baseline, {f.key}).is_null()) continue;  // as on the page
     const auto right = [](const std::string& text) {
       return std::string(columns_of(text) < 16 ? 16 - columns_of(text) : 0, ' ') + text;
     };
     if (compares) {
       const internal::Change change = internal::figure_change(baseline, best, f);
-      out += padded(f.label, 36) + right(internal::figure_text(baseline, baseline_errors, best, f)) +
+      out += padded(f.label(), 36) + right(internal::figure_text(baseline, baseline_errors, best, f)) +
              right(internal::figure_text(best, errors, baseline, f)) + "   " + change.words;
     } else {
       const bool known = std::isfinite(internal::number(errors, {f.key}));
       const std::string cloud = internal::cloud_text(result, f);
       const std::string shown = !cloud.empty() ? cloud : known ? internal::error_text(best, errors, f) : std::string();
-      out += padded(f.label, 36) + right(internal::figure_text(best, errors, json::object(), f)) + "   " + shown;
+      out += padded(f.label(), 36) + right(internal::figure_text(best, errors, json::object(), f)) + "   " + shown;
     }
     while (!out.empty() && out.back() == ' ') out.pop_back();
     out += "\n";

@@ -162,13 +162,13 @@ TEST(Captions, OfASearchNameTheWinner) {
 
 TEST(Goal, IsOfTheFiguresThatTheTargetIsAbout) {
   json result = sample_optimize_result(few_rows);
-  EXPECT_EQ(goal_text(result, "bounce_count"), "0");
-  EXPECT_EQ(goal_text(result, "settled"), "yes");
-  EXPECT_EQ(goal_text(result, "impact_velocity_m_s"), "");
+  EXPECT_EQ(goal_text(result, figure_of(&Metrics::bounce_count)), "0");
+  EXPECT_EQ(goal_text(result, figure_of(&Metrics::settled)), "yes");
+  EXPECT_EQ(goal_text(result, figure_of(&Metrics::impact_velocity)), "");
   result["target"] = "impact";
-  EXPECT_EQ(plain(goal_text(result, "impact_velocity_m_s")), "below 132.8 mm/s");
-  EXPECT_EQ(goal_text(result, "bounce_count"), "");
-  EXPECT_EQ(goal_text(sample_simulate_result(few_rows), "settled"), "");
+  EXPECT_EQ(plain(goal_text(result, figure_of(&Metrics::impact_velocity))), "below 132.8 mm/s");
+  EXPECT_EQ(goal_text(result, figure_of(&Metrics::bounce_count)), "");
+  EXPECT_EQ(goal_text(sample_simulate_result(few_rows), figure_of(&Metrics::settled)), "");
 }
 
 TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
