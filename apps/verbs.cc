@@ -181,7 +181,7 @@ fs::path shipped_scene(const std::string& name) {
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
 }
 
-json read_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
+json load_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
 
 bool is_folder(const fs::path& path) {
   std::error_code ignored;
@@ -201,7 +201,7 @@ SceneFile scene_of_result(const std::string& result) {
     path /= here("result.json") ? "result.json" : "best.toml";
   }
   if (path.extension() != ".json") return SceneFile::load(path);
-  const json j = read_result(path);
+  const json j = load_result(path);
   require(j.contains("scene_toml") && j["scene_toml"].is_string(),
           fmt::format("{}: holds no text of the scene; give the result.json in the folder that --out named", path.string()));
   return SceneFile::parse(j["scene_toml"].get<std::string>(), path.string());
@@ -229,15 +229,16 @@ int simulate_verb(const Common& c, bool certified, const std::optional<std::stri
   std::optional<ResultFolder> folder = claim_places(c, files);
   const Closing closing = certified ? certify(prepared, work->watch(), jobs) : simulate(prepared, true, work->watch());
   work.reset();
-  const json result = result_json(prepared, closing, {.command = c.command});
+  const json data = result_json(prepared, closing, {.command = c.command});
+  const Result result = read_result(data);
   const bool interrupted = closing.metrics.status == Status::interrupted;
   std::string left;
   if (folder) {
-    write_result(*folder, result);
+    write_result(*folder, data, result);
     left = left_in(folder->destination(interrupted), files);
     folder->publish(interrupted);
   }
-  print_result(c, result, left);
+  print_result(c, data, result, left);
   if (!interrupted && prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);
   if (!closing.trajectory.message.empty())
     say(fmt::format("{} ({})", closing.trajectory.message, to_string(closing.metrics.status)));
@@ -460,9 +461,10 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
     left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
   left.emplace_back("evaluations.csv");
-  write_result(*folder, j);
+  const Result found = read_result(j);
+  write_result(*folder, j, found);
   folder->publish(interrupted);
-  print_result(c, j, left_in(place, left));
+  print_result(c, j, found, left_in(place, left));
   if (interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }
@@ -491,15 +493,16 @@ int export_verb(const Common& c, const std::string& result, const std::string& f
 
 int report_verb(const Common& given, const std::string& result) {
   const fs::path path = is_folder(result) ? fs::path(result) / "result.json" : fs::path(result);
-  const json j = read_result(path);
+  const json j = load_result(path);
   require_reportable(j, path.string());
   Common c = given;
   if (c.out.empty()) c.out = path.has_parent_path() ? path.parent_path().string() : ".";
   const std::vector<std::string> files{"report.html", "gap.svg"};
   ResultFolder folder = *claim_places(c, files);
-  write_report(folder, j);
+  const Result r = read_result(j);
+  write_report(folder, r);
   folder.publish(false);
-  print(text_report(j) + left_in(c.out, files));
+  print(text_report(r) + left_in(c.out, files));
   return exit_done;
 }
 

@@ -190,7 +190,6 @@ using internal::Chart;
 using internal::Mark;
 using internal::Picture;
 using internal::Role;
-using Points = std::vector<std::array<double, 2>>;
 
 Chart logarithmic_chart(std::string id, std::string title, std::string x_label, std::string x_unit, int height) {
   Chart chart;
@@ -429,7 +428,7 @@ json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const P
          {"status", to_string(study.status)},
          {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
          {"version", version},
-         {"made_with", made_with()},
+         {"made_with", made_with_json()},
          {"command", provenance.command}};
   if (!study.message.empty()) j["message"] = study.message;
   if (study.rows.empty()) return j;
@@ -553,10 +552,8 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
   }
   const Picture drawn = picture(study);
   const auto [main, rest] = headline(prepared, study);
-  const json result{{"command", provenance.command},
-                    {"version", version},
-                    {"made_with", made_with()},
-                    {"scene_toml", resolved(prepared.scene, prepared.voltage_units()).text()}};
+  Result result{.command = provenance.command, .version = std::string(version), .made_with = made_with()};
+  result.scene.text = resolved(prepared.scene, prepared.voltage_units()).text();
   return internal::page({.title = prepared.scene.title,
                          .origin = "accuracy",
                          .headline = main,

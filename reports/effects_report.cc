@@ -111,7 +111,7 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
           {"relative_spread", {{"gas", spread}}},
           {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
           {"version", version},
-          {"made_with", made_with()},
+          {"made_with", made_with_json()},
           {"command", provenance.command}};
 }
 
@@ -119,10 +119,9 @@ std::string effects_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
   std::string text = effects.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
   if (!std::isfinite(own.metrics.initial_contact_time)) {
-    const json closing{{"kind", "simulate"},
-                       {"status", to_string(own.metrics.status)},
-                       {"metrics", metrics_json(own.metrics)},
-                       {"curves", {{"best", {{"time_s", {effects.window}}}}}}};
+    Result closing{.status = std::string(to_string(own.metrics.status))};
+    closing.best = {.status = closing.status, .figures = FigureValues(own.metrics)};
+    closing.best.curve.time = {effects.window};
     text += wrapped(internal::headline(closing).main +
                     " So there are no figures to compare; below stand the size and the cost of each effect.") +
             "\n\n";

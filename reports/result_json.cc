@@ -156,7 +156,7 @@ json bounds_json(const OptimizeResult& r) {
 }
 
 json started(std::string_view kind, const Provenance& provenance) {
-  return {{"kind", kind}, {"version", version}, {"command", provenance.command}, {"made_with", made_with()}};
+  return {{"kind", kind}, {"version", version}, {"command", provenance.command}, {"made_with", made_with_json()}};
 }
 
 }  // namespace
