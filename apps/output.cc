@@ -59,15 +59,14 @@ void write_report(ResultFolder& folder, const Result& result) {
   folder.write("gap.svg", svg_gap_chart(result));
 }
 
-void write_result(ResultFolder& folder, const json& data, const Result& result) {
-  folder.write("result.json", json_text(data));
+void write_result(ResultFolder& folder, const Result& result) {
+  folder.write("result.json", json_text(result_json(result)));
   write_report(folder, result);
-  const auto curves = data.at("curves").find("best");
-  if (curves != data.at("curves").end()) folder.write("trajectory.csv", trajectory_csv(*curves));
+  if (result.best.figures) folder.write("trajectory.csv", trajectory_csv(result.best.curve));
 }
 
-void print_result(const Common& c, const json& data, const Result& result, const std::string& left) {
-  print_json_or(c, summary_json(data), text_report(result) + left);
+void print_result(const Common& c, const Result& result, const std::string& left) {
+  print_json_or(c, summary_json(result_json(result)), text_report(result) + left);
 }
 
 std::string left_in(const fs::path& folder, const std::vector<std::string>& files) {

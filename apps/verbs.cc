@@ -27,7 +27,7 @@
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
 #include "reports/quantity.h"
-#include "reports/result_json.h"
+#include "reports/result_maker.h"
 #include "reports/result_reader.h"
 #include "reports/text.h"
 #include "studies/certify.h"
@@ -229,16 +229,15 @@ int simulate_verb(const Common& c, bool certified, const std::optional<std::stri
   std::optional<ResultFolder> folder = claim_places(c, files);
   const Closing closing = certified ? certify(prepared, work->watch(), jobs) : simulate(prepared, true, work->watch());
   work.reset();
-  const json data = result_json(prepared, closing, {.command = c.command});
-  const Result result = read_result(data);
+  const Result result = result_of(prepared, closing, {.command = c.command});
   const bool interrupted = closing.metrics.status == Status::interrupted;
   std::string left;
   if (folder) {
-    write_result(*folder, data, result);
+    write_result(*folder, result);
     left = left_in(folder->destination(interrupted), files);
     folder->publish(interrupted);
   }
-  print_result(c, data, result, left);
+  print_result(c, result, left);
   if (!interrupted && prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);
   if (!closing.trajectory.message.empty())
     say(fmt::format("{} ({})", closing.trajectory.message, to_string(closing.metrics.status)));
@@ -447,13 +446,11 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   progress.close();
   log->flush();
 
-  json j = result_json(result, options, {.command = c.command});
-  for (const auto& [index, e] : log->evaluations()) {
-    j["search"]["evaluations"].push_back({index, std::isfinite(e.value) ? json(e.value) : json(nullptr)});
-  }
+  Result found = result_of(result, options, {.command = c.command});
+  for (const auto& [index, e] : log->evaluations()) found.search.evaluations.push_back({static_cast<double>(index), e.value});
   const bool interrupted = result.search.termination == Termination::interrupted;
   const fs::path place = folder->destination(interrupted);
-  j["reproduce"] = {c.command, "softland simulate " + shell_word((place / "best.toml").string())};
+  found.reproduce = {c.command, "softland simulate " + shell_word((place / "best.toml").string())};
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
   if (result.best_scene) {
     folder->write("best.toml", result.best_scene->scene.file.text());
@@ -461,10 +458,9 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
     left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
   left.emplace_back("evaluations.csv");
-  const Result found = read_result(j);
-  write_result(*folder, j, found);
+  write_result(*folder, found);
   folder->publish(interrupted);
-  print_result(c, j, found, left_in(place, left));
+  print_result(c, found, left_in(place, left));
   if (interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }

@@ -16,6 +16,7 @@
 #include "reports/made_with.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
+#include "reports/result_json.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "version.h"

@@ -50,8 +50,8 @@ const char* role_name(Role role) {
 
 const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" : "log"; }
 
-/// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another
-/// length are left out.
+/// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
+/// out.
 CurveTable curve_table(const ResultCurve& curve) {
   std::vector<std::size_t> sound;
   double latest = -std::numeric_limits<double>::infinity();

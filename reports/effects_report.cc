@@ -11,6 +11,7 @@
 #include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/quantity.h"
+#include "reports/result_json.h"
 #include "reports/text.h"
 #include "version.h"
 

@@ -224,13 +224,15 @@ int place_in_time(const std::string& name) {
 }
 
 /// The box that a parameter was searched in.
-std::string searched_words(const ResultParameter& parameter, std::string_view unit) {
-  if (!parameter.bounds) return {};
-  const auto [low, high] = *parameter.bounds;
+std::string searched_words(const Result& result, const std::string& parameter, std::string_view unit) {
+  const auto box = result.bounds.find(parameter);
+  if (box == result.bounds.end()) return {};
+  const auto [low, high] = box->second;
+  const double value = result.parameters.at(parameter);
   constexpr double near = 0.01;  // of the box
-  const char* bound = parameter.value - low <= near * (high - low)    ? "at its lower bound"
-                      : high - parameter.value <= near * (high - low) ? "at its upper bound"
-                                                                      : "";
+  const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
+                      : high - value <= near * (high - low) ? "at its upper bound"
+                                                            : "";
   return fmt::format("{} to {}{}", given_quantity(low, unit, 4), given_quantity(high, unit, 4),
                      *bound ? fmt::format(" <span class=\"bound\">{}</span>", bound) : "");
 }
@@ -239,16 +241,16 @@ std::string searched_words(const ResultParameter& parameter, std::string_view un
 std::string parameters_table(const Result& result) {
   if (result.parameters.empty()) return {};
   struct Row {
-    std::string drive, name;
+    std::string key, drive, name;
     std::string_view unit;
-    const ResultParameter* parameter;
+    double value;
   };
   std::vector<Row> rows;
-  for (const auto& [key, parameter] : result.parameters) {
+  for (const auto& [key, value] : result.parameters) {
     const auto [plain, unit] = without_unit(key);
     const std::size_t dot = plain.rfind('.');
-    rows.push_back({plain.substr(0, dot == std::string::npos ? 0 : dot), plain.substr(dot == std::string::npos ? 0 : dot + 1),
-                    unit, &parameter});
+    rows.push_back({key, plain.substr(0, dot == std::string::npos ? 0 : dot),
+                    plain.substr(dot == std::string::npos ? 0 : dot + 1), unit, value});
   }
   std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
     return std::pair(a.drive, place_in_time(a.name)) < std::pair(b.drive, place_in_time(b.name));
@@ -266,8 +268,8 @@ std::string parameters_table(const Result& result) {
     if (shown++ == most_lines) break;
     constexpr int digits = 5;
     out += fmt::format("<tr><th scope=\"row\">{}{}{}</th><td>{}</td><td>{}</td></tr>\n", escaped(row.drive),
-                       row.drive.empty() ? "" : ".", escaped(row.name), quantity(row.parameter->value, row.unit, digits),
-                       searched_words(*row.parameter, row.unit));
+                       row.drive.empty() ? "" : ".", escaped(row.name), quantity(row.value, row.unit, digits),
+                       searched_words(result, row.key, row.unit));
   }
   return out + "</tbody></table></div></section>\n";
 }

@@ -90,8 +90,7 @@ const MadeWith& made_with() {
   return all;
 }
 
-json made_with_json() {
-  const MadeWith& all = made_with();
+json made_with_json(const MadeWith& all) {
   return {{"program", word(all.program)},     {"compiler", word(all.compiler)},
           {"options", word(all.options)},     {"instruction_set", word(all.instruction_set)},
           {"c_library", word(all.c_library)}, {"processor", word(all.processor)}};

@@ -13,7 +13,7 @@ namespace softland {
 /// Of this program on this machine; empty for what the machine does not tell.
 [[nodiscard]] const MadeWith& made_with();
 /// {"program": ..., "compiler": ...}; null for what is not known.
-[[nodiscard]] nlohmann::json made_with_json();
+[[nodiscard]] nlohmann::json made_with_json(const MadeWith& all = made_with());
 
 namespace internal {
 /// In one line; empty where nothing is known.

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <utility>
+#include <cmath>
 
 #include "base/printable.h"
 #include "reports/escape.h"
 #include "reports/made_with.h"
 #include "reports/page_files.h"
+#include "reports/quantity.h"
 
 namespace softland::internal {
 namespace {
@@ -64,10 +65,12 @@ std::string reproduce(const Result& result) {
   for (const std::string& line : result.reproduce) commands += line + "\n";
   if (commands.empty()) commands = result.command;
   std::string with;
-  for (const auto& [name, value] :
-       {std::pair{"softland ", &result.version}, {"seed ", &result.seed}, {"integrator tolerance ", &result.tolerance}}) {
-    if (!value->empty()) with += (with.empty() ? "With " : ", ") + (name + *value);
-  }
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
+  };
+  add("softland ", result.version);
+  add("seed ", result.seed ? fmt::format("{}", *result.seed) : "");
+  add("integrator tolerance ", std::isfinite(result.tolerance) ? plain_number(result.tolerance, 6) : "");
   if (commands.empty() && with.empty()) return {};
   const std::string made = made_with_text(result.made_with);
   return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",

@@ -1,11 +1,14 @@
-// What a study found, as the typed value that every report is made from. It has two makers: read_result() for what an earlier run
-// left, and result() for the values of a study. What is not available is NaN, empty or not set.
+// What a study found, as the typed value that every output is made from, JSON too. It has two makers: result_of() for the values
+// of a study, and read_result() for the result.json of an earlier one. What is not available is NaN, empty or not set.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/scene.h"
@@ -39,14 +42,8 @@ struct ResultRun {
 
 /// Another run of the winner.
 struct ResultCheck {
-  std::string name;
+  std::string name, status;
   std::optional<FigureValues> figures;
-};
-
-/// A searched parameter of the winner.
-struct ResultParameter {
-  double value = Metrics::unset;
-  std::optional<std::array<double, 2>> bounds;
 };
 
 struct ResultSearch {
@@ -89,6 +86,7 @@ struct ResultScene {
   std::map<std::string, DriveLimits> drivers;
   double significant_rebound = MetricsOptions{}.significant_rebound;  ///< [m]
   std::string text;                                                   ///< the file
+  nlohmann::json tree;                                                ///< the same as its sections, quantities as text
 };
 
 /// What can change the last digits of a result: see made_with().
@@ -96,25 +94,35 @@ struct MadeWith {
   std::string program, compiler, options, instruction_set, c_library, processor;
 };
 
+/// What effects = "auto" left out.
+struct ResultEffects {
+  std::vector<std::pair<std::string, double>> left_out;  ///< with the influence of each
+  double influence = Metrics::unset;                     ///< of all together
+};
+
 struct Result {
   bool is_search = false;  ///< of optimize, else of simulate
-  std::string status, title;
-  std::string target, actuator, waveform, optimizer, termination;  ///< of a search
-  std::optional<bool> goal_met;
+  std::string status, message, title;
+  std::string target, actuator, waveform, optimizer, termination, termination_message;  ///< of a search
+  std::optional<std::uint64_t> seed;
+  std::optional<bool> goal_met, better_than_baseline;
   double evaluations = Metrics::unset;
   ResultRun best;      ///< the winner, or the single run
   ResultRun baseline;  ///< the plain step
   std::optional<Certificate> certificate;
   std::vector<ResultCheck> checks;
   ResultSearch search;
-  std::map<std::string, ResultParameter> parameters;  ///< by drive.name
-  std::map<std::string, PullInVoltages> pull_in;      ///< by electrode
-  std::vector<double> natural_frequencies;            ///< [rad/s]
-  std::optional<Work> work;                           ///< of the shown run
+  std::map<std::string, double> parameters;             ///< of the winner, by drive.name
+  std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
+  std::map<std::string, PullInVoltages> pull_in;        ///< by electrode
+  std::vector<double> natural_frequencies;              ///< [rad/s]
+  std::optional<Work> work;                             ///< of the shown run
   std::vector<std::string> warnings;
   ResultScene scene;
-  std::string command, version, seed, tolerance;  ///< as they are quoted
-  std::vector<std::string> reproduce;             ///< command lines
+  std::optional<ResultEffects> effects;
+  double tolerance = Metrics::unset;  ///< of the integrator, in the shown run
+  std::string command, version;
+  std::vector<std::string> reproduce;  ///< command lines
   MadeWith made_with;
 };
 

@@ -11,7 +11,6 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "config/units.h"
-#include "reports/quantity.h"
 #include "version.h"
 
 namespace softland {
@@ -48,12 +47,6 @@ template <class Whole>
 Whole whole(const json& value) {
   const double found = number(value);
   return std::abs(found) <= static_cast<double>(std::numeric_limits<int>::max()) ? static_cast<Whole>(found) : Whole{0};
-}
-
-// A string, or a number in its shortest form.
-std::string quoted(const json& value) {
-  if (value.is_number_integer()) return value.dump();
-  return value.is_number() ? internal::plain_number(value.get<double>(), 6) : text(value);
 }
 
 // A quantity as a resolved scene writes it, "2 um", in SI units; a plain number as it is.
@@ -238,10 +231,9 @@ Result read_result(const json& result) {
            .natural_frequencies = numbers(at(result, {"natural_frequencies_rad_s"})),
            .work = work(at(result, {"work"})),
            .warnings = texts(at(result, {"warnings"})),
+           .tolerance = number(result, {"tolerance"}),
            .command = text(result, {"command"}),
            .version = text(result, {"version"}),
-           .seed = quoted(at(result, {"seed"})),
-           .tolerance = quoted(at(result, {"tolerance"})),
            .reproduce = texts(at(result, {"reproduce"}))};
   if (!r.best.figures) r.best.figures = figures_of_run(at(result, {"metrics"}));
   if (r.best.status.empty()) r.best.status = r.status;
@@ -249,9 +241,11 @@ Result read_result(const json& result) {
   r.checks = each(at(result, {"checks"}), [](const json& check) {
     return ResultCheck{.name = text(check, {"name"}), .figures = figures_of_run(at(check, {"metrics"}))};
   });
-  r.parameters =
-      members(at(result, {"best", "parameters"}), [](const json& value) { return ResultParameter{.value = number(value)}; });
-  for (auto& [name, parameter] : r.parameters) parameter.bounds = pair(at(result, {"best", "bounds", name}), number);
+  r.parameters = members(at(result, {"best", "parameters"}), [](const json& value) { return number(value); });
+  for (const auto& [name, box] : members(at(result, {"best", "bounds"}), [](const json& value) { return pair(value, number); })) {
+    if (box) r.bounds.emplace(name, *box);
+  }
+  if (const json& seed = at(result, {"seed"}); seed.is_number_integer() && seed >= 0) r.seed = seed.get<std::uint64_t>();
   const auto made_with = [&](const char* key) { return text(result, {"made_with", key}); };
   r.made_with = {.program = made_with("program"),
                  .compiler = made_with("compiler"),
@@ -269,7 +263,8 @@ ResultScene read_result_scene(const json& scene, std::string file) {
                 .electrode_gap = quantity(at(scene, {"gap", "electrode"})),
                 .contact_gap = quantity(at(scene, {"gap", "contact"})),
                 .pad_length = quantity(at(scene, {"contact", "pad_length"})),
-                .text = std::move(file)};
+                .text = std::move(file),
+                .tree = scene};
   if (s.text.empty() && scene.is_object()) s.text = scene.dump(2, ' ', false, json::error_handler_t::replace);
   if (at(scene, {"piezo"}).is_object()) s.piezo = ResultScene::Piezo{pair(at(scene, {"piezo", "span"}), quantity)};
   for (const auto& [name, electrode] : members(at(scene, {"electrode"}), [](const json& one) { return &one; })) {

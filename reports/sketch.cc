@@ -119,7 +119,7 @@ std::string sketch(const ResultScene& scene) {
 std::string parameter_drawing(const Result& result, const std::string& drive) {
   const auto parameter = [&](const std::string& name) {
     const auto found = result.parameters.find(drive + "." + name);
-    return found == result.parameters.end() ? Metrics::unset : found->second.value;
+    return found == result.parameters.end() ? Metrics::unset : found->second;
   };
   const Points points = drawable(waveform(result.best, drive));
   double lowest = 0, highest = 0, moves = 0;
