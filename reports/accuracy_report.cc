@@ -94,7 +94,7 @@ std::string line(std::vector<std::string> cells, const AccuracyRow& row) {
   return aligned(cells);
 }
 
-std::string figure_text(double value, std::string_view unit) { return internal::quantity(value, unit, 4); }
+std::string four_digits(double value, std::string_view unit) { return internal::quantity(value, unit, 4); }
 
 std::string symbols(const AccuracyStudy& study, bool conditioned) {
   std::vector<std::string_view> names;
@@ -166,15 +166,15 @@ std::vector<const AccuracyRow*> quadrature_rows(const AccuracyStudy& study) {
   return rows;
 }
 
-std::string cloud_text(const AccuracyStudy& study) {
+std::string cloud_table(const AccuracyStudy& study) {
   std::string text = fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}\n", "cloud", "low", "median", "high", "runs");
   const auto add = [&](const Figure& f, const Spread& s, bool ill) {
     if (s.runs == 0) {
       text += fmt::format("{:<16}{:>14}\n", f.symbol, "none");
       return;
     }
-    text += fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}{}\n", f.symbol, figure_text(s.low, f.unit), figure_text(s.median, f.unit),
-                        figure_text(s.high, f.unit), s.runs, ill ? "  ill-conditioned" : "");
+    text += fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}{}\n", f.symbol, four_digits(s.low, f.unit), four_digits(s.median, f.unit),
+                        four_digits(s.high, f.unit), s.runs, ill ? "  ill-conditioned" : "");
   };
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     if (study.cloud[i].runs > 0) add(studied_figures[i], study.cloud[i], !study.conditioned[i]);
@@ -369,7 +369,7 @@ std::string recommendations_html(const AccuracyStudy& study) {
 std::string clouds_html(const AccuracyStudy& study) {
   std::string rows;
   const auto add = [&](const Figure& f, const Spread& s, bool ill) {
-    const auto value = [&](double v) { return s.runs > 0 ? figure_text(v, f.unit) : std::string("—"); };
+    const auto value = [&](double v) { return s.runs > 0 ? four_digits(v, f.unit) : std::string("—"); };
     rows += table_row("td", {symbol_html(f.symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
                              fmt::format("<span class=\"note\">{}</span>", ill ? "ill-conditioned" : "")});
   };
@@ -471,7 +471,7 @@ std::string accuracy_text(const AccuracyStudy& study) {
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     const double value = studied_figures[i].value(study.reference.figures);
     if (std::isfinite(value)) {
-      values.push_back(fmt::format("{} {} ({})", studied_figures[i].symbol, figure_text(value, studied_figures[i].unit),
+      values.push_back(fmt::format("{} {} ({})", studied_figures[i].symbol, four_digits(value, studied_figures[i].unit),
                                    error_cell(study.resolution[i])));
     }
   }
@@ -507,7 +507,7 @@ std::string accuracy_text(const AccuracyStudy& study) {
                             : no_quadrature,
           restart_text(study))) +
       "\n\n";
-  text += cloud_text(study) + "\n" +
+  text += cloud_table(study) + "\n" +
           wrapped(
               "The cloud: runs whose drives differ by one part in 1e9 to 1e7. Permanent contact time and bounce count are "
               "properties of such a cloud, not of one run.") +

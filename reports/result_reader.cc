@@ -275,7 +275,7 @@ ResultScene read_result_scene(const json& scene, std::string file) {
   }
   s.waveforms = members(at(scene, {"waveform"}), [](const json& one) {
     return ResultScene::Waveform{.family = text(one, {"family"}),
-                                 .times = each(at(one, {"times"}), quantity),
+                                 .times = each(at(one, {"times"}), [](const json& time) { return quantity(time); }),
                                  .edge = quantity(at(one, {"edge"})),
                                  .start = quantity(at(one, {"start"})),
                                  .end = quantity(at(one, {"end"}))};

@@ -23,7 +23,7 @@ std::string padded(const std::string& text, std::size_t columns) {
   return text + std::string(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ');
 }
 
-std::string right(const std::string& text) {
+std::string right_aligned(const std::string& text) {
   constexpr std::size_t columns = 16;
   return std::string(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ') + text;
 }
@@ -60,14 +60,14 @@ std::string text_report(const Result& result) {
     out += padded(f.label(), 36);
     if (result.is_search) {
       const internal::Change change = internal::figure_change(baseline, best, f);
-      out += right(internal::figure_text(f, step, baseline.errors[f], own)) +
-             right(internal::figure_text(f, own, best.errors[f], step)) + "   " + change.words;
+      out += right_aligned(internal::figure_text(f, step, baseline.errors[f], own)) +
+             right_aligned(internal::figure_text(f, own, best.errors[f], step)) + "   " + change.words;
     } else {
       const std::string cloud = internal::cloud_text(result, f);
       const std::string shown = !cloud.empty()                  ? cloud
                                 : std::isfinite(best.errors[f]) ? internal::error_text(f, own, best.errors[f])
                                                                 : std::string();
-      out += right(internal::figure_text(f, own, best.errors[f], Metrics::unset)) + "   " + shown;
+      out += right_aligned(internal::figure_text(f, own, best.errors[f], Metrics::unset)) + "   " + shown;
     }
     while (!out.empty() && out.back() == ' ') out.pop_back();
     out += "\n";
