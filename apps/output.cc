@@ -54,20 +54,19 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
   return folder;
 }
 
-void write_report(ResultFolder& folder, const json& result) {
+void write_report(ResultFolder& folder, const Result& result) {
   folder.write("report.html", html_report(result));
   folder.write("gap.svg", svg_gap_chart(result));
 }
 
-void write_result(ResultFolder& folder, const json& result) {
-  folder.write("result.json", json_text(result));
+void write_result(ResultFolder& folder, const Result& result) {
+  folder.write("result.json", json_text(result_json(result)));
   write_report(folder, result);
-  const auto curves = result.at("curves").find("best");
-  if (curves != result.at("curves").end()) folder.write("trajectory.csv", trajectory_csv(*curves));
+  if (result.best.figures) folder.write("trajectory.csv", trajectory_csv(result.best.curve));
 }
 
-void print_result(const Common& c, const json& result, const std::string& left) {
-  print_json_or(c, summary_json(result), text_report(result) + left);
+void print_result(const Common& c, const Result& result, const std::string& left) {
+  print_json_or(c, summary_json(result_json(result)), text_report(result) + left);
 }
 
 std::string left_in(const fs::path& folder, const std::vector<std::string>& files) {

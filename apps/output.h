@@ -9,6 +9,7 @@
 
 #include "apps/result_folder.h"
 #include "apps/verbs.h"
+#include "reports/result.h"
 
 namespace softland::apps {
 
@@ -21,11 +22,11 @@ namespace softland::apps {
 [[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files);
 
 /// The files of a result: result.json, report.html, gap.svg, trajectory.csv where there is a trajectory.
-void write_result(ResultFolder& folder, const nlohmann::json& result);
-void write_report(ResultFolder& folder, const nlohmann::json& result);
+void write_result(ResultFolder& folder, const Result& result);
+void write_report(ResultFolder& folder, const Result& result);
 
 /// The whole result as --json asks for, or else as text on standard output, with what `left` says about files.
-void print_result(const Common& common, const nlohmann::json& result, const std::string& left);
+void print_result(const Common& common, const Result& result, const std::string& left);
 
 /// "In FOLDER: these files".
 [[nodiscard]] std::string left_in(const std::filesystem::path& folder, const std::vector<std::string>& files);

@@ -27,7 +27,7 @@
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
 #include "reports/quantity.h"
-#include "reports/result_json.h"
+#include "reports/result_maker.h"
 #include "reports/result_reader.h"
 #include "reports/text.h"
 #include "studies/certify.h"
@@ -181,7 +181,7 @@ fs::path shipped_scene(const std::string& name) {
   throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
 }
 
-json read_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
+json load_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
 
 bool is_folder(const fs::path& path) {
   std::error_code ignored;
@@ -201,7 +201,7 @@ SceneFile scene_of_result(const std::string& result) {
     path /= here("result.json") ? "result.json" : "best.toml";
   }
   if (path.extension() != ".json") return SceneFile::load(path);
-  const json j = read_result(path);
+  const json j = load_result(path);
   require(j.contains("scene_toml") && j["scene_toml"].is_string(),
           fmt::format("{}: holds no text of the scene; give the result.json in the folder that --out named", path.string()));
   return SceneFile::parse(j["scene_toml"].get<std::string>(), path.string());
@@ -229,7 +229,7 @@ int simulate_verb(const Common& c, bool certified, const std::optional<std::stri
   std::optional<ResultFolder> folder = claim_places(c, files);
   const Closing closing = certified ? certify(prepared, work->watch(), jobs) : simulate(prepared, true, work->watch());
   work.reset();
-  const json result = result_json(prepared, closing, {.command = c.command});
+  const Result result = result_of(prepared, closing, {.command = c.command});
   const bool interrupted = closing.metrics.status == Status::interrupted;
   std::string left;
   if (folder) {
@@ -446,13 +446,11 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   progress.close();
   log->flush();
 
-  json j = result_json(result, options, {.command = c.command});
-  for (const auto& [index, e] : log->evaluations()) {
-    j["search"]["evaluations"].push_back({index, std::isfinite(e.value) ? json(e.value) : json(nullptr)});
-  }
+  Result found = result_of(result, options, {.command = c.command});
+  for (const auto& [index, e] : log->evaluations()) found.search.evaluations.push_back({static_cast<double>(index), e.value});
   const bool interrupted = result.search.termination == Termination::interrupted;
   const fs::path place = folder->destination(interrupted);
-  j["reproduce"] = {c.command, "softland simulate " + shell_word((place / "best.toml").string())};
+  found.reproduce = {c.command, "softland simulate " + shell_word((place / "best.toml").string())};
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
   if (result.best_scene) {
     folder->write("best.toml", result.best_scene->scene.file.text());
@@ -460,9 +458,9 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
     left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
   left.emplace_back("evaluations.csv");
-  write_result(*folder, j);
+  write_result(*folder, found);
   folder->publish(interrupted);
-  print_result(c, j, left_in(place, left));
+  print_result(c, found, left_in(place, left));
   if (interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }
@@ -491,15 +489,16 @@ int export_verb(const Common& c, const std::string& result, const std::string& f
 
 int report_verb(const Common& given, const std::string& result) {
   const fs::path path = is_folder(result) ? fs::path(result) / "result.json" : fs::path(result);
-  const json j = read_result(path);
+  const json j = load_result(path);
   require_reportable(j, path.string());
   Common c = given;
   if (c.out.empty()) c.out = path.has_parent_path() ? path.parent_path().string() : ".";
   const std::vector<std::string> files{"report.html", "gap.svg"};
   ResultFolder folder = *claim_places(c, files);
-  write_report(folder, j);
+  const Result r = read_result(j);
+  write_report(folder, r);
   folder.publish(false);
-  print(text_report(j) + left_in(c.out, files));
+  print(text_report(r) + left_in(c.out, files));
   return exit_done;
 }
 

@@ -98,21 +98,19 @@ Scene judge(const Options& options, std::uint64_t index) {
   if (best.status != Status::done) return scene;
   scene.outcome = Outcome::certified;
   const Metrics truth = metrics(best, p.scene.metrics);
-  Metrics errors = c.errors;
-  for (const CertifiedFigure& figure : certified_figures()) {
-    if (figure.key == "hold_force_N") continue;  // of an equilibrium, which no run gives
+  for (const Figure& figure : all_figures) {
+    if (!figure.has_error() || figure.conditioning == Conditioning::rest) continue;  // no run gives an equilibrium
     Tally& tally = scene.tallies[figure.key];
     const double own = figure.value(c.metrics), other = figure.value(truth);
     if (!std::isfinite(own)) continue;
     const auto ill = std::find_if(c.certificate->ill_conditioned.begin(), c.certificate->ill_conditioned.end(),
-                                  [&](const IllConditioned& one) { return one.key == figure.key; });
+                                  [&](const IllConditioned& one) { return one.figure.key == figure.key; });
     if (ill != c.certificate->ill_conditioned.end()) {
       ++tally.clouds;
       tally.in_range += other >= ill->spread.low && other <= ill->spread.high;
       continue;
     }
-    const double error = figure.error != nullptr ? figure.error(errors) : c.bounce_count_error.value_or(-1);
-    const double difference = std::abs(own - other), least = truth_rounding * std::abs(other);
+    const double error = c.errors[figure], difference = std::abs(own - other), least = truth_rounding * std::abs(other);
     const bool covered = difference <= std::max(error, least);
     ++(covered ? tally.covered : tally.missed);
     if (difference > least) {
@@ -167,7 +165,7 @@ void run(const Options& options) {
                     fmt::format("{:.2g}", quantile(t.excess, 0.5)), fmt::format("{:.2g}", quantile(t.needed, 0.95)),
                     fmt::format("{:.2g}", quantile(t.needed, 0.99)), fmt::format("{}", t.clouds), percent(t.in_range, t.clouds)});
   };
-  for (const CertifiedFigure& figure : certified_figures()) {
+  for (const Figure& figure : all_figures) {
     const auto found = tallies.find(figure.key);
     if (found == tallies.end()) continue;
     add(figure.key, found->second);

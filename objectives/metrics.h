@@ -1,4 +1,5 @@
-// Figures of merit of a closing (names after Bognash 2019). Every figure is taken at the contact point.
+// Figures of merit of a closing (names after Bognash 2019). Every figure is taken at the contact point. What each of them is
+// called in results, and in which unit, stands in objectives/figures.h.
 #pragma once
 
 #include <limits>
@@ -35,6 +36,10 @@ struct Metrics {
   double hold_force = unset;              ///< [N]
   double drive_energy = unset;            ///< [J]
   bool settled = false;
+  // Set by simulate(), which knows the drives.
+  double peak_voltage =
+      unset;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
+  double peak_slew = unset;  ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
 };
 
 /// All rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact gap is

@@ -16,6 +16,7 @@
 #include "reports/made_with.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
+#include "reports/result_json.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "version.h"
@@ -76,7 +77,7 @@ std::string aligned(const std::vector<std::string>& cells) {
 
 std::vector<std::string> head(const std::vector<std::string>& setting) {
   std::vector<std::string> cells = setting;
-  for (const StudiedFigure& f : studied_figures) cells.emplace_back(f.symbol);
+  for (const Figure& f : studied_figures) cells.emplace_back(f.symbol);
   cells.insert(cells.end(), {"rhs", "time"});
   return cells;
 }
@@ -93,12 +94,12 @@ std::string line(std::vector<std::string> cells, const AccuracyRow& row) {
   return aligned(cells);
 }
 
-std::string figure_text(double value, std::string_view unit) { return internal::quantity(value, unit, 4); }
+std::string four_digits(double value, std::string_view unit) { return internal::quantity(value, unit, 4); }
 
 std::string symbols(const AccuracyStudy& study, bool conditioned) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    const bool there = std::isfinite(study.reference.figures.*studied_figures[i].figure);
+    const bool there = std::isfinite(studied_figures[i].value(study.reference.figures));
     if (there && study.conditioned[i] == conditioned) names.push_back(studied_figures[i].symbol);
   }
   if (names.size() < 2) return fmt::format("{}", fmt::join(names, ""));
@@ -165,21 +166,21 @@ std::vector<const AccuracyRow*> quadrature_rows(const AccuracyStudy& study) {
   return rows;
 }
 
-std::string cloud_text(const AccuracyStudy& study) {
+std::string cloud_table(const AccuracyStudy& study) {
   std::string text = fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}\n", "cloud", "low", "median", "high", "runs");
-  const auto add = [&](std::string_view name, std::string_view unit, const Spread& s, bool ill) {
+  const auto add = [&](const Figure& f, const Spread& s, bool ill) {
     if (s.runs == 0) {
-      text += fmt::format("{:<16}{:>14}\n", name, "none");
+      text += fmt::format("{:<16}{:>14}\n", f.symbol, "none");
       return;
     }
-    text += fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}{}\n", name, figure_text(s.low, unit), figure_text(s.median, unit),
-                        figure_text(s.high, unit), s.runs, ill ? "  ill-conditioned" : "");
+    text += fmt::format("{:<16}{:>14}{:>14}{:>14}{:>8}{}\n", f.symbol, four_digits(s.low, f.unit), four_digits(s.median, f.unit),
+                        four_digits(s.high, f.unit), s.runs, ill ? "  ill-conditioned" : "");
   };
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    if (study.cloud[i].runs > 0) add(studied_figures[i].symbol, studied_figures[i].unit, study.cloud[i], !study.conditioned[i]);
+    if (study.cloud[i].runs > 0) add(studied_figures[i], study.cloud[i], !study.conditioned[i]);
   }
-  add("t_p", "s", study.permanent_contact_time, false);
-  add("N_B", "", study.bounce_count, false);
+  add(figure_of(&Metrics::permanent_contact_time), study.permanent_contact_time, false);
+  add(figure_of(&Metrics::bounce_count), study.bounce_count, false);
   return text;
 }
 
@@ -190,7 +191,6 @@ using internal::Chart;
 using internal::Mark;
 using internal::Picture;
 using internal::Role;
-using Points = std::vector<std::array<double, 2>>;
 
 Chart logarithmic_chart(std::string id, std::string title, std::string x_label, std::string x_unit, int height) {
   Chart chart;
@@ -315,7 +315,7 @@ std::string section(std::string_view id, std::string_view heading, const std::st
 std::string errors_table(const std::vector<std::string>& first, const std::vector<const AccuracyRow*>& rows,
                          const std::function<std::vector<std::string>(const AccuracyRow&)>& setting) {
   std::vector<std::string> head = first;
-  for (const StudiedFigure& f : studied_figures) head.push_back(symbol_html(f.symbol));
+  for (const Figure& f : studied_figures) head.push_back(symbol_html(f.symbol));
   head.insert(head.end(), {"right-hand sides", "time"});
   std::string body;
   for (const AccuracyRow* row : rows) {
@@ -368,18 +368,16 @@ std::string recommendations_html(const AccuracyStudy& study) {
 
 std::string clouds_html(const AccuracyStudy& study) {
   std::string rows;
-  const auto add = [&](std::string_view symbol, std::string_view unit, const Spread& s, const char* note) {
-    const auto value = [&](double v) { return s.runs > 0 ? figure_text(v, unit) : std::string("—"); };
-    rows += table_row("td", {symbol_html(symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
-                             fmt::format("<span class=\"note\">{}</span>", note)});
+  const auto add = [&](const Figure& f, const Spread& s, bool ill) {
+    const auto value = [&](double v) { return s.runs > 0 ? four_digits(v, f.unit) : std::string("—"); };
+    rows += table_row("td", {symbol_html(f.symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
+                             fmt::format("<span class=\"note\">{}</span>", ill ? "ill-conditioned" : "")});
   };
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    if (study.cloud[i].runs == 0) continue;
-    add(studied_figures[i].symbol, studied_figures[i].unit, study.cloud[i], study.conditioned[i] ? "" : "ill-conditioned");
+    if (study.cloud[i].runs > 0) add(studied_figures[i], study.cloud[i], !study.conditioned[i]);
   }
-  const auto apart = [](const Spread& s) { return s.high - s.low > ill_conditioned_range * s.high ? "ill-conditioned" : ""; };
-  add("t_p", "s", study.permanent_contact_time, apart(study.permanent_contact_time));
-  add("N_B", "", study.bounce_count, apart(study.bounce_count));
+  add(figure_of(&Metrics::permanent_contact_time), study.permanent_contact_time, ill_conditioned(study.permanent_contact_time));
+  add(figure_of(&Metrics::bounce_count), study.bounce_count, ill_conditioned(study.bounce_count));
   return table({"Figure", "lowest", "median", "highest", "runs", ""}, rows) +
          "<p class=\"below\">Runs whose drives differ by one part in 1e9 to 1e7, which nobody could notice. Permanent contact "
          "time and "
@@ -395,13 +393,11 @@ std::string charts_html(const Picture& drawn) {
 std::string reference_keys(const AccuracyStudy& study) {
   std::string out;
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    const StudiedFigure& f = studied_figures[i];
-    const double value = study.reference.figures.*f.figure;
-    const auto& named = internal::figures();
-    const auto label = std::find_if(named.begin(), named.end(), [&](const internal::Figure& one) { return one.key == f.key; });
+    const Figure& f = studied_figures[i];
+    const double value = f.value(study.reference.figures);
     out += fmt::format(
         "<div class=\"key\"><dt>{}{}</dt><dd><span class=\"after\">{}</span><span class=\"change\">{}</span></dd></div>\n",
-        label->label, f.symbol.find('_') == std::string_view::npos ? "" : ", " + symbol_html(f.symbol),
+        f.name, f.symbol.find('_') == std::string_view::npos ? "" : ", " + symbol_html(f.symbol),
         internal::quantity(value, f.unit, 4),
         !std::isfinite(value)   ? ""
         : !study.conditioned[i] ? "ill-conditioned"
@@ -433,7 +429,7 @@ json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const P
          {"status", to_string(study.status)},
          {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
          {"version", version},
-         {"made_with", made_with()},
+         {"made_with", made_with_json()},
          {"command", provenance.command}};
   if (!study.message.empty()) j["message"] = study.message;
   if (study.rows.empty()) return j;
@@ -449,8 +445,9 @@ json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const P
     cloud["well_conditioned"] = study.conditioned[i];
     j["cloud"][std::string(studied_figures[i].key)] = std::move(cloud);
   }
-  j["cloud"]["permanent_contact_time_s"] = spread_json(study.permanent_contact_time);
-  j["cloud"]["bounce_count"] = spread_json(study.bounce_count);
+  const auto key = [](Figure::Member member) { return std::string(figure_of(member).key); };
+  j["cloud"][key(&Metrics::permanent_contact_time)] = spread_json(study.permanent_contact_time);
+  j["cloud"][key(&Metrics::bounce_count)] = spread_json(study.bounce_count);
   const std::vector<std::string> words = recommendations(study);
   j["recommendations"] = json::array();
   for (std::size_t i = 0; i < study.recommendations.size(); ++i) {
@@ -472,9 +469,9 @@ std::string accuracy_text(const AccuracyStudy& study) {
   }
   std::vector<std::string> values;
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-    const double value = study.reference.figures.*studied_figures[i].figure;
+    const double value = studied_figures[i].value(study.reference.figures);
     if (std::isfinite(value)) {
-      values.push_back(fmt::format("{} {} ({})", studied_figures[i].symbol, figure_text(value, studied_figures[i].unit),
+      values.push_back(fmt::format("{} {} ({})", studied_figures[i].symbol, four_digits(value, studied_figures[i].unit),
                                    error_cell(study.resolution[i])));
     }
   }
@@ -510,7 +507,7 @@ std::string accuracy_text(const AccuracyStudy& study) {
                             : no_quadrature,
           restart_text(study))) +
       "\n\n";
-  text += cloud_text(study) + "\n" +
+  text += cloud_table(study) + "\n" +
           wrapped(
               "The cloud: runs whose drives differ by one part in 1e9 to 1e7. Permanent contact time and bounce count are "
               "properties of such a cloud, not of one run.") +
@@ -556,10 +553,8 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
   }
   const Picture drawn = picture(study);
   const auto [main, rest] = headline(prepared, study);
-  const json result{{"command", provenance.command},
-                    {"version", version},
-                    {"made_with", made_with()},
-                    {"scene_toml", resolved(prepared.scene, prepared.voltage_units()).text()}};
+  Result result{.command = provenance.command, .version = std::string(version), .made_with = made_with()};
+  result.scene.text = resolved(prepared.scene, prepared.voltage_units()).text();
   return internal::page({.title = prepared.scene.title,
                          .origin = "accuracy",
                          .headline = main,

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "reports/result_json.h"
+#include "reports/result_maker.h"
 #include "studies/accuracy.h"
 
 namespace softland {

@@ -8,79 +8,53 @@
 #include <set>
 #include <utility>
 
+#include "reports/course.h"
 #include "reports/findings.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
-#include "reports/thin.h"
 
 namespace softland::internal {
 namespace {
 
-using nlohmann::json;
-using Points = std::vector<std::array<double, 2>>;
-
-constexpr std::array<std::pair<const char*, Role>, 2> runs{std::pair{"baseline", Role::baseline}, std::pair{"best", Role::best}};
-
-const char* role_name(Role role) {
-  switch (role) {
-    case Role::best:
-      return "best";
-    case Role::baseline:
-      return "baseline";
-    case Role::third:
-      return "third";
-    case Role::fourth:
-      return "fourth";
-    case Role::fifth:
-      return "fifth";
-    case Role::limit:
-      return "limit";
-    case Role::evaluations:
-    case Role::measured:
-      break;
-  }
-  return "evaluations";
-}
-
-const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" : "log"; }
+// A run of a result, and the name of its table.
+struct Drawn {
+  const char* name;
+  Role role;
+  ResultRun Result::*run;
+};
+constexpr std::array runs{Drawn{"baseline", Role::baseline, &Result::baseline}, Drawn{"best", Role::best, &Result::best}};
 
 /// The rows of a curve whose time is finite and does not run backwards; columns that are missing or of another length are left
 /// out.
-CurveTable curve_table(const json& curve) {
-  const std::vector<double> times = numbers(at(curve, {"time_s"}));
+CurveTable curve_table(const ResultCurve& curve) {
   std::vector<std::size_t> sound;
-  for (std::size_t row = 0; row < times.size(); ++row) {
-    if (std::isfinite(times[row]) && (sound.empty() || times[row] >= times[sound.back()])) sound.push_back(row);
+  double latest = -std::numeric_limits<double>::infinity();
+  for (std::size_t row = 0; row < curve.time.size(); ++row) {
+    const double time = drawable(curve.time[row]);
+    if (!(time >= latest)) continue;
+    sound.push_back(row);
+    latest = time;
   }
   CurveTable table;
   if (sound.size() < 2) return table;
-  for (const char* name : {"time_s", "tip_gap_m", "tip_velocity_m_s", "contact_force_N"}) {
-    const std::vector<double> column = numbers(at(curve, {name}));
-    if (column.size() != times.size()) continue;
+  const auto add = [&](const char* name, const std::vector<double>& column) {
+    if (column.size() != curve.time.size()) return;
     std::vector<double> values;
     values.reserve(sound.size());
-    for (const std::size_t row : sound) values.push_back(column[row]);
+    for (const std::size_t row : sound) values.push_back(drawable(column[row]));
     if (std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }))
       table[name] = std::move(values);
-  }
+  };
+  add("time_s", curve.time);
+  add("tip_gap_m", curve.gap);
+  add("tip_velocity_m_s", curve.velocity);
+  add("contact_force_N", curve.force);
   return table;
 }
 
-/// [[x, y], ...] without what cannot be drawn.
-Points points_of(const json& pairs) {
-  Points points;
-  if (!pairs.is_array()) return points;
-  for (const json& pair : pairs) {
-    if (!pair.is_array() || pair.size() != 2) continue;
-    const std::array<double, 2> point{drawable(pair[0]), drawable(pair[1])};
-    if (std::isfinite(point[0]) && std::isfinite(point[1])) points.push_back(point);
-  }
-  return points;
-}
-
 /// A drive from where it rests before t = 0 to the end of the window, where it holds its last value.
-Points whole_waveform(const json& pairs, double rest, double end) {
-  Points points = points_of(pairs);
+Points whole_waveform(const Points& waveform, double rest, double end) {
+  Points points = drawable(waveform);
   if (points.empty()) return points;
   if (points.front()[1] != rest && points.front()[0] <= 0) points.insert(points.begin(), {points.front()[0], rest});
   if (points.back()[0] < end) points.push_back({end, points.back()[1]});
@@ -103,17 +77,14 @@ void add_columns(CurveTable& table, const char* x, const char* y, const Points& 
   }
 }
 
-std::vector<Mark> rebound_marks(const json& result) {
+std::vector<Mark> rebound_marks(const Result& result) {
   std::vector<Mark> marks;
-  for (const auto& [run, role] : runs) {
+  for (const Drawn& drawn : runs) {
     std::size_t highest = 0;
     std::vector<Mark> own;
-    const json& list = at(result, {"curves", run, "rebounds"});
-    if (!list.is_array()) continue;
-    for (const json& rebound : list) {
-      if (!rebound.is_array() || rebound.size() < 4) continue;
-      const Mark mark{drawable(rebound[3]), drawable(rebound[2]), role, ""};
-      if (!std::isfinite(mark.x) || !(mark.y > significant_rebound(result))) continue;
+    for (const Rebound& rebound : (result.*drawn.run).curve.rebounds) {
+      const Mark mark{drawable(rebound.time_of_height), drawable(rebound.height), drawn.role, ""};
+      if (!std::isfinite(mark.x) || !(mark.y > result.scene.significant_rebound)) continue;
       if (own.empty() || mark.y > own[highest].y) highest = own.size();
       own.push_back(mark);
     }
@@ -124,12 +95,12 @@ std::vector<Mark> rebound_marks(const json& result) {
 }
 
 /// The end of the part worth enlarging: the winner's landing, what its drives do, and the baseline's highest rebound.
-double landing_end(const json& result, const CurveTables& tables, double window) {
+double landing_end(const Result& result, const CurveTables& tables, double window) {
   double end = std::numeric_limits<double>::quiet_NaN();
   const auto cover = [&](double time) {
     if (time < window) end = std::fmax(end, time);
   };
-  cover(number(best_metrics(result), {"initial_contact_time_s"}));
+  cover(figure_of_run(result.best, &Metrics::initial_contact_time));
   for (const auto& [name, table] : tables) {
     if (!name.starts_with("best/")) continue;
     Points points;
@@ -137,15 +108,13 @@ double landing_end(const json& result, const CurveTables& tables, double window)
       points.push_back({table.at("time_s")[row], table.at("level")[row]});
     if (last_move(points) < 0.5 * window) cover(last_move(points));
   }
-  for (const char* run : {"baseline", "best"}) {
+  for (const ResultRun* run : {&result.baseline, &result.best}) {
     double highest = -1;
     double until = std::numeric_limits<double>::quiet_NaN();
-    const json& list = at(result, {"curves", run, "rebounds"});
-    if (!list.is_array()) continue;
-    for (const json& rebound : list) {
-      if (!rebound.is_array() || rebound.size() < 4 || !(number(rebound[2]) > highest)) continue;
-      highest = number(rebound[2]);
-      until = number(rebound[1]);
+    for (const Rebound& rebound : run->curve.rebounds) {
+      if (!(rebound.height > highest)) continue;
+      highest = rebound.height;
+      until = rebound.end;
     }
     cover(until);
   }
@@ -165,40 +134,39 @@ const std::vector<double>& column_of(const CurveTables& tables, const char* run,
 /// The largest value of a column in any run, at least 0.
 double largest(const CurveTables& tables, const char* name) {
   double value = 0;
-  for (const auto& [run, role] : runs) {
-    for (const double one : column_of(tables, run, name)) value = std::fmax(value, one);
+  for (const Drawn& drawn : runs) {
+    for (const double one : column_of(tables, drawn.name, name)) value = std::fmax(value, one);
   }
   return value;
 }
 
 /// Gaps around the contact plane worth enlarging [m]: as deep as any contact is pressed before `end`, and above the plane the
 /// winner's rebounds or twice that depth. Not set when nothing touches.
-std::optional<std::array<double, 2>> plane_band(const json& result, const CurveTables& tables, double end) {
+std::optional<std::array<double, 2>> plane_band(const Result& result, const CurveTables& tables, double end) {
   double lowest = 0;
-  for (const auto& [run, role] : runs) {
-    const std::vector<double>& gaps = column_of(tables, run, "tip_gap_m");
-    for (std::size_t row = 0; row < gaps.size() && tables.at(run).at("time_s")[row] <= end; ++row)
+  for (const Drawn& drawn : runs) {
+    const std::vector<double>& gaps = column_of(tables, drawn.name, "tip_gap_m");
+    for (std::size_t row = 0; row < gaps.size() && tables.at(drawn.name).at("time_s")[row] <= end; ++row)
       lowest = std::fmin(lowest, gaps[row]);
   }
   if (lowest == 0) return std::nullopt;
   constexpr double margin = 1.15;
-  const double height = drawable(at(best_metrics(result), {"major_bounce_height_m"}));
+  const double height = drawable(figure_of_run(result.best, &Metrics::major_bounce_height));
   return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
 }
 
-void add_time_charts(const json& result, Picture& out) {
+void add_time_charts(const Result& result, Picture& out) {
   const double window = window_end(result);
   if (!(window > 0)) return;
   std::set<std::string> drives;
-  for (const auto& [run, role] : runs) {
-    CurveTable table = curve_table(at(result, {"curves", run}));
-    if (!table.empty()) out.tables[run] = std::move(table);
-    const json& waveforms = at(result, {run, "waveforms"});
-    if (!waveforms.is_object()) continue;
-    for (const auto& [drive, pairs] : waveforms.items()) {
-      const Points points = whole_waveform(pairs, drive_scale(drive).rest, window);
+  for (const Drawn& drawn : runs) {
+    const ResultRun& run = result.*drawn.run;
+    CurveTable table = curve_table(run.curve);
+    if (!table.empty()) out.tables[drawn.name] = std::move(table);
+    for (const auto& [drive, waveform] : run.waveforms) {
+      const Points points = whole_waveform(waveform, drive_scale(drive).rest, window);
       if (points.size() < 2) continue;
-      add_columns(out.tables[fmt::format("{}/{}", run, drive)], "time_s", "level", points);
+      add_columns(out.tables[fmt::format("{}/{}", drawn.name, drive)], "time_s", "level", points);
       drives.insert(drive);
     }
   }
@@ -217,10 +185,11 @@ void add_time_charts(const json& result, Picture& out) {
     return chart;
   };
   const auto add_series = [&](Chart& chart, const std::string& suffix, const char* column) {
-    for (const auto& [run, role] : runs) {
-      const auto table = out.tables.find(run + suffix);
+    for (const Drawn& drawn : runs) {
+      const auto table = out.tables.find(drawn.name + suffix);
       if (table == out.tables.end() || !table->second.contains(column)) continue;
-      chart.series.push_back({table->first, column, role == Role::best ? best_label(result) : baseline_label(), role});
+      const std::string label = drawn.role == Role::best ? best_label(result) : baseline_label();
+      chart.series.push_back({table->first, column, label, drawn.role});
     }
   };
   const auto keep = [&](Chart chart) {
@@ -285,16 +254,16 @@ void add_time_charts(const json& result, Picture& out) {
   if (largest(out.tables, "contact_force_N") > 0) keep(std::move(force));
 }
 
-void add_search_chart(const json& result, Picture& out) {
-  Points tried = points_of(at(result, {"search", "evaluations"}));
-  Points best = points_of(at(result, {"search", "best_so_far"}));
+void add_search_chart(const Result& result, Picture& out) {
+  Points tried = drawable(result.search.evaluations);
+  Points best = drawable(result.search.best_so_far);
   if (tried.empty() && best.empty()) return;
-  const std::vector<double> indices = evaluation_indices(result);
+  const std::vector<double> indices = evaluation_indices(result.search);
   for (Points* points : {&tried, &best}) {
     for (auto& [index, value] : *points) index = evaluations_until(indices, index);
   }
   double last = std::max(tried.empty() ? 0.0 : tried.back()[0], best.empty() ? 0.0 : best.back()[0]);
-  last = std::fmax(last, drawable(at(result, {"evaluations"})));
+  last = std::fmax(last, drawable(result.evaluations));
   bool positive = true;
   for (const Points* points : {&tried, &best}) {
     positive = positive && std::all_of(points->begin(), points->end(), [](const auto& point) { return point[1] > 0; });
@@ -306,9 +275,7 @@ void add_search_chart(const json& result, Picture& out) {
   chart.x_column = "evaluation";
   chart.x_label = "Evaluations";
   chart.x_home = chart.x_whole = {0, std::max(1.0, last)};
-  chart.y_label = text(result, {"search", "value_name"});
-  if (chart.y_label.empty()) chart.y_label = "cost";
-  chart.y_label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(chart.y_label[0])));
+  chart.y_label = capitalised(result.search.value_name.empty() ? "cost" : result.search.value_name);
   chart.scale = positive ? Scale::logarithmic : Scale::linear;
   chart.height = 260;
   if (!tried.empty()) {
@@ -328,91 +295,13 @@ void add_search_chart(const json& result, Picture& out) {
   out.charts.push_back(std::move(chart));
 }
 
-/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and
-/// adds nothing.
-json packed(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
-  double largest = 0;
-  for (const std::size_t row : rows) {
-    if (std::isfinite(column[row])) largest = std::max(largest, std::abs(column[row]));
-  }
-  json steps = json::array();
-  if (logarithmic) {  // values over many decades: as numbers of six digits
-    for (const std::size_t row : rows) {
-      steps.push_back(std::isfinite(column[row]) ? json::parse(fmt::format("{:.6g}", column[row])) : json());
-    }
-    return {{"values", steps}};
-  }
-  constexpr double resolution = 1e-7;
-  const double unit = largest > 0 ? largest * resolution : 1;
-  long long before = 0;
-  for (const std::size_t row : rows) {
-    if (!std::isfinite(column[row])) {
-      steps.push_back(nullptr);
-      continue;
-    }
-    const long long now = std::llround(column[row] / unit);
-    steps.push_back(now - before);
-    before = now;
-  }
-  return {{"unit", unit}, {"steps", steps}};
-}
-
 }  // namespace
 
-Picture picture(const json& result) {
+Picture picture(const Result& result) {
   Picture out;
   add_time_charts(result, out);
   add_search_chart(result, out);
   return out;
-}
-
-json chart_json(const Picture& picture, std::size_t rows) {
-  json tables = json::object();
-  std::set<std::string> logarithmic;  // tables of charts whose axes are both logarithmic
-  for (const Chart& chart : picture.charts) {
-    if (chart.x_scale == Scale::linear) continue;
-    for (const Series& one : chart.series) logarithmic.insert(one.table);
-  }
-  for (const auto& [name, table] : picture.tables) {
-    std::vector<const std::vector<double>*> columns;
-    for (const auto& [key, column] : table) columns.push_back(&column);
-    const std::vector<std::size_t> kept = thinned(columns, rows);
-    for (const auto& [key, column] : table)
-      tables[name][key] = packed(column, kept, logarithmic.contains(name) || key == "value");
-  }
-  json charts = json::array();
-  for (const Chart& chart : picture.charts) {
-    json series = json::array();
-    for (const Series& one : chart.series) {
-      series.push_back({{"table", one.table}, {"column", one.column}, {"label", one.label}, {"role", role_name(one.role)}});
-    }
-    json marks = json::array();
-    for (const Mark& mark : chart.marks)
-      marks.push_back({{"x", mark.x}, {"y", mark.y}, {"role", role_name(mark.role)}, {"text", mark.text}});
-    charts.push_back({{"id", chart.id},
-                      {"group", chart.group},
-                      {"height", chart.height},
-                      {"x",
-                       {{"column", chart.x_column},
-                        {"label", chart.x_label},
-                        {"unit", chart.x_unit},
-                        {"least", resolution(chart.x_unit)},
-                        {"scale", scale_name(chart.x_scale)},
-                        {"home", chart.x_home},
-                        {"whole", chart.x_whole}}},
-                      {"y",
-                       {{"label", chart.y_label},
-                        {"unit", chart.y_unit},
-                        {"least", resolution(chart.y_unit)},
-                        {"scale", scale_name(chart.scale)}}},
-                      {"zero", chart.zero_line},
-                      {"zeroLabel", chart.zero_label},
-                      {"zeroLabelLeft", chart.zero_label_left},
-                      {"series", series},
-                      {"marks", marks}});
-    if (chart.y_home) charts.back()["y"]["home"] = *chart.y_home;
-  }
-  return {{"tables", tables}, {"charts", charts}};
 }
 
 }  // namespace softland::internal

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "reports/result.h"
+
 namespace softland::internal {
 
 /// Columns of equal length; the first key of a chart's x axis is one of them.
@@ -63,7 +65,7 @@ struct Picture {
 };
 
 /// All charts of a result, in the order of the page: gap, landing, drives, velocity, force, search. What has no data is left out.
-[[nodiscard]] Picture picture(const nlohmann::json& result);
+[[nodiscard]] Picture picture(const Result& result);
 
 /// CurveTables and charts for the page's script. Columns are thinned to at most `rows` rows per table and stored as integer steps
 /// of a unit fine enough to be invisible (one part in ten million of the largest value).

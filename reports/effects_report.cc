@@ -11,6 +11,7 @@
 #include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/quantity.h"
+#include "reports/result_json.h"
 #include "reports/text.h"
 #include "version.h"
 
@@ -20,14 +21,24 @@ namespace {
 using internal::json_number;
 using nlohmann::json;
 
-struct Influence {
-  const char* key;   // in the JSON
-  const char* name;  // in the table
-  double Metrics::*figure;
-};
-constexpr Influence influences[] = {{"initial_contact_time", "t_i", &Metrics::initial_contact_time},
-                                    {"impact_velocity", "v_i", &Metrics::impact_velocity},
-                                    {"major_bounce_height", "B_H", &Metrics::major_bounce_height}};
+// How a figure changes from the scene's own closing to another.
+double change(const Figure& figure, const Metrics& metrics, const Metrics& own) {
+  return relative_change(figure.value(metrics), figure.value(own));
+}
+
+json changes_json(const Metrics& metrics, const Metrics& own) {
+  json all = json::object();
+  for (const Figure& f : compared_figures) all[std::string(f.quantity())] = json_number(change(f, metrics, own));
+  return all;
+}
+
+// What a line says of every compared figure.
+template <class Cell>
+std::string cells(const Cell& cell_of) {
+  std::string all;
+  for (const Figure& f : compared_figures) all += cell_of(f);
+  return all;
+}
 
 json named(const NamedNumber& n) { return {{"name", n.name}, {"unit", n.unit}, {"value", json_number(n.value)}}; }
 
@@ -38,19 +49,22 @@ std::string size_of(const NamedNumber& n) {
 // Each effect of the scene, left out.
 std::string omissions_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
-  std::string text = fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}  {}\n", "left out", "", "t_i", "v_i", "B_H", "rhs", "size");
+  const auto row = [](std::string_view effect, std::string_view choice, const std::string& changes, std::string_view rhs) {
+    return fmt::format("{:<26}{:<18}{}{:>9}", effect, choice, changes, rhs);
+  };
+  std::string text =
+      row("left out", "", cells([](const Figure& f) { return fmt::format("{:>10}", f.symbol); }), "rhs") + "  size\n";
   for (const Omission& o : effects.omissions) {
-    const auto change = [&](double Metrics::*figure) {
-      return internal::relative_change((o.metrics.*figure - own.metrics.*figure) / (own.metrics.*figure));
+    const auto changed = [&](const Figure& f) {
+      return fmt::format("{:>10}", internal::relative_change(change(f, o.metrics, own.metrics)));
     };
     const std::string group = size_of(o.what.group);
-    text += fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}  {}{}{}\n", o.what.effect, internal::with_true_minus(o.what.choice),
-                        change(influences[0].figure), change(influences[1].figure), change(influences[2].figure),
-                        internal::quantity(o.rhs_seconds, "s"), size_of(o.what.magnitude), group.empty() ? "" : "; ", group);
+    text += row(o.what.effect, internal::with_true_minus(o.what.choice), cells(changed), internal::quantity(o.rhs_seconds, "s")) +
+            fmt::format("  {}{}{}\n", size_of(o.what.magnitude), group.empty() ? "" : "; ", group);
   }
   if (effects.omissions.empty()) text += "nothing: the scene describes no effect that it could do without\n";
-  text +=
-      fmt::format("{:<26}{:<18}{:>10}{:>10}{:>10}{:>9}\n", "nothing", "", "", "", "", internal::quantity(own.rhs_seconds, "s"));
+  const std::string none = cells([](const Figure&) { return fmt::format("{:>10}", ""); });
+  text += row("nothing", "", none, internal::quantity(own.rhs_seconds, "s")) + "\n";
   return text + "\n" +
          wrapped(
              "How the figures change when one effect is left out, under the same voltages, and what a right-hand side then "
@@ -64,8 +78,6 @@ std::string omissions_text(const Effects& effects) {
 json effects_json(const Prepared& prepared, const Effects& effects, const Provenance& provenance) {
   json list = json::array();
   for (const Effect& e : effects.list) {
-    json change = json::object();
-    for (const Influence& i : influences) change[i.key] = json_number(relative_change(e, effects.own(e.section), i.figure));
     list.push_back({{"section", e.section},
                     {"choice", e.choice},
                     {"in_scene", e.in_scene},
@@ -73,7 +85,7 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
                     {"magnitude", named(e.magnitude)},
                     {"dimensionless_group", named(e.group)},
                     {"metrics", metrics_json(e.metrics)},
-                    {"relative_change", change},
+                    {"relative_change", changes_json(e.metrics, effects.own(e.section).metrics)},
                     {"rhs_s", json_number(e.rhs_seconds)},
                     {"warnings", e.warnings}});
   }
@@ -81,20 +93,17 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
   for (const NotCompared& n : effects.not_compared) not_compared.push_back({{"choice", n.choice}, {"reason", n.reason}});
   json left_out = json::array();
   for (const Omission& o : effects.omissions) {
-    json change = json::object();
-    const Metrics& own = effects.own("gas").metrics;
-    for (const Influence& i : influences) change[i.key] = json_number((o.metrics.*i.figure - own.*i.figure) / (own.*i.figure));
     left_out.push_back({{"effect", o.what.effect},
                         {"choice", o.what.choice},
                         {"magnitude", named(o.what.magnitude)},
                         {"dimensionless_group", named(o.what.group)},
                         {"metrics", metrics_json(o.metrics)},
-                        {"relative_change", change},
+                        {"relative_change", changes_json(o.metrics, effects.own("gas").metrics)},
                         {"influence", json_number(o.influence)},
                         {"rhs_s", json_number(o.rhs_seconds)}});
   }
   json spread = json::object();
-  for (const Influence& i : influences) spread[i.key] = json_number(effects.spread("gas", i.figure));
+  for (const Figure& f : compared_figures) spread[std::string(f.quantity())] = json_number(effects.spread("gas", f));
   return {{"kind", "effects"},
           {"status", to_string(effects.interrupted ? Status::interrupted : effects.own("gas").metrics.status)},
           {"left_out", left_out},
@@ -103,7 +112,7 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
           {"relative_spread", {{"gas", spread}}},
           {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
           {"version", version},
-          {"made_with", made_with()},
+          {"made_with", made_with_json()},
           {"command", provenance.command}};
 }
 
@@ -111,28 +120,29 @@ std::string effects_text(const Effects& effects) {
   const Effect& own = effects.own("gas");
   std::string text = effects.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
   if (!std::isfinite(own.metrics.initial_contact_time)) {
-    const json closing{{"kind", "simulate"},
-                       {"status", to_string(own.metrics.status)},
-                       {"metrics", metrics_json(own.metrics)},
-                       {"curves", {{"best", {{"time_s", {effects.window}}}}}}};
+    Result closing{.status = std::string(to_string(own.metrics.status))};
+    closing.best = {.status = closing.status, .figures = FigureValues(own.metrics)};
+    closing.best.curve.time = {effects.window};
     text += wrapped(internal::headline(closing).main +
                     " So there are no figures to compare; below stand the size and the cost of each effect.") +
             "\n\n";
   }
   text += omissions_text(effects);
-  const auto row = [](const auto&... cells) {
-    return fmt::format("{:<20}{:>16}{:>8}{:>10}{:>9}{:>12}{:>9}{:>10}{:>9}{:>9}\n", cells...);
+  const auto row = [](std::string_view choice, std::string_view damping, std::string_view knudsen, const std::string& figures,
+                      std::string_view rhs) {
+    return fmt::format("{:<20}{:>16}{:>8}{}{:>9}\n", choice, damping, knudsen, figures, rhs);
   };
-  text += row("gas", "c", "Kn", "t_i", "", "v_i", "", "B_H", "", "rhs");
+  const auto pair = [](const Figure& f, std::string_view value, std::string_view change) {
+    return fmt::format("{:>{}}{:>9}", value, 9 + f.unit.size(), change);
+  };
+  text += row("gas", "c", "Kn", cells([&](const Figure& f) { return pair(f, f.symbol, ""); }), "rhs");
   for (const Effect& e : effects.list) {
-    const auto change = [&](const Influence& i) {
-      return e.in_scene ? "" : internal::relative_change(relative_change(e, own, i.figure));
+    const auto compared = [&](const Figure& f) {
+      return pair(f, internal::quantity(f.value(e.metrics), f.unit, 4),
+                  e.in_scene ? "" : internal::relative_change(change(f, e.metrics, own.metrics)));
     };
     text += row((e.in_scene ? "* " : "  ") + e.choice, internal::quantity(e.magnitude.value, e.magnitude.unit),
-                internal::quantity(e.group.value, e.group.unit), internal::quantity(e.metrics.initial_contact_time, "s", 4),
-                change(influences[0]), internal::quantity(e.metrics.impact_velocity, "m/s", 4), change(influences[1]),
-                internal::quantity(e.metrics.major_bounce_height, "m", 4), change(influences[2]),
-                internal::quantity(e.rhs_seconds, "s"));
+                internal::quantity(e.group.value, e.group.unit), cells(compared), internal::quantity(e.rhs_seconds, "s"));
   }
   text += "\n" +
           wrapped(
@@ -140,11 +150,11 @@ std::string effects_text(const Effects& effects) {
               "other column is of the whole closing, its change is relative to the scene's own.") +
           "\n\n";
   std::string words;
-  for (const Influence& i : influences) {
-    if (!std::isfinite(own.metrics.*i.figure)) continue;
-    const double spread = effects.spread("gas", i.figure);
-    words +=
-        fmt::format("{}{} {}", words.empty() ? "" : ", ", i.name, std::isfinite(spread) ? internal::percent(spread) : "unknown");
+  for (const Figure& f : compared_figures) {
+    if (!std::isfinite(f.value(own.metrics))) continue;
+    const double spread = effects.spread("gas", f);
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", f.symbol,
+                         std::isfinite(spread) ? internal::percent(spread) : "unknown");
   }
   text += wrapped(words.empty()
                       ? "The gas laws cannot be compared: the switch does not close in the scene's own."

@@ -5,11 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/output_lost.h"
@@ -18,8 +18,6 @@
 
 namespace softland {
 namespace {
-
-using nlohmann::json;
 
 /// Closes the descriptor and removes the file unless it was renamed in time.
 class TemporaryFile {
@@ -122,30 +120,22 @@ void write_whole(const std::filesystem::path& path, std::string_view content) {
   written(synced, "sync its folder");
 }
 
-std::string trajectory_csv(const json& curves) {
-  require(curves.is_object() && curves.contains("time_s") && curves["time_s"].is_array(),
-          "trajectory_csv: the curves hold no array time_s");
-  const std::size_t rows = curves["time_s"].size();
-  std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    const auto found = curves.find(name);
-    if (found == curves.end() || !found->is_array() || found->size() != rows) return;
-    for (const json& value : *found) {
-      if (!value.is_number() && !value.is_null()) return;
-    }
-    names.push_back(name);
-  };
-  const std::vector<std::string> first{"time_s", "tip_gap_m", "tip_velocity_m_s", "contact_force_N"};
-  for (const std::string& name : first) add(name);
-  for (const auto& [name, value] : curves.items()) {
-    if (std::find(first.begin(), first.end(), name) == first.end()) add(name);
+std::string trajectory_csv(const ResultCurve& curve) {
+  std::vector<const std::vector<double>*> columns;
+  std::string out;
+  for (const auto& [name, column] : {std::pair{"time_s", &curve.time},
+                                     {"tip_gap_m", &curve.gap},
+                                     {"tip_velocity_m_s", &curve.velocity},
+                                     {"contact_force_N", &curve.force}}) {
+    if (column->size() != curve.time.size()) continue;
+    out += (out.empty() ? "" : ",") + std::string(name);
+    columns.push_back(column);
   }
-  std::string out = fmt::format("{}\n", fmt::join(names, ","));
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t column = 0; column < names.size(); ++column) {
-      const json& value = curves[names[column]][row];
-      if (column > 0) out += ',';
-      if (value.is_number() && std::isfinite(value.get<double>())) out += fmt::format("{}", value.get<double>());
+  out += '\n';
+  for (std::size_t row = 0; row < curve.time.size(); ++row) {
+    for (const std::vector<double>* column : columns) {
+      if (column != columns.front()) out += ',';
+      if (std::isfinite((*column)[row])) out += fmt::format("{}", (*column)[row]);
     }
     out += '\n';
   }

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+
+#include "reports/result.h"
 
 namespace softland {
 
@@ -18,10 +19,8 @@ void check_writable(const std::filesystem::path& path);
 /// as check_writable() does, and OutputLost with path and reason where the content does not get there, as on a full disk.
 void write_whole(const std::filesystem::path& path, std::string_view content);
 
-/// Curves of a run ({"time_s": [], "tip_gap_m": [], ...}) as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those
-/// that exist), then any other numeric column by name; one line per row, shortest text that reads back to the same number, an
-/// empty field for null. Arrays of another length than time_s (such as rebounds) are left out. Throws InvalidInput when there is
-/// no time_s.
-[[nodiscard]] std::string trajectory_csv(const nlohmann::json& curves);
+/// The curve of a run as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those that exist); one line per row,
+/// shortest text that reads back to the same number, an empty field for what is not finite.
+[[nodiscard]] std::string trajectory_csv(const ResultCurve& curve);
 
 }  // namespace softland

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <span>
 
 #include "base/printable.h"
-#include "base/require.h"
 #include "reports/chart.h"
+#include "reports/course.h"
 #include "reports/escape.h"
+#include "reports/figure_text.h"
 #include "reports/findings.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
@@ -21,7 +22,6 @@ namespace softland {
 namespace {
 
 using namespace internal;
-using nlohmann::json;
 
 constexpr std::size_t most_lines = 200;
 
@@ -38,47 +38,47 @@ std::string verdict_class(Verdict verdict) {
   return "neutral";
 }
 
-const Figure& figure(std::string_view key) {
-  return *std::find_if(figures().begin(), figures().end(), [&](const Figure& one) { return one.key == key; });
-}
+// What a landing is judged by: in the table of confirmations, and but for the first above everything else.
+constexpr std::array leading_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
+                                     figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
+                                     figure_of(&Metrics::impact_velocity)};
 
-std::string key_number(const json& result, std::string_view key, std::string_view label) {
-  const Figure& shown = figure(key);
-  const json& own = best_metrics(result);
-  const json& step = baseline_metrics(result);
-  const auto words = [&](const json& metrics, const json& beside) {
-    const std::string reason = missing_reason(metrics, key);
-    return reason.empty() ? quantity_beside(number(metrics, {key}), number(beside, {key}), shown.unit) : reason;
+std::string key_number(const Result& result, const Figure& shown) {
+  const ResultRun &own = result.best, &step = result.baseline;
+  const auto words = [&](const ResultRun& run, const ResultRun& beside) {
+    const std::string reason = missing_reason(run, shown);
+    return reason.empty() ? quantity_beside(figure_of_run(run, shown.member), figure_of_run(beside, shown.member), shown.unit)
+                          : reason;
   };
-  std::string out = fmt::format("<div class=\"key\"><dt>{}</dt><dd>", label);
-  if (is_optimize(result) && step.is_object())
+  std::string out =
+      fmt::format("<div class=\"key\"><dt>{}</dt><dd>", capitalised(std::string(shown.also.empty() ? shown.name : shown.also)));
+  if (result.is_search && step.figures)
     out += fmt::format("<span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> ", words(step, own));
-  out += fmt::format("<span class=\"after{}\">{}</span>", missing_reason(own, key).empty() ? "" : " words", words(own, step));
+  out += fmt::format("<span class=\"after{}\">{}</span>", missing_reason(own, shown).empty() ? "" : " words", words(own, step));
   if (const Change changed = figure_change(step, own, shown); !changed.words.empty()) {
     out += fmt::format("<span class=\"change {}\">{}</span>", verdict_class(changed.verdict), changed.words);
   }
   return out + "</dd></div>\n";
 }
 
-std::string key_numbers(const json& result) {
-  if (!baseline_metrics(result).is_object() && !missing_reason(best_metrics(result), "initial_contact_time_s").empty()) return {};
-  return key_number(result, "permanent_contact_time_s", "Settling time") + key_number(result, "bounce_count", "Rebounds") +
-         key_number(result, "major_bounce_height_m", "Highest rebound") +
-         key_number(result, "impact_velocity_m_s", "Impact speed");
+std::string key_numbers(const Result& result) {
+  if (!result.baseline.figures && !missing_reason(result.best, leading_figures.front()).empty()) return {};
+  std::string out;
+  for (const Figure& one : std::span(leading_figures).subspan(1)) out += key_number(result, one);
+  return out;
 }
 
 /// What every drive demands of its source, where there are several.
-std::string drive_rows(const json& result, bool pair, bool estimated) {
-  const json& found = at(result, {"best", "waveforms"});
-  if (!found.is_object() || found.size() < 2) return {};
+std::string drive_rows(const Result& result, bool pair, bool estimated) {
+  if (result.best.waveforms.size() < 2) return {};
   std::string out;
-  for (const auto& [drive, waveform] : found.items()) {
+  for (const auto& [drive, found] : result.best.waveforms) {
     const DriveScale scale = drive_scale(drive);
     if (scale.unit.empty()) continue;  // a factor has no source
-    const DriveDemand own = drive_demand(waveform, scale.rest);
-    const DriveDemand step = drive_demand(at(result, {"baseline", "waveforms", drive}), scale.rest);
-    const auto row = [&](const char* what, const std::string& value, const std::string& before) {
-      out += fmt::format("<tr><th scope=\"row\">{}, {}</th>", what, escaped(drive));
+    const DriveDemand own = drive_demand(found, scale.rest);
+    const DriveDemand step = drive_demand(waveform(result.baseline, drive), scale.rest);
+    const auto row = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {
+      out += fmt::format("<tr><th scope=\"row\">{}, {}</th>", what.name, escaped(*name));
       if (pair) out += fmt::format("<td>{}</td><td></td>", before);
       out += fmt::format("<td class=\"own\">{}</td>", value);
       if (pair) out += "<td></td>";
@@ -86,48 +86,47 @@ std::string drive_rows(const json& result, bool pair, bool estimated) {
       out += "</tr>\n";
     };
     const auto slew = [](double value) { return std::isinf(value) ? std::string("jumps") : quantity(value, "V/s"); };
-    row("Peak voltage", quantity(own.peak(), "V", 4), quantity(step.peak(), "V", 4));
-    row("Peak slew", slew(own.slew), slew(step.slew));
+    row(figure_of(&Metrics::peak_voltage), quantity(own.peak(), "V", 4), quantity(step.peak(), "V", 4));
+    row(figure_of(&Metrics::peak_slew), slew(own.slew), slew(step.slew));
   }
   return out;
 }
 
-std::string figures_table(const json& result) {
-  const json& own = best_metrics(result);
-  const json& step = baseline_metrics(result);
-  const json& errors = at(result, {"errors"});
-  if (!own.is_object() && !step.is_object()) return {};
-  const bool pair = is_optimize(result) && step.is_object();
-  const bool estimated =
-      errors.is_object() && std::any_of(errors.begin(), errors.end(), [](const json& error) { return error.is_number(); });
+std::string figure_row(const Result& result, const Figure& one, bool pair, bool estimated) {
+  const double own = figure_of_run(result.best, one.member), step = figure_of_run(result.baseline, one.member);
+  if (std::isnan(own) && std::isnan(step)) return {};
+  const double error = result.best.errors[one];
+  std::string out = fmt::format("<tr><th scope=\"row\">{}</th>", one.label());
+  if (pair)
+    out +=
+        fmt::format("<td>{}</td><td>{}</td>", figure_text(one, step, result.baseline.errors[one], own), goal_text(result, one));
+  out += fmt::format("<td class=\"own\">{}</td>", figure_text(one, own, error, step));
+  if (pair) {
+    const Change changed = figure_change(result.baseline, result.best, one);
+    out += fmt::format("<td class=\"change {}\">{}</td>", verdict_class(changed.verdict), changed.words);
+  }
+  if (estimated) {
+    constexpr double ill = 0.1;  // an error above a tenth of the figure
+    const std::string cloud = cloud_text(result, one);
+    out += fmt::format("<td>{}{}</td>", !cloud.empty() ? cloud : error_text(one, own, error),
+                       !cloud.empty() || error > ill * std::abs(own) ? " <span class=\"note\">ill-conditioned</span>" : "");
+  }
+  return out + "</tr>\n";
+}
+
+std::string figures_table(const Result& result) {
+  if (!result.best.figures && !result.baseline.figures) return {};
+  const bool pair = result.is_search && result.baseline.figures;
+  const bool estimated = std::any_of(all_figures.begin(), all_figures.end(),
+                                     [&](const Figure& one) { return std::isfinite(result.best.errors[one]); });
   std::string out = "<section id=\"figures\"><h2>Figures</h2>\n";
-  if (const auto met = truth(result, {"goal_met"})) out += fmt::format("<p>The goal is {}.</p>\n", *met ? "met" : "not met");
+  if (result.goal_met) out += fmt::format("<p>The goal is {}.</p>\n", *result.goal_met ? "met" : "not met");
   out += "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
   if (pair) out += "<th scope=\"col\">Plain step</th><th scope=\"col\">Goal</th>";
   out += pair ? "<th scope=\"col\">Softland</th><th scope=\"col\">Change</th>" : "<th scope=\"col\">Value</th>";
   if (estimated) out += fmt::format("<th scope=\"col\">{}</th>", error_heading(result));
   out += "</tr></thead><tbody>\n";
-  for (const Figure& one : figures()) {
-    if (at(own, {one.key}).is_null() && at(step, {one.key}).is_null()) continue;
-    out += fmt::format("<tr><th scope=\"row\">{}</th>", one.label);
-    if (pair)
-      out += fmt::format("<td>{}</td><td>{}</td>", figure_text(step, at(result, {"baseline", "errors"}), own, one),
-                         goal_text(result, one.key));
-    out += fmt::format("<td class=\"own\">{}</td>", figure_text(own, errors, step, one));
-    if (pair) {
-      const Change changed = figure_change(step, own, one);
-      out += fmt::format("<td class=\"change {}\">{}</td>", verdict_class(changed.verdict), changed.words);
-    }
-    if (estimated) {
-      const double error = number(errors, {one.key});
-      const double value = number(own, {one.key});
-      constexpr double ill = 0.1;  // an error above a tenth of the figure
-      const std::string cloud = cloud_text(result, one);
-      out += fmt::format("<td>{}{}</td>", !cloud.empty() ? cloud : error_text(own, errors, one),
-                         !cloud.empty() || error > ill * std::abs(value) ? " <span class=\"note\">ill-conditioned</span>" : "");
-    }
-    out += "</tr>\n";
-  }
+  for (const Figure& one : all_figures) out += figure_row(result, one, pair, estimated);
   out += drive_rows(result, pair, estimated);
   out += "</tbody></table></div>\n";
   if (const std::string words = certificate_caption(result); !words.empty()) out += fmt::format("<p>{}</p>\n", escaped(words));
@@ -156,47 +155,43 @@ std::string charts(const Picture& drawn) {
 }
 
 /// The switch from the side.
-std::string drawn_switch(const json& result) {
-  const std::string drawing = sketch(result);
+std::string drawn_switch(const Result& result) {
+  const std::string drawing = sketch(result.scene);
   if (drawing.empty()) return {};
   return "<section id=\"sketch\"><h2>The switch at rest</h2>\n" + drawing +
          "<p class=\"below\">From the side: to scale along the beam, heights exaggerated.</p></section>\n";
 }
 
-std::string list_of(const json& lines, std::string_view heading, std::string_view id) {
-  if (!lines.is_array() || lines.empty()) return {};
+std::string list_of(const std::vector<std::string>& lines, std::string_view heading, std::string_view id) {
+  if (lines.empty()) return {};
   std::string out = fmt::format("<section id=\"{}\"><h2>{}</h2>\n<ul>\n", id, heading);
   std::size_t shown = 0;
-  for (const json& line : lines) {
-    if (!line.is_string()) continue;
+  for (const std::string& line : lines) {
     if (shown++ == most_lines) {
       out += fmt::format("<li>… and {} more</li>\n", lines.size() - most_lines);
       break;
     }
-    out += fmt::format("<li>{}</li>\n", escaped(shortened(printable_line(line.get<std::string>()))));
+    out += fmt::format("<li>{}</li>\n", escaped(shortened(printable_line(line))));
   }
   return out + "</ul></section>\n";
 }
 
-std::string checks_table(const json& result) {
-  const json& checks = at(result, {"checks"});
-  if (!checks.is_array() || checks.empty()) return {};
-  const std::vector<std::string_view> keys{"initial_contact_time_s", "permanent_contact_time_s", "bounce_count",
-                                           "major_bounce_height_m", "impact_velocity_m_s"};
+std::string checks_table(const Result& result) {
+  if (result.checks.empty()) return {};
   std::string out = "<section id=\"checks\"><h2>Confirmations</h2>\n<p>" + escaped(checks_caption(result)) +
                     "</p>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Simulated with</th>";
-  for (const char* label : {"First contact", "Permanent contact", "Rebounds", "Highest rebound", "Impact speed"}) {
-    out += fmt::format("<th scope=\"col\">{}</th>", label);
-  }
+  for (const Figure& one : leading_figures) out += fmt::format("<th scope=\"col\">{}</th>", one.name);
   out += "</tr></thead><tbody>\n";
-  const auto row = [&](const std::string& name, const json& metrics) {
+  const auto row = [&](const std::string& name, const std::optional<FigureValues>& figures) {
     out += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(name));
-    for (const std::string_view key : keys)
-      out += fmt::format("<td>{}</td>", figure_text(metrics, json(), baseline_metrics(result), figure(key)));
+    for (const Figure& one : leading_figures) {
+      const double value = figures ? (*figures)[one] : Metrics::unset;
+      out += fmt::format("<td>{}</td>", figure_text(one, value, Metrics::unset, figure_of_run(result.baseline, one.member)));
+    }
     out += "</tr>\n";
   };
-  row("as searched", best_metrics(result));
-  for (const json& check : checks) row(text(check, {"name"}), at(check, {"metrics"}));
+  row("as searched", result.best.figures);
+  for (const ResultCheck& check : result.checks) row(check.name, check.figures);
   return out + "</tbody></table></div></section>\n";
 }
 
@@ -228,22 +223,34 @@ int place_in_time(const std::string& name) {
   return found == stems.end() ? 1000 : found->second;
 }
 
-/// The parameters in the order in which they act, with the box they were searched in.
-std::string parameters_table(const json& result) {
-  const json& parameters = at(result, {"best", "parameters"});
-  if (!parameters.is_object() || parameters.empty()) return {};
+/// The box that a parameter was searched in.
+std::string searched_words(const Result& result, const std::string& parameter, std::string_view unit) {
+  const auto box = result.bounds.find(parameter);
+  if (box == result.bounds.end()) return {};
+  const auto [low, high] = box->second;
+  const double value = result.parameters.at(parameter);
+  constexpr double near = 0.01;  // of the box
+  const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
+                      : high - value <= near * (high - low) ? "at its upper bound"
+                                                            : "";
+  return fmt::format("{} to {}{}", given_quantity(low, unit, 4), given_quantity(high, unit, 4),
+                     *bound ? fmt::format(" <span class=\"bound\">{}</span>", bound) : "");
+}
+
+/// The parameters in the order in which they act.
+std::string parameters_table(const Result& result) {
+  if (result.parameters.empty()) return {};
   struct Row {
-    std::string drive, name;
+    std::string key, drive, name;
     std::string_view unit;
-    const json* value;
-    const json* bounds;
+    double value;
   };
   std::vector<Row> rows;
-  for (const auto& [key, value] : parameters.items()) {
+  for (const auto& [key, value] : result.parameters) {
     const auto [plain, unit] = without_unit(key);
     const std::size_t dot = plain.rfind('.');
-    rows.push_back({plain.substr(0, dot == std::string::npos ? 0 : dot), plain.substr(dot == std::string::npos ? 0 : dot + 1),
-                    unit, &value, &at(result, {"best", "bounds", key})});
+    rows.push_back({key, plain.substr(0, dot == std::string::npos ? 0 : dot),
+                    plain.substr(dot == std::string::npos ? 0 : dot + 1), unit, value});
   }
   std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
     return std::pair(a.drive, place_in_time(a.name)) < std::pair(b.drive, place_in_time(b.name));
@@ -260,85 +267,67 @@ std::string parameters_table(const json& result) {
   for (const Row& row : rows) {
     if (shown++ == most_lines) break;
     constexpr int digits = 5;
-    const double value = number(*row.value);
-    const std::string words = std::isfinite(value)     ? quantity(value, row.unit, digits)
-                              : row.value->is_string() ? row.value->get<std::string>()
-                                                       : row.value->dump();
-    std::string searched;
-    if (row.bounds->is_array() && row.bounds->size() == 2) {
-      const double low = number((*row.bounds)[0]), high = number((*row.bounds)[1]);
-      constexpr double near = 0.01;  // of the box
-      const char* bound = value - low <= near * (high - low)    ? "at its lower bound"
-                          : high - value <= near * (high - low) ? "at its upper bound"
-                                                                : "";
-      searched = fmt::format("{} to {}{}", given_quantity(low, row.unit, 4), given_quantity(high, row.unit, 4),
-                             *bound ? fmt::format(" <span class=\"bound\">{}</span>", bound) : "");
-    }
     out += fmt::format("<tr><th scope=\"row\">{}{}{}</th><td>{}</td><td>{}</td></tr>\n", escaped(row.drive),
-                       row.drive.empty() ? "" : ".", escaped(row.name), escaped(words), searched);
+                       row.drive.empty() ? "" : ".", escaped(row.name), quantity(row.value, row.unit, digits),
+                       searched_words(result, row.key, row.unit));
   }
   return out + "</tbody></table></div></section>\n";
 }
 
 /// What was asked for, and what the device is like.
-std::string facts(const json& result) {
+std::string facts(const Result& result) {
   std::string out;
-  const auto fact = [&](std::string_view name, const std::string& value) {
+  const auto fact = [&](std::string_view name, std::string value) {
+    std::replace(value.begin(), value.end(), '_', ' ');
     if (!value.empty()) out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", name, escaped(value));
   };
-  const auto words = [&](std::string_view key) {
-    std::string value = any(result, {key});
-    std::replace(value.begin(), value.end(), '_', ' ');
-    return value;
-  };
-  const auto measured = [&](std::initializer_list<std::string_view> path, std::string_view unit, int digits) {
-    const double value = number(result, path);
+  const auto measured = [&](double value, std::string_view unit, int digits) {
     return std::isfinite(value) ? quantity(value, unit, digits) : std::string();
   };
-  fact("Status", words("status"));
-  fact("Target", words("target"));
-  fact("Actuator", words("actuator"));
-  fact("Waveform", words("waveform"));
-  fact("Optimizer", words("optimizer"));
-  fact("Evaluations", words("evaluations"));
-  fact("Budget", words("budget"));
-  fact("Ended by", words("termination"));
-  fact("Static pull-in", measured({"pull_in", "static_V"}, "V", 5));
-  fact("Dynamic pull-in", measured({"pull_in", "dynamic_V"}, "V", 5));
+  fact("Status", result.status);
+  fact("Target", result.target);
+  fact("Actuator", result.actuator);
+  fact("Waveform", result.waveform);
+  fact("Optimizer", result.optimizer);
+  fact("Evaluations", std::isfinite(result.evaluations) ? whole(result.evaluations) : "");
+  fact("Ended by", result.termination);
+  if (result.pull_in.size() == 1) {  // several do not fit here
+    const PullInVoltages& voltages = result.pull_in.begin()->second;
+    fact("Static pull-in", measured(voltages.static_pull_in, "V", 5));
+    fact("Dynamic pull-in", measured(voltages.dynamic_pull_in, "V", 5));
+  }
   std::string modes;
-  const json& frequencies = at(result, {"natural_frequencies_rad_s"});
-  if (frequencies.is_array()) {
+  constexpr std::size_t most_modes = 12;
+  for (std::size_t i = 0; i < std::min(result.natural_frequencies.size(), most_modes); ++i) {
     constexpr double two_pi = 6.283185307179586;
-    for (std::size_t i = 0; i < std::min<std::size_t>(frequencies.size(), 12); ++i) {
-      modes += (modes.empty() ? "" : ", ") + quantity(number(frequencies[i]) / two_pi, "Hz", 4);
-    }
+    modes += (modes.empty() ? "" : ", ") + quantity(result.natural_frequencies[i] / two_pi, "Hz", 4);
   }
   fact("Natural frequencies", modes);
-  fact("Steps of the shown run", any(result, {"work", "steps"}));
-  fact("Its computing time", measured({"work", "wall_s"}, "s", 3));
+  if (result.work) {
+    fact("Steps of the shown run", fmt::format("{}", result.work->steps));
+    fact("Its computing time", measured(result.work->wall, "s", 3));
+  }
   return out.empty() ? out
                      : "<section id=\"facts\"><h2>About this result</h2>\n<dl class=\"facts\">\n" + out + "</dl></section>\n";
 }
 
 }  // namespace
 
-std::string html_report(const json& result) {
-  require(result.is_object(), "html_report: the result is not a JSON object");
+std::string html_report(const Result& result) {
   const Headline line = headline(result);
   const Picture drawn = picture(result);
-  const std::string title = text(result, {"title"});
-  std::string origin = is_optimize(result) ? "optimize" : "simulate";
-  for (const char* key : {"target", "actuator"}) {
-    if (const std::string word = text(result, {key}); !word.empty()) origin += " · " + word;
+  std::string origin = result.is_search ? "optimize" : "simulate";
+  for (const std::string& word : {result.target, result.actuator}) {
+    if (!word.empty()) origin += " · " + word;
   }
-  return page({.title = title,
+  return page({.title = result.title,
                .origin = origin,
                .headline = line.main,
                .headline_rest = line.rest,
                .doubt = checks_agree(result) ? "" : checks_caption(result),
                .keys = key_numbers(result),
                .body = drawn_switch(result) + charts(drawn) + figures_table(result) + checks_table(result) +
-                       list_of(at(result, {"warnings"}), "Warnings", "warnings") + parameters_table(result) + facts(result) +
+                       list_of(result.warnings, "Warnings", "warnings") + parameters_table(result) + facts(result) +
                        reproduce(result) + scene(result),
                .style = chart_style(),
                .scripts = chart_scripts(drawn)});

@@ -12,7 +12,6 @@
 
 #include "base/read_file.h"
 #include "base/require.h"
-#include "reports/result_view.h"
 #include "version.h"
 
 namespace softland {
@@ -81,22 +80,26 @@ std::string processor() {
 
 }  // namespace
 
-json made_with() {
-  static const json all{{"program", word(build_id())},
-                        {"compiler", word(std::string(compiler))},
-                        {"options", word(std::string(compiler_options))},
-                        {"instruction_set", word(std::string(instruction_set))},
-                        {"c_library", word(fmt::format("glibc {}", gnu_get_libc_version()))},
-                        {"processor", word(processor())}};
+const MadeWith& made_with() {
+  static const MadeWith all{.program = build_id(),
+                            .compiler = std::string(compiler),
+                            .options = std::string(compiler_options),
+                            .instruction_set = std::string(instruction_set),
+                            .c_library = fmt::format("glibc {}", gnu_get_libc_version()),
+                            .processor = processor()};
   return all;
 }
 
-std::string internal::made_with_text(const json& result) {
-  std::vector<std::string> words;
-  for (const char* key : {"compiler", "options", "instruction_set", "c_library", "processor", "program"}) {
-    std::string value = text(result, {"made_with", key});
-    if (!value.empty()) words.push_back(std::string(key) == "program" ? "program " + value.substr(0, 12) : value);
-  }
+json made_with_json(const MadeWith& all) {
+  return {{"program", word(all.program)},     {"compiler", word(all.compiler)},
+          {"options", word(all.options)},     {"instruction_set", word(all.instruction_set)},
+          {"c_library", word(all.c_library)}, {"processor", word(all.processor)}};
+}
+
+std::string internal::made_with_text(const MadeWith& all) {
+  std::vector<std::string> words{all.compiler,  all.options,   all.instruction_set,
+                                 all.c_library, all.processor, all.program.empty() ? "" : "program " + all.program.substr(0, 12)};
+  std::erase(words, "");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 

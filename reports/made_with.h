@@ -6,15 +6,18 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "reports/result.h"
+
 namespace softland {
 
-/// {"program": build id, a fingerprint of the program's code; "compiler", "options", "instruction_set", "c_library",
-/// "processor"}; null for what the machine does not tell.
-[[nodiscard]] nlohmann::json made_with();
+/// Of this program on this machine; empty for what the machine does not tell.
+[[nodiscard]] const MadeWith& made_with();
+/// {"program": ..., "compiler": ...}; null for what is not known.
+[[nodiscard]] nlohmann::json made_with_json(const MadeWith& all = made_with());
 
 namespace internal {
-/// The same in one line; empty for a result that does not say.
-[[nodiscard]] std::string made_with_text(const nlohmann::json& result);
+/// In one line; empty where nothing is known.
+[[nodiscard]] std::string made_with_text(const MadeWith& made_with);
 }  // namespace internal
 
 }  // namespace softland

@@ -2,19 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <utility>
+#include <cmath>
 
 #include "base/printable.h"
 #include "reports/escape.h"
 #include "reports/made_with.h"
 #include "reports/page_files.h"
 #include "reports/quantity.h"
-#include "reports/result_view.h"
 
 namespace softland::internal {
 namespace {
-
-using nlohmann::json;
 
 /// Bytes of text shown per block; more is cut.
 constexpr std::size_t most_text = 100'000;
@@ -42,13 +39,6 @@ std::string shortened(const std::string& words) {
          fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
 }
 
-std::string any(const json& result, std::initializer_list<std::string_view> path) {
-  const json& value = at(result, path);
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_integer()) return value.dump();
-  return value.is_number() ? plain_number(value.get<double>(), 6) : std::string();
-}
-
 std::string still_picture(const CurveTables& tables, const Chart& chart) {
   constexpr double width = 960;
   return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
@@ -70,21 +60,19 @@ std::string chart_scripts(const Picture& drawn) {
                                                  {"data", script_json(chart_json(drawn, rows_per_curve))}});
 }
 
-std::string reproduce(const json& result) {
+std::string reproduce(const Result& result) {
   std::string commands;
-  const json& lines = at(result, {"reproduce"});
-  if (lines.is_array()) {
-    for (const json& line : lines) {
-      if (line.is_string()) commands += line.get<std::string>() + "\n";
-    }
-  }
-  if (commands.empty()) commands = text(result, {"command"});
+  for (const std::string& line : result.reproduce) commands += line + "\n";
+  if (commands.empty()) commands = result.command;
   std::string with;
-  for (const auto& [name, key] : {std::pair{"softland ", "version"}, {"seed ", "seed"}, {"integrator tolerance ", "tolerance"}}) {
-    if (const std::string value = any(result, {key}); !value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
-  }
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) with += (with.empty() ? "With " : ", ") + (name + value);
+  };
+  add("softland ", result.version);
+  add("seed ", result.seed ? fmt::format("{}", *result.seed) : "");
+  add("integrator tolerance ", std::isfinite(result.tolerance) ? plain_number(result.tolerance, 6) : "");
   if (commands.empty() && with.empty()) return {};
-  const std::string made = made_with_text(result);
+  const std::string made = made_with_text(result.made_with);
   return fmt::format("<section id=\"reproduce\"><h2>Reproduce it</h2>\n<p>{}</p>\n<pre><code>{}</code></pre>\n{}</section>\n",
                      with.empty() ? "" : escaped(with) + ":", escaped(shortened(commands)),
                      made.empty() ? ""
@@ -93,13 +81,10 @@ std::string reproduce(const json& result) {
                                         "elsewhere rounding differs, and a search may end elsewhere.</p>\n");
 }
 
-std::string scene(const json& result) {
-  std::string words = text(result, {"scene_toml"});
-  if (words.empty() && at(result, {"scene"}).is_object())
-    words = at(result, {"scene"}).dump(2, ' ', false, json::error_handler_t::replace);
-  if (words.empty()) return {};
+std::string scene(const Result& result) {
+  if (result.scene.text.empty()) return {};
   return "<section id=\"scene\"><h2>The switch</h2>\n<details><summary>Resolved scene</summary>\n<pre><code>" +
-         escaped(shortened(words)) + "</code></pre></details></section>\n";
+         escaped(shortened(result.scene.text)) + "</code></pre></details></section>\n";
 }
 
 std::string page(const Page& parts) {

@@ -1,9 +1,7 @@
 // The frame of every report page, and the parts that they share.
 #pragma once
 
-#include <initializer_list>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
@@ -30,9 +28,6 @@ struct Page {
 /// Text cut to 100 kB at a line end, with a word about it.
 [[nodiscard]] std::string shortened(const std::string& words);
 
-/// A string, or a number in its shortest form; empty for anything else.
-[[nodiscard]] std::string any(const nlohmann::json& result, std::initializer_list<std::string_view> path);
-
 /// The chart as an <svg> element.
 [[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
 /// The chart in a page, with its title, its caption and the place where the script draws it.
@@ -41,7 +36,7 @@ struct Page {
 [[nodiscard]] std::string chart_style();
 [[nodiscard]] std::string chart_scripts(const Picture& drawn);
 /// Sections of a result: the command lines that make it again, and its scene.
-[[nodiscard]] std::string reproduce(const nlohmann::json& result);
-[[nodiscard]] std::string scene(const nlohmann::json& result);
+[[nodiscard]] std::string reproduce(const Result& result);
+[[nodiscard]] std::string scene(const Result& result);
 
 }  // namespace softland::internal

@@ -2,14 +2,186 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <utility>
+
 #include "base/require.h"
 #include "base/shortened.h"
-#include "reports/result_view.h"
+#include "config/units.h"
 #include "version.h"
 
 namespace softland {
+namespace {
 
 using nlohmann::json;
+
+// The value at this path of keys; a null value when any of them is missing.
+const json& at(const json& value, std::initializer_list<std::string_view> path) {
+  static const json nothing;
+  const json* here = &value;
+  for (const std::string_view key : path) {
+    if (!here->is_object()) return nothing;
+    const auto found = here->find(key);
+    if (found == here->end()) return nothing;
+    here = &*found;
+  }
+  return *here;
+}
+
+double number(const json& value) { return value.is_number() ? value.get<double>() : Metrics::unset; }
+double number(const json& value, std::initializer_list<std::string_view> path) { return number(at(value, path)); }
+
+std::string text(const json& value) { return value.is_string() ? value.get<std::string>() : std::string(); }
+std::string text(const json& value, std::initializer_list<std::string_view> path) { return text(at(value, path)); }
+
+std::optional<bool> truth(const json& value, std::initializer_list<std::string_view> path) {
+  const json& found = at(value, path);
+  return found.is_boolean() ? std::optional<bool>(found.get<bool>()) : std::nullopt;
+}
+
+// A whole number; 0 for what is none.
+template <class Whole>
+Whole whole(const json& value) {
+  const double found = number(value);
+  return std::abs(found) <= static_cast<double>(std::numeric_limits<int>::max()) ? static_cast<Whole>(found) : Whole{0};
+}
+
+// A quantity as a resolved scene writes it, "2 um", in SI units; a plain number as it is.
+double quantity(const json& value) {
+  if (!value.is_string()) return number(value);
+  try {
+    return parse_quantity(value.get<std::string>()).value;
+  } catch (const InvalidInput&) {
+    return Metrics::unset;
+  }
+}
+
+template <class Read>
+auto each(const json& list, const Read& read) {
+  std::vector<decltype(read(list))> all;
+  if (!list.is_array()) return all;
+  all.reserve(list.size());
+  for (const json& element : list) all.push_back(read(element));
+  return all;
+}
+
+std::vector<double> numbers(const json& list) {
+  return each(list, [](const json& one) { return number(one); });
+}
+
+std::vector<std::string> texts(const json& list) {
+  std::vector<std::string> all = each(list, [](const json& one) { return text(one); });
+  std::erase(all, "");
+  return all;
+}
+
+std::optional<std::array<double, 2>> pair(const json& value, double (*read)(const json&)) {
+  if (!value.is_array() || value.size() != 2) return std::nullopt;
+  return std::array{read(value[0]), read(value[1])};
+}
+
+Points points(const json& list) {
+  Points all;
+  for (const auto& point : each(list, [](const json& one) { return pair(one, number); })) {
+    if (point && std::isfinite((*point)[0])) all.push_back(*point);
+  }
+  return all;
+}
+
+// The members of an object, by name.
+template <class Read>
+auto members(const json& object, const Read& read) {
+  std::map<std::string, decltype(read(object))> all;
+  if (!object.is_object()) return all;
+  for (const auto& [name, value] : object.items()) all.emplace(name, read(value));
+  return all;
+}
+
+FigureValues figures(const json& values) {
+  FigureValues all;
+  for (const Figure& figure : all_figures) {
+    const json& value = at(values, {figure.key});
+    all[figure] = figure.is_yes_or_no() && value.is_boolean() ? value.get<bool>() : number(value);
+  }
+  return all;
+}
+
+std::optional<FigureValues> figures_of_run(const json& metrics) {
+  return metrics.is_object() ? std::optional(figures(metrics)) : std::nullopt;
+}
+
+ResultCurve curve(const json& columns) {
+  ResultCurve all{.time = numbers(at(columns, {"time_s"})),
+                  .gap = numbers(at(columns, {"tip_gap_m"})),
+                  .velocity = numbers(at(columns, {"tip_velocity_m_s"})),
+                  .force = numbers(at(columns, {"contact_force_N"})),
+                  .rebounds = {}};
+  for (const std::vector<double>& row : each(at(columns, {"rebounds"}), numbers)) {
+    if (row.size() >= 4) all.rebounds.push_back({.begin = row[0], .end = row[1], .height = row[2], .time_of_height = row[3]});
+  }
+  return all;
+}
+
+ResultRun run(const json& result, std::string_view name) {
+  const json& own = at(result, {name});
+  return {.status = text(own, {"metrics", "status"}),
+          .figures = figures_of_run(at(own, {"metrics"})),
+          .errors = figures(at(own, {"errors"})),
+          .curve = curve(at(result, {"curves", name})),
+          .waveforms = members(at(own, {"waveforms"}), points),
+          .cost = number(own, {"cost"})};
+}
+
+Spread spread(const json& cloud) {
+  return {.low = number(cloud, {"low"}),
+          .median = number(cloud, {"median"}),
+          .high = number(cloud, {"high"}),
+          .runs = whole<int>(at(cloud, {"runs"}))};
+}
+
+std::optional<Certificate> certificate(const json& result) {
+  const json& certified = at(result, {"certified"});
+  if (!certified.is_object()) return std::nullopt;
+  Certificate all{.ill_conditioned = {}, .grazing = {}, .runs = whole<int>(at(result, {"cloud", "runs"}))};
+  for (const Figure& figure : all_figures) {
+    const json& cloud = at(certified, {figure.key});
+    if (cloud.is_object()) all.ill_conditioned.push_back({figure, spread(cloud)});
+  }
+  const json& grazing = at(result, {"cloud", "grazing_rebound"});
+  if (!grazing.is_object()) return all;
+  all.grazing = {.number = whole<int>(at(grazing, {"rebound"})),
+                 .time = number(grazing, {"time_s"}),
+                 .height = number(grazing, {"height_m"}),
+                 .impact_velocity = number(grazing, {"impact_velocity_m_s"}),
+                 .at_threshold = truth(grazing, {"at_significant_height"}).value_or(false)};
+  return all;
+}
+
+PullInVoltages pull_in_voltages(const json& volts) {
+  return {.static_pull_in = number(volts, {"static_V"}), .dynamic_pull_in = number(volts, {"dynamic_V"})};
+}
+
+// Of one electrode without its name.
+std::map<std::string, PullInVoltages> pull_in(const json& volts) {
+  if (!volts.is_object()) return {};
+  if (volts.contains("static_V") || volts.contains("dynamic_V")) return {{"", pull_in_voltages(volts)}};
+  return members(volts, pull_in_voltages);
+}
+
+std::optional<Work> work(const json& effort) {
+  if (!at(effort, {"steps"}).is_number()) return std::nullopt;
+  return Work{.steps = whole<long>(at(effort, {"steps"})), .wall = number(effort, {"wall_s"})};
+}
+
+bool is_search(const json& result) {
+  const std::string kind = text(result, {"kind"});
+  return kind == "optimize" || (kind.empty() && !at(result, {"baseline"}).is_null());
+}
+
+}  // namespace
 
 json parse_result(std::string_view content, const std::string& name) {
   // A result of ours is 6 deep; reports walk through what they show by recursion.
@@ -27,15 +199,94 @@ json parse_result(std::string_view content, const std::string& name) {
 }
 
 void require_reportable(const json& result, const std::string& name) {
-  using internal::at;
-  const std::string made_by = internal::text(result, {"version"});
+  const std::string made_by = text(result, {"version"});
   require(!made_by.empty(), fmt::format("{}: does not say of which version of softland it is: \"version\" is missing", name));
   require(made_by == version,
           fmt::format("{}: is a result of softland {}, of which softland {} makes no report", name, shortened(made_by), version));
-  for (const char* part : {internal::is_optimize(result) ? "baseline" : "metrics", "curves", "scene"}) {
+  for (const char* part : {is_search(result) ? "baseline" : "metrics", "curves", "scene"}) {
     require(at(result, {part}).is_object(),
             fmt::format("{}: \"{}\" is missing; name the result.json in the folder that --out named", name, part));
   }
+}
+
+Result read_result(const json& result) {
+  require(result.is_object(), "the result is not a JSON object");
+  Result r{.is_search = is_search(result),
+           .status = text(result, {"status"}),
+           .title = text(result, {"title"}),
+           .target = text(result, {"target"}),
+           .actuator = text(result, {"actuator"}),
+           .waveform = text(result, {"waveform"}),
+           .optimizer = text(result, {"optimizer"}),
+           .termination = text(result, {"termination"}),
+           .goal_met = truth(result, {"goal_met"}),
+           .evaluations = number(result, {"evaluations"}),
+           .best = run(result, "best"),
+           .baseline = run(result, "baseline"),
+           .certificate = certificate(result),
+           .search = {.value_name = text(result, {"search", "value_name"}),
+                      .best_so_far = points(at(result, {"search", "best_so_far"})),
+                      .evaluations = points(at(result, {"search", "evaluations"}))},
+           .pull_in = pull_in(at(result, {"pull_in"})),
+           .natural_frequencies = numbers(at(result, {"natural_frequencies_rad_s"})),
+           .work = work(at(result, {"work"})),
+           .warnings = texts(at(result, {"warnings"})),
+           .tolerance = number(result, {"tolerance"}),
+           .command = text(result, {"command"}),
+           .version = text(result, {"version"}),
+           .reproduce = texts(at(result, {"reproduce"}))};
+  if (!r.best.figures) r.best.figures = figures_of_run(at(result, {"metrics"}));
+  if (r.best.status.empty()) r.best.status = r.status;
+  r.best.errors = figures(at(result, {"errors"}));
+  r.checks = each(at(result, {"checks"}), [](const json& check) {
+    return ResultCheck{.name = text(check, {"name"}), .figures = figures_of_run(at(check, {"metrics"}))};
+  });
+  r.parameters = members(at(result, {"best", "parameters"}), [](const json& value) { return number(value); });
+  for (const auto& [name, box] : members(at(result, {"best", "bounds"}), [](const json& value) { return pair(value, number); })) {
+    if (box) r.bounds.emplace(name, *box);
+  }
+  if (const json& seed = at(result, {"seed"}); seed.is_number_integer() && seed >= 0) r.seed = seed.get<std::uint64_t>();
+  const auto made_with = [&](const char* key) { return text(result, {"made_with", key}); };
+  r.made_with = {.program = made_with("program"),
+                 .compiler = made_with("compiler"),
+                 .options = made_with("options"),
+                 .instruction_set = made_with("instruction_set"),
+                 .c_library = made_with("c_library"),
+                 .processor = made_with("processor")};
+  r.scene = read_result_scene(at(result, {"scene"}), text(result, {"scene_toml"}));
+  return r;
+}
+
+ResultScene read_result_scene(const json& scene, std::string file) {
+  ResultScene s{.structure = text(scene, {"structure", "kind"}),
+                .length = quantity(at(scene, {"structure", "length"})),
+                .electrode_gap = quantity(at(scene, {"gap", "electrode"})),
+                .contact_gap = quantity(at(scene, {"gap", "contact"})),
+                .pad_length = quantity(at(scene, {"contact", "pad_length"})),
+                .text = std::move(file),
+                .tree = scene};
+  if (s.text.empty() && scene.is_object()) s.text = scene.dump(2, ' ', false, json::error_handler_t::replace);
+  if (at(scene, {"piezo"}).is_object()) s.piezo = ResultScene::Piezo{pair(at(scene, {"piezo", "span"}), quantity)};
+  for (const auto& [name, electrode] : members(at(scene, {"electrode"}), [](const json& one) { return &one; })) {
+    s.electrodes.push_back({.name = name,
+                            .span = pair(at(*electrode, {"span"}), quantity),
+                            .far_side = text(*electrode, {"side"}) == "far",
+                            .gap = quantity(at(*electrode, {"gap"}))});
+  }
+  s.waveforms = members(at(scene, {"waveform"}), [](const json& one) {
+    return ResultScene::Waveform{.family = text(one, {"family"}),
+                                 .times = each(at(one, {"times"}), [](const json& time) { return quantity(time); }),
+                                 .edge = quantity(at(one, {"edge"})),
+                                 .start = quantity(at(one, {"start"})),
+                                 .end = quantity(at(one, {"end"}))};
+  });
+  s.drivers = members(at(scene, {"driver"}), [](const json& one) {
+    return DriveLimits{.lowest = quantity(at(one, {"min_voltage"})),
+                       .highest = quantity(at(one, {"max_voltage"})),
+                       .slew = quantity(at(one, {"max_slew"}))};
+  });
+  if (const double height = quantity(at(scene, {"metrics", "significant_rebound"})); height > 0) s.significant_rebound = height;
+  return s;
 }
 
 }  // namespace softland

@@ -5,14 +5,23 @@
 #include <string>
 #include <string_view>
 
+#include "reports/result.h"
+
 namespace softland {
 
-/// The result that the content of a result.json holds: an object of kind "simulate" or "optimize"; everything else in it may be
+/// The JSON that the content of a result.json holds: an object of kind "simulate" or "optimize"; everything else in it may be
 /// missing or of another type. `name` stands for the file in messages. Throws InvalidInput for anything else.
 [[nodiscard]] nlohmann::json parse_result(std::string_view content, const std::string& name);
 
 /// Throws InvalidInput unless a report can be made of this result: it is of this version of softland and has figures, curves and
 /// a scene.
 void require_reportable(const nlohmann::json& result, const std::string& name);
+
+/// The result that the JSON describes. Every part of it is optional: what is missing, null or of another type is not available.
+/// Throws InvalidInput when `json` is not an object.
+[[nodiscard]] Result read_result(const nlohmann::json& json);
+
+/// What a report shows of a resolved scene; `text` is its file.
+[[nodiscard]] ResultScene read_result_scene(const nlohmann::json& scene, std::string text);
 
 }  // namespace softland

@@ -15,8 +15,6 @@
 namespace softland::internal {
 namespace {
 
-using nlohmann::json;
-
 constexpr double width = 640;
 
 std::string rectangle(double left, double top, double wide, double high, const char* what) {
@@ -47,31 +45,23 @@ std::string spring(double left, double right, double y) {
 }
 
 /// Begin and end of a span as shares of the length; the whole length where none is given.
-std::array<double, 2> span_of(const json& section, double length) {
-  const json& span = at(section, {"span"});
-  if (!span.is_array() || span.size() != 2) return {0, 1};
-  const std::array<double, 2> share{quantity_of(span[0]) / length, quantity_of(span[1]) / length};
+std::array<double, 2> shares(const ResultScene::Span& span, double length) {
+  if (!span) return {0, 1};
+  const std::array<double, 2> share{(*span)[0] / length, (*span)[1] / length};
   return share[0] >= 0 && share[1] <= 1.000001 && share[0] < share[1] ? share : std::array<double, 2>{0, 1};
 }
 
 }  // namespace
 
-std::string sketch(const json& result) {
-  const json& scene = at(result, {"scene"});
-  const std::string kind = text(scene, {"structure", "kind"});
-  const double electrode_gap = quantity_of(at(scene, {"gap", "electrode"})),
-               contact_gap = quantity_of(at(scene, {"gap", "contact"}));
-  const bool plate = kind == "plate", both_ends = kind == "clamped-clamped";
-  if (!(electrode_gap > 0) || !(contact_gap > 0) || !(plate || both_ends || kind == "cantilever")) return {};
-  const double given_length = quantity_of(at(scene, {"structure", "length"}));
-  const double length = given_length > 0 ? given_length : 1;
+std::string sketch(const ResultScene& scene) {
+  const bool plate = scene.structure == "plate", both_ends = scene.structure == "clamped-clamped";
+  if (!(scene.electrode_gap > 0) || !(scene.contact_gap > 0) || !(plate || both_ends || scene.structure == "cantilever"))
+    return {};
+  const double length = scene.length > 0 ? scene.length : 1;
 
   constexpr double left = 60, right = 440, thick = 14, gap = 60, electrode = 10, layer = 7;
-  const json& electrodes = at(scene, {"electrode"});
-  bool far_side = false;
-  if (electrodes.is_object()) {
-    for (const auto& [name, one] : electrodes.items()) far_side = far_side || text(one, {"side"}) == "far";
-  }
+  const bool far_side = std::any_of(scene.electrodes.begin(), scene.electrodes.end(),
+                                    [](const ResultScene::Electrode& one) { return one.far_side; });
   const double top = far_side ? 86 : 46, bottom = top + thick, floor = bottom + gap;
   const auto x_at = [&](double share) { return left + share * (right - left); };
 
@@ -85,32 +75,30 @@ std::string sketch(const json& result) {
   }
   out += rectangle(left, top, right - left, thick, "beam");
   out += words((left + right) / 2, top + 11, "middle", plate ? "plate" : "beam");
-  if (!plate && given_length > 0) {
-    const double above = top - (at(scene, {"piezo"}).is_object() ? 22 : 12);
+  if (!plate && scene.length > 0) {
+    const double above = top - (scene.piezo ? 22 : 12);
     out += drawn_line(left, above, right, above, "measure") + drawn_line(left, above - 4, left, above + 4, "measure") +
            drawn_line(right, above - 4, right, above + 4, "measure") +
-           words((left + right) / 2, above - 6, "middle", "length " + given_quantity(given_length, "m"));
+           words((left + right) / 2, above - 6, "middle", "length " + given_quantity(scene.length, "m"));
   }
-  if (const json& piezo = at(scene, {"piezo"}); piezo.is_object()) {
-    const auto [begin, end] = span_of(piezo, length);
+  if (scene.piezo) {
+    const auto [begin, end] = shares(scene.piezo->span, length);
     out += rectangle(x_at(begin), top - layer, x_at(end) - x_at(begin), layer, "piezo") +
            words(x_at(end) + 6, top - 2, "start", "piezo layer");
   }
   // The contact stands at the centre of the pad, of a beam between two clamps and of a plate in the middle.
-  const double pad = quantity_of(at(scene, {"contact", "pad_length"}));
+  const double pad = scene.pad_length;
   const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
-  const double plane = bottom + gap * std::min(1.0, contact_gap / electrode_gap);
-  if (electrodes.is_object()) {
-    for (const auto& [name, one] : electrodes.items()) {
-      const auto [begin, end] = span_of(one, length);
-      const bool far = text(one, {"side"}) == "far";
-      const double y = far ? top - gap * 0.75 - electrode : floor;
-      out += rectangle(x_at(begin), y, x_at(end) - x_at(begin), electrode, "electrode");
-      const double own_gap = quantity_of(at(one, {"gap"}));
-      const std::string note = far && own_gap > 0 ? ", gap " + given_quantity(own_gap, "m") : "";
-      out += words((x_at(begin) + x_at(end)) / 2, far ? y - 5 : floor + electrode + 14, "middle", "electrode " + name + note);
-    }
-  } else {
+  const double plane = bottom + gap * std::min(1.0, scene.contact_gap / scene.electrode_gap);
+  for (const ResultScene::Electrode& one : scene.electrodes) {
+    const auto [begin, end] = shares(one.span, length);
+    const double y = one.far_side ? top - gap * 0.75 - electrode : floor;
+    out += rectangle(x_at(begin), y, x_at(end) - x_at(begin), electrode, "electrode");
+    const std::string note = one.far_side && one.gap > 0 ? ", gap " + given_quantity(one.gap, "m") : "";
+    out += words((x_at(begin) + x_at(end)) / 2, one.far_side ? y - 5 : floor + electrode + 14, "middle",
+                 "electrode " + one.name + note);
+  }
+  if (scene.electrodes.empty()) {
     out += rectangle(left, floor, right - left, electrode, "electrode") +
            words((left + right) / 2, floor + electrode + 14, "middle", "ground");
   }
@@ -120,29 +108,26 @@ std::string sketch(const json& result) {
   const double measure = both_ends || plate ? right + 64 : right + 16;
   out += drawn_line(contact_left + contact_wide, plane, measure + 6, plane, "guide") +
          drawn_line(right, bottom, measure + 6, bottom, "guide");
-  out += height_measure(measure, bottom, plane, "to the contact " + given_quantity(contact_gap, "m"));
-  out += words(measure + 8, floor + electrode, "start", "to the electrode " + given_quantity(electrode_gap, "m"));
+  out += height_measure(measure, bottom, plane, "to the contact " + given_quantity(scene.contact_gap, "m"));
+  out += words(measure + 8, floor + electrode, "start", "to the electrode " + given_quantity(scene.electrode_gap, "m"));
   const double height = floor + electrode + 26;
   return fmt::format(
       "<svg class=\"sketch\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"The switch from the side\">\n{}</svg>\n",
       width, height, out);
 }
 
-std::string parameter_drawing(const json& result, const std::string& drive) {
-  const json& shape = at(result, {"best", "waveforms", drive});
-  const json& parameters = at(result, {"best", "parameters"});
-  const auto parameter = [&](const std::string& name) { return number(parameters, {drive + "." + name}); };
-  if (!shape.is_array() || !parameters.is_object()) return {};
-  std::vector<std::array<double, 2>> points;
+std::string parameter_drawing(const Result& result, const std::string& drive) {
+  const auto parameter = [&](const std::string& name) {
+    const auto found = result.parameters.find(drive + "." + name);
+    return found == result.parameters.end() ? Metrics::unset : found->second;
+  };
+  const Points points = drawable(waveform(result.best, drive));
   double lowest = 0, highest = 0, moves = 0;
-  for (const json& pair : shape) {
-    if (!pair.is_array() || pair.size() != 2) continue;
-    const double time = drawable(pair[0]), level = drawable(pair[1]);
-    if (!std::isfinite(time) || !std::isfinite(level)) continue;
-    if (!points.empty() && level != points.back()[1]) moves = std::max(moves, time);
-    points.push_back({time, level});
-    lowest = std::min(lowest, points.back()[1]);
-    highest = std::max(highest, points.back()[1]);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto [time, level] = points[i];
+    if (i > 0 && level != points[i - 1][1]) moves = std::max(moves, time);
+    lowest = std::min(lowest, level);
+    highest = std::max(highest, level);
   }
   if (points.size() < 2 || !(moves > 0) || !(highest > lowest)) return {};
 
@@ -150,19 +135,17 @@ std::string parameter_drawing(const json& result, const std::string& drive) {
     std::string name;
     double from, to;  // in time
   };
-  const json& waveform = at(result, {"scene", "waveform", drive});
-  const json& times = at(waveform, {"times"});
-  const std::string family = text(waveform, {"family"});
+  const auto described = result.scene.waveforms.find(drive);
+  const ResultScene::Waveform scene = described == result.scene.waveforms.end() ? ResultScene::Waveform{} : described->second;
   std::vector<Place> spans;
   std::vector<std::pair<std::string, double>> levels;  // name, time at which it holds
-  if (family == "pulse" && times.is_array() && times.size() == 2 && std::isfinite(parameter("level_1_V"))) {
-    const double edge = quantity_of(at(waveform, {"edge"})), first = quantity_of(times[0]), second = quantity_of(times[1]);
-    spans = {{"edge", 0, edge}, {"time_1", 0, first}, {"duration_2", first, second}};
-    levels = {{"level_1", (edge + first) / 2}, {"level_2", (first + edge + second) / 2}};
-  } else if (family == "harmonic" && std::isfinite(parameter("start_s"))) {
-    const double start = quantity_of(at(waveform, {"start"})), end = quantity_of(at(waveform, {"end"}));
-    spans = {{"start", 0, start}, {"duration", start, end}};
-    levels = {{"amplitude, angular_frequency, phase", (start + end) / 2}};
+  if (scene.family == "pulse" && scene.times.size() == 2 && std::isfinite(parameter("level_1_V"))) {
+    const double first = scene.times[0], second = scene.times[1];
+    spans = {{"edge", 0, scene.edge}, {"time_1", 0, first}, {"duration_2", first, second}};
+    levels = {{"level_1", (scene.edge + first) / 2}, {"level_2", (first + scene.edge + second) / 2}};
+  } else if (scene.family == "harmonic" && std::isfinite(parameter("start_s"))) {
+    spans = {{"start", 0, scene.start}, {"duration", scene.start, scene.end}};
+    levels = {{"amplitude, angular_frequency, phase", (scene.start + scene.end) / 2}};
   } else if (std::isfinite(parameter("rise_time_s"))) {
     spans = {{"rise_time", 0, moves}};
   }

@@ -77,14 +77,13 @@ std::string svg_page(const std::string& headline, const std::string& words, cons
       width, top + row_height + margin, escaped(printable_line(headline)), margin, 10, body);
 }
 
-std::string svg_gap_chart(const nlohmann::json& result) {
+std::string svg_gap_chart(const Result& result) {
   using namespace internal;
-  require(result.is_object(), "svg_gap_chart: the result is not a JSON object");
   Picture drawn = picture(result);
   std::erase_if(drawn.charts,
                 [](const Chart& chart) { return chart.id != "gap" && chart.id != "landing" && !chart.id.starts_with("drive"); });
   for (Chart& chart : drawn.charts) chart.height = chart.id.starts_with("drive") ? 120 : 220;
-  return svg_page(headline(result).whole(), text(result, {"title"}), drawn);
+  return svg_page(headline(result).whole(), result.title, drawn);
 }
 
 }  // namespace softland

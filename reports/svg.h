@@ -1,7 +1,6 @@
 // A picture of a result for documents that cannot run a page.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "reports/chart.h"
@@ -9,9 +8,8 @@
 namespace softland {
 
 /// A static SVG document, 900 px wide: the finding in words, gap against time of baseline and winner (the whole closing and the
-/// landing enlarged) and the drive waveforms below. `result` is the JSON that simulate and optimize write; what it lacks is left
-/// out. Throws InvalidInput when `result` is not a JSON object.
-[[nodiscard]] std::string svg_gap_chart(const nlohmann::json& result);
+/// landing enlarged) and the drive waveforms below. What the result lacks is left out.
+[[nodiscard]] std::string svg_gap_chart(const Result& result);
 
 /// The same frame around any charts: a headline, smaller words below it, and the charts row by row.
 [[nodiscard]] std::string svg_page(const std::string& headline, const std::string& words, const internal::Picture& drawn,

@@ -6,14 +6,12 @@
 #include <cmath>
 
 #include "base/printable.h"
+#include "reports/course.h"
+#include "reports/figure_text.h"
 #include "reports/findings.h"
-#include "reports/quantity.h"
-#include "reports/result_view.h"
 
 namespace softland {
 namespace {
-
-using nlohmann::json;
 
 // Columns on a terminal: UTF-8 continuation bytes take no room.
 std::size_t columns_of(std::string_view text) {
@@ -23,6 +21,11 @@ std::size_t columns_of(std::string_view text) {
 
 std::string padded(const std::string& text, std::size_t columns) {
   return text + std::string(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ');
+}
+
+std::string right_aligned(const std::string& text) {
+  constexpr std::size_t columns = 16;
+  return std::string(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ') + text;
 }
 
 }  // namespace
@@ -46,41 +49,35 @@ std::string wrapped(std::string_view paragraph, std::size_t columns) {
   return out;
 }
 
-std::string text_report(const json& result) {
+std::string text_report(const Result& result) {
   std::string out = wrapped(internal::headline(result).whole()) + "\n\n";
-  const bool compares = internal::is_optimize(result);
-  const json& best = internal::best_metrics(result);
-  const json& baseline = internal::baseline_metrics(result);
-  const json& errors = internal::at(result, {"errors"});
-  const json& baseline_errors = internal::at(result, {"baseline", "errors"});
-  out += compares ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
-                  : fmt::format("{:<36}{:>16}   {}\n", "", "value", internal::error_heading(result));
-  for (const internal::Figure& f : internal::figures()) {
-    if (internal::at(best, {f.key}).is_null() && internal::at(baseline, {f.key}).is_null()) continue;  // as on the page
-    const auto right = [](const std::string& text) {
-      return std::string(columns_of(text) < 16 ? 16 - columns_of(text) : 0, ' ') + text;
-    };
-    if (compares) {
+  const ResultRun &best = result.best, &baseline = result.baseline;
+  out += result.is_search ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
+                          : fmt::format("{:<36}{:>16}   {}\n", "", "value", internal::error_heading(result));
+  for (const Figure& f : all_figures) {
+    const double own = internal::figure_of_run(best, f.member), step = internal::figure_of_run(baseline, f.member);
+    if (std::isnan(own) && std::isnan(step)) continue;  // as on the page
+    out += padded(f.label(), 36);
+    if (result.is_search) {
       const internal::Change change = internal::figure_change(baseline, best, f);
-      out += padded(f.label, 36) + right(internal::figure_text(baseline, baseline_errors, best, f)) +
-             right(internal::figure_text(best, errors, baseline, f)) + "   " + change.words;
+      out += right_aligned(internal::figure_text(f, step, baseline.errors[f], own)) +
+             right_aligned(internal::figure_text(f, own, best.errors[f], step)) + "   " + change.words;
     } else {
-      const bool known = std::isfinite(internal::number(errors, {f.key}));
       const std::string cloud = internal::cloud_text(result, f);
-      const std::string shown = !cloud.empty() ? cloud : known ? internal::error_text(best, errors, f) : std::string();
-      out += padded(f.label, 36) + right(internal::figure_text(best, errors, json::object(), f)) + "   " + shown;
+      const std::string shown = !cloud.empty()                  ? cloud
+                                : std::isfinite(best.errors[f]) ? internal::error_text(f, own, best.errors[f])
+                                                                : std::string();
+      out += right_aligned(internal::figure_text(f, own, best.errors[f], Metrics::unset)) + "   " + shown;
     }
     while (!out.empty() && out.back() == ' ') out.pop_back();
     out += "\n";
   }
   // Of a winner that bounces there is nothing to confirm.
-  const bool lands_softly = compares && internal::number(best, {"bounce_count"}) == 0;
+  const bool lands_softly = result.is_search && internal::figure_of_run(best, &Metrics::bounce_count) == 0;
   if (const std::string checks = internal::checks_caption(result); lands_softly && !checks.empty())
     out += "\n" + wrapped(checks) + "\n";
   if (const std::string words = internal::certificate_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
-  for (const json& warning : internal::at(result, {"warnings"})) {
-    if (warning.is_string()) out += "\n" + wrapped("warning: " + warning.get<std::string>()) + "\n";
-  }
+  for (const std::string& warning : result.warnings) out += "\n" + wrapped("warning: " + warning) + "\n";
   return out;
 }
 

@@ -1,15 +1,16 @@
 // The same findings for a terminal.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+
+#include "reports/result.h"
 
 namespace softland {
 
 /// Headline, table of figures (baseline and winner side by side for optimize; value and error for simulate), confirmations and
-/// warnings of a result.json.
-[[nodiscard]] std::string text_report(const nlohmann::json& result);
+/// warnings of a result.
+[[nodiscard]] std::string text_report(const Result& result);
 
 /// Blanks turned into line breaks so that lines have at most `columns` characters where words permit it. Line breaks, tabs and
 /// what acts on a terminal are escaped: they come from names of files and folders.

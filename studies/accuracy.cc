@@ -254,19 +254,17 @@ class Study {
       return spread(std::move(values));
     };
     for (std::size_t i = 0; i < studied_figures.size(); ++i) {
-      const auto figure = studied_figures[i].figure;
-      const Spread& s = found_.cloud[i] = over([&](const Metrics& m) { return m.*figure; });
-      const double own = found_.reference.figures.*figure;
-      Metrics low, high;
-      low.*figure = s.low;
-      high.*figure = s.high;
-      const bool in_all = s.runs == static_cast<int>(runs.size());
-      found_.conditioned[i] =
-          std::isfinite(own) && in_all && relative_errors(high, low, prepared_.scene.metrics)[i] <= ill_conditioned_range;
+      const Figure& figure = studied_figures[i];
+      const Spread& s = found_.cloud[i] = over([&](const Metrics& m) { return figure.value(m); });
+      const bool in_all = !runs.empty() && s.runs == static_cast<int>(runs.size());
+      const auto counted = [&](const Metrics& m) { return figure.counted(m, prepared_.scene.metrics); };
+      found_.conditioned[i] = std::isfinite(figure.value(found_.reference.figures)) && in_all && !ill_conditioned(over(counted));
     }
-    found_.permanent_contact_time = over([](const Metrics& m) { return m.permanent_contact_time; });
-    found_.bounce_count =
-        over([](const Metrics& m) { return std::isfinite(m.major_bounce_height) ? m.bounce_count : Metrics::unset; });
+    const auto over_all = [&](Figure::Member member) {
+      return over([&](const Metrics& m) { return figure_of(member).value(m); });
+    };
+    found_.permanent_contact_time = over_all(&Metrics::permanent_contact_time);
+    found_.bounce_count = over_all(&Metrics::bounce_count);
     progress();
   }
 
@@ -311,17 +309,8 @@ class Study {
 FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options) {
   FigureErrors errors{};
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const auto figure = studied_figures[i].figure;
-    double a = value.*figure, b = reference.*figure;
-    if (figure == &Metrics::major_bounce_height) {
-      for (double* height : {&a, &b}) {
-        if (*height < options.significant_rebound) *height = options.significant_rebound;
-      }
-    }
-    errors[i] = std::isnan(b)   ? Metrics::unset
-                : std::isnan(a) ? std::numeric_limits<double>::infinity()
-                : a == b        ? 0
-                                : std::abs(a - b) / std::abs(b);
+    const double truth = studied_figures[i].counted(reference, options);
+    errors[i] = std::isnan(truth) ? Metrics::unset : relative_difference(studied_figures[i].counted(value, options), truth);
   }
   return errors;
 }

@@ -14,36 +14,20 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "model/closing.h"
-#include "objectives/metrics.h"
+#include "objectives/figures.h"
 #include "studies/cloud.h"
 #include "studies/prepared.h"
 
 namespace softland {
 
-/// A figure whose errors are studied.
-struct StudiedFigure {
-  std::string_view key;     ///< as in metrics_json()
-  std::string_view symbol;  ///< as in a table
-  std::string_view unit;
-  double Metrics::*figure;
-};
-inline constexpr std::array studied_figures{
-    StudiedFigure{"initial_contact_time_s", "t_i", "s", &Metrics::initial_contact_time},
-    StudiedFigure{"impact_velocity_m_s", "v_i", "m/s", &Metrics::impact_velocity},
-    StudiedFigure{"major_bounce_height_m", "B_H", "m", &Metrics::major_bounce_height},
-    StudiedFigure{"peak_contact_force_N", "peak force", "N", &Metrics::peak_contact_force}};
+/// One of each of `studied_figures`.
 using FigureErrors = std::array<double, studied_figures.size()>;
 
-/// |value - reference| / |reference| of each studied figure; a rebound height below `significant_rebound` is compared with one
-/// that just counts. NaN for a figure that the reference does not have, infinite for one that it has and `value` has not.
+/// relative_difference() of each studied figure as it is counted. NaN for a figure that the reference does not have.
 [[nodiscard]] FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options);
-
-/// Beyond this relative range over the cloud a figure is ill-conditioned: a thousandfold magnification of the perturbation.
-inline constexpr double ill_conditioned_range = 1e-4;
 
 struct AccuracyOptions {
   std::vector<double> tolerances{1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};  ///< from loose to tight

@@ -9,7 +9,7 @@
 #include "base/engineering.h"
 #include "model/closing.h"
 #include "model/constants.h"
-#include "objectives/metrics.h"
+#include "objectives/figures.h"
 #include "studies/prepared.h"
 #include "studies/watched.h"
 
@@ -19,11 +19,11 @@ namespace {
 constexpr double run_tolerance = 1e-6;  // of the integrator: errors far below auto_modes_tolerance
 constexpr double least_share = 0.01;    // of what a closing is like, below which a figure is as good as zero
 
-struct Figure {
+struct Judged {
   double value, scale;
 };
 
-std::vector<Figure> figures(const SceneFile& file, int modes, const Watch& watch) {
+std::vector<Judged> judged(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
   with.assign("structure.modes", modes);
   with.assign("simulate.effects",
@@ -38,7 +38,12 @@ std::vector<Figure> figures(const SceneFile& file, int modes, const Watch& watch
                                          .observer = observer(watch, fmt::format("closing with {} modes", modes), p.duration)});
   watch.throw_if_stopped();
   const Metrics m = metrics(t, p.scene.metrics);
-  std::vector<Figure> list{{m.initial_contact_time, 1 / omega}, {m.impact_velocity, gap * omega}, {m.major_bounce_height, gap}};
+  FigureValues scale;
+  scale[&Metrics::initial_contact_time] = 1 / omega;
+  scale[&Metrics::impact_velocity] = gap * omega;
+  scale[&Metrics::major_bounce_height] = gap;
+  std::vector<Judged> list;
+  for (const Figure& figure : compared_figures) list.push_back({figure.value(m), scale[figure]});
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
     const StaticPullIn statically = known == p.pull_in.end() ? static_pull_in(p.device, k) : known->second.statically;
@@ -49,13 +54,11 @@ std::vector<Figure> figures(const SceneFile& file, int modes, const Watch& watch
 }
 
 // The largest relative change of any figure; one that comes or goes has changed entirely.
-double change(const std::vector<Figure>& from, const std::vector<Figure>& to) {
+double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
   double most = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
-    const double a = from[i].value, b = to[i].value;
-    if (std::isnan(a) && std::isnan(b)) continue;
-    const double relative = std::abs(b - a) / std::max(std::abs(a), least_share * from[i].scale);
-    most = std::max(most, std::isfinite(relative) ? relative : a == b ? 0 : 1);
+    const double relative = relative_difference(to[i].value, from[i].value, least_share * from[i].scale);
+    most = std::max(most, std::isfinite(relative) ? relative : 1);
   }
   return most;
 }
@@ -76,13 +79,13 @@ std::string AutoModes::note() const {
 AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
   const bool both_clamped = read_scene(file).device.structure.kind == StructureKind::clamped_clamped;
   const int further = both_clamped ? 6 : 3;
-  std::vector<std::vector<Figure>> known;
+  std::vector<std::vector<Judged>> known;
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
     found = {.modes = modes};
     for (int more = 1; more <= further && found.settled(); ++more) {
       while (static_cast<int>(known.size()) < modes + more)
-        known.push_back(figures(file, static_cast<int>(known.size()) + 1, watch));
+        known.push_back(judged(file, static_cast<int>(known.size()) + 1, watch));
       found.moved = std::max(
           found.moved, change(known[static_cast<std::size_t>(modes - 1)], known[static_cast<std::size_t>(modes + more - 1)]));
     }

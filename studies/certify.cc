@@ -13,33 +13,8 @@
 namespace softland {
 namespace {
 
-constexpr double shared = 0.01;         // of the tolerance, relative to a figure: what both runs may miss alike
-constexpr double visible_range = 1e-4;  // of a figure over the cloud: a thousandfold magnification
-constexpr double parted = 0.1;          // relative difference of a rebound's height from which runs have parted
-
-template <double Metrics::*figure>
-constexpr CertifiedFigure certified(std::string_view key) {
-  return {
-      .key = key, .value = [](const Metrics& m) { return m.*figure; }, .error = [](Metrics& m) -> double& { return m.*figure; }};
-}
-
-constexpr std::array all_figures{
-    certified<&Metrics::initial_contact_time>("initial_contact_time_s"),
-    certified<&Metrics::permanent_contact_time>("permanent_contact_time_s"),
-    certified<&Metrics::bounce_time>("bounce_time_s"),
-    CertifiedFigure{.key = "bounce_count",
-                    .value =
-                        [](const Metrics& m) {
-                          const bool known = std::isfinite(m.major_bounce_height);
-                          return known ? static_cast<double>(m.bounce_count) : Metrics::unset;
-                        }},
-    certified<&Metrics::major_bounce_height>("major_bounce_height_m"),
-    certified<&Metrics::impact_velocity>("impact_velocity_m_s"),
-    certified<&Metrics::peak_contact_force>("peak_contact_force_N"),
-    certified<&Metrics::impact_energy>("impact_energy_J"),
-    certified<&Metrics::hold_force>("hold_force_N"),
-    certified<&Metrics::drive_energy>("drive_energy_J"),
-};
+constexpr double shared = 0.01;  // of the tolerance, relative to a figure: what both runs may miss alike
+constexpr double parted = 0.1;   // relative difference of a rebound's height from which runs have parted
 
 double hold_force(const Switch& device, const std::vector<Signal>& signals) {
   std::vector<double> hold;
@@ -48,17 +23,16 @@ double hold_force(const Switch& device, const std::vector<Signal>& signals) {
   return closed ? closed->contact_force : Metrics::unset;
 }
 
-// Of one figure: whether the drives' last digits decide it. `least` is the size below which it does not count.
-bool ill_conditioned(const std::vector<double>& cloud, double own, double better, double least) {
-  std::vector<double> values = cloud;
-  values.insert(values.end(), {own, better});
-  const auto there = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  if (there == 0 || cloud.empty()) return false;
-  if (there < static_cast<std::ptrdiff_t>(values.size())) return true;
-  values.resize(cloud.size());  // what a loose tolerance does to the other two is an error, not a condition
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double size = std::max(std::abs(*low), std::abs(*high));
-  return size > least && *high - std::max(*low, least) > visible_range * size;
+// Whether the drives' last digits decide a figure of the closing and of a better one, or whether it has one at all.
+bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
+                     const MetricsOptions& options) {
+  std::vector<double> values;
+  for (const Metrics& m : cloud) values.push_back(figure.counted(m, options));
+  // What a loose tolerance does to the values of these two is an error, not a condition.
+  const bool own_has = std::isfinite(figure.value(own)), better_has = std::isfinite(figure.value(better));
+  const auto have = std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) + own_has + better_has;
+  if (have == 0 || cloud.empty()) return false;
+  return have < static_cast<std::ptrdiff_t>(cloud.size() + 2) || ill_conditioned(spread(std::move(values)));
 }
 
 // Figures of the closing with each pull-in voltage that its drives are written in higher, and lower, by the error of that
@@ -115,8 +89,6 @@ Course course(const Trajectory& run) {
 }
 
 }  // namespace
-
-std::span<const CertifiedFigure> certified_figures() { return all_figures; }
 
 std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options) {
   std::vector<Course> courses;
@@ -185,26 +157,22 @@ Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
     runs.push_back(metrics(t, prepared.scene.metrics));
   }
   Certificate certificate{.ill_conditioned = {}, .grazing = {}, .runs = static_cast<int>(runs.size())};
-  for (const CertifiedFigure& figure : all_figures) {
-    std::vector<double> values;
-    for (const Metrics& m : runs) values.push_back(figure.value(m));
+  for (const Figure& figure : all_figures) {
+    if (!figure.has_error()) continue;
     const double own = figure.value(c.metrics), other = figure.value(better);
-    const bool is_height = figure.key == "major_bounce_height_m";
     double error = error_safety * std::abs(own - other) + shared * c.tolerance * std::abs(own);
     const double unmoved = judge_is_better ? other : own;
     for (std::size_t i = 0; i + 1 < moved.size(); i += 2) {  // both signs of one voltage
       error += std::fmax(std::abs(figure.value(moved[i]) - unmoved), std::abs(figure.value(moved[i + 1]) - unmoved));
     }
-    if (ill_conditioned(values, own, other, is_height ? prepared.scene.metrics.significant_rebound : 0)) {
+    if (ill_conditioned(figure, runs, c.metrics, better, prepared.scene.metrics)) {
+      std::vector<double> values;
+      for (const Metrics& m : runs) values.push_back(figure.value(m));
       const Spread cloud_spread = spread(std::move(values));
       for (const double value : {cloud_spread.low, cloud_spread.high}) error = std::fmax(error, std::abs(own - value));
-      certificate.ill_conditioned.push_back({figure.key, cloud_spread});
+      certificate.ill_conditioned.push_back({figure, cloud_spread});
     }
-    if (figure.error != nullptr) {
-      figure.error(c.errors) = error;
-    } else if (std::isfinite(error)) {
-      c.bounce_count_error = static_cast<int>(std::ceil(error - 0.5));
-    }
+    c.errors[figure] = figure.is_count() ? std::ceil(error - 0.5) : error;
   }
   if (!certificate.ill_conditioned.empty()) certificate.grazing = grazing_rebound(cloud, prepared.scene.metrics);
   c.certificate = std::make_shared<const Certificate>(std::move(certificate));

@@ -7,24 +7,14 @@
 // runs, and its error reaches to the end of that range.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "studies/cloud.h"
 #include "studies/simulate.h"
 
 namespace softland {
-
-/// A figure that can be certified; `key` as in metrics_json().
-struct CertifiedFigure {
-  std::string_view key;
-  double (*value)(const Metrics&);       ///< NaN where there is none
-  double& (*error)(Metrics&) = nullptr;  ///< null: the bounce count, which is a whole number
-};
-[[nodiscard]] std::span<const CertifiedFigure> certified_figures();
 
 /// Where the runs of a cloud part: up to here they have the same rebounds.
 struct GrazingRebound {
@@ -36,7 +26,7 @@ struct GrazingRebound {
 };
 
 struct IllConditioned {
-  std::string_view key;
+  Figure figure;
   Spread spread;
 };
 

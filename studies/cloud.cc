@@ -44,4 +44,6 @@ Spread spread(std::vector<double> values) {
           .runs = static_cast<int>(n)};
 }
 
+bool ill_conditioned(const Spread& values) { return relative_difference(values.high, values.low) > ill_conditioned_range; }
+
 }  // namespace softland

@@ -10,7 +10,7 @@
 
 #include "base/watch.h"
 #include "model/closing.h"
-#include "objectives/metrics.h"
+#include "objectives/figures.h"
 
 namespace softland {
 
@@ -34,5 +34,10 @@ struct Spread {
   int runs = 0;
 };
 [[nodiscard]] Spread spread(std::vector<double> values);
+
+/// Beyond this relative range over the cloud a figure is ill-conditioned: a thousandfold magnification of the perturbation.
+inline constexpr double ill_conditioned_range = 1e-4;
+/// Whether the drives' last digits decide a figure; `values` are those that Figure::counted() gives.
+[[nodiscard]] bool ill_conditioned(const Spread& values);
 
 }  // namespace softland

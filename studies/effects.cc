@@ -55,20 +55,16 @@ const Effect& Effects::own(const std::string& section) const {
   return *std::find_if(list.begin(), list.end(), [&](const Effect& e) { return e.in_scene && e.section == section; });
 }
 
-double Effects::spread(const std::string& section, double Metrics::*figure) const {
+double Effects::spread(const std::string& section, const Figure& figure) const {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const Effect& e : list) {
     if (e.section != section || e.choice == "none") continue;
-    const double value = e.metrics.*figure;
+    const double value = figure.value(e.metrics);
     if (!std::isfinite(value)) return Metrics::unset;
     least = std::min(least, value);
     most = std::max(most, value);
   }
-  return (most - least) / (own(section).metrics.*figure);
-}
-
-double relative_change(const Effect& effect, const Effect& own, double Metrics::*figure) {
-  return (effect.metrics.*figure - own.metrics.*figure) / (own.metrics.*figure);
+  return (most - least) / figure.value(own(section).metrics);
 }
 
 Effects compare_effects(const Prepared& prepared, const Watch& watch) {

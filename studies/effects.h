@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/watch.h"
-#include "objectives/metrics.h"
+#include "objectives/figures.h"
 #include "studies/omissions.h"
 #include "studies/prepared.h"
 
@@ -42,11 +42,8 @@ struct Effects {
   [[nodiscard]] const Effect& own(const std::string& section) const;
   /// Largest less smallest value of a figure over the laws of a section that are films or dampers, not "none"; relative to the
   /// scene's own closing. NaN when it is missing in any of them.
-  [[nodiscard]] double spread(const std::string& section, double Metrics::*figure) const;
+  [[nodiscard]] double spread(const std::string& section, const Figure& figure) const;
 };
-
-/// (value - own) / own; NaN where either is missing.
-[[nodiscard]] double relative_change(const Effect& effect, const Effect& own, double Metrics::*figure);
 
 /// Repeats the closing without each effect, and with no gas and with every gas law, in the state of gas that the scene describes
 /// (air at 101325 Pa and 300 K where it describes none). The linear damper and the film over a slit only where the scene

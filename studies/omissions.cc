@@ -41,7 +41,7 @@ double force_at_rest(const Device& described, std::size_t electrode) {
 
 double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
 
-Metrics figures(const Prepared& p, const Watch& watch, double done = 0, double share = 1) {
+Metrics closing(const Prepared& p, const Watch& watch, double done = 0, double share = 1) {
   return metrics(simulate_closing(p.device, p.signals(),
                                   {.duration = p.duration,
                                    .tolerance = p.tolerance,
@@ -179,16 +179,11 @@ Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects
 }
 
 double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (!std::isfinite(own.initial_contact_time) || !std::isfinite(other.initial_contact_time)) return infinity;
-  double most = std::max(std::abs(other.initial_contact_time / own.initial_contact_time - 1),
-                         std::abs(other.impact_velocity / own.impact_velocity - 1));
-  if (std::isfinite(own.major_bounce_height) != std::isfinite(other.major_bounce_height)) return infinity;
-  if (std::isfinite(own.major_bounce_height)) {
-    const double least = options.significant_rebound;
-    most = std::max(most, std::abs(std::max(other.major_bounce_height, least) / std::max(own.major_bounce_height, least) - 1));
-  }
-  return std::isfinite(most) ? most : infinity;
+  if (!std::isfinite(own.initial_contact_time)) return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const Figure& figure : compared_figures)
+    most = std::max(most, relative_difference(figure.counted(other, options), figure.counted(own, options)));
+  return most;
 }
 
 std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics& own, bool timed, const Watch& watch) {
@@ -198,7 +193,7 @@ std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics&
     const double share = 1.0 / static_cast<double>(effects.size());
     const Prepared p = without(prepared, {effect});
     Omission o{.what = std::move(effect),
-               .metrics = figures(p, watch, static_cast<double>(list.size()) * share, share),
+               .metrics = closing(p, watch, static_cast<double>(list.size()) * share, share),
                .influence = 0,
                .rhs_seconds = Metrics::unset};
     o.influence = influence(own, o.metrics, prepared.scene.metrics);
@@ -211,7 +206,7 @@ std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics&
 
 EffectsChoice negligible_effects(const Prepared& prepared, double tolerance, const Watch& watch) {
   EffectsChoice choice;
-  const Metrics own = figures(prepared, watch);
+  const Metrics own = closing(prepared, watch);
   for (Omission& o : compare_omissions(prepared, own, false, watch)) {
     if (o.what.automatic && o.influence <= tolerance) choice.left_out.push_back(std::move(o));
   }
@@ -221,7 +216,7 @@ EffectsChoice negligible_effects(const Prepared& prepared, double tolerance, con
   for (; !choice.left_out.empty(); choice.left_out.pop_back()) {
     std::vector<Omissible> effects;
     for (const Omission& o : choice.left_out) effects.push_back(o.what);
-    choice.influence = influence(own, figures(without(prepared, effects), watch), prepared.scene.metrics);
+    choice.influence = influence(own, closing(without(prepared, effects), watch), prepared.scene.metrics);
     watch.throw_if_stopped();
     if (choice.influence <= tolerance) return choice;
   }

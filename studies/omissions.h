@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/watch.h"
-#include "objectives/metrics.h"
+#include "objectives/figures.h"
 #include "studies/prepared.h"
 
 namespace softland {
@@ -34,7 +34,7 @@ struct Omissible {
 struct Omission {
   Omissible what;
   Metrics metrics;
-  double influence = 0;    ///< largest relative change of t_i, v_i and B_H
+  double influence = 0;    ///< see influence()
   double rhs_seconds = 0;  ///< per right-hand side [s]; NaN where not asked for
 };
 
@@ -45,8 +45,8 @@ struct Omission {
 /// The scene without these effects, its waveforms in volts.
 [[nodiscard]] Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects);
 
-/// Largest relative change of t_i, v_i and B_H. A rebound too low to count is compared with one that just counts. Infinite where
-/// a figure appears, disappears, or is missing in both but B_H.
+/// Largest relative difference of t_i, v_i and B_H as they are counted. Infinite where one of them appears or disappears, and
+/// where neither closing touches.
 [[nodiscard]] double influence(const Metrics& own, const Metrics& other, const MetricsOptions& options);
 
 /// Leaves out one effect after the other; asked to stop, the list ends with the last closing that was complete. `timed`: also

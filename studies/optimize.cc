@@ -41,23 +41,8 @@ Prepared read_back(const SceneFile& file, const std::string& name, const Prepare
 
 // The target's own figure, infinite where the closing has none.
 double figure(Target target, const Metrics& m) {
-  const double none = std::numeric_limits<double>::infinity();
-  if (!std::isfinite(m.initial_contact_time)) return none;
-  const auto finite = [&](double v) { return std::isfinite(v) ? v : none; };
-  switch (target) {
-    case Target::settling:
-      return finite(m.permanent_contact_time);
-    case Target::impact:
-      return finite(m.impact_velocity);
-    case Target::energy:
-      return finite(m.impact_energy);
-    case Target::count:
-      return m.bounce_count;
-    case Target::bounce:
-    case Target::rebound:
-      break;
-  }
-  return finite(m.major_bounce_height);
+  const double value = figure_of(target).value(m);
+  return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
 }
 
 // The same closing by a tighter integrator, and with a richer beam where there is one.

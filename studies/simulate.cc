@@ -14,15 +14,17 @@ namespace softland {
 namespace {
 
 // What two runs of one closing differ by, and the rounding that they share. t_p, t_b and N_B are left to clouds.
-Metrics difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
+FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, double contact_gap) {
   constexpr double shared = 0.01;              // of the tolerance, relative to a figure
   constexpr double lowest_separation = 1e-12;  // of the contact gap, below which metrics() sees no rebound
-  Metrics d;
-  for (double Metrics::*figure : {&Metrics::initial_contact_time, &Metrics::major_bounce_height, &Metrics::impact_velocity,
-                                  &Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
-    d.*figure = std::max(std::abs(a.*figure - b.*figure), shared * tolerance * std::abs(a.*figure));
+  FigureValues d;
+  for (const Figure& figure : all_figures) {
+    if (!figure.is_told_by_two_runs()) continue;
+    const double own = figure.value(a);
+    d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }
-  d.major_bounce_height = std::max(d.major_bounce_height, lowest_separation * contact_gap);
+  double& height = d[&Metrics::major_bounce_height];
+  height = std::max(height, lowest_separation * contact_gap);
   return d;
 }
 
@@ -49,38 +51,39 @@ double parting_time(const Run& a, const Run& b, const MetricsOptions& options) {
 
 // What two runs say of anything beyond the point where they part is chance: it has no error but a cloud's. Nor have figures that
 // hang on every touch where the runs differ by a thousand times the tolerance.
-void forget_what_is_chaotic(Metrics& errors, const Run& best, const Run& other, const MetricsOptions& options) {
+void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& other, const MetricsOptions& options) {
   constexpr double magnified = 1000;
   const double visible = magnified * std::max(best.tolerance, other.tolerance);
-  for (double Metrics::*figure : {&Metrics::peak_contact_force, &Metrics::impact_energy, &Metrics::drive_energy}) {
-    if (errors.*figure > visible * std::abs(best.metrics.*figure)) errors.*figure = Metrics::unset;
+  for (const Figure& figure : all_figures) {
+    if (figure.conditioning != Conditioning::every_touch) continue;
+    if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
   const double parting = parting_time(best, other, options);
   if (std::isinf(parting)) return;
-  errors.impact_energy = errors.drive_energy = Metrics::unset;
+  errors[&Metrics::impact_energy] = errors[&Metrics::drive_energy] = Metrics::unset;
   for (const Run* run : {&best, &other}) {
     const std::vector<Touch>& touches = run->trajectory.touches;
     const auto hardest = std::max_element(touches.begin(), touches.end(),
                                           [](const Touch& x, const Touch& y) { return x.peak_force < y.peak_force; });
-    if (hardest != touches.end() && hardest->begin >= parting) errors.peak_contact_force = Metrics::unset;
+    if (hardest != touches.end() && hardest->begin >= parting) errors[&Metrics::peak_contact_force] = Metrics::unset;
     const std::vector<Rebound> all = rebounds(run->trajectory);
     const auto highest =
         std::max_element(all.begin(), all.end(), [](const Rebound& x, const Rebound& y) { return x.height < y.height; });
-    if (highest != all.end() && highest->begin >= parting) errors.major_bounce_height = Metrics::unset;
+    if (highest != all.end() && highest->begin >= parting) errors[&Metrics::major_bounce_height] = Metrics::unset;
   }
 }
 
 // The largest relative difference of the figures that `accuracy` is about.
 double error(const Run& run, const Run& other, const Prepared& prepared) {
-  const auto relative = [](double value, double truth, double least) {
-    if (std::isnan(value) && std::isnan(truth)) return 0.0;
-    const double e = std::abs(value - truth) / std::max(std::abs(truth), least);
-    return std::isnan(e) ? std::numeric_limits<double>::infinity() : e;
-  };
-  const Metrics &a = run.metrics, &b = other.metrics;
-  return std::max({relative(a.initial_contact_time, b.initial_contact_time, 0), relative(a.impact_velocity, b.impact_velocity, 0),
-                   relative(a.major_bounce_height, b.major_bounce_height, prepared.scene.metrics.significant_rebound),
-                   relative(a.peak_contact_force, b.peak_contact_force, least_peak_force(prepared))});
+  FigureValues least;
+  least[&Metrics::major_bounce_height] = prepared.scene.metrics.significant_rebound;
+  least[&Metrics::peak_contact_force] = least_peak_force(prepared);
+  double most = 0;
+  for (const Figure& figure : studied_figures) {
+    const double size = std::fmax(0, least[figure]);
+    most = std::max(most, relative_difference(figure.value(run.metrics), figure.value(other.metrics), size));
+  }
+  return most;
 }
 
 constexpr double tighter_by = 100, finer_by = 2;
@@ -203,12 +206,14 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   }
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
+  c.metrics.peak_voltage = c.metrics.peak_slew = 0;
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {
     const DriveKind kind = prepared.device.drive_kind(k);
     if (kind == DriveKind::dispersion) continue;  // a force factor is no voltage
-    if (kind == DriveKind::electrode || piezo_only) c.peak_voltage = std::max(c.peak_voltage, signals[k].peak(prepared.duration));
-    c.peak_slew = std::max(c.peak_slew, signals[k].peak_slew(prepared.duration));
+    if (kind == DriveKind::electrode || piezo_only)
+      c.metrics.peak_voltage = std::max(c.metrics.peak_voltage, signals[k].peak(prepared.duration));
+    c.metrics.peak_slew = std::max(c.metrics.peak_slew, signals[k].peak_slew(prepared.duration));
   }
   return c;
 }

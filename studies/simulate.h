@@ -8,7 +8,7 @@
 
 #include "base/watch.h"
 #include "model/closing.h"
-#include "objectives/metrics.h"
+#include "objectives/figures.h"
 #include "studies/prepared.h"
 
 namespace softland {
@@ -29,15 +29,12 @@ struct Closing {
   Trajectory trajectory;
   Metrics metrics;
   /// Absolute error estimates: the difference to the judge's and what rounding leaves, or what certify() makes of it. NaN where
-  /// not estimated: t_p and t_b have none but from certify(), nor what comes after the runs part in a rebound's height, since
-  /// no two runs tell the range of a chaotic figure.
-  Metrics errors;
-  std::optional<int> bounce_count_error = {};  ///< in the place of errors.bounce_count; from certify() only
-  double tolerance = 0;                        ///< of the integrator, in the run that the figures are of
-  SwitchOptions quadrature;                    ///< of that run
-  std::optional<Judge> judge;                  ///< of that run, where errors are estimated
-  double peak_voltage = 0;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
-  double peak_slew = 0;     ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
+  /// not estimated: t_p, t_b and N_B have none but from certify(), nor what comes after the runs part in a rebound's height,
+  /// since no two runs tell the range of a chaotic figure.
+  FigureValues errors;
+  double tolerance = 0;                                 ///< of the integrator, in the run that the figures are of
+  SwitchOptions quadrature;                             ///< of that run
+  std::optional<Judge> judge;                           ///< of that run, where errors are estimated
   std::vector<std::string> warnings;                    ///< of the scene, of the laws, and of ill-conditioned figures
   std::shared_ptr<const Certificate> certificate = {};  ///< from certify() only
 };

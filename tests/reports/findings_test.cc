@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "reports/figure_text.h"
+#include "reports/result_reader.h"
 #include "sample_result.h"
 
 namespace softland::internal {
@@ -20,7 +22,7 @@ std::string plain(std::string words) {
   return words;
 }
 
-std::string sentence(const json& result) { return plain(headline(result).whole()); }
+std::string sentence(const json& result) { return plain(headline(read_result(result)).whole()); }
 
 TEST(Headline, OfASoftLandingNamesBothClosings) {
   EXPECT_EQ(sentence(sample_optimize_result(few_rows)),
@@ -77,7 +79,8 @@ TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
 TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
   json result = sample_optimize_result(few_rows);
   result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
-  EXPECT_EQ(plain(headline(result).main), "Softland's waveform closes the switch at 44.5 µs with no rebound above 420 pm");
+  EXPECT_EQ(plain(headline(read_result(result)).main),
+            "Softland's waveform closes the switch at 44.5 µs with no rebound above 420 pm");
 }
 
 TEST(Headline, SaysWhyThereIsNoClosing) {
@@ -105,78 +108,80 @@ TEST(Headline, OfAnInterruptedSearchIsAboutItsBestSoFar) {
 
 TEST(Captions, StateWhatTheNumbersSay) {
   const json result = sample_optimize_result(few_rows);
-  EXPECT_EQ(plain(gap_caption(result)),
+  EXPECT_EQ(plain(gap_caption(read_result(result))),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The plain step "
             "bounces about 57 times, up to 803 nm, until about 374 µs; softland's waveform lands at 44.5 µs with 900 µm/s and "
             "stays closed.");
-  EXPECT_EQ(plain(landing_caption(result)),
+  EXPECT_EQ(plain(landing_caption(read_result(result))),
             "The same gap in a narrow band around the contact plane; below it the contact is pressed. The plain step reaches the "
             "plane with 133 mm/s and rises 803 nm above it again; softland's waveform reaches the plane with 900 µm/s and does "
             "not rise above it again.");
-  EXPECT_EQ(plain(velocity_caption(result)),
+  EXPECT_EQ(plain(velocity_caption(read_result(result))),
             "Velocity of the contact point, positive towards the contact. The plain step lands at 133 mm/s, softland's "
             "waveform at 900 µm/s (148 times lower).");
-  EXPECT_EQ(plain(force_caption(result)),
+  EXPECT_EQ(plain(force_caption(read_result(result))),
             "Force of the contact on the beam. The plain step peaks at 290 µN, softland's waveform at 2.70 µN (107 times lower). "
             "Closed and at rest, the contact "
             "carries 2.10 µN.");
-  EXPECT_EQ(plain(waveform_caption(result, "piezo")),
+  EXPECT_EQ(plain(waveform_caption(read_result(result), "piezo")),
             "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, at most 121 kV/s; the plain step "
             "stays at 0 V.");
-  EXPECT_EQ(plain(waveform_caption(result, "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
-  EXPECT_EQ(plain(checks_caption(result)),
+  EXPECT_EQ(plain(waveform_caption(read_result(result), "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
+  EXPECT_EQ(plain(checks_caption(read_result(result))),
             "1 of 2 confirmations of the winner closes without a rebound; the highest rebound is 3.20 nm (“6 modes”).");
-  EXPECT_FALSE(checks_agree(result));
+  EXPECT_FALSE(checks_agree(read_result(result)));
 }
 
 TEST(Captions, OfALandingNeverCallItCleanerThanItIs) {
   json result = sample_optimize_result(few_rows);
   result["best"]["metrics"]["major_bounce_height_m"] = 0.42e-9;
-  EXPECT_TRUE(plain(gap_caption(result)).ends_with("and stays closed but for rebounds of 420 pm at most."));
-  EXPECT_TRUE(plain(landing_caption(result)).ends_with("with 900 µm/s and rises 420 pm above it again."));
+  EXPECT_TRUE(plain(gap_caption(read_result(result))).ends_with("and stays closed but for rebounds of 420 pm at most."));
+  EXPECT_TRUE(plain(landing_caption(read_result(result))).ends_with("with 900 µm/s and rises 420 pm above it again."));
   result["best"]["metrics"]["settled"] = false;
-  EXPECT_TRUE(plain(gap_caption(result)).ends_with("rebounds, up to 420 pm, and is still open when the window ends."));
+  EXPECT_TRUE(
+      plain(gap_caption(read_result(result))).ends_with("rebounds, up to 420 pm, and is still open when the window ends."));
   result["best"]["metrics"] = {{"initial_contact_time_s", nullptr}};
   result["curves"]["best"]["tip_gap_m"] = {2e-6, 1.25e-6, nullptr, 1.5e-6};
-  EXPECT_TRUE(plain(gap_caption(result)).ends_with("softland's waveform never touches (no nearer than 1.25 µm)."));
+  EXPECT_TRUE(plain(gap_caption(read_result(result))).ends_with("softland's waveform never touches (no nearer than 1.25 µm)."));
 }
 
 TEST(Captions, OfASearchNameTheWinner) {
   json result{{"evaluations", 300},
               {"search", {{"value_name", "cost"}, {"best_so_far", {{1, 2.0}, {17, nullptr}, {120, 0.5}, {240, 0.5}}}}}};
-  EXPECT_EQ(search_caption(result),
+  EXPECT_EQ(search_caption(read_result(result)),
             "Cost of every waveform tried (dots) and of the best so far (line). In 300 evaluations the cost fell from 2 to 0.5 "
             "(4.0 times lower); the winner is "
             "number 120 of them.");
   result["search"]["best_so_far"] = {{1, 2.0}, {40, 1.0}, {120, 0.5}};
   result["best"]["cost"] = 1.0;  // the lowest missed the goal
   result["baseline"]["cost"] = 0.97;
-  EXPECT_EQ(search_caption(result),
+  EXPECT_EQ(search_caption(read_result(result)),
             "Cost of every waveform tried (dots) and of the best so far (line); the plain step's is 0.97. In 300 evaluations "
             "the cost fell from 2 to 0.5 (4.0 times lower); the winner is number 40 of them.");
   result["search"]["best_so_far"] = {{0, 2.0}};
   result["best"]["cost"] = 2.0;
   result["search"]["evaluations"] = {{0, 2.0}, {7, 3.0}};
-  EXPECT_TRUE(search_caption(result).ends_with("In 300 evaluations the cost stayed at 2; the winner is number 1 of them."));
+  EXPECT_TRUE(
+      search_caption(read_result(result)).ends_with("In 300 evaluations the cost stayed at 2; the winner is number 1 of them."));
 }
 
 TEST(Goal, IsOfTheFiguresThatTheTargetIsAbout) {
   json result = sample_optimize_result(few_rows);
-  EXPECT_EQ(goal_text(result, "bounce_count"), "0");
-  EXPECT_EQ(goal_text(result, "settled"), "yes");
-  EXPECT_EQ(goal_text(result, "impact_velocity_m_s"), "");
+  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::bounce_count)), "0");
+  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::settled)), "yes");
+  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::impact_velocity)), "");
   result["target"] = "impact";
-  EXPECT_EQ(plain(goal_text(result, "impact_velocity_m_s")), "below 132.8 mm/s");
-  EXPECT_EQ(goal_text(result, "bounce_count"), "");
-  EXPECT_EQ(goal_text(sample_simulate_result(few_rows), "settled"), "");
+  EXPECT_EQ(plain(goal_text(read_result(result), figure_of(&Metrics::impact_velocity))), "below 132.8 mm/s");
+  EXPECT_EQ(goal_text(read_result(result), figure_of(&Metrics::bounce_count)), "");
+  EXPECT_EQ(goal_text(read_result(sample_simulate_result(few_rows)), figure_of(&Metrics::settled)), "");
 }
 
 TEST(Captions, OfASingleRunSpeakOfTheSwitch) {
   const json result = sample_simulate_result(few_rows);
-  EXPECT_EQ(plain(gap_caption(result)),
+  EXPECT_EQ(plain(gap_caption(read_result(result))),
             "Distance of the contact point to the contact plane (positive: open); dots mark rebounds above 1 nm. The switch "
             "bounces about 57 times, up to 803 nm, until about 370 µs.");
-  EXPECT_EQ(plain(force_caption(result)),
+  EXPECT_EQ(plain(force_caption(read_result(result))),
             "Force of the contact on the beam. It peaks at 290 µN. Closed and at rest, the contact carries 2.10 µN.");
 }
 

@@ -9,6 +9,7 @@
 #include "reports/escape.h"
 #include "reports/files.h"
 #include "reports/html.h"
+#include "reports/result_reader.h"
 #include "sample_result.h"
 #include "tests/support/temporary_folder.h"
 
@@ -73,24 +74,24 @@ class PageInBrowser : public ::testing::Test {
 };
 
 TEST_F(PageInBrowser, DrawsEveryChartOfASearchInSilence) {
-  const Visit seen = visit(program, html_report(test::sample_optimize_result(20000)));
+  const Visit seen = visit(program, html_report(read_result(test::sample_optimize_result(20000))));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 7u);
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
 }
 
 TEST_F(PageInBrowser, DrawsASingleRunInSilence) {
-  const Visit seen = visit(program, html_report(test::sample_simulate_result(3000)));
+  const Visit seen = visit(program, html_report(read_result(test::sample_simulate_result(3000))));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 6u);
 }
 
 TEST_F(PageInBrowser, BearsAResultWithoutCurvesAndOneFullOfNulls) {
-  EXPECT_EQ(visit(program, html_report(json::object())).console, "");
+  EXPECT_EQ(visit(program, html_report(read_result(json::object()))).console, "");
   json result = test::sample_optimize_result(300);
   for (json& value : result["curves"]["best"]["tip_gap_m"]) value = nullptr;
   for (std::size_t row = 100; row < 200; ++row) result["curves"]["baseline"]["contact_force_N"][row] = nullptr;
-  const Visit seen = visit(program, html_report(result));
+  const Visit seen = visit(program, html_report(read_result(result)));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 7u);
 }
@@ -102,7 +103,7 @@ TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle) {
   result["title"] = hostile;
   result["best"]["waveforms"][hostile] = {{0, 0}, {1e-6, 1}};
   result["search"]["value_name"] = hostile;
-  const Visit seen = visit(program, html_report(result));
+  const Visit seen = visit(program, html_report(read_result(result)));
   EXPECT_EQ(seen.console, "");
   EXPECT_THAT(seen.dom, Not(HasSubstr("class=\"owned\"")));
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
@@ -140,7 +141,7 @@ json searched() {
 
 TEST_F(PageInBrowser, CutsNothingOnANarrowScreen) {
   for (const int width : {420, 1280}) {
-    const std::string dom = in_frame(program, html_report(searched()), width,
+    const std::string dom = in_frame(program, html_report(read_result(searched())), width,
                                      "for (const one of page.querySelectorAll('html, main, .scroll, .keys, figure')) if "
                                      "(one.scrollWidth > one.clientWidth + 1) say(one.className || one.tagName);");
     EXPECT_EQ(said(dom), "end;") << width;
@@ -149,7 +150,7 @@ TEST_F(PageInBrowser, CutsNothingOnANarrowScreen) {
 
 TEST_F(PageInBrowser, ReadsTheSameInBothGapChartsAtOneCursor) {
   const std::string dom = in_frame(
-      program, html_report(searched()), 1280,
+      program, html_report(read_result(searched())), 1280,
       "const over = page.querySelector('#figure-landing .u-over'); const read = (id) => [...page.querySelectorAll('#figure-' + "
       "id + "
       "' .u-value')].map((one) => one.textContent).join(' '); let read_any = false; for (let i = 0; i < 40; ++i) { "
@@ -166,7 +167,7 @@ TEST_F(PageInBrowser, LeavesRoomForTheNumbersAtItsAxes) {
     for (json& one : result["search"][list]) one[1] = 12345.0 + 100 * one[1].get<double>();
   }
   const std::string dom =
-      in_frame(program, html_report(result), 420,
+      in_frame(program, html_report(read_result(result)), 420,
                "for (const canvas of page.querySelectorAll('canvas')) { const {width, height} = canvas; const edge = (x) => "
                "canvas.getContext('2d').getImageData(x, 0, 1, height).data.some((value) => value); if (edge(0) || edge(width - "
                "1)) say('cut: ' + canvas.closest('figure').id); }");

@@ -85,5 +85,15 @@ TEST(Spread, IsOverTheValuesThatThereAre) {
   EXPECT_TRUE(std::isnan(spread({Metrics::unset}).median));
 }
 
+TEST(IllConditioned, IsAFigureThatSpreadsByMoreThanAThousandfoldPerturbation) {
+  EXPECT_FALSE(ill_conditioned(Spread{.low = 1, .high = 1 + 0.9 * ill_conditioned_range, .runs = 16}));
+  EXPECT_TRUE(ill_conditioned(Spread{.low = 1, .high = 1 + 1.1 * ill_conditioned_range, .runs = 16}));
+  EXPECT_TRUE(ill_conditioned(Spread{.low = -1 - 1.1 * ill_conditioned_range, .high = -1, .runs = 16}))
+      << "energy that flows back";
+  EXPECT_TRUE(ill_conditioned(Spread{.low = 0, .high = 1, .runs = 16})) << "a rebound in some runs only";
+  EXPECT_FALSE(ill_conditioned(Spread{.low = 0, .high = 0, .runs = 16}));
+  EXPECT_FALSE(ill_conditioned(Spread{})) << "in no run";
+}
+
 }  // namespace
 }  // namespace softland

@@ -1,0 +1,57 @@
+#include "objectives/figures.h"
+
+#include <cmath>
+
+namespace softland {
+
+std::string Figure::label() const {
+  return also.empty() ? std::string(name) : std::string(name) + " (" + std::string(also) + ")";
+}
+
+double Figure::value(const Metrics& metrics) const {
+  if (const auto* const number = std::get_if<double Metrics::*>(&member)) return metrics.**number;
+  // Counts and yes or no have no value that says "not known": what followed the first touch is known with the highest rebound.
+  const bool followed = std::isfinite(metrics.major_bounce_height);
+  if (const auto* const count = std::get_if<int Metrics::*>(&member)) return followed ? metrics.**count : Metrics::unset;
+  const bool touched = std::isfinite(metrics.initial_contact_time);
+  const bool yes = metrics.*std::get<bool Metrics::*>(member);
+  return touched && !followed ? Metrics::unset : yes ? 1 : 0;
+}
+
+double Figure::counted(const Metrics& metrics, const MetricsOptions& options) const {
+  const double own = value(metrics);
+  return member == Member(&Metrics::major_bounce_height) && own < options.significant_rebound ? options.significant_rebound : own;
+}
+
+const Figure& figure_of(Target target) {
+  switch (target) {
+    case Target::settling:
+      return figure_of(&Metrics::permanent_contact_time);
+    case Target::impact:
+      return figure_of(&Metrics::impact_velocity);
+    case Target::energy:
+      return figure_of(&Metrics::impact_energy);
+    case Target::count:
+      return figure_of(&Metrics::bounce_count);
+    case Target::bounce:
+    case Target::rebound:
+      break;
+  }
+  return figure_of(&Metrics::major_bounce_height);
+}
+
+FigureValues::FigureValues(const Metrics& metrics) {
+  for (const Figure& figure : all_figures) (*this)[figure] = figure.value(metrics);
+}
+
+double relative_change(double value, double reference, double least) {
+  return (value - reference) / std::max(std::abs(reference), least);
+}
+
+double relative_difference(double value, double reference, double least) {
+  if (value == reference || (std::isnan(value) && std::isnan(reference))) return 0;
+  const double change = std::abs(relative_change(value, reference, least));
+  return std::isnan(change) ? std::numeric_limits<double>::infinity() : change;
+}
+
+}  // namespace softland

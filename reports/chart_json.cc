@@ -1,0 +1,120 @@
+// The charts as data for the page's script.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "reports/chart.h"
+#include "reports/quantity.h"
+#include "reports/thin.h"
+
+namespace softland::internal {
+namespace {
+
+using nlohmann::json;
+
+const char* role_name(Role role) {
+  switch (role) {
+    case Role::best:
+      return "best";
+    case Role::baseline:
+      return "baseline";
+    case Role::third:
+      return "third";
+    case Role::fourth:
+      return "fourth";
+    case Role::fifth:
+      return "fifth";
+    case Role::limit:
+      return "limit";
+    case Role::evaluations:
+    case Role::measured:
+      break;
+  }
+  return "evaluations";
+}
+
+const char* scale_name(Scale scale) { return scale == Scale::linear ? "linear" : "log"; }
+
+/// {"unit": u, "steps": [...]}: value k is u times the sum of steps 0 ... k; null stands for a value that is not available and
+/// adds nothing.
+json packed(const std::vector<double>& column, const std::vector<std::size_t>& rows, bool logarithmic) {
+  double largest = 0;
+  for (const std::size_t row : rows) {
+    if (std::isfinite(column[row])) largest = std::max(largest, std::abs(column[row]));
+  }
+  json steps = json::array();
+  if (logarithmic) {  // values over many decades: as numbers of six digits
+    for (const std::size_t row : rows) {
+      steps.push_back(std::isfinite(column[row]) ? json::parse(fmt::format("{:.6g}", column[row])) : json());
+    }
+    return {{"values", steps}};
+  }
+  constexpr double resolution = 1e-7;
+  const double unit = largest > 0 ? largest * resolution : 1;
+  long long before = 0;
+  for (const std::size_t row : rows) {
+    if (!std::isfinite(column[row])) {
+      steps.push_back(nullptr);
+      continue;
+    }
+    const long long now = std::llround(column[row] / unit);
+    steps.push_back(now - before);
+    before = now;
+  }
+  return {{"unit", unit}, {"steps", steps}};
+}
+
+}  // namespace
+
+json chart_json(const Picture& picture, std::size_t rows) {
+  json tables = json::object();
+  std::set<std::string> logarithmic;  // tables of charts whose axes are both logarithmic
+  for (const Chart& chart : picture.charts) {
+    if (chart.x_scale == Scale::linear) continue;
+    for (const Series& one : chart.series) logarithmic.insert(one.table);
+  }
+  for (const auto& [name, table] : picture.tables) {
+    std::vector<const std::vector<double>*> columns;
+    for (const auto& [key, column] : table) columns.push_back(&column);
+    const std::vector<std::size_t> kept = thinned(columns, rows);
+    for (const auto& [key, column] : table)
+      tables[name][key] = packed(column, kept, logarithmic.contains(name) || key == "value");
+  }
+  json charts = json::array();
+  for (const Chart& chart : picture.charts) {
+    json series = json::array();
+    for (const Series& one : chart.series) {
+      series.push_back({{"table", one.table}, {"column", one.column}, {"label", one.label}, {"role", role_name(one.role)}});
+    }
+    json marks = json::array();
+    for (const Mark& mark : chart.marks)
+      marks.push_back({{"x", mark.x}, {"y", mark.y}, {"role", role_name(mark.role)}, {"text", mark.text}});
+    charts.push_back({{"id", chart.id},
+                      {"group", chart.group},
+                      {"height", chart.height},
+                      {"x",
+                       {{"column", chart.x_column},
+                        {"label", chart.x_label},
+                        {"unit", chart.x_unit},
+                        {"least", resolution(chart.x_unit)},
+                        {"scale", scale_name(chart.x_scale)},
+                        {"home", chart.x_home},
+                        {"whole", chart.x_whole}}},
+                      {"y",
+                       {{"label", chart.y_label},
+                        {"unit", chart.y_unit},
+                        {"least", resolution(chart.y_unit)},
+                        {"scale", scale_name(chart.scale)}}},
+                      {"zero", chart.zero_line},
+                      {"zeroLabel", chart.zero_label},
+                      {"zeroLabelLeft", chart.zero_label_left},
+                      {"series", series},
+                      {"marks", marks}});
+    if (chart.y_home) charts.back()["y"]["home"] = *chart.y_home;
+  }
+  return {{"tables", tables}, {"charts", charts}};
+}
+
+}  // namespace softland::internal

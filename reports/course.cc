@@ -1,0 +1,137 @@
+#include "reports/course.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/quantity.h"
+
+namespace softland::internal {
+namespace {
+
+/// An estimated error beyond which a figure is quoted with "about": half a bounce, one per cent of a time. One that is not known
+/// counts as beyond after more than a few rebounds.
+constexpr double doubtful_count = 0.5;
+constexpr double doubtful_time = 0.01;
+constexpr double few_rebounds = 5;
+
+std::string times_word(double count) { return count == 1 ? "once" : whole(count) + " times"; }
+
+std::string closes(const Actor& actor, const std::string& when) {
+  return actor.object.empty() ? fmt::format("{} closes {}", actor.subject, when)
+                              : fmt::format("{} closes {} {}", actor.subject, actor.object, when);
+}
+
+bool doubtful(const FigureValues& figures, double error, double limit) {
+  return std::isfinite(error) ? error > limit : figures[&Metrics::bounce_count] > few_rebounds;
+}
+
+/// "bounces about 79 times"
+std::string bounces(const FigureValues& figures, const FigureValues& errors) {
+  const bool about = doubtful(figures, errors[&Metrics::bounce_count], doubtful_count);
+  return fmt::format("bounces {}{}", about ? "about " : "", times_word(figures[&Metrics::bounce_count]));
+}
+
+/// The settling time, with "about" where it is doubtful.
+std::string settling(const FigureValues& figures, const FigureValues& errors) {
+  const double settled = figures[&Metrics::permanent_contact_time];
+  const double error = errors[&Metrics::permanent_contact_time];
+  return (doubtful(figures, error, doubtful_time * settled) ? "about " : "") + quantity_within(settled, error, "s");
+}
+
+std::string first_touch(const FigureValues& figures) { return quantity(figures[&Metrics::initial_contact_time], "s"); }
+std::string impact_speed(const FigureValues& figures) { return quantity(figures[&Metrics::impact_velocity], "m/s"); }
+
+/// The smallest distance to the contact plane [m] of a run that never touched; NaN without its curve.
+double closest(const ResultCurve& curve) {
+  double least = std::numeric_limits<double>::quiet_NaN();
+  for (const double gap : curve.gap) least = std::fmin(least, gap);
+  return least;
+}
+
+}  // namespace
+
+bool touches(const FigureValues& figures) { return std::isfinite(figures[&Metrics::initial_contact_time]); }
+
+bool settles(const FigureValues& figures) {
+  return figures[&Metrics::settled] != 0 && std::isfinite(figures[&Metrics::permanent_contact_time]);
+}
+
+bool ends_at_touch(const FigureValues& figures) { return touches(figures) && !std::isfinite(figures[&Metrics::bounce_count]); }
+
+bool is_clean(const FigureValues& figures) {
+  return touches(figures) && settles(figures) && figures[&Metrics::bounce_count] == 0;
+}
+
+double rebound_height(const FigureValues& figures) {
+  const double height = figures[&Metrics::major_bounce_height];
+  return height < resolution("m") ? 0 : height;
+}
+
+double figure_of_run(const ResultRun& run, Figure::Member member) {
+  return run.figures ? (*run.figures)[member] : Metrics::unset;
+}
+
+std::string closing_clause(const Actor& actor, const ResultRun& run, double window) {
+  if (run.status == "collapsed_at_rest") return actor.subject + " has no stable rest position: it collapses before it is driven";
+  if (run.status == "numerical_failure") return actor.subject + " could not be simulated to the end";
+  if (!run.figures) return "there are no figures for " + actor.subject;
+  const FigureValues& figures = *run.figures;
+  const std::string end = std::isfinite(window) ? quantity(window, "s") : std::string();
+  if (!touches(figures)) {
+    return fmt::format("{} does not close{}{}", actor.subject, actor.object.empty() ? "" : " " + actor.object,
+                       end.empty() ? "" : " within " + end);
+  }
+  if (ends_at_touch(figures)) {
+    return fmt::format("{} reaches the contact plane at {} with {}; without a [contact] section the run ends there",
+                       actor.subject, first_touch(figures), impact_speed(figures));
+  }
+  const double height = rebound_height(figures);
+  if (is_clean(figures)) {
+    std::string words = closes(actor, "at " + first_touch(figures)) + " with no rebound";
+    if (height > 0) words += " above " + quantity(height, "m");
+    return words;
+  }
+  std::string words = fmt::format("{} first touches at {}", actor.subject, first_touch(figures));
+  if (figures[&Metrics::bounce_count] > 0) {
+    words += ", then " + bounces(figures, run.errors);
+    if (height > 0) words += " up to " + quantity(height, "m");
+  } else if (height > 0) {
+    words += ", then rebounds up to " + quantity(height, "m");
+  }
+  if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
+  return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end);
+}
+
+std::string landing_clause(const std::string& subject, const ResultRun& run) {
+  if (!run.figures) return {};
+  const FigureValues& figures = *run.figures;
+  if (!touches(figures)) {
+    const double least = closest(run.curve);
+    return subject + " never touches" + (std::isfinite(least) ? " (no nearer than " + quantity(least, "m") + ")" : "");
+  }
+  if (ends_at_touch(figures))
+    return fmt::format("{} first touches at {} with {}", subject, first_touch(figures), impact_speed(figures));
+  const double height = rebound_height(figures);
+  if (is_clean(figures)) {
+    const std::string above = height > 0 ? fmt::format(" but for rebounds of {} at most", quantity(height, "m")) : "";
+    return fmt::format("{} lands at {} with {} and stays closed{}", subject, first_touch(figures), impact_speed(figures), above);
+  }
+  std::string words = subject + " ";
+  words += figures[&Metrics::bounce_count] > 0 ? bounces(figures, run.errors) : "rebounds";
+  if (height > 0) words += fmt::format(", up to {}", quantity(height, "m"));
+  return words + (settles(figures) ? ", until " + settling(figures, run.errors) : ", and is still open when the window ends");
+}
+
+std::string capitalised(std::string words) {
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 'a' + 'A');
+  return words;
+}
+
+std::string joined(const std::string& first, const std::string& second) {
+  if (first.empty() && second.empty()) return {};
+  if (first.empty() || second.empty()) return capitalised(first + second) + ".";
+  return capitalised(first) + "; " + second + ".";
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,104 @@
+#include "reports/figure_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/course.h"
+#include "reports/quantity.h"
+
+namespace softland::internal {
+namespace {
+
+constexpr int figure_digits = 4;  // of the tables, where the error does not allow fewer
+
+}  // namespace
+
+Change change(double before, double after, bool lower_is_better, Kind kind) {
+  if (!std::isfinite(before) || !std::isfinite(after)) return {};
+  constexpr double visible = 0.005;  // a ratio nearer to 1 than half a per cent is no change worth a word
+  if (std::abs(after - before) <= visible * std::abs(before)) return {"unchanged", Verdict::same};
+  const bool lower = after < before;
+  const Verdict verdict = !lower_is_better ? Verdict::neutral : lower ? Verdict::better : Verdict::worse;
+  if (after == 0 && before > 0) return {"none left", verdict};
+  const char* word = kind == Kind::time    ? (lower ? "shorter" : "longer")
+                     : kind == Kind::count ? (lower ? "fewer" : "more")
+                     : lower               ? "lower"
+                                           : "higher";
+  if (!(before > 0) || !(after > 0)) return {word, verdict};
+  const double ratio = lower ? before / after : after / before;
+  if (ratio < 1.095) return {fmt::format("{:.1f} % {}", 100 * std::abs(after / before - 1), word), verdict};
+  return {times(ratio) + " " + word, verdict};
+}
+
+Change figure_change(const ResultRun& before, const ResultRun& after, const Figure& figure) {
+  if (figure.is_yes_or_no()) return {};
+  const Kind kind = figure.unit == "s" ? Kind::time : figure.is_count() ? Kind::count : Kind::size;
+  return change(figure_of_run(before, figure.member), figure_of_run(after, figure.member), figure.better == Better::lower, kind);
+}
+
+std::string figure_text(const Figure& figure, double value, double error, double beside) {
+  if (figure.is_yes_or_no()) return std::isnan(value) ? "—" : value != 0 ? "yes" : "no";
+  return value == 0 ? quantity_beside(value, beside, figure.unit, figure_digits)
+                    : quantity_within(value, error, figure.unit, figure_digits);
+}
+
+std::string error_text(const Figure& figure, double value, double error) {
+  return error_of(value, error, figure.unit, figure_digits);
+}
+
+std::string missing_reason(const ResultRun& run, const Figure& figure) {
+  if (!run.figures || std::isfinite((*run.figures)[figure])) return {};
+  if (!touches(*run.figures)) return "no contact";
+  if (ends_at_touch(*run.figures)) return "not known";
+  return figure.conditioning == Conditioning::last_rebound && !settles(*run.figures) ? "not settled" : "";
+}
+
+std::string cloud_text(const Result& result, const Figure& figure) {
+  if (!result.certificate) return {};
+  const std::vector<IllConditioned>& all = result.certificate->ill_conditioned;
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const IllConditioned& one) { return one.figure.member == figure.member; });
+  if (found == all.end()) return {};
+  const auto value = [&](double one) { return quantity_beside(one, found->spread.high, figure.unit, figure_digits); };
+  return fmt::format("median {}, {} to {} in {} runs", value(found->spread.median), value(found->spread.low),
+                     value(found->spread.high), found->spread.runs);
+}
+
+std::string error_heading(const Result& result) { return result.certificate ? "± certified" : "± integration only"; }
+
+std::string certificate_caption(const Result& result) {
+  if (!result.certificate) {
+    return figure_of_run(result.best, &Metrics::bounce_count) > 0
+               ? "The settling time and the number of rebounds have no error here: past the first large rebound a closing is "
+                 "chaotic. softland simulate --certify gives their range."
+               : "";
+  }
+  if (result.certificate->ill_conditioned.empty())
+    return "Certified: no figure is ill-conditioned, and the estimated errors cover tolerance, quadrature and pull-in voltages.";
+  std::string words = fmt::format(
+      "Certified: the figures with a median and a range are ill-conditioned, properties of a cloud of {} runs whose drives "
+      "differ by one part in 1e9 to 1e7.",
+      result.certificate->runs);
+  const std::optional<GrazingRebound>& grazing = result.certificate->grazing;
+  if (!grazing) return words;
+  words += fmt::format(" The runs part at rebound {} ({}, {} high)", grazing->number, quantity(grazing->time, "s", 4),
+                       quantity(grazing->height, "m"));
+  return words + (grazing->at_threshold
+                      ? ", near the height from which rebounds count."
+                      : fmt::format(", after the gentlest touch until then, {}.", quantity(grazing->impact_velocity, "m/s")));
+}
+
+std::string goal_text(const Result& result, const Figure& figure) {
+  if (result.target.empty()) return {};
+  if (figure.is_yes_or_no()) return "yes";
+  const std::optional<Target> target = target_from(result.target);
+  if (!target) return {};
+  if (figure.is_count()) return has_own_cost(*target) ? "" : "0";
+  const double step = figure_of_run(result.baseline, figure.member);
+  const bool wanted = has_own_cost(*target) && figure_of(*target).member == figure.member && std::isfinite(step);
+  return wanted ? "below " + quantity(step, figure.unit, 4) : "";
+}
+
+}  // namespace softland::internal

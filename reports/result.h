@@ -1,0 +1,129 @@
+// What a study found, as the typed value that every output is made from, JSON too. It has two makers: result_of() for the values
+// of a study, and read_result() for the result.json of an earlier one. What is not available is NaN, empty or not set.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/scene.h"
+#include "model/closing.h"
+#include "objectives/figures.h"
+#include "studies/certify.h"
+
+namespace softland {
+
+/// Points [x, y] in order.
+using Points = std::vector<std::array<double, 2>>;
+
+/// The motion of a run at the contact point. A column that is not as long as `time` is damaged, or missing.
+struct ResultCurve {
+  std::vector<double> time;      ///< [s]
+  std::vector<double> gap;       ///< distance to the contact plane [m]
+  std::vector<double> velocity;  ///< towards the contact [m/s]
+  std::vector<double> force;     ///< of the contact on the beam [N]
+  std::vector<Rebound> rebounds;
+};
+
+/// The winner or the single run, or the baseline.
+struct ResultRun {
+  std::string status;
+  std::optional<FigureValues> figures;  ///< none: the run is not there
+  FigureValues errors;
+  ResultCurve curve;
+  std::map<std::string, Points> waveforms;  ///< by drive: time [s] and level [V], of the dispersion force its factor
+  double cost = Metrics::unset;
+};
+
+/// Another run of the winner.
+struct ResultCheck {
+  std::string name, status;
+  std::optional<FigureValues> figures;
+};
+
+struct ResultSearch {
+  std::string value_name;  ///< what the search minimises
+  Points best_so_far;      ///< index of an evaluation, value
+  Points evaluations;      ///< the same of all; a value is NaN where it was infeasible
+};
+
+/// What the source of a drive can do; NaN where the scene sets no limit.
+struct DriveLimits {
+  double lowest = Metrics::unset, highest = Metrics::unset;  ///< [V]
+  double slew = Metrics::unset;                              ///< [V/s]
+};
+
+/// What a report shows of the scene.
+struct ResultScene {
+  using Span = std::optional<std::array<double, 2>>;  ///< from the clamped end [m]
+  struct Piezo {
+    Span span;
+  };
+  struct Electrode {
+    std::string name;
+    Span span;
+    bool far_side = false;
+    double gap = Metrics::unset;  ///< [m]
+  };
+  struct Waveform {
+    std::string family;
+    std::vector<double> times;                                                   ///< [s]
+    double edge = Metrics::unset, start = Metrics::unset, end = Metrics::unset;  ///< [s]
+  };
+
+  std::string structure;                                                ///< "cantilever"; empty: not known
+  double length = Metrics::unset;                                       ///< [m]
+  double electrode_gap = Metrics::unset, contact_gap = Metrics::unset;  ///< [m]
+  double pad_length = Metrics::unset;                                   ///< [m]
+  std::optional<Piezo> piezo;
+  std::vector<Electrode> electrodes;
+  std::map<std::string, Waveform> waveforms;  ///< by drive
+  std::map<std::string, DriveLimits> drivers;
+  double significant_rebound = MetricsOptions{}.significant_rebound;  ///< [m]
+  std::string text;                                                   ///< the file
+  nlohmann::json tree;                                                ///< the same as its sections, quantities as text
+};
+
+/// What can change the last digits of a result: see made_with().
+struct MadeWith {
+  std::string program, compiler, options, instruction_set, c_library, processor;
+};
+
+/// What effects = "auto" left out.
+struct ResultEffects {
+  std::vector<std::pair<std::string, double>> left_out;  ///< with the influence of each
+  double influence = Metrics::unset;                     ///< of all together
+};
+
+struct Result {
+  bool is_search = false;  ///< of optimize, else of simulate
+  std::string status, message, title;
+  std::string target, actuator, waveform, optimizer, termination, termination_message;  ///< of a search
+  std::optional<std::uint64_t> seed;
+  std::optional<bool> goal_met, better_than_baseline;
+  double evaluations = Metrics::unset;
+  ResultRun best;      ///< the winner, or the single run
+  ResultRun baseline;  ///< the plain step
+  std::optional<Certificate> certificate;
+  std::vector<ResultCheck> checks;
+  ResultSearch search;
+  std::map<std::string, double> parameters;             ///< of the winner, by drive.name
+  std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
+  std::map<std::string, PullInVoltages> pull_in;        ///< by electrode
+  std::vector<double> natural_frequencies;              ///< [rad/s]
+  std::optional<Work> work;                             ///< of the shown run
+  std::vector<std::string> warnings;
+  ResultScene scene;
+  std::optional<ResultEffects> effects;
+  double tolerance = Metrics::unset;  ///< of the integrator, in the shown run
+  std::string command, version;
+  std::vector<std::string> reproduce;  ///< command lines
+  MadeWith made_with;
+};
+
+}  // namespace softland

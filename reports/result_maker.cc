@@ -1,0 +1,166 @@
+#include "reports/result_maker.h"
+
+#include <cmath>
+
+#include "integrators/quintic.h"
+#include "reports/made_with.h"
+#include "reports/result_reader.h"
+#include "studies/omissions.h"
+#include "version.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+// What is not finite cannot be reported: JSON knows no such number.
+FigureValues finite(FigureValues values) {
+  for (const Figure& figure : all_figures) {
+    if (!std::isfinite(values[figure])) values[figure] = Metrics::unset;
+  }
+  return values;
+}
+
+// Straight pieces that a reader can draw: exact for steps, pulses and tables, a thousandth of the swing for sines.
+std::map<std::string, Points> waveforms(const Prepared& p) {
+  std::map<std::string, Points> all;
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> signals = p.signals();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const double swing = signals[k].maximum(p.duration) - signals[k].minimum(p.duration);
+    const bool is_factor = names[k] == dispersion_drive;
+    if (is_factor && signals[k].is_zero()) continue;  // nominal
+    for (const auto& [t, v] : polyline(signals[k], p.duration, 1e-3 * swing, 0))
+      all[names[k]].push_back({t, is_factor ? 1 + v : v});
+  }
+  return all;
+}
+
+// Knots, and points of the interpolant where knots are far apart.
+ResultCurve curve(const Trajectory& t, const MetricsOptions& options) {
+  ResultCurve c;
+  const auto add = [&](double at, double position, double velocity, double contact) {
+    c.time.push_back(at);
+    c.gap.push_back(t.contact_gap - position);
+    c.velocity.push_back(velocity);
+    c.force.push_back(contact);
+  };
+  const double longest = t.points.empty() ? 0 : t.points.back().time / 2000;
+  for (std::size_t i = 0; i < t.points.size(); ++i) {
+    const TrajectoryPoint& a = t.points[i];
+    add(a.time, a.position, a.velocity, a.contact_force);
+    if (i + 1 == t.points.size()) break;
+    const TrajectoryPoint& b = t.points[i + 1];
+    const double h = b.time - a.time;
+    if (!(h > longest)) continue;
+    const Quintic between(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
+    const int parts = static_cast<int>(std::ceil(h / longest));
+    for (int k = 1; k < parts; ++k) {
+      const double at = a.time + h * k / parts;
+      add(at, between.position(at), between.velocity(at), a.contact_force + (b.contact_force - a.contact_force) * k / parts);
+    }
+  }
+  for (const Rebound& r : rebounds(t)) {
+    if (r.height > options.significant_rebound) c.rebounds.push_back(r);
+  }
+  return c;
+}
+
+ResultRun run(const Prepared& p, const Closing& closing, const MetricsOptions& options) {
+  return {.status = std::string(to_string(closing.metrics.status)),
+          .figures = finite(FigureValues(closing.metrics)),
+          .errors = finite(closing.errors),
+          .curve = curve(closing.trajectory, options),
+          .waveforms = waveforms(p)};
+}
+
+std::map<std::string, PullInVoltages> pull_in(const Prepared& p) {
+  std::map<std::string, PullInVoltages> all;
+  for (const auto& [name, e] : p.pull_in)
+    all[name] = {.static_pull_in = e.statically.voltage, .dynamic_pull_in = e.dynamically.voltage};
+  return all;
+}
+
+// What is the same for every study: of its scene, and of this program.
+Result started(const Prepared& p, const Provenance& provenance) {
+  const SceneFile file = resolved(p.scene, p.voltage_units());
+  Result r{.title = p.scene.title,
+           .scene = read_result_scene(file.json(), file.text()),
+           .tolerance = p.tolerance,
+           .command = provenance.command,
+           .version = std::string(version),
+           .made_with = made_with()};
+  const Eigen::VectorXd& frequencies = p.device.angular_frequencies();
+  r.natural_frequencies.assign(frequencies.begin(), frequencies.end());
+  if (p.effects) {
+    r.effects = ResultEffects{.left_out = {}, .influence = p.effects->choice.influence};
+    for (const Omission& o : p.effects->choice.left_out) r.effects->left_out.emplace_back(o.what.effect, o.influence);
+  }
+  return r;
+}
+
+}  // namespace
+
+Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {
+  Result r = started(prepared, provenance);
+  r.status = to_string(closing.metrics.status);
+  r.message = closing.trajectory.message;
+  r.best = run(prepared, closing, prepared.scene.metrics);
+  if (closing.certificate) r.certificate = *closing.certificate;
+  r.pull_in = pull_in(prepared);
+  r.work = closing.trajectory.work;
+  r.warnings = closing.warnings;
+  r.tolerance = closing.tolerance;
+  return r;
+}
+
+Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const Provenance& provenance) {
+  Result r = started(found.best ? *found.best_scene : found.scene, provenance);
+  const MetricsOptions& metrics_options = found.scene.scene.metrics;
+  const bool interrupted = found.search.termination == Termination::interrupted;
+  r.is_search = true;
+  r.status = interrupted  ? std::string_view("interrupted")
+             : found.best ? to_string(found.best->metrics.status)
+                          : to_string(Status::no_contact);
+  r.target = to_string(options.target);
+  r.actuator = to_string(options.actuator);
+  r.waveform = options.family;
+  r.seed = options.seed;
+  r.optimizer = options.optimizer;
+  r.evaluations = static_cast<double>(found.search.evaluations);
+  r.termination = to_string(found.search.termination);
+  r.termination_message = found.search.message;
+  r.goal_met = found.goal_met;
+  r.better_than_baseline = found.better_than_baseline;
+  r.pull_in = pull_in(found.scene);
+  r.baseline = run(found.baseline_scene, found.baseline, metrics_options);
+  r.baseline.cost = found.baseline_cost;
+  r.search.value_name = "cost";
+  for (const Evaluation& e : found.search.improvements) r.search.best_so_far.push_back({static_cast<double>(e.index), e.value});
+  // Warnings of the scene come with every closing: once is enough.
+  r.warnings = found.best ? found.best->warnings : found.baseline.warnings;
+  if (!found.best) return r;
+  r.best = run(*found.best_scene, *found.best, metrics_options);
+  r.best.cost = found.best_cost;
+  r.work = found.best->trajectory.work;
+  r.parameters = found.parameters;
+  for (const Variable& v : found.variables) r.bounds[v.name] = {v.lower, v.upper};
+  for (const ConfirmingRun& c : found.checks) {
+    r.checks.push_back(
+        {.name = c.name, .status = std::string(to_string(c.metrics.status)), .figures = finite(FigureValues(c.metrics))});
+  }
+  return r;
+}
+
+std::string_view to_string(Actuator actuator) {
+  switch (actuator) {
+    case Actuator::electrostatic:
+      return "electrostatic";
+    case Actuator::pzt:
+      return "pzt";
+    case Actuator::both:
+      return "both";
+  }
+  return "unknown";
+}
+
+}  // namespace softland

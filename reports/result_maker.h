@@ -1,0 +1,27 @@
+// The values of a study as a result that reports are made of.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "reports/result.h"
+#include "studies/optimize.h"
+#include "studies/simulate.h"
+
+namespace softland {
+
+/// Where a result comes from: goes into every output.
+struct Provenance {
+  std::string command;  ///< the command line
+};
+
+/// The result of simulate. Curves have the resolution of the integration.
+[[nodiscard]] Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance);
+
+/// The result of optimize. Equal for equal seeds but for the time that it took and the command line. Of the evaluations it holds
+/// those that improved.
+[[nodiscard]] Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const Provenance& provenance);
+
+[[nodiscard]] std::string_view to_string(Actuator actuator);
+
+}  // namespace softland

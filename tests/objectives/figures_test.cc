@@ -1,0 +1,178 @@
+// The one table of figures: it holds every figure once, reads each from its own member, and agrees with what people are told.
+#include "objectives/figures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+
+namespace softland {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Every figure has a value of its own.
+Metrics distinct_metrics() {
+  Metrics m;
+  double next = 1;
+  for (const Figure& figure : all_figures) {
+    if (const auto* const number = std::get_if<double Metrics::*>(&figure.member)) m.** number = next++;
+  }
+  m.bounce_count = 17;
+  m.settled = true;
+  return m;
+}
+
+TEST(Figures, AreTheMembersOfMetricsEachOnce) {
+  std::set<std::string_view> keys, names, symbols;
+  for (const Figure& figure : all_figures) {
+    EXPECT_TRUE(keys.insert(figure.key).second) << figure.key;
+    EXPECT_TRUE(names.insert(figure.name).second) << figure.name;
+    EXPECT_TRUE(symbols.insert(figure.symbol).second) << figure.symbol;
+    EXPECT_EQ(&figure_of(figure.member), &figure) << figure.key << ": another row has the same member";
+  }
+  // Does not compile with another number of members.
+  const auto& [status, t_i, t_p, t_b, n_b, b_h, v_i, force, impact, hold, drive, settled, voltage, slew] = distinct_metrics();
+  EXPECT_EQ(status, Status::not_run);
+  constexpr std::size_t members = 13;
+  EXPECT_EQ(all_figures.size(), members);
+  EXPECT_TRUE(settled);
+  EXPECT_EQ(n_b, 17);
+  for (const double number : {t_i, t_p, t_b, b_h, v_i, force, impact, hold, drive, voltage, slew}) EXPECT_TRUE(number > 0);
+}
+
+TEST(Figures, AreReadFromTheirOwnMember) {
+  const Metrics m = distinct_metrics();
+  double next = 1;
+  const FigureValues values(m);
+  for (const Figure& figure : all_figures) {
+    const double expected = figure.is_count() ? 17 : figure.is_yes_or_no() ? 1 : next++;
+    EXPECT_EQ(figure.value(m), expected) << figure.key;
+    EXPECT_EQ(values[figure], expected) << figure.key;
+    EXPECT_EQ(values[figure.member], expected) << figure.key;
+  }
+}
+
+TEST(Figures, AreNotKnownOfARunThatDidNothing) {
+  const FigureValues values((Metrics()));
+  for (const Figure& figure : all_figures) {
+    EXPECT_EQ(std::isnan(values[figure]), !figure.is_yes_or_no()) << figure.key;
+  }
+  EXPECT_EQ(values[&Metrics::settled], 0) << "open, and nothing else";
+  Metrics stopped;
+  stopped.initial_contact_time = 1e-6;
+  EXPECT_TRUE(std::isnan(FigureValues(stopped)[&Metrics::settled])) << "stopped after the touch";
+  EXPECT_TRUE(std::isnan(FigureValues(stopped)[&Metrics::bounce_count]));
+}
+
+TEST(Figures, AreWrittenOneByOne) {
+  FigureValues errors;
+  for (const Figure& figure : all_figures) EXPECT_TRUE(std::isnan(errors[figure])) << figure.key;
+  for (const Figure& written : all_figures) {
+    FigureValues one;
+    one[written] = 3;
+    for (const Figure& figure : all_figures) EXPECT_EQ(one[figure] == 3, figure.key == written.key) << figure.key;
+  }
+}
+
+// "_m_s" for "m/s".
+TEST(Figures, HaveKeysThatEndWithTheUnit) {
+  for (const Figure& figure : all_figures) {
+    std::string key(figure.quantity());
+    if (!figure.unit.empty()) key += "_" + std::string(figure.unit);
+    std::replace(key.begin(), key.end(), '/', '_');
+    EXPECT_EQ(key, figure.key);
+    EXPECT_EQ(figure.unit.empty(), figure.is_count() || figure.is_yes_or_no()) << figure.key;
+  }
+  EXPECT_EQ(figure_of(&Metrics::impact_velocity).quantity(), "impact_velocity");
+}
+
+TEST(Figures, HaveTheirErrorsFromThoseWhoCanTell) {
+  const auto keys = [](const auto& chosen) {
+    std::string all;
+    for (const Figure& figure : all_figures) {
+      if (chosen(figure)) all += std::string(figure.symbol) + ", ";
+    }
+    return all;
+  };
+  EXPECT_EQ(keys([](const Figure& f) { return f.is_told_by_two_runs(); }),
+            "t_i, B_H, v_i, peak force, impact energy, drive energy, ");
+  EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.is_told_by_two_runs(); }), "t_p, t_b, N_B, hold force, ");
+  EXPECT_EQ(keys([](const Figure& f) { return !f.has_error(); }), "peak voltage, peak slew, settled, ");
+}
+
+TEST(Figures, OfTargetsAreLowerWhereTheyAreBetter) {
+  for (const Target target : {Target::bounce, Target::settling, Target::rebound, Target::count, Target::impact, Target::energy}) {
+    EXPECT_EQ(figure_of(target).better, Better::lower) << to_string(target);
+  }
+  EXPECT_EQ(figure_of(Target::settling).symbol, "t_p");
+  EXPECT_EQ(figure_of(Target::count).symbol, "N_B");
+}
+
+TEST(Figures, CountALowReboundAsOneThatJustCounts) {
+  const MetricsOptions from_2_nm{.significant_rebound = 2e-9};
+  const Figure& height = figure_of(&Metrics::major_bounce_height);
+  Metrics m;
+  EXPECT_TRUE(std::isnan(height.counted(m, from_2_nm)));
+  m.major_bounce_height = 1e-9;
+  EXPECT_EQ(height.counted(m, from_2_nm), 2e-9);
+  m.major_bounce_height = 3e-9;
+  EXPECT_EQ(height.counted(m, from_2_nm), 3e-9);
+  m.initial_contact_time = 1e-9;
+  EXPECT_EQ(figure_of(&Metrics::initial_contact_time).counted(m, from_2_nm), 1e-9) << "a time is no height";
+}
+
+TEST(RelativeDifference, IsASizeAndAChangeHasASign) {
+  EXPECT_EQ(relative_change(1, 4), -0.75);
+  EXPECT_EQ(relative_change(-1, -4), 0.75) << "relative to the size of the reference";
+  EXPECT_EQ(relative_difference(1, 4), 0.75);
+  EXPECT_EQ(relative_difference(5, 4), 0.25);
+}
+
+TEST(RelativeDifference, OfWhatIsZeroOrMissing) {
+  EXPECT_EQ(relative_difference(0, 0), 0);
+  EXPECT_EQ(relative_difference(1, 0), infinity);
+  EXPECT_EQ(relative_difference(Metrics::unset, Metrics::unset), 0) << "neither is known";
+  EXPECT_EQ(relative_difference(Metrics::unset, 1), infinity);
+  EXPECT_EQ(relative_difference(1, Metrics::unset), infinity);
+  EXPECT_EQ(relative_difference(infinity, infinity), 0);
+  EXPECT_EQ(relative_difference(1, infinity), infinity);
+  EXPECT_TRUE(std::isnan(relative_change(Metrics::unset, 1)));
+  EXPECT_TRUE(std::isnan(relative_change(1, Metrics::unset)));
+  EXPECT_TRUE(std::isnan(relative_change(0, 0)));
+}
+
+TEST(RelativeDifference, OfWhatIsSmallIsRelativeToTheLeastSize) {
+  EXPECT_EQ(relative_difference(1, 0, 4), 0.25);
+  EXPECT_EQ(relative_difference(3, 2, 4), 0.25);
+  EXPECT_EQ(relative_difference(9, 8, 4), 0.125);
+  EXPECT_EQ(relative_difference(-1, -2, 4), 0.25);
+}
+
+// The rows of the table in docs/figures.md that name a key are the rows of this one.
+TEST(Figures, AreThoseOfTheManual) {
+  std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/figures.md");
+  ASSERT_TRUE(stream);
+  std::set<std::string> told, own;
+  for (std::string line; std::getline(stream, line) && !line.starts_with("## How far");) {
+    std::istringstream cells(line);
+    std::string cell, symbol, key;
+    std::getline(cells, cell, '|');
+    std::getline(cells, cell, '|');
+    std::getline(cells, symbol, '|');
+    std::getline(cells, key, '|');
+    if (key.starts_with(" `")) told.insert(symbol + "|" + key);
+  }
+  for (const Figure& figure : all_figures) {
+    const bool has_symbol = figure.symbol.find('_') != std::string_view::npos;
+    own.insert((has_symbol ? " " + std::string(figure.symbol) : std::string()) + " | `" + std::string(figure.key) + "` ");
+  }
+  EXPECT_EQ(told, own);
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,93 @@
+// A result is reported alike whether it comes from a study or from the JSON that was written of it.
+#include "reports/result_maker.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "reports/files.h"
+#include "reports/html.h"
+#include "reports/result_json.h"
+#include "reports/result_reader.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+
+const Provenance provenance{.command = "softland test"};
+
+SceneFile shipped(const char* name, std::initializer_list<const char*> settings) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + name);
+  for (const char* setting : settings) file.set(setting);
+  return file;
+}
+
+void expect_the_same_reports(const Result& made) {
+  const Result again = read_result(parse_result(result_json(made).dump(), "result.json"));
+  EXPECT_EQ(text_report(again), text_report(made));
+  EXPECT_EQ(html_report(again), html_report(made));
+  EXPECT_EQ(svg_gap_chart(again), svg_gap_chart(made));
+  EXPECT_EQ(trajectory_csv(again.best.curve), trajectory_csv(made.best.curve));
+}
+
+TEST(ResultOf, AClosingIsReportedLikeItsJson) {
+  for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml", "two-electrodes.toml", "purdue-nickel.toml"}) {
+    SCOPED_TRACE(name);
+    const Prepared prepared = prepare(shipped(name, {}));
+    expect_the_same_reports(result_of(prepared, simulate(prepared, true), provenance));
+  }
+}
+
+TEST(ResultOf, ACertifiedClosingIsReportedLikeItsJson) {
+  const Prepared prepared = prepare(shipped("mem-gold.toml", {}));
+  const Result made = result_of(prepared, certify(prepared), provenance);
+  ASSERT_TRUE(made.certificate);
+  EXPECT_FALSE(made.certificate->ill_conditioned.empty());
+  expect_the_same_reports(made);
+}
+
+TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
+  const Prepared prepared = prepare(shipped("mem-gold.toml", {"waveform.main.level=3 V"}));
+  const Result made = result_of(prepared, simulate(prepared, true), provenance);
+  EXPECT_EQ(made.status, "no_contact");
+  expect_the_same_reports(made);
+}
+
+TEST(ResultOf, ASearchIsReportedLikeItsJson) {
+  const OptimizeOptions options{.target = Target::impact, .max_evaluations = 60};
+  Result made = result_of(optimize(shipped("mem-gold.toml", {}), options), options, provenance);
+  made.search.evaluations = {{0, 2.0}, {1, Metrics::unset}, {2, 1.5}};
+  made.reproduce = {"softland test", "softland again"};
+  EXPECT_TRUE(made.best.figures);
+  EXPECT_FALSE(made.checks.empty());
+  expect_the_same_reports(made);
+}
+
+TEST(ResultJson, HasEveryFigureOfTheTableAndNoOther) {
+  const Prepared prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=60 us"}));
+  const json written = result_json(result_of(prepared, simulate(prepared, true), provenance));
+  std::set<std::string> keys, errors;
+  for (const Figure& figure : all_figures) {
+    keys.emplace(figure.key);
+    if (!figure.is_yes_or_no()) errors.emplace(figure.key);
+  }
+  const auto keys_of = [](const json& object) {
+    std::set<std::string> all;
+    for (const auto& [key, value] : object.items()) all.insert(key);
+    return all;
+  };
+  EXPECT_EQ(keys_of(written["metrics"]), keys);
+  EXPECT_EQ(keys_of(written["errors"]), errors);
+  keys.insert("status");
+  EXPECT_EQ(keys_of(written["best"]["metrics"]), keys);
+  EXPECT_TRUE(written["metrics"]["bounce_count"].is_number_integer());
+  EXPECT_TRUE(written["metrics"]["settled"].is_boolean());
+  EXPECT_TRUE(written["metrics"]["peak_slew_V_s"].is_null()) << "a jump";
+}
+
+}  // namespace
+}  // namespace softland
