@@ -31,6 +31,7 @@
 #include "reports/result_reader.h"
 #include "reports/text.h"
 #include "studies/certify.h"
+#include "studies/choices.h"
 #include "studies/omissions.h"
 #include "studies/optimize.h"
 #include "studies/timing.h"
@@ -224,7 +225,7 @@ int simulate_verb(const Common& c, bool certified, const std::optional<std::stri
   const int jobs = job_count(jobs_option);
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared prepared = prepare(file, false, work->watch());
+  const Prepared prepared = prepare_and_choose(file, false, work->watch());
   const std::vector<std::string> files{"report.html", "gap.svg", "result.json", "trajectory.csv"};
   std::optional<ResultFolder> folder = claim_places(c, files);
   const Closing closing = certified ? certify(prepared, work->watch(), jobs) : simulate(prepared, true, work->watch());
@@ -247,7 +248,7 @@ int simulate_verb(const Common& c, bool certified, const std::optional<std::stri
 int pull_in_verb(const Common& c) {
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared prepared = prepare(file, false, work->watch());
+  const Prepared prepared = prepare_and_choose(file, false, work->watch());
   static_cast<void>(claim_places(c, {}));
   const auto& electrodes = prepared.scene.device.electrodes;
   require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
@@ -285,7 +286,7 @@ int pull_in_verb(const Common& c) {
 
 int modes_verb(const Common& c) {
   const SceneFile file = load_scene(c);
-  const Prepared prepared = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
+  const Prepared prepared = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   static_cast<void>(claim_places(c, {}));
   json list = json::array();
   constexpr int digits = 6;
@@ -303,7 +304,7 @@ int modes_verb(const Common& c) {
 int check_verb(const Common& c) {
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = prepare(file, true, work->watch());
+  const Prepared p = prepare_and_choose(file, true, work->watch());
   const Structure& s = p.scene.device.structure;
   const std::string title = shortened(printable_line(p.scene.title));
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
@@ -359,7 +360,7 @@ int check_verb(const Common& c) {
 int effects_verb(const Common& c) {
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = prepare(file, false, work->watch());
+  const Prepared p = prepare_and_choose(file, false, work->watch());
   static_cast<void>(claim_places(c, {}));
   const Effects effects = compare_effects(p, work->watch());
   work.reset();
@@ -369,7 +370,7 @@ int effects_verb(const Common& c) {
 
 int accuracy_verb(const Common& c) {
   const SceneFile file = load_scene(c);
-  const Prepared p = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
+  const Prepared p = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   std::optional<ResultFolder> folder = claim_places(c, {"report.html", "accuracy.svg", "accuracy.json"});
   Bar bar(c.quiet);
   AccuracyOptions options{.stop = c.stop};
@@ -481,7 +482,7 @@ int new_verb(const std::string& kind) {
 
 int export_verb(const Common& c, const std::string& result, const std::string& format) {
   const SceneFile file = scene_of_result(result);
-  const Prepared p = prepare(file, false, WatchedWork(c.quiet, c.stop).watch());
+  const Prepared p = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   require(format == "csv" || format == "spice-pwl", fmt::format("--format {}: must be csv or spice-pwl", format));
   print(format == "csv" ? csv(named_signals(p), p.duration) : spice_pwl(named_signals(p), p.duration));
   return exit_done;

@@ -9,6 +9,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
+#include "studies/choices.h"
 #include "studies/two_stages.h"
 
 namespace softland {
@@ -34,7 +35,7 @@ SceneFile with_waveforms(const Prepared& p, const std::map<std::string, Waveform
 // Text of the scene, read back: what a user's `simulate best.toml` will run. Warnings stay those about the file that the user
 // wrote.
 Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
-  Prepared p = prepare(SceneFile::parse(file.text(), name));
+  Prepared p = prepare_and_choose(SceneFile::parse(file.text(), name));
   p.scene.warnings = given.scene.warnings;
   return p;
 }
@@ -111,7 +112,7 @@ bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   const Watch before{.stop = options.stop, .progress = options.on_preparation}, after{.progress = options.on_preparation};
-  Prepared given = prepare(file, true, before);
+  Prepared given = prepare_and_choose(file, true, before);
   require(given.device.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
 
   // The baseline: plain steps to the hold levels the scene describes, as steep as the driver permits.

@@ -9,8 +9,6 @@
 #include "base/engineering.h"
 #include "model/constants.h"
 #include "model/timoshenko.h"
-#include "studies/auto_modes.h"
-#include "studies/omissions.h"
 
 namespace softland {
 
@@ -73,15 +71,10 @@ void check_window(const Prepared& p) {
   }
 }
 
-Prepared as_described(const SceneFile& given, bool default_limits, const Watch& watch) {
-  SceneFile file = given;
-  Scene scene = read_scene(file);
-  if (scene.auto_modes) {
-    const AutoModes chosen = choose_modes(file, watch);
-    file.assign("structure.modes", chosen.modes);
-    scene = read_scene(file);
-    scene.warnings.push_back(chosen.note());
-  }
+}  // namespace
+
+Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch) {
+  const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
   const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
   Prepared p{.scene = scene, .device = Switch(scene.device, quadrature), .quadrature = quadrature};
@@ -108,33 +101,6 @@ Prepared as_described(const SceneFile& given, bool default_limits, const Watch& 
   p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance
                                              : tolerance_for(scene.simulate.accuracy, p.device.film_states() > 0);
   return p;
-}
-
-std::string left_out_note(const EffectsChoice& choice, double tolerance) {
-  if (choice.left_out.empty())
-    return fmt::format(
-        "effects = \"auto\": nothing is left out: no effect was found without which t_i, v_i and B_H change by less than {}",
-        engineering(tolerance, ""));
-  std::vector<std::string> names;
-  for (const Omission& o : choice.left_out)
-    names.push_back(fmt::format("{} ({})", o.what.effect, engineering(o.influence, "", 1)));
-  return fmt::format("effects = \"auto\" leaves out {}: t_i, v_i and B_H change by {} together", fmt::join(names, ", "),
-                     engineering(choice.influence, "", 1));
-}
-
-}  // namespace
-
-Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch) {
-  Prepared p = as_described(file, default_limits, watch);
-  const SimulateOptions& options = p.scene.simulate;
-  if (!options.automatic_effects) return p;
-  EffectsChoice choice = negligible_effects(p, options.effects_tolerance, watch);
-  std::vector<Omissible> effects;
-  for (const Omission& o : choice.left_out) effects.push_back(o.what);
-  Prepared chosen = without(p, effects);
-  chosen.scene.warnings.push_back(left_out_note(choice, options.effects_tolerance));
-  chosen.effects = std::make_shared<const DescribedEffects>(DescribedEffects{.described = p.scene, .choice = std::move(choice)});
-  return chosen;
 }
 
 }  // namespace softland

@@ -51,8 +51,9 @@ struct Prepared {
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
 
-/// Reads, composes and resolves a scene; modes = "auto" is replaced by the number chosen, with a warning that says so; pull-in
-/// voltages are computed for the electrodes that need them (and, with `default_limits`, for all that have no written limit).
+/// Reads, composes and resolves a scene; pull-in voltages are computed for the electrodes that need them (and, with
+/// `default_limits`, for all that have no written limit). What the scene leaves to softland is not chosen yet (choices.h):
+/// modes = "auto" stands for the usual number, effects = "auto" for all of them.
 /// Throws InvalidInput for a bad scene, or one whose pull-in voltage is needed and does not exist; Interrupted where `watch` asks
 /// to stop.
 [[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false, const Watch& watch = {});

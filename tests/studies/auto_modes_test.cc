@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes.h"
+#include "studies/choices.h"
 #include "studies/omissions.h"
 #include "studies/simulate.h"
 
@@ -16,7 +17,7 @@ using testing::HasSubstr;
 
 SceneFile gold_with_modes(const char* modes) { return gold_at_17_volts({std::string("structure.modes=") + modes}); }
 
-double rebound(const char* modes) { return simulate(prepare(gold_with_modes(modes)), false).metrics.major_bounce_height; }
+double rebound(const char* modes) { return simulate(prepare_and_choose(gold_with_modes(modes)), false).metrics.major_bounce_height; }
 
 TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
   // Three to five modes agree, and are wrong by a tenth.
@@ -42,7 +43,7 @@ TEST(AutoModes, SayWhenNoClosingCouldBeJudged) {
 }
 
 TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
-  const Prepared p = prepare(gold_with_modes("auto"));
+  const Prepared p = prepare_and_choose(gold_with_modes("auto"));
   const int modes = p.scene.device.structure.modes;
   EXPECT_EQ(p.device.modes(), modes);
   EXPECT_FALSE(p.scene.auto_modes);
@@ -58,7 +59,7 @@ TEST(AutoModes, AreChosenBeforeTheEffects) {
   SceneFile file = gold_with_modes("auto");
   file.set("structure.damping_ratio=1e-9");
   file.set("simulate.effects=auto");
-  const Prepared p = prepare(file);
+  const Prepared p = prepare_and_choose(file);
   EXPECT_EQ(p.scene.device.structure.modes, choose_modes(gold_with_modes("auto")).modes);
   ASSERT_TRUE(p.effects);
   ASSERT_EQ(p.effects->choice.left_out.size(), 1u);

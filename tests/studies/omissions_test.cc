@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "scenes.h"
+#include "studies/choices.h"
 #include "studies/simulate.h"
 
 namespace softland {
@@ -108,7 +109,7 @@ TEST(Influence, IsTheLargestRelativeChange) {
 
 TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   const SceneFile file = gold_at_17_volts({"structure.damping_ratio=1e-9", weak_dispersion, "simulate.effects=auto"});
-  const Prepared p = prepare(file);
+  const Prepared p = prepare_and_choose(file);
   ASSERT_TRUE(p.effects);
   EXPECT_THAT(names(p.effects->choice.left_out), testing::UnorderedElementsAre("structure.damping_ratio", "dispersion"));
   EXPECT_LE(p.effects->choice.influence, 1e-3);
@@ -125,8 +126,8 @@ TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
 }
 
 TEST(AutomaticEffects, KeepWhatMattersByTheTolerance) {
-  EXPECT_THAT(prepare(gold_at_17_volts({"simulate.effects=auto"})).effects->choice.left_out, IsEmpty());
-  const Prepared loose = prepare(gold_at_17_volts({"simulate.effects=auto", "simulate.effects_tolerance=0.099"}));
+  EXPECT_THAT(prepare_and_choose(gold_at_17_volts({"simulate.effects=auto"})).effects->choice.left_out, IsEmpty());
+  const Prepared loose = prepare_and_choose(gold_at_17_volts({"simulate.effects=auto", "simulate.effects_tolerance=0.099"}));
   EXPECT_THAT(names(loose.effects->choice.left_out), IsEmpty()) << "B_H changes by a third without the film";
   EXPECT_THAT(loose.scene.warnings.back(), HasSubstr("nothing is left out"));
 }
@@ -146,7 +147,7 @@ TEST(AutomaticEffects, CountTogether) {
 }
 
 TEST(AutomaticEffects, LeaveNothingOutWhereNothingTouches) {
-  const Prepared p = prepare(gold_at_17_volts({"waveform.main.level=3 V", weak_dispersion, "simulate.effects=auto"}));
+  const Prepared p = prepare_and_choose(gold_at_17_volts({"waveform.main.level=3 V", weak_dispersion, "simulate.effects=auto"}));
   EXPECT_THAT(p.effects->choice.left_out, IsEmpty());
 }
 

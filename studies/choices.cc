@@ -1,0 +1,58 @@
+#include "studies/choices.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/engineering.h"
+#include "studies/auto_modes.h"
+#include "studies/omissions.h"
+
+namespace softland {
+namespace {
+
+std::string left_out_note(const EffectsChoice& choice, double tolerance) {
+  if (choice.left_out.empty())
+    return fmt::format(
+        "effects = \"auto\": nothing is left out: no effect was found without which t_i, v_i and B_H change by less than {}",
+        engineering(tolerance, ""));
+  std::vector<std::string> names;
+  for (const Omission& o : choice.left_out)
+    names.push_back(fmt::format("{} ({})", o.what.effect, engineering(o.influence, "", 1)));
+  return fmt::format("effects = \"auto\" leaves out {}: t_i, v_i and B_H change by {} together", fmt::join(names, ", "),
+                     engineering(choice.influence, "", 1));
+}
+
+Prepared with_as_many_modes_as_needed(const Prepared& prepared, bool default_limits, const Watch& watch) {
+  const AutoModes chosen = choose_modes(prepared.scene.file, watch);
+  SceneFile file = prepared.scene.file;
+  file.assign("structure.modes", chosen.modes);
+  Prepared p = prepare(file, default_limits, watch);
+  p.scene.warnings.push_back(chosen.note());
+  return p;
+}
+
+Prepared without_what_does_not_matter(const Prepared& prepared, const Watch& watch) {
+  const double tolerance = prepared.scene.simulate.effects_tolerance;
+  EffectsChoice choice = negligible_effects(prepared, tolerance, watch);
+  std::vector<Omissible> effects;
+  for (const Omission& o : choice.left_out) effects.push_back(o.what);
+  Prepared chosen = without(prepared, effects);
+  chosen.scene.warnings.push_back(left_out_note(choice, tolerance));
+  chosen.effects =
+      std::make_shared<const DescribedEffects>(DescribedEffects{.described = prepared.scene, .choice = std::move(choice)});
+  return chosen;
+}
+
+}  // namespace
+
+Prepared choose(Prepared prepared, bool default_limits, const Watch& watch) {
+  if (prepared.scene.auto_modes) prepared = with_as_many_modes_as_needed(prepared, default_limits, watch);
+  if (prepared.scene.simulate.automatic_effects) prepared = without_what_does_not_matter(prepared, watch);
+  return prepared;
+}
+
+}  // namespace softland
