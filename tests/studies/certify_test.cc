@@ -11,6 +11,7 @@
 
 #include "model/constants.h"
 #include "scenes.h"
+#include "studies/choices.h"
 #include "tests/support/random_scenes.h"
 
 namespace softland {
