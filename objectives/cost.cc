@@ -37,35 +37,46 @@ std::optional<Target> target_from(std::string_view name) {
 
 bool has_own_cost(Target target) { return target == Target::settling || target == Target::impact || target == Target::energy; }
 
-CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options) {
-  CostFigures f;
-  f.touched = !trajectory.touches.empty();
-  if (!f.touched) {
-    f.closest = trajectory.contact_gap;
-    for (const TrajectoryPoint& p : trajectory.points) f.closest = std::min(f.closest, trajectory.contact_gap - p.position);
-    return f;
-  }
-  f.first_touch = f.last_rebound_end = trajectory.touches.front().begin;
-  for (const Touch& touch : trajectory.touches) {
-    f.touch_speed = std::max(f.touch_speed, touch.impact_velocity);
-    f.impact_energy += touch.peak_energy;
-  }
+void CostObserver::knot(const TrajectoryPoint& point) {
+  if (!figures_.touched) figures_.closest = std::min(figures_.closest, contact_gap_ - point.position);
+  rebounds_.knot(point, [this](const Rebound& rebound) { take(rebound, rebound.end); });
+}
+
+void CostObserver::touch(const Touch& touch) {
+  if (!figures_.touched) figures_.first_touch = figures_.last_rebound_end = touch.begin;
+  figures_.touched = true;
+  figures_.touch_speed = std::max(figures_.touch_speed, touch.impact_velocity);
+  figures_.impact_energy += touch.peak_energy;
+}
+
+void CostObserver::take(const Rebound& rebound, double until) {
+  separated_ += until - rebound.begin;
+  rebound_height_ = std::max(rebound_height_, rebound.height);
+  if (rebound.height > significant_rebound_) last_rebound_end_ = until;
+}
+
+CostFigures CostObserver::figures(double landing_excess) {
+  if (!figures_.touched) return figures_;
+  if (rebounds_.under_way()) take(*rebounds_.under_way(), rebounds_.last_time());
+  CostFigures f = figures_;
+  f.closest = 0;
+  f.separated = separated_;
+  f.rebound_height = rebound_height_;
+  if (std::isfinite(last_rebound_end_)) f.last_rebound_end = last_rebound_end_;
   // A drive that never comes to rest inside the run leaves the energy unmeasured: the other figures must do.
-  if (std::isfinite(trajectory.landing_excess)) f.landing_excess = std::max(0.0, trajectory.landing_excess);
-  const double end = trajectory.points.back().time;
-  for (const Rebound& r : rebounds(trajectory)) {
-    const double until = std::isfinite(r.end) ? r.end : end;
-    f.separated += until - r.begin;
-    f.rebound_height = std::max(f.rebound_height, r.height);
-    if (!(r.height > options.significant_rebound)) continue;
-    f.last_rebound_end = until;
-  }
+  if (std::isfinite(landing_excess)) f.landing_excess = std::max(0.0, landing_excess);
   return f;
 }
 
-double cost(Target target, const Trajectory& trajectory, const CostScale& scale, const MetricsOptions& options) {
-  if (trajectory.status != Status::done) return std::numeric_limits<double>::infinity();
-  const CostFigures f = cost_figures(trajectory, options);
+CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options) {
+  CostObserver observer(trajectory.contact_gap, options);
+  for (const TrajectoryPoint& point : trajectory.points) observer.knot(point);
+  for (const Touch& touch : trajectory.touches) observer.touch(touch);
+  return observer.figures(trajectory.landing_excess);
+}
+
+double cost(Target target, Status status, const CostFigures& f, const CostScale& scale, const MetricsOptions& options) {
+  if (status != Status::done) return std::numeric_limits<double>::infinity();
   if (!f.touched) return 10 + f.closest / scale.contact_gap;
   const double h = ratio(f.rebound_height, scale.step.rebound_height);
   const double p = f.rebound_height / (f.rebound_height + 10 * options.significant_rebound);

@@ -25,9 +25,11 @@
 // leaves the laws' validity, cannot be integrated) is infeasible: infinity.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string_view>
 
+#include "model/closing/observer.h"
 #include "model/trajectory.h"
 #include "objectives/metrics.h"
 
@@ -54,12 +56,40 @@ struct CostFigures {
 };
 [[nodiscard]] CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options);
 
+/// Gathers the figures while a closing runs, and keeps nothing of its course.
+class CostObserver final : public ClosingObserver {
+ public:
+  /// `contact_gap` [m]
+  CostObserver(double contact_gap, const MetricsOptions& options)
+      : contact_gap_(contact_gap), significant_rebound_(options.significant_rebound), rebounds_(contact_gap) {
+    figures_.closest = contact_gap;
+  }
+  void knot(const TrajectoryPoint& point) override;
+  void touch(const Touch& touch) override;
+  /// Of the run, once it has ended; `landing_excess` is the Trajectory's [J].
+  [[nodiscard]] CostFigures figures(double landing_excess);
+
+ private:
+  void take(const Rebound& rebound, double until);
+
+  double contact_gap_, significant_rebound_;  // [m]
+  ReboundFinder rebounds_;
+  CostFigures figures_;  // but for those of the rebounds
+  double separated_ = 0, rebound_height_ = 0, last_rebound_end_ = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct CostScale {
   CostFigures step;         ///< figures of the plain step
   double score_window = 0;  ///< [s]
   double contact_gap = 0;   ///< [m]
   double free_touch = 0;    ///< T_free, over first touch of the step
 };
-[[nodiscard]] double cost(Target target, const Trajectory& trajectory, const CostScale& scale, const MetricsOptions& options);
+/// Infinite for a run that is not done.
+[[nodiscard]] double cost(Target target, Status status, const CostFigures& figures, const CostScale& scale,
+                          const MetricsOptions& options);
+[[nodiscard]] inline double cost(Target target, const Trajectory& trajectory, const CostScale& scale,
+                                 const MetricsOptions& options) {
+  return cost(target, trajectory.status, cost_figures(trajectory, options), scale, options);
+}
 
 }  // namespace softland

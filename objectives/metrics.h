@@ -6,19 +6,12 @@
 #include <vector>
 
 #include "model/trajectory.h"
+#include "objectives/rebounds.h"
 
 namespace softland {
 
 struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
-};
-
-/// An interval after first contact in which the contact point stands above the first-touch plane.
-struct Rebound {
-  double begin = 0;           ///< [s]
-  double end = 0;             ///< [s]; NaN when it is under way at the end of the window
-  double height = 0;          ///< largest separation in it [m]; a lower bound when it is under way
-  double time_of_height = 0;  ///< [s]
 };
 
 struct Metrics {

@@ -181,8 +181,10 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   const std::vector<Signal> standing = baseline_scene.signals();
   result.variables = space.variables();
   const auto price = [&](const std::vector<Signal>& signals) {
-    const Trajectory closing = simulate_closing(given.device, signals, run);
-    const auto by = [&](Target target) { return cost(target, closing, scale, metrics_options); };
+    CostObserver observer(scale.contact_gap, metrics_options);
+    const Trajectory end = observe_closing(given.device, signals, run, observer);
+    const CostFigures figures = observer.figures(end.landing_excess);
+    const auto by = [&](Target target) { return cost(target, end.status, figures, scale, metrics_options); };
     const double leading = by(Target::bounce);
     return Prices{.leading = leading, .own = has_own_cost(options.target) ? by(options.target) : leading};
   };

@@ -1,12 +1,16 @@
 // What a search minimises, on trajectories made by hand. No weight is repeated here: only what must hold whatever they are.
 #include "objectives/cost.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "model/closing.h"
 #include "scenes.h"
+#include "studies/prepared.h"
 
 namespace softland {
 namespace {
@@ -127,6 +131,42 @@ TEST(Cost, OfTheSameLandingLaterIsNotLower) {
   const Trajectory early = plain_step(), late = landing(35e-6, 0.3, 100e-9, 8e-6, 1e-12);
   for (const Target target : every_target)
     EXPECT_GT(cost(target, late, scale(), options), cost(target, early, scale(), options)) << to_string(target);
+}
+
+// A search keeps no trajectory: it gathers the figures while each closing runs.
+TEST(CostObserver, GathersTheFiguresThatATrajectoryHas) {
+  for (const char* level : {"17.771 V", "30 V", "13 V", "5 V"}) {
+    for (const char* window : {"600 us", "60 us"}) {  // the short one ends in a rebound
+      const Prepared p =
+          prepare(gold({fmt::format("waveform.main.level={}", level), fmt::format("simulate.duration={}", window)}));
+      const ClosingOptions run{.duration = p.duration, .tolerance = 1e-4, .closed_potential = -1e-12};
+      const Trajectory t = simulate_closing(p.device, p.signals(), run);
+      const CostFigures expected = cost_figures(t, options);
+      CostObserver observer(t.contact_gap, options);
+      const Trajectory end = observe_closing(p.device, p.signals(), run, observer);
+      EXPECT_TRUE(end.points.empty() && end.touches.empty());
+      EXPECT_EQ(end.status, t.status);
+      const CostFigures own = observer.figures(end.landing_excess);
+      SCOPED_TRACE(fmt::format("{} {}", level, window));
+      EXPECT_EQ(own.touched, expected.touched);
+      EXPECT_EQ(own.closest, expected.closest);
+      EXPECT_EQ(own.first_touch, expected.first_touch);
+      EXPECT_EQ(own.touch_speed, expected.touch_speed);
+      EXPECT_EQ(own.impact_energy, expected.impact_energy);
+      EXPECT_EQ(own.landing_excess, expected.landing_excess);
+      // And what a trajectory says of its own rebounds.
+      double separated = 0, height = 0, last_end = expected.first_touch;
+      for (const Rebound& r : rebounds(t)) {
+        const double until = std::isfinite(r.end) ? r.end : t.points.back().time;
+        separated += until - r.begin;
+        height = std::max(height, r.height);
+        if (r.height > options.significant_rebound) last_end = until;
+      }
+      EXPECT_EQ(own.separated, separated);
+      EXPECT_EQ(own.rebound_height, height);
+      EXPECT_EQ(own.last_rebound_end, last_end);
+    }
+  }
 }
 
 TEST(Cost, IsFiniteWhereTheEnergyWasNotMeasured) {

@@ -1,0 +1,132 @@
+// The rebounds of a closing, found as its knots come: nothing of what has passed is kept.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "integrators/quintic.h"
+#include "integrators/roots.h"
+#include "model/trajectory.h"
+
+namespace softland {
+
+/// An interval in which the contact point stands above the first-touch plane, after first contact.
+struct Rebound {
+  double begin = 0;           ///< [s]
+  double end = 0;             ///< [s]; NaN when it is under way at the end of the window
+  double height = 0;          ///< largest separation in it [m]; a lower bound when it is under way
+  double time_of_height = 0;  ///< [s]
+};
+
+/// Follows the separation of the contact point from the plane. Between knots its turning points and its crossings of the plane
+/// are those of the quintic through them. A separation below 1e-12 of the contact gap is none: the integrator stops at the plane
+/// to rounding.
+class ReboundFinder {
+ public:
+  /// `contact_gap` [m]
+  explicit ReboundFinder(double contact_gap) : gap_(contact_gap), usable_(std::isfinite(contact_gap)) {}
+
+  /// Takes the next knot and calls found(rebound) for every rebound that ends before it. False, from then on, for a knot that is
+  /// not finite or goes back in time: neither it nor what follows counts.
+  template <class Found>
+  bool knot(const TrajectoryPoint& next, Found&& found) {
+    usable_ = usable_ && std::isfinite(next.time) && std::isfinite(next.position) && std::isfinite(next.velocity) &&
+              std::isfinite(next.acceleration) && !(began_ && next.time < last_.time);
+    if (!usable_) return false;
+    if (began_ && next.time > last_.time) {
+      follow(last_, next, found);
+    } else {
+      reach(node(next), found);
+    }
+    began_ = true;
+    last_ = next;
+    return true;
+  }
+
+  /// Whether every knot so far could be used.
+  [[nodiscard]] bool usable() const { return usable_; }
+  [[nodiscard]] bool touched() const { return touched_; }
+  [[nodiscard]] double first_touch() const { return first_touch_; }          ///< [s]; NaN before
+  [[nodiscard]] double impact_velocity() const { return impact_velocity_; }  ///< of the first touch [m/s]; NaN before
+  [[nodiscard]] double last_time() const { return last_.time; }              ///< of the last knot that counted [s]
+  /// The rebound that has not ended yet.
+  [[nodiscard]] const std::optional<Rebound>& under_way() const { return under_way_; }
+
+ private:
+  /// A place between which and the next one the separation is monotone and keeps its sign.
+  struct Node {
+    double time = 0;        ///< [s]
+    double separation = 0;  ///< [m], 0 on the plane
+    double velocity = 0;    ///< [m/s]
+  };
+
+  [[nodiscard]] double snapped(double separation) const {
+    constexpr double on_the_plane = 1e-12;  // of the contact gap
+    return std::abs(separation) <= on_the_plane * std::abs(gap_) ? 0.0 : separation;
+  }
+  [[nodiscard]] Node node(const TrajectoryPoint& p) const { return {p.time, snapped(gap_ - p.position), p.velocity}; }
+
+  template <class Found>
+  void follow(const TrajectoryPoint& a, const TrajectoryPoint& b, Found&& found) {
+    const Quintic curve(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
+    const auto separation = [&](double t) { return gap_ - curve.position(t); };
+    const auto advance = [&](const Node& next) {
+      const Node& before = node_;
+      if ((before.separation < 0 && next.separation > 0) || (before.separation > 0 && next.separation < 0)) {
+        const double crossing = bracketed_zero(separation, before.time, next.time);
+        reach({crossing, 0, curve.velocity(crossing)}, found);
+      }
+      reach(next, found);
+    };
+    if (!surely_monotone(a, b)) {
+      for (const double t : curve.turns()) advance({t, snapped(separation(t)), curve.velocity(t)});
+    }
+    advance(node(b));
+  }
+
+  template <class Found>
+  void reach(const Node& next, Found&& found) {
+    if (!touched_ && next.separation <= 0) {
+      touched_ = true;
+      first_touch_ = next.time;
+      impact_velocity_ = std::abs(next.velocity);
+    } else if (touched_ && next.separation > 0) {
+      if (!under_way_) under_way_ = Rebound{.begin = node_.time, .end = std::numeric_limits<double>::quiet_NaN()};
+      if (next.separation > under_way_->height) {
+        under_way_->height = next.separation;
+        under_way_->time_of_height = next.time;
+      }
+    } else if (under_way_) {
+      under_way_->end = next.time;
+      found(*under_way_);
+      under_way_.reset();
+    }
+    node_ = next;
+  }
+
+  /// True when the control points of the quintic's Bernstein form are in order: a cheap proof that nothing turns between the
+  /// knots.
+  [[nodiscard]] static bool surely_monotone(const TrajectoryPoint& a, const TrajectoryPoint& b) {
+    const double h = b.time - a.time;
+    const double from_a = a.velocity * h / 5;
+    const double from_b = b.velocity * h / 5;
+    const double bend_a = a.acceleration * h * h / 20;
+    const double bend_b = b.acceleration * h * h / 20;
+    const std::array<double, 5> differences{
+        from_a, from_a + bend_a, (b.position - a.position) - 2 * (from_a + from_b) + bend_b - bend_a, from_b - bend_b, from_b};
+    return std::all_of(differences.begin(), differences.end(), [](double d) { return d >= 0; }) ||
+           std::all_of(differences.begin(), differences.end(), [](double d) { return d <= 0; });
+  }
+
+  double gap_;  // [m]
+  bool usable_, began_ = false, touched_ = false;
+  TrajectoryPoint last_;
+  Node node_;
+  double first_touch_ = std::numeric_limits<double>::quiet_NaN(), impact_velocity_ = std::numeric_limits<double>::quiet_NaN();
+  std::optional<Rebound> under_way_;
+};
+
+}  // namespace softland
