@@ -7,14 +7,14 @@
 
 namespace softland {
 
-std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system) {
+std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system, double tolerance) {
   switch (integrator) {
     case Integrator::lawson:
       return std::make_unique<Lawson>(system);
     case Integrator::arkode_erk:
       return make_arkode_erk(system);
     case Integrator::esdirk:
-      return make_esdirk(system);
+      return make_esdirk(system, tolerance);
     case Integrator::bdf:
       return make_bdf(system);
     case Integrator::adams:

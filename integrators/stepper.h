@@ -41,7 +41,8 @@ class Stepper {
   [[nodiscard]] virtual double stiffness() const { return 0; }
 };
 
-/// Keeps a reference to the system. Throws std::logic_error for `automatic`.
-[[nodiscard]] std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system);
+/// Keeps a reference to the system. `tolerance`: relative, what the absolute ones of a restart come from; how a method begins a
+/// step best depends on it. Throws std::logic_error for `automatic`.
+[[nodiscard]] std::unique_ptr<Stepper> make_stepper(Integrator integrator, const OdeSystem& system, double tolerance);
 
 }  // namespace softland

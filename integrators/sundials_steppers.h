@@ -8,8 +8,9 @@
 
 namespace softland {
 
-/// Diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE.
-[[nodiscard]] std::unique_ptr<Stepper> make_esdirk(const OdeSystem& system);
+/// Diagonally implicit Runge-Kutta 5(4) with eight stages (Kennedy & Carpenter 2003), ARKODE. At tight tolerances its stages
+/// begin from those of the last step.
+[[nodiscard]] std::unique_ptr<Stepper> make_esdirk(const OdeSystem& system, double tolerance);
 /// Backward differentiation, orders 1 to 5, CVODE.
 [[nodiscard]] std::unique_ptr<Stepper> make_bdf(const OdeSystem& system);
 /// Adams-Moulton with functional iteration, orders 1 to 12, CVODE.

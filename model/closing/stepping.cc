@@ -54,7 +54,7 @@ Stepping::Stepping(ClosingParts& parts)
       next_(here_) {
   const Integrator asked = parts.options.integrator;
   work_.integrator = asked == Integrator::automatic ? automatic_integrator(parts.model) : asked;
-  stepper_ = make_stepper(work_.integrator, parts.equations.system());
+  stepper_ = make_stepper(work_.integrator, parts.equations.system(), parts.options.tolerance);
 }
 
 bool Stepping::fail(const std::string& why) {
@@ -90,8 +90,9 @@ bool Stepping::check_work() {
     return true;
   }
   work_.integrator = Integrator::bdf;
-  stepper_ = make_stepper(work_.integrator, parts_.equations.system());
-  tolerances_ = Tolerances(parts_.model, implicit_care * options.tolerance);
+  const double tolerance = implicit_care * options.tolerance;
+  stepper_ = make_stepper(work_.integrator, parts_.equations.system(), tolerance);
+  tolerances_ = Tolerances(parts_.model, tolerance);
   return restart();
 }
 

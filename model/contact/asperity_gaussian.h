@@ -35,7 +35,7 @@ class GaussianTail {
   /// F_1.5(h)
   template <class S>
   S operator()(S h) const {
-    return one_by_one(h, [this](const auto& one) { return of_one(one); });
+    return one_by_one(h, [this](const auto& one) { return this->of_one(one); });
   }
 
  private:

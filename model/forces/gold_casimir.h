@@ -62,7 +62,7 @@ struct GoldCasimir {
 
   template <class S>
   S factor(S h) const {
-    return one_by_one(h, [this](const auto& one) { return of_one(one); });
+    return one_by_one(h, [this](const auto& one) { return this->of_one(one); });
   }
   template <class S>
   S pressure(S h) const {
