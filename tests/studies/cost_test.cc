@@ -135,7 +135,7 @@ TEST(Cost, OfTheSameLandingLaterIsNotLower) {
 
 // A search keeps no trajectory: it gathers the figures while each closing runs.
 TEST(CostObserver, GathersTheFiguresThatATrajectoryHas) {
-  for (const char* level : {"17.771 V", "30 V", "13 V", "5 V"}) {
+  for (const char* level : {"17.771 V", "21 V", "13 V", "5 V"}) {
     for (const char* window : {"600 us", "60 us"}) {  // the short one ends in a rebound
       const Prepared p =
           prepare(gold({fmt::format("waveform.main.level={}", level), fmt::format("simulate.duration={}", window)}));
