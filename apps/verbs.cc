@@ -254,7 +254,7 @@ int pull_in_verb(const Common& c) {
   require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
   json all = json::object();
   std::string text;
-  bool failed = false;
+  bool failed = false, never_open = false;
   for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
     json one = pull_in_of(prepared, k, work->watch());
     const json& p = one["pull_in"];
@@ -271,7 +271,10 @@ int pull_in_verb(const Common& c) {
                                                                             : "the contact point reaches the contact first",
                               dynamic_words(p));
     if (prepared.device.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
-    failed = failed || one["status"] != "done";
+    if (collapsed(one))
+      never_open = true;
+    else
+      failed = failed || one["status"] != "done";
     if (electrodes.size() == 1) {
       all = std::move(one);
     } else {
@@ -281,7 +284,7 @@ int pull_in_verb(const Common& c) {
   const bool interrupted = work->watch().stopped();
   work.reset();
   print_json_or(c, all, text);
-  return interrupted ? exit_interrupted : failed ? exit_numerical_failure : exit_done;
+  return interrupted ? exit_interrupted : failed ? exit_numerical_failure : never_open ? exit_no_success : exit_done;
 }
 
 int modes_verb(const Common& c) {

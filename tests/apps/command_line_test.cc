@@ -210,9 +210,10 @@ TEST(Check, SaysWhenTheSwitchHasNoOpenState) {
               HasSubstr("dispersion force     no open state: closes by itself from 0.7253 of its nominal strength on\n"));
   write(here.path() / "tin.toml", shipped("nem-tin.toml"));
   for (const char* verb : {"check", "pull-in"}) {
-    const std::string text = here.run({verb, "tin.toml", "--set", "gap.electrode=3 nm", "--set", "gap.contact=2 nm", "--set",
-                                       "waveform.main.level=1 V", "--set", "driver.main.max_voltage=2 V"})
-                                 .out;
+    const Outcome o = here.run({verb, "tin.toml", "--set", "gap.electrode=3 nm", "--set", "gap.contact=2 nm", "--set",
+                                "waveform.main.level=1 V", "--set", "driver.main.max_voltage=2 V"});
+    EXPECT_EQ(o.status, verb == std::string("pull-in") ? 4 : 0) << verb;
+    const std::string& text = o.out;
     EXPECT_THAT(text, HasSubstr("no pull-in voltage: the switch has no open state")) << verb;
     EXPECT_THAT(text, Not(HasSubstr("none"))) << verb;
   }

@@ -68,7 +68,7 @@ TEST(Headline, SaysWhenASwitchHasNotSettled) {
   EXPECT_EQ(
       sentence(result),
       "The switch first touches at 23.2 µs, then bounces about 57 times up to 803 nm and has not settled when the window ends at "
-      "600 µs.");
+      "600 µs (what follows is not counted).");
 }
 
 TEST(Headline, QuotesIllConditionedFiguresWithAbout) {
