@@ -1,6 +1,7 @@
 // Bad input is an exception that says what was wrong; numerical trouble is a status in a result, never an exception.
 #pragma once
 
+#include <concepts>
 #include <source_location>
 #include <stdexcept>
 #include <string>
@@ -24,6 +25,12 @@ class InvalidInput : public std::runtime_error {
 /// Throws InvalidInput with `message` unless `rule_holds`. Write the rule so that NaN fails it. Never compiled out.
 inline void require(bool rule_holds, std::string_view message, std::source_location where = std::source_location::current()) {
   if (!rule_holds) throw InvalidInput(std::string(message), where);
+}
+
+/// The same with a message that is made when it is needed: message().
+template <std::invocable Message>
+void require(bool rule_holds, Message&& message, std::source_location where = std::source_location::current()) {
+  if (!rule_holds) throw InvalidInput(message(), where);
 }
 
 }  // namespace softland

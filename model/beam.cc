@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "base/engineering.h"
 #include "base/gauss.h"
@@ -123,33 +124,18 @@ std::vector<BeamSection> beam_sections(const Device& device) {
   return sections;
 }
 
-BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support) {
-  require(modes >= 1 && modes <= 40, fmt::format("modes = {}: must be from 1 to 40", modes));
-  require(!sections.empty() && sections.front().begin == 0, "beam sections must start at x = 0");
-  for (std::size_t i = 0; i < sections.size(); ++i) {
-    const BeamSection& s = sections[i];
-    require(s.end > s.begin && s.rigidity > 0 && s.mass_per_length > 0,
-            fmt::format("beam section {}: needs end > begin, rigidity > 0 and mass_per_length > 0", i));
-    require(i == 0 || s.begin == sections[i - 1].end, fmt::format("beam section {} must begin where the one before it ends", i));
-  }
-  length_ = sections.back().end;
-  const double ei = sections.front().rigidity, mu = sections.front().mass_per_length;
-  rigidity_ = ei;
-  scale_ = 1 / std::sqrt(mu * length_);
-  frequency_scale_ = std::sqrt(ei / (mu * length_)) / std::pow(length_, 1.5);
-
+NormalisedModes::NormalisedModes(Beam beam) : beam_(std::move(beam)) {
   // A strong tension bends the beam close to its clamps only, over lengths of L / sqrt(N L^2 / EI).
-  const double layers = std::sqrt(std::max(0.0, support.axial_force * length_ * length_ / ei)) / 5;
-  const int count = std::max({shortest_count, modes, static_cast<int>(std::min(layers, 40.0))});
+  const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
+  const int modes = beam_.modes, count = std::max({shortest_count, modes, static_cast<int>(std::min(layers, 40.0))});
   std::vector<double> mass;
-  for (const BeamSection& s : sections) {
-    const double begin = s.begin / length_, end = s.end / length_;
-    const int parts = std::max(1, static_cast<int>(std::ceil((end - begin) * count - 1e-9)));
+  for (const Beam::Section& s : beam_.sections) {
+    const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
-      elements_.push_back({.begin = begin + (end - begin) * k / parts,
-                           .end = k + 1 == parts ? end : begin + (end - begin) * (k + 1) / parts,
-                           .rigidity = s.rigidity / ei});
-      mass.push_back(s.mass_per_length / mu);
+      elements_.push_back({.begin = s.begin + (s.end - s.begin) * k / parts,
+                           .end = k + 1 == parts ? s.end : s.begin + (s.end - s.begin) * (k + 1) / parts,
+                           .rigidity = s.rigidity});
+      mass.push_back(s.mass);
     }
   }
 
@@ -157,7 +143,7 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
   const auto points = static_cast<Eigen::Index>(rule.points.size()),
              total = functions * static_cast<Eigen::Index>(elements_.size());
   mass_ = Eigen::MatrixXd::Zero(total, total);
-  Eigen::MatrixXd slopes = mass_;  // integrals of products of slopes: what an axial force of one acts on
+  slopes_ = mass_;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     const Element& element = elements_[e];
     const double half = (element.end - element.begin) / 2;
@@ -170,49 +156,45 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
       return Eigen::MatrixXd(rows.transpose() * rows);
     };
     mass_ += gram(mass[e], 0);
-    slopes += gram(1, 1);
+    slopes_ += gram(1, 1);
   }
-  support_by(support, slopes);
+  support();
 
   // M x = x / omega^2: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass_);
-  frequencies_.resize(modes);
+  inverse_squares_.resize(modes);
   shapes_.resize(total, modes);
   constexpr double close_to_the_clamp = 1e-3;  // of the length: far short of the first zero of forty modes
-  const Eigen::RowVectorXd positive = shape(support.far_clamp ? close_to_the_clamp : 1, 0);
+  const Eigen::RowVectorXd positive = shape(beam_.far_clamp ? close_to_the_clamp : 1, 0);
   for (int i = 0; i < modes; ++i) {
     const Eigen::Index k = mass_.rows() - 1 - i;
-    const double inverse_square = solver.eigenvalues()[k];
-    frequencies_[i] = frequency_scale_ / std::sqrt(inverse_square);
-    shapes_.col(i) = basis_ * solver.eigenvectors().col(k) / std::sqrt(inverse_square);
+    inverse_squares_[i] = solver.eigenvalues()[k];
+    shapes_.col(i) = basis_ * solver.eigenvectors().col(k) / std::sqrt(inverse_squares_[i]);
     if (positive.dot(shapes_.col(i)) < 0) shapes_.col(i) *= -1;
   }
-  slope_products_ = scale_ * scale_ / length_ * shapes_.transpose() * slopes * shapes_;
 }
 
-void BeamModes::support_by(const BeamSupport& support, const Eigen::MatrixXd& slopes) {
+void NormalisedModes::support() {
   const Eigen::Index total = mass_.rows();
   basis_ = Eigen::MatrixXd::Identity(total, total);
-  if (support.far_clamp) {
+  if (beam_.far_clamp) {
     Eigen::MatrixXd held(total, 2);  // what must vanish: value and slope at the far end
     held << shape(1, 0).transpose(), shape(1, 1).transpose();
     basis_ = complement(held);
-  } else if (support.axial_force == 0) {
+  } else if (beam_.axial_force == 0) {
     return;
   }
-  const double force = support.axial_force * length_ * length_ / rigidity_;
-  if (force != 0) {
+  if (beam_.axial_force != 0) {
     const Eigen::MatrixXd stiffness =
-        Eigen::MatrixXd::Identity(basis_.cols(), basis_.cols()) + force * basis_.transpose() * slopes * basis_;
+        Eigen::MatrixXd::Identity(basis_.cols(), basis_.cols()) + beam_.axial_force * basis_.transpose() * slopes_ * basis_;
     const Eigen::LLT<Eigen::MatrixXd> root(stiffness);
-    require(root.info() == Eigen::Success,
-            fmt::format("axial force {}: beyond the buckling load of the beam", engineering(support.axial_force, "N")));
+    require(root.info() == Eigen::Success, "beyond the buckling load of the beam");
     basis_ = root.matrixU().solve<Eigen::OnTheRight>(basis_);
   }
   mass_ = basis_.transpose() * mass_ * basis_;
 }
 
-Eigen::RowVectorXd BeamModes::shape(const Element& element, double xi, int derivative) const {
+Eigen::RowVectorXd NormalisedModes::shape(const Element& element, double xi, int derivative) const {
   Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(functions * static_cast<Eigen::Index>(elements_.size()));
   const double x = element.begin + (element.end - element.begin) * (1 + xi) / 2;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
@@ -228,19 +210,45 @@ Eigen::RowVectorXd BeamModes::shape(const Element& element, double xi, int deriv
   return row;
 }
 
-Eigen::RowVectorXd BeamModes::shape(double x, int derivative) const {
+Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
   const auto element = std::find_if(elements_.begin(), std::prev(elements_.end()), [&](const Element& e) { return x <= e.end; });
   return shape(*element, 2 * (x - element->begin) / (element->end - element->begin) - 1, derivative);
 }
 
-Eigen::VectorXd BeamModes::value(double x) const { return scale_ * (shape(x / length_, 0) * shapes_).transpose(); }
-
-Eigen::VectorXd BeamModes::slope(double x) const { return scale_ / length_ * (shape(x / length_, 1) * shapes_).transpose(); }
-
-double BeamModes::pinned_frequency(double x) const {
-  const Eigen::MatrixXd z = complement(combined(x / length_, 0).transpose());
+double NormalisedModes::pinned_inverse_square(double x) const {
+  const Eigen::MatrixXd z = complement(combined(x, 0).transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(z.transpose() * mass_ * z, Eigen::EigenvaluesOnly);
-  return frequency_scale_ / std::sqrt(solver.eigenvalues().maxCoeff());
+  return solver.eigenvalues().maxCoeff();
+}
+
+BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support,
+                     std::shared_ptr<const NormalisedModes> known) {
+  require(modes >= 1 && modes <= 40, [&] { return fmt::format("modes = {}: must be from 1 to 40", modes); });
+  require(!sections.empty() && sections.front().begin == 0, "beam sections must start at x = 0");
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const BeamSection& s = sections[i];
+    require(s.end > s.begin && s.rigidity > 0 && s.mass_per_length > 0,
+            [&] { return fmt::format("beam section {}: needs end > begin, rigidity > 0 and mass_per_length > 0", i); });
+    require(i == 0 || s.begin == sections[i - 1].end,
+            [&] { return fmt::format("beam section {} must begin where the one before it ends", i); });
+  }
+  length_ = sections.back().end;
+  const double ei = sections.front().rigidity, mu = sections.front().mass_per_length;
+  scale_ = 1 / std::sqrt(mu * length_);
+  frequency_scale_ = std::sqrt(ei / (mu * length_)) / std::pow(length_, 1.5);
+
+  NormalisedModes::Beam beam{.sections = {},
+                             .modes = modes,
+                             .far_clamp = support.far_clamp,
+                             .axial_force = support.axial_force * length_ * length_ / ei};
+  for (const BeamSection& s : sections)
+    beam.sections.push_back({s.begin / length_, s.end / length_, s.rigidity / ei, s.mass_per_length / mu});
+  try {
+    normalised_ = known && known->beam() == beam ? std::move(known) : std::make_shared<const NormalisedModes>(std::move(beam));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("axial force {}: {}", engineering(support.axial_force, "N"), error.what()));
+  }
+  frequencies_ = frequency_scale_ / normalised_->inverse_squares().array().sqrt();
 }
 
 }  // namespace softland

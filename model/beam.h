@@ -17,6 +17,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,44 +69,87 @@ struct BeamSupport {
 /// Clamps, and the axial force that residual stresses of bulk and surfaces leave.
 [[nodiscard]] BeamSupport beam_support(const Structure& structure, const std::optional<Surface>& surface = {});
 
-class BeamModes {
+/// The modes of a beam in units of its length and of the mass and rigidity of its first section: the same for every beam of that
+/// shape, whatever its size and material.
+class NormalisedModes {
  public:
-  /// The first `modes` modes. Throws InvalidInput unless sections join, are positive, modes is in [1, 40], and the axial force is
-  /// above the buckling load.
-  BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {});
+  /// What they depend on.
+  struct Beam {
+    struct Section {
+      double begin = 0, end = 0, rigidity = 0, mass = 0;
+      [[nodiscard]] bool operator==(const Section&) const = default;
+    };
+    std::vector<Section> sections;
+    int modes = 0;
+    bool far_clamp = false;
+    double axial_force = 0;  ///< N L^2 / EI
+    [[nodiscard]] bool operator==(const Beam&) const = default;
+  };
+  /// Throws InvalidInput below the buckling load.
+  explicit NormalisedModes(Beam beam);
 
-  [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
-  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s], rising
-  /// phi_i(x) of all modes [kg^(-1/2)], x in [0, L] [m].
-  [[nodiscard]] Eigen::VectorXd value(double x) const;
-  /// phi_i'(x) [kg^(-1/2)/m].
-  [[nodiscard]] Eigen::VectorXd slope(double x) const;
-  /// Integrals of phi_i' phi_j' over the beam [1/(kg m)].
-  [[nodiscard]] const Eigen::MatrixXd& slope_products() const { return slope_products_; }
-  /// First angular frequency of the beam held at deflection 0 at x as well [rad/s]: the beam while in contact.
-  [[nodiscard]] double pinned_frequency(double x) const;
+  [[nodiscard]] const Beam& beam() const { return beam_; }
+  /// omega^-2 of the modes, falling.
+  [[nodiscard]] const Eigen::VectorXd& inverse_squares() const { return inverse_squares_; }
+  /// All modes at x in [0, 1].
+  [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
+  [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
+  /// Integrals of the products of slopes, times `factor`.
+  [[nodiscard]] Eigen::MatrixXd slope_products(double factor) const { return factor * shapes_.transpose() * slopes_ * shapes_; }
+  /// omega^-2 of the first mode of the beam held at x as well.
+  [[nodiscard]] double pinned_inverse_square(double x) const;
 
  private:
   struct Element {
-    double begin = 0, end = 0;  // in units of the length
-    double rigidity = 0;        // in units of that of the first section
+    double begin = 0, end = 0;
+    double rigidity = 0;
   };
   // Combines the functions to those that the support permits, orthonormal in the elastic energy.
-  void support_by(const BeamSupport& support, const Eigen::MatrixXd& slopes);
+  void support();
   // All functions, x in units of the length; xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd shape(const Element& element, double xi, int derivative) const;
   [[nodiscard]] Eigen::RowVectorXd combined(double x, int derivative) const { return shape(x, derivative) * basis_; }
 
-  double length_;
-  double scale_;            // converts a unit-mass, unit-length shape to kg^(-1/2)
-  double frequency_scale_;  // [rad/s]
-  double rigidity_;         // of the first section [N m^2]
+  Beam beam_;
   std::vector<Element> elements_;
   Eigen::MatrixXd basis_;   // functions x combinations
-  Eigen::MatrixXd mass_;    // of the combinations, dimensionless
+  Eigen::MatrixXd mass_;    // of the combinations
+  Eigen::MatrixXd slopes_;  // integrals of products of the functions' slopes: what an axial force of one acts on
   Eigen::MatrixXd shapes_;  // functions x modes
-  Eigen::MatrixXd slope_products_;
+  Eigen::VectorXd inverse_squares_;
+};
+
+class BeamModes {
+ public:
+  /// The first `modes` modes; takes the normalised ones from `known` where they are those of this beam. Throws InvalidInput
+  /// unless sections join, are positive, modes is in [1, 40], and the axial force is above the buckling load.
+  BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {},
+            std::shared_ptr<const NormalisedModes> known = {});
+
+  [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
+  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s], rising
+  /// phi_i(x) of all modes [kg^(-1/2)], x in [0, L] [m].
+  [[nodiscard]] Eigen::VectorXd value(double x) const { return scale_ * normalised_->value(x / length_); }
+  /// phi_i'(x) [kg^(-1/2)/m].
+  [[nodiscard]] Eigen::VectorXd slope(double x) const { return scale_ / length_ * normalised_->slope(x / length_); }
+  /// Integrals of phi_i' phi_j' over the beam [1/(kg m)].
+  [[nodiscard]] Eigen::MatrixXd slope_products() const { return normalised_->slope_products(scale_ * scale_ / length_); }
+  /// First angular frequency of the beam held at deflection 0 at x as well [rad/s]: the beam while in contact.
+  [[nodiscard]] double pinned_frequency(double x) const {
+    return frequency_scale_ / std::sqrt(normalised_->pinned_inverse_square(x / length_));
+  }
+
+  [[nodiscard]] const std::shared_ptr<const NormalisedModes>& normalised() const { return normalised_; }
+  [[nodiscard]] double length() const { return length_; }                    ///< [m]
+  [[nodiscard]] double scale() const { return scale_; }                      ///< phi per normalised one [kg^(-1/2)]
+  [[nodiscard]] double frequency_scale() const { return frequency_scale_; }  ///< [rad/s]
+
+ private:
+  double length_;
+  double scale_;
+  double frequency_scale_;
+  std::shared_ptr<const NormalisedModes> normalised_;
   Eigen::VectorXd frequencies_;
 };
 

@@ -17,15 +17,16 @@ namespace softland {
 namespace {
 
 void positive(double value, const char* unit, const char* name) {
-  require(!std::isnan(value), fmt::format("{}: is needed here and not given", name));
+  require(!std::isnan(value), [&] { return fmt::format("{}: is needed here and not given", name); });
   require(value > 0 && value < 1e30,
-          fmt::format("{} = {}: must be greater than 0 and below 1e30", name, engineering(value, unit)));
+          [&] { return fmt::format("{} = {}: must be greater than 0 and below 1e30", name, engineering(value, unit)); });
 }
 
 void span(double begin, double end, double length, const std::string& name) {
-  require(begin >= 0 && end > begin && end <= length * (1 + 1e-12),
-          fmt::format("{} = [{}, {}]: must increase and lie on the beam, from 0 m to {}", name, engineering(begin, "m"),
-                      engineering(end, "m"), engineering(length, "m")));
+  require(begin >= 0 && end > begin && end <= length * (1 + 1e-12), [&] {
+    return fmt::format("{} = [{}, {}]: must increase and lie on the beam, from 0 m to {}", name, engineering(begin, "m"),
+                       engineering(end, "m"), engineering(length, "m"));
+  });
 }
 
 void validate(const SurfacePressure& p, double contact_gap) {
@@ -38,14 +39,16 @@ void validate(const SurfacePressure& p, double contact_gap) {
   positive(p.hamaker_constant, "J", "contact.hamaker_constant");
   positive(p.smoothing_distance, "m", "contact.smoothing_distance");
   const double meet = p.asperity_distance + p.adhesion_range;
-  require(p.reach > meet && p.reach <= 1,
-          fmt::format("contact.reach = {}: must exceed asperity_distance + adhesion_range = {} and be at most 1 m",
-                      engineering(p.reach, "m"), engineering(meet, "m")));
+  require(p.reach > meet && p.reach <= 1, [&] {
+    return fmt::format("contact.reach = {}: must exceed asperity_distance + adhesion_range = {} and be at most 1 m",
+                       engineering(p.reach, "m"), engineering(meet, "m"));
+  });
   const AdhesiveRepulsiveContact law(p, 1);
   require(law.touch_distance() > 0, "contact: these pressures never turn from attraction to repulsion");
-  require(law.reach() < contact_gap,
-          fmt::format("contact.reach = {}: acts {} above the plane of first touch, which must be less than gap.contact = {}",
-                      engineering(p.reach, "m"), engineering(law.reach(), "m"), engineering(contact_gap, "m")));
+  require(law.reach() < contact_gap, [&] {
+    return fmt::format("contact.reach = {}: acts {} above the plane of first touch, which must be less than gap.contact = {}",
+                       engineering(p.reach, "m"), engineering(law.reach(), "m"), engineering(contact_gap, "m"));
+  });
 }
 
 }  // namespace
@@ -111,27 +114,31 @@ void validate(const Device& d) {
     positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
     positive(s.density, "kg/m^3", "structure.density");
   }
-  require(s.modes >= 1 && s.modes <= most_modes, fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes));
+  require(s.modes >= 1 && s.modes <= most_modes,
+          [&] { return fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes); });
   require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
-          fmt::format("structure.damping_ratio = {}: must be in [0, 1000)", s.damping_ratio));
-  require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
-          fmt::format("structure.poissons_ratio = {}: plate_strain needs one between -1 and 0.5", s.poissons_ratio));
+          [&] { return fmt::format("structure.damping_ratio = {}: must be in [0, 1000)", s.damping_ratio); });
+  require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5), [&] {
+    return fmt::format("structure.poissons_ratio = {}: plate_strain needs one between -1 and 0.5", s.poissons_ratio);
+  });
   if (s.kind == StructureKind::clamped_clamped) {
     require(!s.biaxial || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
-            fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio));
+            [&] { return fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio); });
     const std::string buckled = d.surface ? std::string() : why_buckled(s);
-    require(buckled.empty() && s.residual_stress < 1e30,
-            fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"),
-                        buckled.empty() ? "must be below 1e30 Pa" : buckled));
+    require(buckled.empty() && s.residual_stress < 1e30, [&] {
+      return fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"),
+                         buckled.empty() ? "must be below 1e30 Pa" : buckled);
+    });
     require(
         !d.piezo,
         "piezo: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off "
         "its middle line; a layer needs a cantilever");
   }
   positive(d.gap.electrode, "m", "gap.electrode");
-  require(d.gap.contact > 0 && d.gap.contact < d.gap.electrode,
-          fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
-                      engineering(d.gap.electrode, "m")));
+  require(d.gap.contact > 0 && d.gap.contact < d.gap.electrode, [&] {
+    return fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
+                       engineering(d.gap.electrode, "m"));
+  });
   for (const Electrode& e : d.electrodes) {
     span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
     if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
@@ -170,9 +177,10 @@ void validate(const Device& d) {
             "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
     const ContactRow& law = row_of(contact_laws, c.model);
     const bool no_pad = plate && !law.per_area && c.pad_length == 0;  // only its area would count
-    require(no_pad || (c.pad_length > 0 && c.pad_length < s.length),
-            fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
-                        engineering(c.pad_length, "m"), engineering(s.length, "m")));
+    require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
+      return fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
+                         engineering(c.pad_length, "m"), engineering(s.length, "m"));
+    });
     const auto positive_if_used = [&](const char* key, double value, const char* unit) {
       if (law.keys.contain(key)) positive(value, unit, (std::string("contact.") + key).c_str());
     };
@@ -185,22 +193,25 @@ void validate(const Device& d) {
     positive_if_used("hardness", c.hardness, "Pa");
     positive_if_used("adhesion_energy", c.adhesion_energy, "J/m^2");
     if (law.keys.contain("unloading_stiffness")) {
-      require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30,
-              fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}, and below 1e30 N/m",
-                          engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m")));
+      require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30, [&] {
+        return fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}, and below 1e30 N/m",
+                           engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m"));
+      });
     }
     if (law.keys.contain("restitution")) {
-      require(c.restitution >= 0 && c.restitution < 1, fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution));
+      require(c.restitution >= 0 && c.restitution < 1,
+              [&] { return fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution); });
     }
     if (law.keys.contain("reach")) validate(c.pressure, d.gap.contact);
     if (c.distribution == ContactDistribution::pad) {
       const std::string wrong = why_not_along_pad(s, c);
-      require(wrong.empty(), "contact.distribution = pad: " + wrong);
+      require(wrong.empty(), [&] { return "contact.distribution = pad: " + wrong; });
     }
     require(c.damping >= 0 && c.damping < 1e6,
-            fmt::format("contact.damping = {}: must be in [0 s/m, 1e6 s/m)", engineering(c.damping, "s/m")));
-    require(c.damping == 0 || law.keys.contain("damping"),
-            fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), law.name));
+            [&] { return fmt::format("contact.damping = {}: must be in [0 s/m, 1e6 s/m)", engineering(c.damping, "s/m")); });
+    require(c.damping == 0 || law.keys.contain("damping"), [&] {
+      return fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), law.name);
+    });
   }
   if (d.piezo) {
     const Piezo& p = *d.piezo;
@@ -209,18 +220,20 @@ void validate(const Device& d) {
     positive(p.thickness, "m", "piezo.thickness");
     positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");
     positive(p.density, "kg/m^3", "piezo.density");
-    require(p.d31 > -1 && p.d31 < 1, fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")));
+    require(p.d31 > -1 && p.d31 < 1,
+            [&] { return fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")); });
   }
   if (d.surface) {
     const std::string wrong = why_no_surface(d);
-    require(wrong.empty(), "surface: " + wrong);
+    require(wrong.empty(), [&] { return "surface: " + wrong; });
   }
   if (d.dispersion && d.dispersion->model != DispersionModel::casimir) {
     const Dispersion& v = *d.dispersion;
     positive(v.hamaker_constant, "J", "dispersion.hamaker_constant");
-    require(v.equilibrium_distance >= 0 && v.equilibrium_distance < d.gap.electrode - d.gap.contact,
-            fmt::format("dispersion.equilibrium_distance = {}: must not be negative and lie below the closed gap of {}",
-                        engineering(v.equilibrium_distance, "m"), engineering(d.gap.electrode - d.gap.contact, "m")));
+    require(v.equilibrium_distance >= 0 && v.equilibrium_distance < d.gap.electrode - d.gap.contact, [&] {
+      return fmt::format("dispersion.equilibrium_distance = {}: must not be negative and lie below the closed gap of {}",
+                         engineering(v.equilibrium_distance, "m"), engineering(d.gap.electrode - d.gap.contact, "m"));
+    });
   }
 }
 

@@ -3,7 +3,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <concepts>
+#include <iterator>
 #include <set>
+#include <utility>
 
 #include "base/gauss.h"
 #include "model/far_side.h"
@@ -50,53 +53,96 @@ std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, doub
 
 }  // namespace
 
-template <class Modes>
-void Switch::move_in(const Modes& structure, double points_per_length, int fewest_points) {
-  const Structure& s = device_.structure;
-  const double x_c = device_.contact_position();
-  frequencies_ = structure.angular_frequencies();
-  squares_ = frequencies_.cwiseAbs2();
-  contact_shape_ = structure.value(x_c);
-  pad_slope_ = Eigen::VectorXd::Zero(modes());
-  if (device_.contact && device_.contact->distribution == ContactDistribution::pad) {
-    pad_.emplace(device_.contact->pad_length);
-    pad_slope_ = structure.slope(x_c);
-  }
-  in_contact_period_ = 2 * pi / structure.pinned_frequency(x_c);
-  piezo_shape_ = Eigen::VectorXd::Zero(modes());
+// What switches of the same lengths share: where they are looked at, and their normalised modes there.
+struct Switch::Frame {
+  struct Places {
+    std::vector<double> corners;                         // of the quadrature's panels [m]
+    double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
+    double points_per_length = 0;
+    int fewest_points = 0;  // of a panel
+    [[nodiscard]] bool operator==(const Places&) const = default;
+  };
+  Places places;
+  std::shared_ptr<const NormalisedModes> modes;  // null of a plate
+  Eigen::ArrayXd positions, weights;             // [m]
+  Eigen::MatrixXd shapes;                        // points x modes
+  Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
+  double pinned_inverse_square = 0;  // of the beam held at its contact
 
+  template <class Modes>
+  Frame(const Modes& normalised, double length, Places at) : places(std::move(at)) {
+    const double end = places.corners.back();
+    std::vector<double> x, w;
+    for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {
+      const double begin = *corner, panel = *std::next(corner) - begin;
+      if (panel < 1e-9 * end) continue;  // two names of one place that differ by a rounding
+      const GaussRule rule =
+          gauss_rule(std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length))));
+      for (std::size_t i = 0; i < rule.points.size(); ++i) {
+        x.push_back(begin + panel * (1 + rule.points[i]) / 2);
+        w.push_back(rule.weights[i] * panel / 2);
+      }
+    }
+    positions = Eigen::Map<Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+    weights = Eigen::Map<Eigen::ArrayXd>(w.data(), positions.size());
+    contact_shape = normalised.value(places.contact / length);
+    contact_slope = normalised.slope(places.contact / length);
+    piezo_begin_slope = normalised.slope(places.piezo_begin / length);
+    piezo_end_slope = normalised.slope(places.piezo_end / length);
+    pinned_inverse_square = normalised.pinned_inverse_square(places.contact / length);
+    shapes.resize(positions.size(), contact_shape.size());
+    for (Eigen::Index p = 0; p < positions.size(); ++p) shapes.row(p) = normalised.value(positions[p] / length).transpose();
+  }
+};
+
+template <class Modes>
+void Switch::move_in(const Modes& structure, double points_per_length, int fewest_points, const Switch* like) {
+  const Structure& s = device_.structure;
+  const bool along_pad = device_.contact && device_.contact->distribution == ContactDistribution::pad;
   std::set<double> corners{0, s.length};
   for (const Electrode& e : device_.electrodes) corners.insert({e.begin, std::min(e.end, s.length)});
-  if (device_.piezo) {
-    corners.insert({device_.piezo->begin, device_.piezo->end});
-    piezo_shape_ =
-        piezo_moment_per_volt(s, *device_.piezo) * (structure.slope(device_.piezo->end) - structure.slope(device_.piezo->begin));
-  }
-  if (pad_) {
+  if (device_.piezo) corners.insert({device_.piezo->begin, device_.piezo->end});
+  if (along_pad) {
     const auto [begin, end] = device_.pad();
     corners.insert({begin, end});
   }
-
-  std::vector<double> positions, weights;
-  for (auto corner = corners.begin(); std::next(corner) != corners.end(); ++corner) {
-    const double begin = *corner, length = *std::next(corner) - begin;
-    if (length < 1e-9 * s.length) continue;  // two names of one place that differ by a rounding
-    const GaussRule rule =
-        gauss_rule(std::max(fewest_points, static_cast<int>(std::ceil(length / s.length * points_per_length))));
-    for (std::size_t i = 0; i < rule.points.size(); ++i) {
-      positions.push_back(begin + length * (1 + rule.points[i]) / 2);
-      weights.push_back(rule.weights[i] * length / 2);
-    }
+  Frame::Places places{.corners = {corners.begin(), corners.end()},
+                       .contact = device_.contact_position(),
+                       .piezo_begin = device_.piezo ? device_.piezo->begin : 0,
+                       .piezo_end = device_.piezo ? device_.piezo->end : 0,
+                       .points_per_length = points_per_length,
+                       .fewest_points = fewest_points};
+  if constexpr (std::same_as<Modes, BeamModes>) {
+    if (like != nullptr && like->frame_->modes == structure.normalised() && like->frame_->places == places) frame_ = like->frame_;
   }
-  const auto n = static_cast<Eigen::Index>(positions.size());
-  positions_ = Eigen::Map<Eigen::ArrayXd>(positions.data(), n);
-  weights_ = Eigen::Map<Eigen::ArrayXd>(weights.data(), n);
+  if (!frame_) {
+    auto frame = std::make_shared<Frame>(*structure.normalised(), structure.length(), std::move(places));
+    if constexpr (std::same_as<Modes, BeamModes>) frame->modes = structure.normalised();
+    frame_ = std::move(frame);
+  }
+
+  const double scale = structure.scale(), slope_scale = scale / structure.length();
+  frequencies_ = structure.angular_frequencies();
+  squares_ = frequencies_.cwiseAbs2();
+  contact_shape_ = scale * frame_->contact_shape;
+  pad_slope_ = Eigen::VectorXd::Zero(modes());
+  if (along_pad) {
+    pad_.emplace(device_.contact->pad_length);
+    pad_slope_ = slope_scale * frame_->contact_slope;
+  }
+  in_contact_period_ = 2 * pi / (structure.frequency_scale() / std::sqrt(frame_->pinned_inverse_square));
+  piezo_shape_ = Eigen::VectorXd::Zero(modes());
+  if (device_.piezo) {
+    piezo_shape_ = piezo_moment_per_volt(s, *device_.piezo) *
+                   (slope_scale * frame_->piezo_end_slope - slope_scale * frame_->piezo_begin_slope);
+  }
+  positions_ = frame_->positions;
+  weights_ = frame_->weights;
+  const Eigen::Index n = positions_.size();
   // Idle points, where no mode moves, fill the last block.
   shapes_ = weighted_shapes_ = Eigen::MatrixXd::Zero((n + block - 1) / block * block, modes());
-  for (Eigen::Index p = 0; p < n; ++p) {
-    shapes_.row(p) = structure.value(positions_[p]).transpose();
-    weighted_shapes_.row(p) = weights_[p] * shapes_.row(p);
-  }
+  shapes_.topRows(n) = scale * frame_->shapes;
+  weighted_shapes_.topRows(n) = weights_.matrix().asDiagonal() * shapes_.topRows(n);
 
   const auto in_lanes = [](const Eigen::VectorXd& v) { return padded_to_lanes({v.begin(), v.end()}, 0); };
   stiffness_lanes_ = in_lanes(squares_);
@@ -113,14 +159,15 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
   }
 }
 
-Switch::Switch(const Device& device, const SwitchOptions& options) : device_(device) {
+Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
   validate(device_);
   const Structure& s = device_.structure;
   if (s.kind == StructureKind::plate) {
-    move_in(RigidPlate(s), 0, 1);  // the gap is the same everywhere: one point each says it all
+    move_in(RigidPlate(s), 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all
   } else {
-    const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface));
-    move_in(beam, options.points_per_length, 3);
+    const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface),
+                         like != nullptr ? like->frame_->modes : nullptr);
+    move_in(beam, options.points_per_length, 3, like);
     if (s.kind == StructureKind::clamped_clamped && s.stretching) {
       stretching_ = {.slopes = beam.slope_products(), .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};
     }

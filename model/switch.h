@@ -40,8 +40,9 @@ enum class DriveKind { electrode, dispersion, piezo };
 
 class Switch {
  public:
-  /// Throws InvalidInput for a device that validate() refuses.
-  explicit Switch(const Device& device, const SwitchOptions& options = {});
+  /// Throws InvalidInput for a device that validate() refuses. Takes normalised modes and quadrature from the switch `like` where
+  /// they are the same, as those of devices that differ in material, width, thickness or gaps are: the same switch, built faster.
+  explicit Switch(const Device& device, const SwitchOptions& options = {}, const Switch* like = nullptr);
 
   [[nodiscard]] const Device& device() const { return device_; }
   [[nodiscard]] int modes() const { return static_cast<int>(frequencies_.size()); }
@@ -167,10 +168,11 @@ class Switch {
  private:
   static constexpr Eigen::Index block = lanes;  // points that are handled at once
   using Block = Lane;
+  struct Frame;
 
   /// Takes frequencies, shapes and quadrature from what moves, a beam or a plate.
   template <class Modes>
-  void move_in(const Modes& structure, double points_per_length, int fewest_points);
+  void move_in(const Modes& structure, double points_per_length, int fewest_points, const Switch* like);
   /// Calls f(xi, share, interference) for every point at which an active contact acts, xi from x_c towards the clamp [m].
   template <class F>
   void for_contact_points(const double* q, F&& f) const;
@@ -188,6 +190,7 @@ class Switch {
   [[nodiscard]] std::optional<Eigen::VectorXd> find_rest() const;
 
   Device device_;
+  std::shared_ptr<const Frame> frame_;
   std::size_t electrodes_ = 0;
   Eigen::VectorXd frequencies_, squares_, contact_shape_, piezo_shape_;
   std::vector<double> stiffness_lanes_, friction_lanes_, contact_lanes_, piezo_lanes_;  // omega^2, 2 zeta omega, phi(x_c), theta

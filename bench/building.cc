@@ -1,0 +1,51 @@
+// What building a switch costs, for every scene: its own, and that of a device of an ensemble, which differs in thickness, gap and
+// modulus only.
+//   bench_building [SCENE ...]     (default: every shipped scene)
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "studies/prepared.h"
+
+namespace {
+
+using namespace softland;
+
+template <class Build>
+double microseconds(Build&& build) {
+  constexpr int runs = 200, rounds = 5;
+  double least = 1e9;
+  for (int r = 0; r < rounds; ++r) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < runs; ++i) build(1 + 1e-4 * i);
+    const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - begin;
+    least = std::min(least, spent.count() / runs);
+  }
+  return least;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> scenes(argv + 1, argv + argc);
+  if (scenes.empty()) {
+    for (const auto& entry : std::filesystem::directory_iterator(SOFTLAND_SCENES)) {
+      if (entry.path().extension() == ".toml") scenes.push_back(entry.path());
+    }
+    std::sort(scenes.begin(), scenes.end());
+  }
+  fmt::print("{:<32} {:>10}\n", "scene", "alone [us]");
+  for (const std::string& scene : scenes) {
+    const Prepared p = prepare(SceneFile::load(scene));
+    const double alone = microseconds([&](double factor) {
+      Device d = p.scene.device;
+      d.structure.thickness *= factor, d.structure.youngs_modulus *= factor, d.gap.electrode *= factor;
+      const Switch built(d, p.quadrature);
+    });
+    fmt::print("{:<32} {:>10.1f}\n", std::filesystem::path(scene).filename().string(), alone);
+  }
+}
