@@ -67,15 +67,15 @@ std::map<std::string, Signal> named_signals(const Prepared& p) {
 
 // Pull-in of every electrode, without any waveform of the scene.
 json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
-  const StaticPullIn s = static_pull_in(p.device, k);
-  const DynamicPullIn d = dynamic_pull_in(p.device, k, s, watch);
+  const StaticPullIn s = static_pull_in(p.model, k);
+  const DynamicPullIn d = dynamic_pull_in(p.model, k, s, watch);
   const auto number = [](double v) { return std::isfinite(v) ? json(v) : json(nullptr); };
   return {{"status", to_string(s.status == Status::done ? d.status : s.status)},
           {"pull_in",
            {{"static_V", number(s.voltage)},
             {"static_kind", to_string(s.kind)},
             {"dynamic_V", number(d.voltage)},
-            {"release_V", number(release_voltage(p.device, k))}}}};
+            {"release_V", number(release_voltage(p.model, k))}}}};
 }
 
 constexpr int pull_in_digits = 5;
@@ -111,18 +111,18 @@ bool collapsed(const json& pull_in) { return pull_in["status"] == to_string(Stat
 // At which factor the dispersion force closes the switch.
 std::string dispersion_words(const Prepared& p, const Watch& watch) {
   const std::size_t k = p.scene.device.electrodes.size();
-  const StaticPullIn statically = static_pull_in(p.device, k);
+  const StaticPullIn statically = static_pull_in(p.model, k);
   const auto factor = [](double value) { return plain_number(1 + value, 4); };
   const bool known = std::isfinite(statically.voltage);
-  if (!p.device.rest()) {
+  if (!p.model.rest()) {
     return "no open state: " +
            (known ? fmt::format("closes by itself from {} of its nominal strength on", factor(statically.voltage))
                   : std::string("closes by itself"));
   }
   const std::string rest =
-      fmt::format("tip at rest {} down; ", quantity(p.device.contact_deflection(p.device.rest()->data()), "m"));
+      fmt::format("tip at rest {} down; ", quantity(p.model.contact_deflection(p.model.rest()->data()), "m"));
   if (!known) return rest + "no strength was found at which it closes by itself";
-  const DynamicPullIn dynamically = dynamic_pull_in(p.device, k, statically, watch);
+  const DynamicPullIn dynamically = dynamic_pull_in(p.model, k, statically, watch);
   const std::string step =
       std::isfinite(dynamically.voltage) ? fmt::format(" or a step to {} (dynamic)", factor(dynamically.voltage)) : "";
   return fmt::format("{}closes by itself at {} (static){} of its nominal strength", rest, factor(statically.voltage), step);
@@ -212,8 +212,8 @@ SceneFile scene_of_result(const std::string& result) {
 void log_time_saved(const Prepared& chosen) {
   Prepared whole = chosen;
   whole.scene.device = chosen.effects->described.device;
-  whole.device = Switch(whole.scene.device, whole.quadrature);
-  const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.device, p.signals(), p.duration); };
+  whole.model = Switch(whole.scene.device, whole.quadrature);
+  const auto seconds = [](const Prepared& p) { return right_hand_side_seconds(p.model, p.signals(), p.duration); };
   const double with = seconds(whole), without = seconds(chosen);
   say(fmt::format("effects = \"auto\": a right-hand side takes {} instead of {}, {} less", quantity(without, "s"),
                   quantity(with, "s"), percent(std::max(0.0, 1 - without / with))));
@@ -270,7 +270,7 @@ int pull_in_verb(const Common& c) {
                               p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
                                                                             : "the contact point reaches the contact first",
                               dynamic_words(p));
-    if (prepared.device.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
+    if (prepared.model.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
     if (collapsed(one))
       never_open = true;
     else
@@ -294,7 +294,7 @@ int modes_verb(const Common& c) {
   json list = json::array();
   constexpr int digits = 6;
   std::string text = "mode  angular frequency    frequency\n";
-  for (const double omega : prepared.device.angular_frequencies()) {
+  for (const double omega : prepared.model.angular_frequencies()) {
     list.push_back(omega);
     text += fmt::format("{:>4}  {:>17}  {:>11}\n", list.size(), quantity(omega, "rad/s", digits),
                         quantity(omega / (2 * pi), "Hz", digits));
@@ -313,9 +313,9 @@ int check_verb(const Common& c) {
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
   std::vector<std::string> frequencies;
-  for (const double omega : p.device.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
+  for (const double omega : p.model.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
-  if (p.device.has_contact()) add("in-contact period", quantity(p.device.in_contact_period(), "s", 4));
+  if (p.model.has_contact()) add("in-contact period", quantity(p.model.in_contact_period(), "s", 4));
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     if (!pulls_in(p.scene.device, k)) {
       add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
@@ -325,7 +325,7 @@ int check_verb(const Common& c) {
     const json& v = found["pull_in"];
     add("electrode " + p.scene.device.electrodes[k].name,
         (collapsed(found) ? no_open_state : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(v))) +
-            (p.device.has_contact() ? ", release " + volts(v["release_V"]) : ""));
+            (p.model.has_contact() ? ", release " + volts(v["release_V"]) : ""));
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_words(p, work->watch()));
@@ -335,7 +335,7 @@ int check_verb(const Common& c) {
     const Gas& gas = *p.scene.device.gas;
     const double g = p.scene.device.gap.electrode;
     const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
-    const double omega = p.device.angular_frequencies()[0];
+    const double omega = p.model.angular_frequencies()[0];
     add("squeeze number", fmt::format("{} at the rest gap, {} closed (first mode; the film laws hold below about {})",
                                       plain_number(squeeze_number(gas, s.width, g, omega)),
                                       plain_number(squeeze_number(gas, s.width, closed, omega)), plain_number(incompressible)));
@@ -351,7 +351,7 @@ int check_verb(const Common& c) {
                         : fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
                                       given_quantity(limits->second.max_voltage, "V"))));
   }
-  if (!p.device.has_contact()) add("contact", "none: a run ends at first touch");
+  if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();

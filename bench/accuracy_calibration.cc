@@ -107,7 +107,7 @@ void judge(const Task& task, std::uint64_t index, Result& result) {
     return;
   }
   const Prepared p = prepare(*file);
-  if (!task.film && p.device.film_states() > 0) {
+  if (!task.film && p.model.film_states() > 0) {
     ++result.scenes["with a compressible film, judged by themselves"];
     return;
   }
@@ -115,7 +115,7 @@ void judge(const Task& task, std::uint64_t index, Result& result) {
     const ClosingOptions options{.duration = p.duration,
                                  .tolerance = tolerance_for(accuracies[task.accuracies_asked() - 1]),
                                  .max_steps = most_film_steps};
-    if (simulate_closing(p.device, p.signals(), options).work.steps >= most_film_steps) {
+    if (simulate_closing(p.model, p.signals(), options).work.steps >= most_film_steps) {
       ++result.scenes[fmt::format("with more than {} steps, left out", most_film_steps)];
       return;
     }

@@ -38,14 +38,17 @@ int main(int argc, char** argv) {
     }
     std::sort(scenes.begin(), scenes.end());
   }
-  fmt::print("{:<32} {:>10}\n", "scene", "alone [us]");
+  fmt::print("{:<32} {:>11} {:>14}\n", "scene", "alone [us]", "ensemble [us]");
   for (const std::string& scene : scenes) {
     const Prepared p = prepare(SceneFile::load(scene));
-    const double alone = microseconds([&](double factor) {
-      Device d = p.scene.device;
-      d.structure.thickness *= factor, d.structure.youngs_modulus *= factor, d.gap.electrode *= factor;
-      const Switch built(d, p.quadrature);
-    });
-    fmt::print("{:<32} {:>10.1f}\n", std::filesystem::path(scene).filename().string(), alone);
+    const auto microseconds_like = [&](const Switch* like) {
+      return microseconds([&](double factor) {
+        Device d = p.scene.device;
+        d.structure.thickness *= factor, d.structure.youngs_modulus *= factor, d.gap.electrode *= factor;
+        const Switch built(d, p.quadrature, like);
+      });
+    };
+    fmt::print("{:<32} {:>11.1f} {:>14.1f}\n", std::filesystem::path(scene).filename().string(), microseconds_like(nullptr),
+               microseconds_like(&p.model));
   }
 }

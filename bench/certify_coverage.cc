@@ -81,7 +81,7 @@ Scene judge(const Options& options, std::uint64_t index) {
   if (!file) return scene;
   file->set(fmt::format("simulate.accuracy={:g}", options.accuracy));
   const Prepared p = prepare(*file);
-  if (!options.film && p.device.film_states() > 0) return scene;  // they have a table of their own
+  if (!options.film && p.model.film_states() > 0) return scene;  // they have a table of their own
   const Closing plain = simulate(p, true);
   scene.outcome = Outcome::too_long;
   if (plain.trajectory.work.steps >= options.steps) return scene;

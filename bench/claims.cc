@@ -239,10 +239,10 @@ void casimir_size(const std::filesystem::path& folder) {
       // The force that a beam bears falls with the fourth power of its length.
       double length = own_length;
       for (int i = 0; i < 4; ++i) {
-        const double bears = 1 + static_pull_in(prepare(sized(length)).device, 0).voltage;
+        const double bears = 1 + static_pull_in(prepare(sized(length)).model, 0).voltage;
         length *= std::pow(bears / kind.critical, 0.25);
       }
-      const double period = 2 * pi / prepare(sized(length)).device.angular_frequencies()[0];
+      const double period = 2 * pi / prepare(sized(length)).model.angular_frequencies()[0];
       const auto scaled = [&](double part) {
         return with(sized(length), {fmt::format("waveform.dispersion.level={:.17g}", 1 + 0.25 * part),
                                     fmt::format("simulate.duration={:.17g} s", 20 * period)});
@@ -307,7 +307,7 @@ void micro_bounces(const std::filesystem::path& folder) {
     const Prepared p =
         prepare(with(shipped("mem-gold.toml"), {fmt::format("structure.modes={}", modes), "waveform.main.level=17.771 V",
                                                 "simulate.duration=100 us", "simulate.accuracy=1e-7"}));
-    const Trajectory t = simulate_closing(p.device, p.signals(), {.duration = window, .tolerance = p.tolerance});
+    const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = window, .tolerance = p.tolerance});
     struct Rebound {
       double begin, end, height;
     };

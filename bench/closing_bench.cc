@@ -73,7 +73,7 @@ Row measure(const Prepared& prepared, const std::vector<Signal>& signals, Integr
   Trajectory last;
   for (int i = 0; i < runs; ++i) {
     const auto start = Clock::now();
-    last = simulate_closing(prepared.device, signals, options);
+    last = simulate_closing(prepared.model, signals, options);
     wall.push_back(seconds_since(start));
   }
   Row row{.integrator = to_string(integrator),
@@ -148,7 +148,7 @@ void run(const Options& options) {
   const Metrics reference = metrics(simulate_closing(Switch(prepared.scene.device, reference_quadrature), signals,
                                                      {.duration = window, .tolerance = reference_tolerance}),
                                     prepared.scene.metrics);
-  const double rhs = right_hand_side_seconds(prepared.device, signals, window, options.runs * 20);
+  const double rhs = right_hand_side_seconds(prepared.model, signals, window, options.runs * 20);
   std::vector<Row> rows;
   for (const Integrator which : all_integrators) {
     if (options.integrator && *options.integrator != to_string(which)) continue;
@@ -166,8 +166,8 @@ void run(const Options& options) {
     nlohmann::json out{{"scene", options.scene},
                        {"drive", drive},
                        {"window_s", window},
-                       {"quadrature_points", prepared.device.points()},
-                       {"modes", prepared.device.modes()},
+                       {"quadrature_points", prepared.model.points()},
+                       {"modes", prepared.model.modes()},
                        {"runs", options.runs},
                        {"rhs_s", rhs},
                        {"reference",
@@ -181,7 +181,7 @@ void run(const Options& options) {
     return;
   }
   fmt::print("step of {}, {:g} us, {} modes, {} quadrature points; {:.1f} ns per right-hand side; medians of {} runs\n\n", drive,
-             window * 1e6, prepared.device.modes(), prepared.device.points(), rhs * 1e9, options.runs);
+             window * 1e6, prepared.model.modes(), prepared.model.points(), rhs * 1e9, options.runs);
   fmt::print("{:<15}{:>8}{:>8}{:>9}{:>11}{:>10}{:>10}{:>11}{:>9}{:>11}\n", "integrator", "tol", "steps", "rhs", "ms/closing",
              "ns/rhs", "t_i [us]", "v_i [m/s]", "B_H[nm]", "worst err");
   for (const Row& row : rows) {

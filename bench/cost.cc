@@ -87,7 +87,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 void print_bound(const Prepared& prepared) {
-  const Switch& device = prepared.device;
+  const Switch& device = prepared.model;
   const auto [begin, end] = std::pair(prepared.scene.device.electrodes[0].begin, prepared.scene.device.electrodes[0].end);
   const auto all = static_cast<double>(device.points());
   const auto driven = static_cast<double>((device.point_positions() > begin && device.point_positions() < end).count());

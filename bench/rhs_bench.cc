@@ -23,7 +23,7 @@ int run(long calls, SceneFile file, const std::vector<std::string>& assignments)
     }
   }
   const Prepared prepared = prepare(file);
-  const Switch& model = prepared.device;
+  const Switch& model = prepared.model;
   std::vector<double> volts;
   for (const Signal& signal : prepared.signals()) volts.push_back(signal.peak());
 

@@ -59,10 +59,10 @@ Outcome try_scene(std::uint64_t seed, std::uint64_t index) {
   const Prepared p = prepare(test::random_scene(seed, index));
   const std::vector<Signal> drives = p.signals();
   const auto run = [&](double tolerance) {
-    return test::checked_run(p.device, drives,
+    return test::checked_run(p.model, drives,
                              {.duration = p.duration,
                               .tolerance = tolerance,
-                              .max_steps = p.device.film_states() > 0 ? most_steps_with_film : most_steps},
+                              .max_steps = p.model.film_states() > 0 ? most_steps_with_film : most_steps},
                              1e-3, p.scene.metrics);
   };
   const test::CheckedRun c = run(p.tolerance);
@@ -71,12 +71,12 @@ Outcome try_scene(std::uint64_t seed, std::uint64_t index) {
             .what = became(t, c.metrics),
             .steps = t.work.steps,
             .surplus = c.surplus,
-            .energy_error = t.energy_error / p.device.bending_energy(),
-            .balance = t.energy_error / std::max(p.device.bending_energy(), std::abs(t.energy.source_work)),
-            .implicit = p.device.film_states() == 0 && t.work.integrator != Integrator::lawson,
+            .energy_error = t.energy_error / p.model.bending_energy(),
+            .balance = t.energy_error / std::max(p.model.bending_energy(), std::abs(t.energy.source_work)),
+            .implicit = p.model.film_states() == 0 && t.work.integrator != Integrator::lawson,
             .depth = c.largest_penetration > 0 ? t.deepest_penetration / c.largest_penetration : 0,
             .violations = c.violations};
-  if (t.status != Status::done || p.device.film_states() > 0) return o;
+  if (t.status != Status::done || p.model.film_states() > 0) return o;
   const test::CheckedRun tighter = run(p.tolerance / 100);
   for (const std::string& violation : tighter.violations) o.violations.push_back("at a hundredth of the tolerance: " + violation);
   if (tighter.trajectory.status != Status::done) return o;

@@ -89,7 +89,7 @@ Result started(const Prepared& p, const Provenance& provenance) {
            .command = provenance.command,
            .version = std::string(version),
            .made_with = made_with()};
-  const Eigen::VectorXd& frequencies = p.device.angular_frequencies();
+  const Eigen::VectorXd& frequencies = p.model.angular_frequencies();
   r.natural_frequencies.assign(frequencies.begin(), frequencies.end());
   if (p.effects) {
     r.effects = ResultEffects{.left_out = {}, .influence = p.effects->choice.influence};

@@ -29,8 +29,8 @@ class Study {
  public:
   Study(const Prepared& prepared, const AccuracyOptions& options)
       : prepared_(prepared), options_(options), signals_(prepared.signals()) {
-    own_modes_ = prepared.device.modes();
-    own_integrator_ = automatic_integrator(prepared.device);
+    own_modes_ = prepared.model.modes();
+    own_integrator_ = automatic_integrator(prepared.model);
     if (prepared.scene.device.structure.kind != StructureKind::plate) {
       own_points_ = prepared_.quadrature.points_per_length;
       for (const double points : options.points) {
@@ -43,13 +43,13 @@ class Study {
     const std::size_t tolerances = options.tolerances.size();
     // Two references and the cloud count as one each.
     all_ = 3 + (all_integrators.size() + other_points_.size()) * tolerances + other_modes_.size();
-    found_.why_always_restarted = prepared.device.has_contact() ? why_always_restarted(prepared.device) : "there is no contact";
+    found_.why_always_restarted = prepared.model.has_contact() ? why_always_restarted(prepared.model) : "there is no contact";
     if (found_.why_always_restarted.empty()) all_ += all_integrators.size() * tolerances;
   }
 
   AccuracyStudy run() {
     if (!find_reference()) return std::move(found_);
-    const Switch& own = prepared_.device;
+    const Switch& own = prepared_.model;
     gather_cloud(own);
     start_ = Clock::now();
     sweep(own, setting(own_integrator_, own_points_), found_.rows);
@@ -95,7 +95,7 @@ class Study {
   }
 
   // Runs a setting until it is timed well enough, none longer than `most_seconds`.
-  void measure(const Switch& device, AccuracyRow& row, int runs, double most_seconds) {
+  void measure(const Switch& model, AccuracyRow& row, int runs, double most_seconds) {
     if (stopped()) {
       row.missing = "interrupted";
       return;
@@ -113,7 +113,7 @@ class Study {
     for (double spent = 0; row.runs < runs && spent < enough_seconds; ++row.runs) {
       start = Clock::now();
       const std::clock_t begin = std::clock();
-      const Trajectory t = simulate_closing(device, signals_, closing_options);
+      const Trajectory t = simulate_closing(model, signals_, closing_options);
       seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
       if (cut) {
         row.missing = fmt::format("cut after {:.2g} s", most_seconds);
@@ -135,14 +135,14 @@ class Study {
   // Without a contact law a run ends at first touch.
   [[nodiscard]] Metrics figures(const Trajectory& t) const {
     Metrics m = metrics(t, prepared_.scene.metrics);
-    if (!prepared_.device.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;
+    if (!prepared_.model.has_contact()) m.major_bounce_height = m.peak_contact_force = Metrics::unset;
     return m;
   }
 
   // As long as there is time.
-  void try_out(const Switch& device, AccuracyRow& row) {
+  void try_out(const Switch& model, AccuracyRow& row) {
     if (seconds_since(start_) < options_.all_seconds) {
-      measure(device, row, options_.runs, options_.most_seconds);
+      measure(model, row, options_.runs, options_.most_seconds);
     } else {
       row.missing = fmt::format("not tried: the {:g} s of the study are over", options_.all_seconds);
     }
@@ -150,7 +150,7 @@ class Study {
   }
 
   // A setting at every tolerance.
-  void sweep(const Switch& device, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
+  void sweep(const Switch& model, const AccuracyRow& given, std::vector<AccuracyRow>& rows) {
     bool cut = false;
     for (const double tolerance : options_.tolerances) {
       AccuracyRow row = given;
@@ -163,7 +163,7 @@ class Study {
         progress();
         row.missing = "not tried: the reference is not better";
       } else {
-        try_out(device, row);
+        try_out(model, row);
         cut = row.missing.starts_with("cut");
       }
       rows.push_back(std::move(row));
@@ -171,15 +171,15 @@ class Study {
   }
 
   // The same without a restart at the contact.
-  void go_through(const Switch& device, Integrator integrator) {
+  void go_through(const Switch& model, Integrator integrator) {
     if (!found_.why_always_restarted.empty()) return;
     AccuracyRow row = setting(integrator, own_points_);
     row.restart = false;
-    sweep(device, row, found_.through);
+    sweep(model, row, found_.through);
   }
 
   [[nodiscard]] Switch with_points(std::optional<double> points) const {
-    return points ? Switch(prepared_.scene.device, {.points_per_length = *points}) : prepared_.device;
+    return points ? Switch(prepared_.scene.device, {.points_per_length = *points}) : prepared_.model;
   }
 
   // From loose to tight, to the tolerance planned or to where rounding or the time that is left ends it.
@@ -242,10 +242,10 @@ class Study {
     return true;
   }
 
-  void gather_cloud(const Switch& device) {
+  void gather_cloud(const Switch& model) {
     const ClosingOptions options = closing(setting(own_integrator_, own_points_, tightest_));
     std::vector<Metrics> runs;
-    for (const Trajectory& t : perturbed_closings(device, signals_, options, cloud_options)) {
+    for (const Trajectory& t : perturbed_closings(model, signals_, options, cloud_options)) {
       if (t.status == Status::done) runs.push_back(figures(t));
     }
     const auto over = [&](auto&& value) {

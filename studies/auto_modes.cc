@@ -29,8 +29,8 @@ std::vector<Judged> judged(const SceneFile& file, int modes, const Watch& watch)
   with.assign("simulate.effects",
               std::string("all"));  // every number of modes is judged on the same effects; they are chosen after
   const Prepared p = prepare(with, false, watch);
-  const double omega = p.device.angular_frequencies()[0], gap = p.scene.device.gap.contact;
-  const Trajectory t = simulate_closing(p.device, p.signals(),
+  const double omega = p.model.angular_frequencies()[0], gap = p.scene.device.gap.contact;
+  const Trajectory t = simulate_closing(p.model, p.signals(),
                                         {.duration = p.duration,
                                          .tolerance = std::max(run_tolerance, p.tolerance),
                                          .after_contact = 2 * pi / omega,
@@ -46,7 +46,7 @@ std::vector<Judged> judged(const SceneFile& file, int modes, const Watch& watch)
   for (const Figure& figure : compared_figures) list.push_back({figure.value(m), scale[figure]});
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
-    const StaticPullIn statically = known == p.pull_in.end() ? static_pull_in(p.device, k) : known->second.statically;
+    const StaticPullIn statically = known == p.pull_in.end() ? static_pull_in(p.model, k) : known->second.statically;
     list.push_back({statically.voltage, 0});
     if (known != p.pull_in.end()) list.push_back({known->second.dynamically.voltage, 0});
   }

@@ -16,10 +16,10 @@ namespace {
 constexpr double shared = 0.01;  // of the tolerance, relative to a figure: what both runs may miss alike
 constexpr double parted = 0.1;   // relative difference of a rebound's height from which runs have parted
 
-double hold_force(const Switch& device, const std::vector<Signal>& signals) {
+double hold_force(const Switch& model, const std::vector<Signal>& signals) {
   std::vector<double> hold;
   for (const Signal& signal : signals) hold.push_back(signal.hold_level());
-  const auto closed = closed_equilibrium(device, hold);
+  const auto closed = closed_equilibrium(model, hold);
   return closed ? closed->contact_force : Metrics::unset;
 }
 
@@ -45,9 +45,9 @@ std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fi
     const auto& electrodes = written.device.electrodes;
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
-    const Switch device(written.device, quadrature);
-    const StaticPullIn statically = static_pull_in(device, k);
-    const DynamicPullIn dynamically = dynamic_pull_in(device, k, statically, watch);
+    const Switch model(written.device, quadrature);
+    const StaticPullIn statically = static_pull_in(model, k);
+    const DynamicPullIn dynamically = dynamic_pull_in(model, k, statically, watch);
     const ElectrodePullIn& own = prepared.pull_in.at(name);
     const double by_static = error_safety * std::abs(statically.voltage - own.statically.voltage);
     const double by_dynamic = error_safety * std::abs(dynamically.voltage - own.dynamically.voltage) +

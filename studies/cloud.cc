@@ -9,7 +9,7 @@
 
 namespace softland {
 
-std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const Signal> drives, const ClosingOptions& closing,
+std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives, const ClosingOptions& closing,
                                            const CloudOptions& options, const Watch& watch) {
   std::vector<Trajectory> runs(static_cast<std::size_t>(options.runs));
   std::mutex telling;
@@ -23,7 +23,7 @@ std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const
       const double change = options.smallest * std::pow(options.largest / options.smallest, size);
       perturbed.push_back(scaled(drive, 1 + (sign < 0.5 ? -change : change)));
     }
-    runs[i] = simulate_closing(device, perturbed, closing);
+    runs[i] = simulate_closing(model, perturbed, closing);
     const std::scoped_lock lock(telling);
     watch.tell("cloud of perturbed closings", static_cast<double>(++done) / options.runs);
   };

@@ -24,7 +24,7 @@ struct CloudOptions {
 /// The runs in order: a function of the arguments alone, but for those that `closing.stop` ends, which are left out with all
 /// after the first of them. An observer of `closing` is called from several threads at once when jobs > 1; `watch` is told from
 /// one at a time.
-[[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& device, std::span<const Signal> drives,
+[[nodiscard]] std::vector<Trajectory> perturbed_closings(const Switch& model, std::span<const Signal> drives,
                                                          const ClosingOptions& closing, const CloudOptions& options = {},
                                                          const Watch& watch = {});
 

@@ -26,10 +26,10 @@ std::string refusal(Device device, const Gas& gas) {
 Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, const Watch& watch, double done, double share) {
   Device described = prepared.scene.device;
   described.gas = gas;
-  const Switch device(described, prepared.quadrature);
+  const Switch model(described, prepared.quadrature);
   const std::vector<Signal> signals = prepared.signals();
   const Trajectory t =
-      simulate_closing(device, signals,
+      simulate_closing(model, signals,
                        {.duration = prepared.duration,
                         .tolerance = prepared.tolerance,
                         .stop = watch.stop,
@@ -39,12 +39,12 @@ Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, con
            .magnitude = {.name = "damping per length, closed", .unit = "N s/m^2", .value = 0},
            .group = {.name = "Knudsen number, closed"},
            .metrics = metrics(t, prepared.scene.metrics),
-           .rhs_seconds = watch.stopped() ? Metrics::unset : right_hand_side_seconds(device, signals, prepared.duration),
+           .rhs_seconds = watch.stopped() ? Metrics::unset : right_hand_side_seconds(model, signals, prepared.duration),
            .warnings = t.warnings};
   if (!gas) return e;
   const double closed = described.gap.electrode - described.gap.contact;
   e.choice = name_of(gas_laws, gas->model);
-  e.magnitude.value = damping_per_length(*device.gas(), closed);
+  e.magnitude.value = damping_per_length(*model.gas(), closed);
   if (gas->model != GasModel::linear) e.group.value = mean_free_path(*gas) / closed;
   return e;
 }

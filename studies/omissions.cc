@@ -28,21 +28,21 @@ std::string as_written(const nlohmann::json& scene, const std::string& path) {
 
 // Force on the first mode at rest under 1 V on one electrode.
 double force_at_rest(const Device& described, std::size_t electrode) {
-  const Switch device(described);
-  Switch::Workspace work = device.workspace();
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
-  Eigen::VectorXd with(device.modes()), without(device.modes());
-  std::vector<double> volts(device.drives(), 0.0);
-  device.accelerations(rest.data(), rest.data(), volts, false, work, without.data());
+  const Switch model(described);
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+  Eigen::VectorXd with(model.modes()), without(model.modes());
+  std::vector<double> volts(model.drives(), 0.0);
+  model.accelerations(rest.data(), rest.data(), volts, false, work, without.data());
   volts[electrode] = 1;
-  device.accelerations(rest.data(), rest.data(), volts, false, work, with.data());
+  model.accelerations(rest.data(), rest.data(), volts, false, work, with.data());
   return with[0] - without[0];
 }
 
 double first_frequency(const Device& device) { return Switch(device).angular_frequencies()[0]; }
 
 Metrics closing(const Prepared& p, const Watch& watch, double done = 0, double share = 1) {
-  return metrics(simulate_closing(p.device, p.signals(),
+  return metrics(simulate_closing(p.model, p.signals(),
                                   {.duration = p.duration,
                                    .tolerance = p.tolerance,
                                    .stop = watch.stop,
@@ -60,9 +60,9 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
   if (s.kind != StructureKind::plate && s.modes > 1) {
     list.push_back(
         {.effect = "structure.modes",
-         .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.device.angular_frequencies()[s.modes - 1]},
+         .magnitude = {.name = "highest mode", .unit = "rad/s", .value = prepared.model.angular_frequencies()[s.modes - 1]},
          .group = {.name = "over the first",
-                   .value = prepared.device.angular_frequencies()[s.modes - 1] / prepared.device.angular_frequencies()[0]},
+                   .value = prepared.model.angular_frequencies()[s.modes - 1] / prepared.model.angular_frequencies()[0]},
          .instead = 1,
          .automatic = false});
   }
@@ -105,10 +105,10 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
                     .instead = std::string(name_of(fringing_laws, Fringing::none))});
   }
   if (d.gas) {
-    const double omega = prepared.device.angular_frequencies()[0];
+    const double omega = prepared.model.angular_frequencies()[0];
     list.push_back(
         {.effect = "gas",
-         .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.device.gas(), closed)},
+         .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.model.gas(), closed)},
          .group = {.name = "squeeze number, closed"},
          .instead = {}});
     if (d.gas->model != GasModel::linear) list.back().group.value = squeeze_number(*d.gas, s.width, closed, omega);
@@ -116,7 +116,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
       list.push_back({.effect = "gas.far_gap",
                       .magnitude = {.name = "damping, at rest",
                                     .unit = "N s/m^2",
-                                    .value = damping_per_length(*prepared.device.gas(), d.gas->far_gap)},
+                                    .value = damping_per_length(*prepared.model.gas(), d.gas->far_gap)},
                       .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / d.gas->far_gap, 3)},
                       .instead = {}});
     }
@@ -131,7 +131,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     const double rise = 1.5 * d.gap.contact / s.length * d.contact->pad_length;  // of a uniform beam bent by its end
     list.push_back({.effect = "contact.distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
-                    .group = {.name = "over the interference", .value = rise / prepared.device.penetration_scale()},
+                    .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
                     .instead = std::string(name_of(contact_distributions, ContactDistribution::centre)),
                     .automatic = false});
   }
@@ -142,8 +142,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
                     .instead = {}});
   }
   if (d.dispersion && !prepared.drives.waveforms.contains(std::string(dispersion_drive))) {
-    const double bent =
-        prepared.device.rest() ? prepared.device.contact_deflection(prepared.device.rest()->data()) : d.gap.contact;
+    const double bent = prepared.model.rest() ? prepared.model.contact_deflection(prepared.model.rest()->data()) : d.gap.contact;
     list.push_back({.effect = "dispersion",
                     .magnitude = {.name = "deflection at rest", .unit = "m", .value = bent},
                     .group = {.name = "over the contact gap", .value = bent / d.gap.contact},
@@ -198,7 +197,7 @@ std::vector<Omission> compare_omissions(const Prepared& prepared, const Metrics&
                .rhs_seconds = Metrics::unset};
     o.influence = influence(own, o.metrics, prepared.scene.metrics);
     if (watch.stopped()) break;
-    if (timed) o.rhs_seconds = right_hand_side_seconds(p.device, p.signals(), p.duration);
+    if (timed) o.rhs_seconds = right_hand_side_seconds(p.model, p.signals(), p.duration);
     list.push_back(std::move(o));
   }
   return list;

@@ -49,11 +49,10 @@ double figure(Target target, const Metrics& m) {
 // The same closing by a tighter integrator, and with a richer beam where there is one.
 std::vector<ConfirmingRun> confirm(const Prepared& winner) {
   const std::vector<Signal> signals = winner.signals();
-  const auto run = [&](const Switch& device, double tolerance) {
-    return metrics(simulate_closing(device, signals, {.duration = winner.duration, .tolerance = tolerance}),
-                   winner.scene.metrics);
+  const auto run = [&](const Switch& model, double tolerance) {
+    return metrics(simulate_closing(model, signals, {.duration = winner.duration, .tolerance = tolerance}), winner.scene.metrics);
   };
-  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.device, tight_tolerance)}};
+  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.model, tight_tolerance)}};
   Device richer = winner.scene.device;
   if (richer.structure.kind != StructureKind::plate) {
     richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
@@ -113,7 +112,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   const Watch before{.stop = options.stop, .progress = options.on_preparation}, after{.progress = options.on_preparation};
   Prepared given = prepare_and_choose(file, true, before);
-  require(given.device.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
+  require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
 
   // The baseline: plain steps to the hold levels the scene describes, as steep as the driver permits.
   std::map<std::string, Waveform> plain;
@@ -131,7 +130,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
     plain[electrode] = step_of(electrode);
     for (const std::string& name : braking_electrodes(given)) plain[name] = Step{.level = 0};
   }
-  if (given.device.has_piezo()) {
+  if (given.model.has_piezo()) {
     const std::string piezo(piezo_drive);
     const std::vector<std::string> drives = given.drive_names();
     // A piezo that nothing else helps has to close the switch itself.
@@ -147,33 +146,33 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   before.throw_if_stopped();
 
   // How candidates are scored.
-  const double period = 2 * pi / given.device.angular_frequencies()[0];
+  const double period = 2 * pi / given.model.angular_frequencies()[0];
   const MetricsOptions& metrics_options = given.scene.metrics;
   CostScale scale{.step = {},
-                  .score_window = std::max(period, 3 * given.device.in_contact_period()),
+                  .score_window = std::max(period, 3 * given.model.in_contact_period()),
                   .contact_gap = given.scene.device.gap.contact,
                   .free_touch = options.actuator == Actuator::pzt ? braked_touch : driven_touch};
   ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
   std::vector<double> rest;
   for (const Signal& s : baseline_scene.signals()) rest.push_back(s.hold_level());
-  if (const auto closed = closed_equilibrium(given.device, rest)) run.closed_potential = closed->potential;
-  const Trajectory step = simulate_closing(given.device, baseline_scene.signals(), run);
+  if (const auto closed = closed_equilibrium(given.model, rest)) run.closed_potential = closed->potential;
+  const Trajectory step = simulate_closing(given.model, baseline_scene.signals(), run);
   scale.step = cost_figures(step, metrics_options);
   if (!scale.step.touched) {
     // A hold level that a plain step does not close with may still close with a throw: scale by what a closing of this beam would
     // be like.
     scale.step = {.touched = true,
                   .first_touch = period / 2,
-                  .touch_speed = given.scene.device.gap.contact * given.device.angular_frequencies()[0],
+                  .touch_speed = given.scene.device.gap.contact * given.model.angular_frequencies()[0],
                   .rebound_height = given.scene.device.gap.contact,
                   .impact_energy = 0};
   }
   result.baseline_cost = cost(options.target, step, scale, metrics_options);
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
-  run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.device.in_contact_period());
+  run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.model.in_contact_period());
   require(run.no_contact_before > 0,
           fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
-                      engineering(given.duration, "s", 3), engineering(2 * given.device.in_contact_period(), "s", 3)));
+                      engineering(given.duration, "s", 3), engineering(2 * given.model.in_contact_period(), "s", 3)));
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
 
   const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);
@@ -182,7 +181,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   result.variables = space.variables();
   const auto price = [&](const std::vector<Signal>& signals) {
     CostObserver observer(scale.contact_gap, metrics_options);
-    const Trajectory end = observe_closing(given.device, signals, run, observer);
+    const Trajectory end = observe_closing(given.model, signals, run, observer);
     const CostFigures figures = observer.figures(end.landing_excess);
     const auto by = [&](Target target) { return cost(target, end.status, figures, scale, metrics_options); };
     const double leading = by(Target::bounce);

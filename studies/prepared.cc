@@ -77,7 +77,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch)
   const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
   const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
-  Prepared p{.scene = scene, .device = Switch(scene.device, quadrature), .quadrature = quadrature};
+  Prepared p{.scene = scene, .model = Switch(scene.device, quadrature), .quadrature = quadrature};
   if (std::string warning = slenderness_warning(scene.device.structure); !warning.empty()) {
     p.scene.warnings.push_back(std::move(warning));
   }
@@ -85,8 +85,8 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch)
     const std::string& name = scene.device.electrodes[k].name;
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
     if (!needed && !default_limits) continue;
-    ElectrodePullIn found{.statically = static_pull_in(p.device, k)};
-    found.dynamically = dynamic_pull_in(p.device, k, found.statically, watch);
+    ElectrodePullIn found{.statically = static_pull_in(p.model, k)};
+    found.dynamically = dynamic_pull_in(p.model, k, found.statically, watch);
     watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
     if (needed && !ok) {
@@ -96,10 +96,10 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch)
     if (ok) p.pull_in.emplace(name, found);
   }
   p.drives = scene.drives(p.voltage_units());
-  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.device.angular_frequencies()[0];
+  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.model.angular_frequencies()[0];
   check_window(p);
-  p.tolerance = scene.simulate.tolerance > 0 ? scene.simulate.tolerance
-                                             : tolerance_for(scene.simulate.accuracy, p.device.film_states() > 0);
+  p.tolerance =
+      scene.simulate.tolerance > 0 ? scene.simulate.tolerance : tolerance_for(scene.simulate.accuracy, p.model.film_states() > 0);
   return p;
 }
 

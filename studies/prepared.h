@@ -30,7 +30,7 @@ struct DescribedEffects;
 
 struct Prepared {
   Scene scene;
-  Switch device;
+  Switch model;
   std::map<std::string, ElectrodePullIn> pull_in;  ///< electrodes whose pull-in was needed
   Drives drives;                                   ///< in volts
   double duration = 0;                             ///< window [s]

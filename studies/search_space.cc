@@ -20,13 +20,13 @@ double hold_level(const Prepared& p, const std::string& drive) {
 
 // Voltage whose static effect on the contact point alone is `lift` away from the contact [m].
 double lifting_voltage(const Prepared& p, double lift) {
-  const Eigen::VectorXd squares = p.device.angular_frequencies().cwiseAbs2();
-  const double per_volt = p.device.contact_shape().dot(p.device.piezo_shape().cwiseQuotient(squares));
+  const Eigen::VectorXd squares = p.model.angular_frequencies().cwiseAbs2();
+  const double per_volt = p.model.contact_shape().dot(p.model.piezo_shape().cwiseQuotient(squares));
   return -lift / per_volt;
 }
 
 void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
-  const double period = 2 * pi / p.device.angular_frequencies()[0];
+  const double period = 2 * pi / p.model.angular_frequencies()[0];
   s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
                  {"level_2_V", s.limits.min_voltage, s.limits.max_voltage},
                  {"time_1_s", 0.05 * t0, 1.6 * t0},
@@ -56,7 +56,7 @@ void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
   const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
   require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
                                 s.drive, engineering(s.hold, "V", 5)));
-  const Eigen::VectorXd& omega = p.device.angular_frequencies();
+  const Eigen::VectorXd& omega = p.model.angular_frequencies();
   const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
   const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];
   s.variables = {{"amplitude_V", 0, room},           {"angular_frequency_rad_s", 0.2 * omega[0], upper},
@@ -180,7 +180,7 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
     for (const std::string& name : braking_electrodes(prepared)) add(name, true);
   }
   if (actuator != Actuator::electrostatic) {
-    require(prepared.device.has_piezo(), "optimize --actuator pzt|both needs a [piezo] section, and the scene has none");
+    require(prepared.model.has_piezo(), "optimize --actuator pzt|both needs a [piezo] section, and the scene has none");
     add(std::string(piezo_drive), false);
   }
 }

@@ -98,18 +98,18 @@ constexpr int most_in_vain = 2;    // in a row
 
 double least_peak_force(const Prepared& prepared) {
   constexpr double share = 0.01;
-  return share * 2 * prepared.device.bending_energy() / prepared.scene.device.gap.contact;
+  return share * 2 * prepared.model.bending_energy() / prepared.scene.device.gap.contact;
 }
 
 Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch) {
   const std::vector<Signal> signals = prepared.signals();
   int runs = 0;
   bool interrupted = false;
-  const auto run = [&](const Switch& device, double tolerance, const SwitchOptions& quadrature, long max_steps) {
+  const auto run = [&](const Switch& model, double tolerance, const SwitchOptions& quadrature, long max_steps) {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
     const std::string what =
         runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
-    r.trajectory = simulate_closing(device, signals,
+    r.trajectory = simulate_closing(model, signals,
                                     {.duration = prepared.duration,
                                      .tolerance = tolerance,
                                      .max_steps = max_steps,
@@ -135,7 +135,7 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
     Run tighter = tighter_than(r);
     return tighter.trajectory.status == Status::done || watch.stopped() ? std::move(tighter) : looser_than(r);
   };
-  Run best = run(prepared.device, prepared.tolerance, prepared.quadrature, ClosingOptions{}.max_steps);
+  Run best = run(prepared.model, prepared.tolerance, prepared.quadrature, ClosingOptions{}.max_steps);
   const SimulateOptions& asked = prepared.scene.simulate;
   const bool may_tighten = estimate_errors && asked.tolerance == 0;
   if (may_tighten && best.trajectory.status == Status::numerical_failure && can_tighten(best)) best = tighter_than(best);
@@ -192,7 +192,7 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   c.quadrature = best.quadrature;
   std::vector<double> hold;
   for (const Signal& signal : signals) hold.push_back(signal.hold_level());
-  if (const auto closed = closed_equilibrium(prepared.device, hold)) c.trajectory.hold_force = closed->contact_force;
+  if (const auto closed = closed_equilibrium(prepared.model, hold)) c.trajectory.hold_force = closed->contact_force;
   c.metrics = metrics(c.trajectory, prepared.scene.metrics);
   if (interrupted) {
     const bool complete = c.trajectory.status != Status::interrupted;
@@ -209,7 +209,7 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   c.metrics.peak_voltage = c.metrics.peak_slew = 0;
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {
-    const DriveKind kind = prepared.device.drive_kind(k);
+    const DriveKind kind = prepared.model.drive_kind(k);
     if (kind == DriveKind::dispersion) continue;  // a force factor is no voltage
     if (kind == DriveKind::electrode || piezo_only)
       c.metrics.peak_voltage = std::max(c.metrics.peak_voltage, signals[k].peak(prepared.duration));

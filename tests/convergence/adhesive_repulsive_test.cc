@@ -63,12 +63,12 @@ constexpr double scanned = 1e-7;  // relative: a scan of 200 000 places near a f
 TEST(AdhesiveRepulsive, StaticPullInIsTheFoldThatItsAttractionMakes) {
   const Device d = soft_plate(5e-3);
   const Switch device(d);
-  const StaticPullIn found = static_pull_in(device, 0);
+  const StaticPullIn found = static_pull_in(model, 0);
   ASSERT_EQ(found.status, Status::done);
   EXPECT_EQ(found.kind, StaticKind::fold);
-  EXPECT_GT(found.deflection, d.gap.contact - device.contact_reach());
+  EXPECT_GT(found.deflection, d.gap.contact - model.contact_reach());
   EXPECT_LT(found.deflection, d.gap.contact);
-  const Scan fold = extreme([&](double s) { return square(d, device.contact(), s); }, 0.1_um, 1.85_um, 1);
+  const Scan fold = extreme([&](double s) { return square(d, model.contact(), s); }, 0.1_um, 1.85_um, 1);
   EXPECT_NEAR(found.voltage, std::sqrt(fold.value), scanned * found.voltage);
   EXPECT_NEAR(found.deflection, fold.at, 1e-4 * fold.at);
   Device without = d;
@@ -80,12 +80,12 @@ TEST(AdhesiveRepulsive, StaticPullInIsTheFoldThatItsAttractionMakes) {
 TEST(AdhesiveRepulsive, DynamicPullInGoesOverItsPass) {
   const Device d = soft_plate(5e-3);
   const Switch device(d);
-  const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+  const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
   ASSERT_EQ(found.status, Status::done);
   const double area = vacuum_permittivity * side * side, g = d.gap.electrode;
   const auto needed = [&](double s) {
     const double depth = s - d.gap.contact;
-    const double stored = depth > -device.contact_reach() ? contact_energy(device.contact(), depth) : 0;
+    const double stored = depth > -model.contact_reach() ? contact_energy(model.contact(), depth) : 0;
     return 2 * (d.structure.stiffness * s * s / 2 + stored) / (area / (g - s) - area / g);
   };
   const Scan pass = extreme(needed, 0.1_um, d.gap.contact, 1);
@@ -96,14 +96,14 @@ TEST(AdhesiveRepulsive, DynamicPullInGoesOverItsPass) {
 TEST(AdhesiveRepulsive, HoldsUntilItsDeepestWellLetsGo) {
   const Device d = soft_plate(5);
   const Switch device(d);
-  const Scan well = extreme([&](double s) { return square(d, device.contact(), s); }, d.gap.contact, d.gap.contact + 100_nm, -1);
+  const Scan well = extreme([&](double s) { return square(d, model.contact(), s); }, d.gap.contact, d.gap.contact + 100_nm, -1);
   EXPECT_NEAR(well.at - d.gap.contact, 52.4_nm, 1_nm) << "where asperities meet, not at the plane";
-  EXPECT_NEAR(release_voltage(device, 0), std::sqrt(well.value), 1e-5 * std::sqrt(well.value));
-  EXPECT_LT(release_voltage(device, 0), 0.9 * std::sqrt(square(d, device.contact(), d.gap.contact)));
+  EXPECT_NEAR(release_voltage(model, 0), std::sqrt(well.value), 1e-5 * std::sqrt(well.value));
+  EXPECT_LT(release_voltage(model, 0), 0.9 * std::sqrt(square(d, model.contact(), d.gap.contact)));
   // The force there is the pull-off force: at the published pressure.
   const Scan pressure = extreme(published, 60_nm, 150_nm, -1);
   EXPECT_NEAR(pressure.value, -874.6, 0.1);
-  const Scan force = extreme([&](double x) { return contact_force(device.contact(), x); }, 0, 100_nm, -1);
+  const Scan force = extreme([&](double x) { return contact_force(model.contact(), x); }, 0, 100_nm, -1);
   EXPECT_NEAR(force.value, side * pad_length * pressure.value, 1e-3 * side * pad_length * 874.6);
   // Soft springs never pull it off.
   EXPECT_EQ(release_voltage(Switch(soft_plate(0.01)), 0), 0);
@@ -112,19 +112,19 @@ TEST(AdhesiveRepulsive, HoldsUntilItsDeepestWellLetsGo) {
 TEST(AdhesiveRepulsive, BookkeepsEveryPassageOfItsReach) {
   const Device d = soft_plate(0.05);
   const Switch device(d);
-  const double vdp = dynamic_pull_in(device, 0, static_pull_in(device, 0)).voltage;
+  const double vdp = dynamic_pull_in(model, 0, static_pull_in(model, 0)).voltage;
   for (const Integrator integrator : {Integrator::lawson, Integrator::esdirk}) {
     const std::vector<Signal> drives{Signal::piecewise_linear({{0, 1.2 * vdp}, {1e-3, 1.2 * vdp}, {1e-3, 0}})};
-    const Trajectory t = simulate_closing(device, drives, {.duration = 2e-3, .tolerance = 1e-9, .integrator = integrator});
+    const Trajectory t = simulate_closing(model, drives, {.duration = 2e-3, .tolerance = 1e-9, .integrator = integrator});
     ASSERT_EQ(t.status, Status::done) << t.message;
     EXPECT_GE(t.touches.size(), 3u);
     // The implicit method loses some; the explicit one lost 4e-6 while it stepped over the kinks of the law. Seen: 1e-10, 7e-7.
-    EXPECT_LT(t.energy_error, (integrator == Integrator::lawson ? 2e-9 : 5e-6) * device.bending_energy());
+    EXPECT_LT(t.energy_error, (integrator == Integrator::lawson ? 2e-9 : 5e-6) * model.bending_energy());
     const auto most = std::minmax_element(t.points.begin(), t.points.end(),
                                           [](const auto& a, const auto& b) { return a.contact_force < b.contact_force; });
     EXPECT_LT(most.first->contact_force, 0) << "it pulls on the way";
     for (const TrajectoryPoint& p : t.points) {
-      if (p.position > d.gap.contact - device.contact_reach() - 1_nm) continue;
+      if (p.position > d.gap.contact - model.contact_reach() - 1_nm) continue;
       EXPECT_EQ(p.contact_force, 0);
     }
   }

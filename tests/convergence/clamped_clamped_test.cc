@@ -73,7 +73,7 @@ TEST(ClampedClamped, DynamicPullInOfAnUndampedStepIsTheReference) {
   for (const int modes : {1, 3, 5}) {
     const Device d = bridge(modes);
     const Switch device(d);
-    const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+    const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
     ASSERT_EQ(found.status, Status::done);
     const double ratio = found.voltage / test::volts(d, reference_beta);
     EXPECT_GT(ratio, 0.91265) << modes << " modes";

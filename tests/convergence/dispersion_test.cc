@@ -140,8 +140,8 @@ TEST(Dispersion, AtRestTheBendingBalancesTheForce) {
   d.structure.length *= std::pow(1e-4 / casimir_parameter(d), 0.25);
   d.electrodes[0].end = d.structure.length;
   const Switch device(d);
-  ASSERT_TRUE(device.rest().has_value());
-  const double tip = device.contact_deflection(device.rest()->data()) / d.gap.electrode;
+  ASSERT_TRUE(model.rest().has_value());
+  const double tip = model.contact_deflection(model.rest()->data()) / d.gap.electrode;
   EXPECT_NEAR(tip, 1e-4 / 8, 1e-4 / 8 * 1e-3);
 }
 

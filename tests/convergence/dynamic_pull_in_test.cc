@@ -24,7 +24,7 @@ TEST(DynamicPullIn, OfAnUndampedStepIsNinePercentBelowTheStaticOne) {
   for (const auto& [modes, ratio] : {Row{1, 0.9093}, Row{2, 0.9094}, Row{3, 0.9094}}) {
     const Device d = test::device({.modes = modes});
     const Switch device(d);
-    const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+    const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
     ASSERT_EQ(found.status, Status::done);
     EXPECT_NEAR(found.voltage / test::volts(d, test::full_length_beta), ratio, printed) << modes << " modes";
     if (modes == 3) {
@@ -47,10 +47,10 @@ TEST(ClosingTime, OfAnUndampedStepIsTheReference) {
   for (const int modes : {4, 1}) {
     const Device d = test::device({.modes = modes});
     const Switch device(d);
-    const double frequency = device.angular_frequencies()[0];
+    const double frequency = model.angular_frequencies()[0];
     for (const Row& row : reference) {
       const std::vector<Signal> drives{Signal::constant(row.over_static * test::volts(d, test::full_length_beta))};
-      const Trajectory trajectory = simulate_closing(device, drives, {.duration = 10 / frequency, .tolerance = 1e-9});
+      const Trajectory trajectory = simulate_closing(model, drives, {.duration = 10 / frequency, .tolerance = 1e-9});
       ASSERT_EQ(trajectory.touches.size(), 1u) << "V/Vsp = " << row.over_static;
       const double expected = modes == 4 ? row.four_modes : row.one_mode;
       EXPECT_NEAR(frequency * trajectory.touches[0].begin, expected, time_digits * expected)

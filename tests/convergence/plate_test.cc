@@ -76,7 +76,7 @@ TEST(Plate, AnUndampedStepPullsInAtTheRootOf27Over32) {
   constexpr double bisected = 2e-7;  // relative: what dynamic_pull_in promises
   const Device d = plate(0.9);
   const Switch device(d);
-  const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+  const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
   ASSERT_EQ(found.status, Status::done);
   EXPECT_NEAR(found.voltage / static_voltage(d), std::sqrt(27.0 / 32), bisected);
 }
@@ -90,7 +90,7 @@ TEST(Plate, DampingRaisesTheVoltageOfAStepToTheStaticOne) {
                                              Row{10, 0.93713}, Row{50, 0.92246}, Row{1000, 0.91876}}) {
     const Device d = plate(0.9, 1 / (2 * quality));
     const Switch device(d);
-    const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+    const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
     ASSERT_EQ(found.status, Status::done) << quality;
     EXPECT_NEAR(found.voltage / static_voltage(d), over_static, printed) << "Q = " << quality;
   }
@@ -113,9 +113,9 @@ TEST(Plate, ClosesInTheTimeOfItsQuadratureWithTheSpeedOfItsEnergy) {
   for (const Row& row : reference) {
     const auto touch = [&](double contact_over_gap) {
       const Switch device(plate(contact_over_gap));
-      const std::vector<Signal> drives{Signal::constant(row.over_static * static_voltage(device.device()))};
-      const double frequency = device.angular_frequencies()[0];
-      const Trajectory t = simulate_closing(device, drives, {.duration = 10 / frequency, .tolerance = 1e-11});
+      const std::vector<Signal> drives{Signal::constant(row.over_static * static_voltage(model.device()))};
+      const double frequency = model.angular_frequencies()[0];
+      const Trajectory t = simulate_closing(model, drives, {.duration = 10 / frequency, .tolerance = 1e-11});
       EXPECT_EQ(t.touches.size(), 1u);
       return Touch{.begin = t.touches.at(0).begin * frequency,
                    .impact_velocity = t.touches.at(0).impact_velocity / (gap * frequency)};
@@ -137,10 +137,10 @@ TEST(Plate, HeavilyDampedLingersAtTheGhostOfTheFold) {
   for (const auto& [excess, time] :
        {Row{1e-4, 360.300}, Row{1e-3, 112.2597}, Row{0.01, 33.8409}, Row{0.1, 9.13712}, Row{1, 1.77676}}) {
     const Switch device(plate(0.98, damping_ratio));
-    const double unit = 2 * damping_ratio / device.angular_frequencies()[0];  // c / k
-    const std::vector<Signal> drives{Signal::constant(std::sqrt(1 + excess) * static_voltage(device.device()))};
+    const double unit = 2 * damping_ratio / model.angular_frequencies()[0];  // c / k
+    const std::vector<Signal> drives{Signal::constant(std::sqrt(1 + excess) * static_voltage(model.device()))};
     const Trajectory t =
-        simulate_closing(device, drives, {.duration = 2 * time * unit, .tolerance = 1e-8, .integrator = Integrator::bdf});
+        simulate_closing(model, drives, {.duration = 2 * time * unit, .tolerance = 1e-8, .integrator = Integrator::bdf});
     ASSERT_EQ(t.touches.size(), 1u) << excess << " " << t.message;
     EXPECT_NEAR(t.touches[0].begin / unit, time, inertia * time) << "eps = " << excess;
   }

@@ -109,10 +109,10 @@ TEST(RigidContact, HoldsThePlateUntilTheForceOfTheSpringsWins) {
   Device d = stopped_plate(0.4);
   d.electrodes.pop_back();
   const Switch device(d);
-  const double release = release_voltage(device, 0);
+  const double release = release_voltage(model, 0);
   // Falls linearly from 110 V at 100 us to 0 V at 200 us.
   const std::vector<Signal> drives{Signal::piecewise_linear({{0, 110}, {100_us, 110}, {200_us, 0}})};
-  const Trajectory t = simulate_closing(device, drives, {.duration = 220_us, .tolerance = 1e-10});
+  const Trajectory t = simulate_closing(model, drives, {.duration = 220_us, .tolerance = 1e-10});
   ASSERT_EQ(t.status, Status::done);
   const double leaves = 100_us + 100_us * (1 - release / 110);
   const auto resting =
@@ -125,7 +125,7 @@ TEST(RigidContact, HoldsThePlateUntilTheForceOfTheSpringsWins) {
     if (p.time < resting->begin || p.time > resting->end || p.velocity != 0) continue;
     EXPECT_GE(p.contact_force, 0);
     EXPECT_NEAR(p.position, d.gap.contact, 1e-15);
-    const auto closed = closed_equilibrium(device, std::vector<double>{drives[0].voltage(p.time)});
+    const auto closed = closed_equilibrium(model, std::vector<double>{drives[0].voltage(p.time)});
     if (!closed || p.time == resting->begin) continue;
     EXPECT_NEAR(p.contact_force, closed->contact_force, 1e-9 * closed->contact_force);
   }
@@ -136,10 +136,10 @@ TEST(RigidContact, LetsGoAtOnceWhenTheVoltageJumpsBelowRelease) {
   Device d = stopped_plate(0);
   d.electrodes.pop_back();
   const Switch device(d);
-  const double release = release_voltage(device, 0);
+  const double release = release_voltage(model, 0);
   for (const double left : {0.999, 1.001}) {
     const std::vector<Signal> drives{Signal::piecewise_linear({{0, 110}, {60_us, 110}, {60_us, left * release}})};
-    const Trajectory t = simulate_closing(device, drives, {.duration = 200_us, .tolerance = 1e-9});
+    const Trajectory t = simulate_closing(model, drives, {.duration = 200_us, .tolerance = 1e-9});
     ASSERT_EQ(t.touches.size(), 1u) << "e = 0: it sticks where it lands";
     if (left < 1) {
       EXPECT_EQ(t.touches[0].end, 60_us);
@@ -155,7 +155,7 @@ TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
   Device d = stopped_plate(0.5);
   d.electrodes.pop_back();
   const Switch device(d);
-  const double release = release_voltage(device, 0);
+  const double release = release_voltage(model, 0);
   // Swings between -0.5 and 2.5 times the release voltage, 16 times: each time the plate is let go.
   constexpr double begin = 60_us, angular_frequency = 1e6_rad_s;
   const std::vector<Signal> drives{Signal(std::vector<SignalPiece>{{.value = 110},
@@ -164,7 +164,7 @@ TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
                                                                     .amplitude = 1.5 * release,
                                                                     .angular_frequency = angular_frequency,
                                                                     .phase = -angular_frequency * begin}})};
-  const Trajectory t = simulate_closing(device, drives, {.duration = 160_us, .tolerance = 1e-10});
+  const Trajectory t = simulate_closing(model, drives, {.duration = 160_us, .tolerance = 1e-10});
   ASSERT_EQ(t.status, Status::done);
   // How often it comes to rest between the dips is a matter of chance, but for the first time.
   EXPECT_GE(t.touches.size(), 5u);
@@ -175,20 +175,20 @@ TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
 
 TEST(RigidContact, ClosedEquilibriumIsThePlateOnThePlane) {
   const Switch device(stopped_plate(0.5));
-  const Device& d = device.device();
+  const Device& d = model.device();
   const std::vector<double> volts_there{110, 0};
-  const auto closed = closed_equilibrium(device, volts_there);
+  const auto closed = closed_equilibrium(model, volts_there);
   ASSERT_TRUE(closed.has_value());
-  EXPECT_DOUBLE_EQ(device.contact_deflection(closed->q.data()), d.gap.contact);
-  Switch::Workspace work = device.workspace();
+  EXPECT_DOUBLE_EQ(model.contact_deflection(closed->q.data()), d.gap.contact);
+  Switch::Workspace work = model.workspace();
   Eigen::VectorXd rest = Eigen::VectorXd::Zero(1), force(1);
-  device.accelerations(closed->q.data(), rest.data(), volts_there, false, work, force.data());
-  EXPECT_NEAR(closed->contact_force, force[0] / device.contact_shape()[0], 1e-12 * closed->contact_force);
-  EXPECT_EQ(closed->potential, device.potential(closed->q.data(), volts_there, false, work));
+  model.accelerations(closed->q.data(), rest.data(), volts_there, false, work, force.data());
+  EXPECT_NEAR(closed->contact_force, force[0] / model.contact_shape()[0], 1e-12 * closed->contact_force);
+  EXPECT_EQ(closed->potential, model.potential(closed->q.data(), volts_there, false, work));
   // Just above the release voltage there is one, just below none.
-  const double release = release_voltage(device, 0);
-  EXPECT_TRUE(closed_equilibrium(device, std::vector<double>{1.0001 * release, 0}).has_value());
-  EXPECT_FALSE(closed_equilibrium(device, std::vector<double>{0.9999 * release, 0}).has_value());
+  const double release = release_voltage(model, 0);
+  EXPECT_TRUE(closed_equilibrium(model, std::vector<double>{1.0001 * release, 0}).has_value());
+  EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{0.9999 * release, 0}).has_value());
 }
 
 TEST(RigidContact, LandingExcessIsTheSameWhateverTheImpactTakes) {
@@ -198,9 +198,9 @@ TEST(RigidContact, LandingExcessIsTheSameWhateverTheImpactTakes) {
     const Switch device(d);
     const std::vector<double> hold{110, 0};
     const std::vector<Signal> drives{Signal::constant(110), Signal()};
-    const auto closed = closed_equilibrium(device, hold);
+    const auto closed = closed_equilibrium(model, hold);
     const Trajectory t = simulate_closing(
-        device, drives, {.duration = 100_us, .tolerance = 1e-10, .after_contact = 1_us, .closed_potential = closed->potential});
+        model, drives, {.duration = 100_us, .tolerance = 1e-10, .after_contact = 1_us, .closed_potential = closed->potential});
     // All kinetic energy of the first impact has to go.
     EXPECT_NEAR(t.landing_excess, t.touches[0].peak_energy, 1e-7 * t.landing_excess) << e;
     return t.landing_excess;

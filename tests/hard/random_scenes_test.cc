@@ -19,12 +19,12 @@ constexpr std::uint64_t seed = 7;
 Prepared random_closing() {
   while (true) {
     Prepared p = prepare(test::random_scene(seed, *rc::gen::inRange<std::uint64_t>(0, 1'000'000)));
-    if (p.device.film_states() == 0) return p;
+    if (p.model.film_states() == 0) return p;
   }
 }
 
 test::CheckedRun closing(const Prepared& p, Integrator integrator, double tolerance) {
-  return test::checked_run(p.device, p.signals(),
+  return test::checked_run(p.model, p.signals(),
                            {.duration = p.duration, .tolerance = tolerance, .integrator = integrator, .max_steps = 20'000}, 1e-3,
                            p.scene.metrics);
 }
@@ -64,7 +64,7 @@ TEST(EveryScene, ThatCreepsInAThickFilmIsClosedInBoundedWork) {
       return c.trajectory;
     };
     const Trajectory t = run(Integrator::automatic, 1e-7), expected = run(Integrator::bdf, 1e-9);
-    EXPECT_LT(t.energy_error, 1e-5 * p.device.bending_energy());  // 5e-7 seen
+    EXPECT_LT(t.energy_error, 1e-5 * p.model.bending_energy());  // 5e-7 seen
     const test::Landing a = test::landing(t), b = test::landing(expected);
     EXPECT_NEAR(a.time, b.time, 1e-6 * b.time);
     EXPECT_NEAR(a.velocity, b.velocity, 1e-6 * b.velocity);
@@ -78,8 +78,8 @@ TEST(EveryScene, KeepsBooksAsGoodAsItsMotion) {
   const auto error = [](std::uint64_t index, Integrator integrator) {
     const Prepared p = prepare(test::random_scene(2, index));
     const Trajectory t =
-        simulate_closing(p.device, p.signals(), {.duration = p.duration, .tolerance = 1e-7, .integrator = integrator});
-    return t.energy_error / p.device.bending_energy();
+        simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-7, .integrator = integrator});
+    return t.energy_error / p.model.bending_energy();
   };
   EXPECT_LT(error(2160, Integrator::automatic), 4e-4);  // Simpson's rule alone leaves 1.2e-3, with care from 1e-4 on 1.4e-4
   EXPECT_LT(error(3880, Integrator::automatic), 4e-4);  // 8e-4, 1.0e-4
@@ -92,9 +92,9 @@ TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
     SCOPED_TRACE(index);
     const Prepared p = prepare(test::random_film_scene(2, index).value());
     const Trajectory t = simulate_closing(
-        p.device, p.signals(), {.duration = p.duration, .tolerance = 1e-3, .integrator = Integrator::lawson, .max_steps = 4000});
+        p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-3, .integrator = Integrator::lawson, .max_steps = 4000});
     EXPECT_EQ(t.status, Status::done) << t.message;
-    EXPECT_LT(t.energy_error, 1e-2 * p.device.bending_energy());  // 7e-4, 2e-3; with the film of another step 0.26, 0.025
+    EXPECT_LT(t.energy_error, 1e-2 * p.model.bending_energy());  // 7e-4, 2e-3; with the film of another step 0.26, 0.025
   }
 }
 
@@ -106,7 +106,7 @@ TEST(EveryScene, LandsAlikeFromTwoIntegrators) {
     const test::Landing a = test::landing(one.trajectory), b = test::landing(other.trajectory);
     RC_LOG() << p.scene.file.text() << fmt::format("{} s, {} m/s and {} s, {} m/s", a.time, a.velocity, b.time, b.velocity);
     // Slow first touches and those just above pull-in are less certain than the tolerance.
-    const double scale = p.device.device().gap.contact * p.device.angular_frequencies()[0];
+    const double scale = p.model.device().gap.contact * p.model.angular_frequencies()[0];
     RC_ASSERT(std::abs(a.time - b.time) <= 1e-4 * a.time);
     RC_ASSERT(std::abs(a.velocity - b.velocity) <= 1e-3 * std::max(a.velocity, scale));
   }));

@@ -56,7 +56,7 @@ void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int k
   d.contact = contact;
   const Switch device(d);
   const Trajectory t =
-      simulate_closing(device, waveforms(kind, layer ? 28_V : step_level, layer), {.duration = 150_us, .tolerance = tolerance});
+      simulate_closing(model, waveforms(kind, layer ? 28_V : step_level, layer), {.duration = 150_us, .tolerance = tolerance});
   const std::string name = fmt::format("piezo {}, loss {}, contact {} {}, waveform {}", layer, loss.name,
                                        name_of(contact_laws, contact.model), contact.damping, kind);
   ASSERT_EQ(t.status, Status::done) << name;
@@ -66,7 +66,7 @@ void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int k
   EXPECT_LT(std::abs(t.energy.residual()), measured * t.energy.source_work) << name;
   if (loss.gas || loss.damping_ratio > 0) {
     EXPECT_GT(t.energy.dissipated, 0.01 * t.energy.source_work) << name;
-  } else if (contact.damping > 0 || has_memory(device.contact())) {
+  } else if (contact.damping > 0 || has_memory(model.contact())) {
     EXPECT_GT(t.energy.dissipated, 1e-4 * t.energy.source_work) << name;
   } else {
     EXPECT_EQ(t.energy.dissipated, 0) << name;
@@ -150,9 +150,9 @@ TEST(EnergyBalance, ClosesBetweenTwoClamps) {
       if (!gas) d.gas.reset();
       d.structure.stretching = stretching;
       const Switch device(d);
-      const std::vector<Signal> drives{Signal::constant(static_pull_in(device, 0).voltage),
+      const std::vector<Signal> drives{Signal::constant(static_pull_in(model, 0).voltage),
                                        signal(Pulse{.levels = {30_V, 0_V}, .times = {2_us}, .edge = 0.5_us})};
-      const Trajectory t = simulate_closing(device, drives, {.duration = 20_us, .tolerance = 1e-9});
+      const Trajectory t = simulate_closing(model, drives, {.duration = 20_us, .tolerance = 1e-9});
       ASSERT_EQ(t.status, Status::done) << t.message;
       EXPECT_GE(t.touches.size(), 2u) << gas << stretching;
       EXPECT_EQ(t.energy.dissipated > 0, gas);
@@ -194,21 +194,21 @@ TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
             Dispersion{.model = model, .conductor = conductor, .hamaker_constant = 6e-19, .equilibrium_distance = 0.4_nm};
         if (model == DispersionModel::automatic && conductor == Conductor::gold) d.dispersion->hamaker_constant = 1.2e-19;
         const Switch device(d);
-        ASSERT_TRUE(device.rest().has_value());
-        const double period = 2 * pi / device.angular_frequencies()[0];
-        const StaticPullIn fold = static_pull_in(device, 0);
+        ASSERT_TRUE(model.rest().has_value());
+        const double period = 2 * pi / model.angular_frequencies()[0];
+        const StaticPullIn fold = static_pull_in(model, 0);
         ASSERT_EQ(fold.status, Status::done);
         const std::vector<Signal> drives{signal(Pulse{.levels = {1.4 * fold.voltage, 0.9 * fold.voltage, 1.2 * fold.voltage},
                                                       .times = {period, 2 * period},
                                                       .edge = edge * period})};
-        const Trajectory t = simulate_closing(device, drives, {.duration = 4 * period, .tolerance = 1e-9});
+        const Trajectory t = simulate_closing(model, drives, {.duration = 4 * period, .tolerance = 1e-9});
         const std::string name =
             fmt::format("model {}, conductor {}, edge {}", static_cast<int>(model), static_cast<int>(conductor), edge);
         ASSERT_EQ(t.status, Status::done) << name << ": " << t.message;
         EXPECT_GE(t.touches.size(), 1u) << name;
-        EXPECT_LT(std::abs(t.energy.source_work), 1e3 * device.bending_energy()) << name;
-        EXPECT_LT(t.energy_error, balance * device.bending_energy()) << name;
-        EXPECT_GT(t.energy.dissipated, 0.01 * device.bending_energy()) << name;
+        EXPECT_LT(std::abs(t.energy.source_work), 1e3 * model.bending_energy()) << name;
+        EXPECT_LT(t.energy_error, balance * model.bending_energy()) << name;
+        EXPECT_GT(t.energy.dissipated, 0.01 * model.bending_energy()) << name;
       }
     }
   }
@@ -218,7 +218,7 @@ TEST(EnergyBalance, ClosesWhenAVoltageAndADispersionForceClose) {
   const Switch device(test::nano_cantilever());
   const std::vector<Signal> drives{signal(Pulse{.levels = {16_V, 10_V, 16_V}, .times = {1e-9, 2e-9}, .edge = 2e-10}),
                                    signal(Pulse{.levels = {0.5, -0.5}, .times = {1.5e-9}, .edge = 1e-10})};
-  const Trajectory t = simulate_closing(device, drives, {.duration = 10e-9, .tolerance = 1e-9});
+  const Trajectory t = simulate_closing(model, drives, {.duration = 10e-9, .tolerance = 1e-9});
   ASSERT_EQ(t.status, Status::done) << t.message;
   EXPECT_GE(t.touches.size(), 2u);
   EXPECT_LT(std::abs(t.energy.residual()), 1e-6 * t.energy.source_work);
@@ -226,12 +226,12 @@ TEST(EnergyBalance, ClosesWhenAVoltageAndADispersionForceClose) {
 
 TEST(Rest, IsWhereARunBegins) {
   const Switch device(test::casimir_cantilever());
-  ASSERT_TRUE(device.rest().has_value());
-  const double tip = device.contact_deflection(device.rest()->data());
+  ASSERT_TRUE(model.rest().has_value());
+  const double tip = model.contact_deflection(model.rest()->data());
   EXPECT_GT(tip, 1_nm);
   // Nominal force: it stays there. At rest the steps of an explicit method grow until what it moves reaches the tolerance.
   const std::vector<Signal> drives(1);
-  const Trajectory t = simulate_closing(device, drives, {.duration = 1_us, .tolerance = 1e-9});
+  const Trajectory t = simulate_closing(model, drives, {.duration = 1_us, .tolerance = 1e-9});
   EXPECT_EQ(t.status, Status::done);
   for (const TrajectoryPoint& p : t.points) EXPECT_NEAR(p.position, tip, 1e-6 * tip);
 }
@@ -240,18 +240,18 @@ TEST(Rest, IsMissingWhereTheForceClosesTheSwitchByItself) {
   Device d = test::casimir_cantilever();
   d.structure.length = 6_um;
   const Switch device(d);
-  EXPECT_FALSE(device.rest().has_value());
-  const Trajectory t = simulate_closing(device, std::vector<Signal>(1), {.duration = 1_us});
+  EXPECT_FALSE(model.rest().has_value());
+  const Trajectory t = simulate_closing(model, std::vector<Signal>(1), {.duration = 1_us});
   EXPECT_EQ(t.status, Status::collapsed_at_rest);
   EXPECT_TRUE(t.touches.empty());
-  EXPECT_LT(static_pull_in(device, 0).voltage, 0);
-  EXPECT_EQ(dynamic_pull_in(device, 0, static_pull_in(device, 0)).status, Status::collapsed_at_rest);
+  EXPECT_LT(static_pull_in(model, 0).voltage, 0);
+  EXPECT_EQ(dynamic_pull_in(model, 0, static_pull_in(model, 0)).status, Status::collapsed_at_rest);
 }
 
 TEST(Rest, OfASwitchWithoutDispersionForceIsTheStraightBeam) {
   const Switch device(test::gold_cantilever());
-  ASSERT_TRUE(device.rest().has_value());
-  EXPECT_TRUE(device.rest()->isZero(0));
+  ASSERT_TRUE(model.rest().has_value());
+  EXPECT_TRUE(model.rest()->isZero(0));
 }
 
 TEST(EnergyBalance, ClosesBetweenElectrodes) {
@@ -274,7 +274,7 @@ TEST(EnergyBalance, ResidualFallsWithTheTolerance) {
   const Switch device(test::gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto residual = [&](double tolerance) {
-    const Trajectory t = simulate_closing(device, drives, {.duration = 60_us, .tolerance = tolerance});
+    const Trajectory t = simulate_closing(model, drives, {.duration = 60_us, .tolerance = tolerance});
     return std::abs(t.energy.residual() / t.energy.source_work);
   };
   const double slope = std::log10(residual(1e-6) / residual(1e-9)) / 3;
@@ -286,11 +286,11 @@ TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
   const Switch device(test::gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto run = [&](double tolerance) {
-    return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = Integrator::arkode_erk});
+    return simulate_closing(model, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = Integrator::arkode_erk});
   };
   // Measured: 3.2e-5 of the bending energy at 1e-6, 4 % at 1e-3, almost five times the bending energy at 1e-2.
   const Trajectory good = run(1e-6);
-  EXPECT_LT(good.energy_error, 1e-4 * device.bending_energy());
+  EXPECT_LT(good.energy_error, 1e-4 * model.bending_energy());
   EXPECT_GE(good.energy_error, std::abs(good.energy.residual()));
   EXPECT_TRUE(good.warnings.empty());
 
@@ -311,32 +311,32 @@ TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   const Switch device(d);
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto run = [&](Integrator integrator, double tolerance) {
-    return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = integrator});
+    return simulate_closing(model, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = integrator});
   };
   const Trajectory loose = run(Integrator::arkode_erk, 1e-2);
   EXPECT_EQ(loose.status, Status::numerical_failure);
   EXPECT_NE(loose.message.find("the energy balance is off by"), std::string::npos) << loose.message;
-  EXPECT_GT(loose.energy_error, 0.5 * device.bending_energy());
+  EXPECT_GT(loose.energy_error, 0.5 * model.bending_energy());
   // Long steps alone do no harm: so stiff a contact begins where it is, not where the interpolant of the flight ends.
   for (const Integrator integrator : {Integrator::esdirk, Integrator::bdf}) {
     const Trajectory t = run(integrator, 1e-3);
     EXPECT_EQ(t.status, Status::done) << t.message;
-    EXPECT_LT(t.energy_error, 0.1 * device.bending_energy());
+    EXPECT_LT(t.energy_error, 0.1 * model.bending_energy());
   }
 }
 
 TEST(DriveEnergy, OfAStepIsChargingAtRestPlusVoltageTimesTheMovedCharge) {
   const Switch device(test::gold_cantilever());
-  Switch::Workspace work = device.workspace();
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
   const std::vector<Signal> drives{Signal::constant(step_level)};
   Eigen::VectorXd last = rest;
   const Trajectory t =
-      simulate_closing(device, drives, {.duration = 60_us, .observer = [&](double, const double* q, const double*) {
-                                          last = Eigen::Map<const Eigen::VectorXd>(q, device.modes());
-                                          return false;
-                                        }});
-  const double at_rest = device.capacitance(0, rest.data(), work), at_end = device.capacitance(0, last.data(), work);
+      simulate_closing(model, drives, {.duration = 60_us, .observer = [&](double, const double* q, const double*) {
+                                         last = Eigen::Map<const Eigen::VectorXd>(q, model.modes());
+                                         return false;
+                                       }});
+  const double at_rest = model.capacitance(0, rest.data(), work), at_end = model.capacitance(0, last.data(), work);
   const double expected = step_level * step_level * (at_rest / 2 + (at_end - at_rest));
   EXPECT_NEAR(t.energy.source_work, expected, 1e-12 * expected);
 }
@@ -346,7 +346,7 @@ TEST(DriveEnergy, OfAJumpIsTheLimitOfSteepEdges) {
   const auto run = [&](double edge) {
     const std::vector<Signal> drives{signal(Pulse{.levels = {28_V, 20_V, 28_V}, .times = {10_us, 16_us}, .edge = edge}),
                                      signal(Pulse{.levels = {0.1_V, -0.1_V, 0_V}, .times = {9_us, 17_us}, .edge = edge})};
-    return simulate_closing(device, drives, {.duration = 60_us, .tolerance = 1e-9});
+    return simulate_closing(model, drives, {.duration = 60_us, .tolerance = 1e-9});
   };
   constexpr double same = 1e-6;  // relative: a picosecond is 1e-8 of the closing time
   const Trajectory jump = run(0), steep = run(1e-12);
@@ -364,27 +364,27 @@ TEST(LandingExcess, WithoutLossesIsTheEnergyAtRestAboveTheClosedEquilibrium) {
   d.gas.reset();
   const Switch device(d);
   const std::vector<double> volts{step_level};
-  const auto closed = closed_equilibrium(device, volts);
+  const auto closed = closed_equilibrium(model, volts);
   ASSERT_TRUE(closed.has_value());
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const Trajectory t = simulate_closing(
-      device, drives, {.duration = 60_us, .tolerance = 1e-9, .after_contact = 1_us, .closed_potential = closed->potential});
-  Switch::Workspace work = device.workspace();
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
-  const double expected = device.potential(rest.data(), volts, false, work) - closed->potential;
+      model, drives, {.duration = 60_us, .tolerance = 1e-9, .after_contact = 1_us, .closed_potential = closed->potential});
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+  const double expected = model.potential(rest.data(), volts, false, work) - closed->potential;
   EXPECT_GT(expected, 0);
   EXPECT_NEAR(t.landing_excess, expected, 1e-6 * expected);
 }
 
 TEST(LandingExcess, WaitsForTheHoldLevels) {
   const Switch device(test::gold_cantilever());
-  const auto closed = closed_equilibrium(device, std::vector<double>{step_level});
+  const auto closed = closed_equilibrium(model, std::vector<double>{step_level});
   ASSERT_TRUE(closed.has_value());
   // A last edge that ends after the window: the drives never stand at their hold levels.
   const std::vector<Signal> drives{signal(Pulse{.levels = {step_level, 0.9 * step_level}, .times = {90_us}, .edge = 1_us})};
   const ClosingOptions options{.duration = 80_us, .closed_potential = closed->potential};
-  EXPECT_FALSE(simulate_closing(device, drives, options).touches.empty());
-  EXPECT_TRUE(std::isnan(simulate_closing(device, drives, options).landing_excess));
+  EXPECT_FALSE(simulate_closing(model, drives, options).touches.empty());
+  EXPECT_TRUE(std::isnan(simulate_closing(model, drives, options).landing_excess));
 }
 
 TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
@@ -396,21 +396,21 @@ TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
     d.contact->model = ContactModel::linear;
     d.contact->stiffness = stiffness;
     const Switch device(d);
-    Switch::Workspace work = device.workspace();
-    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
-    const double at_rest = device.capacitance(0, rest.data(), work);
+    Switch::Workspace work = model.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+    const double at_rest = model.capacitance(0, rest.data(), work);
     const std::vector<Signal> drives{Signal::constant(step_level)};
     for (const Integrator integrator :
          {Integrator::lawson, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
       for (const double tolerance : {1e-4, 1e-6}) {
         double given = 0;
         const Trajectory t =
-            simulate_closing(device, drives,
+            simulate_closing(model, drives,
                              {.duration = 60_us,
                               .tolerance = tolerance,
                               .integrator = integrator,
                               .observer = [&](double, const double* q, const double*) {
-                                given = std::max(given, (device.capacitance(0, q, work) - at_rest) * step_level * step_level / 2);
+                                given = std::max(given, (model.capacitance(0, q, work) - at_rest) * step_level * step_level / 2);
                                 return false;
                               }});
         ASSERT_FALSE(t.touches.empty());

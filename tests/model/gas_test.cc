@@ -34,12 +34,12 @@ TEST(LinearDamper, GivesTheFirstModeItsQualityFactor) {
   for (Device d : {test::gold_cantilever(), test::gold_pzt_cantilever()}) {
     d.gas = Gas{.model = GasModel::linear, .quality_factor = 8};
     const Switch device(d);
-    Switch::Workspace work = device.workspace();
-    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
-    const Eigen::VectorXd v = Eigen::VectorXd::Unit(device.modes(), 0);
+    Switch::Workspace work = model.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+    const Eigen::VectorXd v = Eigen::VectorXd::Unit(model.modes(), 0);
     // Q = omega_1 times twice the mean kinetic energy over the power, for a velocity of one.
-    const double power = device.dissipated_power(rest.data(), v.data(), work);
-    EXPECT_NEAR(device.angular_frequencies()[0] / power, 8, quadrature * 8);
+    const double power = model.dissipated_power(rest.data(), v.data(), work);
+    EXPECT_NEAR(model.angular_frequencies()[0] / power, 8, quadrature * 8);
   }
 }
 

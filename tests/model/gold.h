@@ -10,7 +10,7 @@ constexpr double step_level = 17.771;  // [V], about 1.25 Vdp
 
 inline const Switch& gold() {
   static const Switch device(gold_cantilever());
-  return device;
+  return model;
 }
 
 }  // namespace softland::test

@@ -36,22 +36,22 @@ Device padded(const Contact& contact) {
 constexpr std::array tilts{std::pair{20e-9, 0.01}, std::pair{80e-9, 0.01}, std::pair{30e-9, -0.004}, std::pair{-5e-9, -0.008}};
 
 /// First two modes so that the free end stands there.
-Eigen::VectorXd tilted(const Switch& device, double depth, double slope) {
-  const BeamModes modes(beam_sections(device.device()), device.modes());
-  const double end = device.device().structure.length;
+Eigen::VectorXd tilted(const Switch& model, double depth, double slope) {
+  const BeamModes modes(beam_sections(model.device()), model.modes());
+  const double end = model.device().structure.length;
   Eigen::Matrix2d m;
   m << modes.value(end).head<2>().transpose(), modes.slope(end).head<2>().transpose();
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(device.modes());
-  q.head<2>() = m.partialPivLu().solve(Eigen::Vector2d(device.device().gap.contact + depth, slope));
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(model.modes());
+  q.head<2>() = m.partialPivLu().solve(Eigen::Vector2d(model.device().gap.contact + depth, slope));
   return q;
 }
 
 /// As in a closing: the contact point moves at about 0.1 m/s.
-Eigen::VectorXd velocities(const Switch& device, std::mt19937_64& random) {
+Eigen::VectorXd velocities(const Switch& model, std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
-  Eigen::VectorXd v(device.modes());
+  Eigen::VectorXd v(model.modes());
   for (Eigen::Index i = 0; i < v.size(); ++i) {
-    v[i] = 0.1 * uniform(random) / (device.contact_shape()[0] * static_cast<double>(1 + i * i));
+    v[i] = 0.1 * uniform(random) / (model.contact_shape()[0] * static_cast<double>(1 + i * i));
   }
   return v;
 }
@@ -112,35 +112,35 @@ TEST(PadContact, IsTheLawIntegratedAlongTheBentBeam) {
   std::mt19937_64 random(1);
   for (const Contact& contact : test::pad_contacts()) {
     const Switch device(padded(contact));
-    const Device& d = device.device();
-    const BeamModes modes(beam_sections(d), device.modes());
+    const Device& d = model.device();
+    const BeamModes modes(beam_sections(d), model.modes());
     Device without = d;
     without.contact->distribution = ContactDistribution::centre;
     const Switch free(without);
-    Switch::Workspace work = device.workspace(), free_work = free.workspace();
+    Switch::Workspace work = model.workspace(), free_work = free.workspace();
     for (const auto& tilt : tilts) {
-      const Eigen::VectorXd q = tilted(device, tilt.first, tilt.second), v = velocities(device, random);
+      const Eigen::VectorXd q = tilted(model, tilt.first, tilt.second), v = velocities(model, random);
       constexpr int points = 4000;
-      Eigen::VectorXd expected = Eigen::VectorXd::Zero(device.modes());
+      Eigen::VectorXd expected = Eigen::VectorXd::Zero(model.modes());
       double push = 0, stored = 0, dissipated = 0;
       for (int k = 0; k < points; ++k) {
         const Eigen::VectorXd shape = modes.value(d.structure.length - contact.pad_length * (k + 0.5) / points);
         const double at = shape.dot(q) - d.gap.contact, rate = shape.dot(v);
         if (!(at > 0)) continue;
-        const double force = contact_force(device.contact(), at, true, rate) / points;
+        const double force = contact_force(model.contact(), at, true, rate) / points;
         push += force;
         expected -= force * shape;
-        stored += contact_energy(device.contact(), at) / points;
-        dissipated += contact_dissipation(device.contact(), at, rate) / points;
+        stored += contact_energy(model.contact(), at) / points;
+        dissipated += contact_dissipation(model.contact(), at, rate) / points;
       }
-      Eigen::VectorXd with(device.modes()), alone(device.modes());
-      device.accelerations(q.data(), v.data(), no_volts(), true, work, with.data());
+      Eigen::VectorXd with(model.modes()), alone(model.modes());
+      model.accelerations(q.data(), v.data(), no_volts(), true, work, with.data());
       free.accelerations(q.data(), v.data(), no_volts(), false, free_work, alone.data());
       const std::string name = named(contact, tilt);
       EXPECT_LT((with - alone - expected).norm(), straight * expected.norm()) << name;
-      EXPECT_NEAR(device.contact_push(q.data(), v.data(), true), push, straight * std::abs(push)) << name;
-      EXPECT_NEAR(device.contact_stored(q.data(), true), stored, straight * std::abs(stored)) << name;
-      EXPECT_NEAR(device.contact_dissipation(q.data(), v.data()), dissipated, straight * dissipated) << name;
+      EXPECT_NEAR(model.contact_push(q.data(), v.data(), true), push, straight * std::abs(push)) << name;
+      EXPECT_NEAR(model.contact_stored(q.data(), true), stored, straight * std::abs(stored)) << name;
+      EXPECT_NEAR(model.contact_dissipation(q.data(), v.data()), dissipated, straight * dissipated) << name;
       EXPECT_EQ(dissipated > 0, contact.damping > 0) << name;
     }
   }
@@ -152,21 +152,21 @@ TEST(PadContact, HasItsExactDerivativesAndEnergy) {
   std::mt19937_64 random(2);
   for (const Contact& contact : test::pad_contacts()) {
     const Switch device(padded(contact));
-    Switch::Workspace work = device.workspace();
-    const Eigen::Index n = device.modes();
+    Switch::Workspace work = model.workspace();
+    const Eigen::Index n = model.modes();
     for (const auto& tilt : tilts) {
-      Eigen::VectorXd q = tilted(device, tilt.first, tilt.second), v = velocities(device, random);
+      Eigen::VectorXd q = tilted(model, tilt.first, tilt.second), v = velocities(model, random);
       const std::string name = named(contact, tilt);
       // The contact's own part: what the same device has when it is not active goes off.
       const auto force = [&](const Eigen::VectorXd& rate) {
         Eigen::VectorXd with(n), without(n);
-        device.accelerations(q.data(), rate.data(), no_volts(), true, work, with.data());
-        device.accelerations(q.data(), rate.data(), no_volts(), false, work, without.data());
+        model.accelerations(q.data(), rate.data(), no_volts(), true, work, with.data());
+        model.accelerations(q.data(), rate.data(), no_volts(), false, work, without.data());
         return Eigen::VectorXd(with - without);
       };
       Eigen::MatrixXd by_q(n, n), by_v(n, n), idle_by_q(n, n), idle_by_v(n, n);
-      device.jacobian(q.data(), v.data(), no_volts(), true, work, by_q, by_v);
-      device.jacobian(q.data(), v.data(), no_volts(), false, work, idle_by_q, idle_by_v);
+      model.jacobian(q.data(), v.data(), no_volts(), true, work, by_q, by_v);
+      model.jacobian(q.data(), v.data(), no_volts(), false, work, idle_by_q, idle_by_v);
       by_q -= idle_by_q;
       by_v -= idle_by_v;
       const auto derivative = [](double& x, double h, auto&& f) {
@@ -184,18 +184,18 @@ TEST(PadContact, HasItsExactDerivativesAndEnergy) {
       const Eigen::VectorXd still = Eigen::VectorXd::Zero(n), at_rest = force(still);
       Eigen::VectorXd gradient(n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const double unit = 1 / std::abs(device.contact_shape()[i]);
+        const double unit = 1 / std::abs(model.contact_shape()[i]);
         const Eigen::VectorXd q_column = derivative(q[i], step * unit, [&] { return force(v); });
         EXPECT_LT((q_column - by_q.col(i)).cwiseAbs().maxCoeff(), differences * by_q.cwiseAbs().maxCoeff()) << name;
         const Eigen::VectorXd v_column = derivative(v[i], 0.01 * unit, [&] { return force(v); });
         EXPECT_LE((v_column - by_v.col(i)).cwiseAbs().maxCoeff(), differences * by_v.cwiseAbs().maxCoeff() + 1e-6) << name;
         gradient[i] = derivative(q[i], step * unit, [&] {
-          return device.potential(q.data(), no_volts(), true, work) - device.potential(q.data(), no_volts(), false, work);
+          return model.potential(q.data(), no_volts(), true, work) - model.potential(q.data(), no_volts(), false, work);
         });
       }
       EXPECT_LT((at_rest + gradient).cwiseAbs().maxCoeff(), differences * at_rest.cwiseAbs().maxCoeff()) << name;
       const double power = -v.dot(force(v) - at_rest);
-      EXPECT_NEAR(device.contact_dissipation(q.data(), v.data()), power, differences * v.norm() * at_rest.norm()) << name;
+      EXPECT_NEAR(model.contact_dissipation(q.data(), v.data()), power, differences * v.norm() * at_rest.norm()) << name;
     }
   }
 }
@@ -215,17 +215,17 @@ TEST(PadContact, OfAVeryShortPadIsTheContactAtItsCentre) {
 
 TEST(PadContact, IsSeenFromTheFreeEnd) {
   const Switch device(padded(test::pad_contacts().front()));
-  const Device& d = device.device();
-  const BeamModes modes(beam_sections(d), device.modes());
+  const Device& d = model.device();
+  const BeamModes modes(beam_sections(d), model.modes());
   EXPECT_EQ(d.contact_position(), d.structure.length);
-  EXPECT_EQ(device.contact_shape(), modes.value(d.structure.length));
-  EXPECT_DOUBLE_EQ(device.in_contact_period(), 2 * pi / modes.pinned_frequency(d.structure.length));
+  EXPECT_EQ(model.contact_shape(), modes.value(d.structure.length));
+  EXPECT_DOUBLE_EQ(model.in_contact_period(), 2 * pi / modes.pinned_frequency(d.structure.length));
   // The scale of penetration carries the force that bends the beam by the contact gap, on the pad as tilted by that force.
-  const Eigen::VectorXd bent = device.contact_shape().cwiseQuotient(device.angular_frequencies().cwiseAbs2());
-  const double compliance = device.contact_shape().dot(bent);
-  const Eigen::VectorXd q = bent * ((d.gap.contact + device.penetration_scale()) / compliance), still = 0 * q;
+  const Eigen::VectorXd bent = model.contact_shape().cwiseQuotient(model.angular_frequencies().cwiseAbs2());
+  const double compliance = model.contact_shape().dot(bent);
+  const Eigen::VectorXd q = bent * ((d.gap.contact + model.penetration_scale()) / compliance), still = 0 * q;
   const double force = d.gap.contact / compliance;
-  EXPECT_NEAR(device.contact_push(q.data(), still.data(), true), force, 1e-9 * force);
+  EXPECT_NEAR(model.contact_push(q.data(), still.data(), true), force, 1e-9 * force);
 }
 
 TEST(PadContact, LeavesTheFoldOfTheStaticBranchWhereItIs) {
@@ -242,7 +242,7 @@ TEST(PadContact, PushesFromTheTouchOfTheFreeEndOn) {
   d.contact->distribution = ContactDistribution::pad;
   const Switch device(d);
   const std::vector<Signal> drives{Signal::constant(17.771)};
-  const Trajectory t = simulate_closing(device, drives, {.duration = 100_us, .tolerance = 1e-8});
+  const Trajectory t = simulate_closing(model, drives, {.duration = 100_us, .tolerance = 1e-8});
   ASSERT_EQ(t.status, Status::done);
   ASSERT_GE(t.touches.size(), 2u);
   double at_knots = 0, recorded = 0;
@@ -258,7 +258,7 @@ TEST(PadContact, PushesFromTheTouchOfTheFreeEndOn) {
   for (const Touch& touch : t.touches) recorded = std::max(recorded, touch.peak_force);
   EXPECT_GE(recorded, at_knots);
   EXPECT_LT(recorded, 1.05 * at_knots);
-  EXPECT_LT(recorded, contact_force(device.contact(), t.deepest_penetration)) << "of a pad all of which is that deep";
+  EXPECT_LT(recorded, contact_force(model.contact(), t.deepest_penetration)) << "of a pad all of which is that deep";
 }
 
 }  // namespace

@@ -30,10 +30,10 @@ Switch contact_first() {
 
 /// Whether the contact point reaches the plane within a hundred periods of a step: the definition of dynamic pull-in, with none
 /// of its shortcuts.
-bool reaches(const Switch& device, double volts) {
+bool reaches(const Switch& model, double volts) {
   const std::vector<Signal> drives{Signal::constant(volts)};
-  const double window = 100 * 2 * pi / device.angular_frequencies()[0];
-  return !simulate_closing(device, drives, {.duration = window, .tolerance = 1e-9, .after_contact = 0}).touches.empty();
+  const double window = 100 * 2 * pi / model.angular_frequencies()[0];
+  return !simulate_closing(model, drives, {.duration = window, .tolerance = 1e-9, .after_contact = 0}).touches.empty();
 }
 
 TEST(StaticPullIn, AtTheFoldLeavesNoEquilibriumForASlowerRamp) {
@@ -41,11 +41,11 @@ TEST(StaticPullIn, AtTheFoldLeavesNoEquilibriumForASlowerRamp) {
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.7;
   const Switch device(d);
-  const StaticPullIn found = static_pull_in(device, 0);
+  const StaticPullIn found = static_pull_in(model, 0);
   EXPECT_EQ(found.kind, StaticKind::fold);
   EXPECT_LT(found.deflection, d.gap.contact);
-  EXPECT_FALSE(reaches(device, 0.999 * found.voltage));
-  EXPECT_TRUE(reaches(device, 1.001 * found.voltage));
+  EXPECT_FALSE(reaches(model, 0.999 * found.voltage));
+  EXPECT_TRUE(reaches(model, 1.001 * found.voltage));
 }
 
 TEST(StaticPullIn, SettledBeamStandsOnTheBranch) {
@@ -53,23 +53,23 @@ TEST(StaticPullIn, SettledBeamStandsOnTheBranch) {
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.7;
   const Switch device(d);
-  const StaticPullIn found = static_pull_in(device, 0);
+  const StaticPullIn found = static_pull_in(model, 0);
   const std::vector<Signal> drives{Signal::constant(0.9999 * found.voltage)};
-  const double rest = simulate_closing(device, drives, {.duration = 20'000_us, .tolerance = 1e-8}).points.back().position;
+  const double rest = simulate_closing(model, drives, {.duration = 20'000_us, .tolerance = 1e-8}).points.back().position;
   EXPECT_LT(rest, found.deflection);
   EXPECT_GT(rest, 0.97 * found.deflection);  // the branch is a parabola there: one per cent of deflection per 1e-4 of voltage
 }
 
 TEST(StaticPullIn, IsTheContactWhereThatComesFirst) {
-  const Switch device = contact_first();
-  const StaticPullIn found = static_pull_in(device, 0);
+  const Switch model = contact_first();
+  const StaticPullIn found = static_pull_in(model, 0);
   ASSERT_EQ(found.status, Status::done);
   EXPECT_EQ(found.kind, StaticKind::contact);
   EXPECT_EQ(to_string(found.kind), "contact");
   EXPECT_EQ(to_string(StaticKind::fold), "fold");
-  EXPECT_DOUBLE_EQ(found.deflection, device.device().gap.contact);
+  EXPECT_DOUBLE_EQ(found.deflection, model.device().gap.contact);
   // Nothing snaps: it closes where it opens.
-  EXPECT_NEAR(release_voltage(device, 0), found.voltage, 1e-9 * found.voltage);
+  EXPECT_NEAR(release_voltage(model, 0), found.voltage, 1e-9 * found.voltage);
 }
 
 TEST(StaticPullIn, DoesNotDependOnGasDampingOrDensity) {
@@ -105,11 +105,11 @@ TEST(DynamicPullIn, SeparatesTheStepsThatTouchFromThoseThatDoNot) {
   Device undamped = test::gold_cantilever();
   undamped.gas.reset();
   undamped.structure.modes = 2;
-  for (const Switch& device : {gold(), contact_first(), Switch(undamped)}) {
-    const DynamicPullIn found = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+  for (const Switch& model : {gold(), contact_first(), Switch(undamped)}) {
+    const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
     ASSERT_EQ(found.status, Status::done);
-    EXPECT_FALSE(reaches(device, (1 - margin) * found.voltage));
-    EXPECT_TRUE(reaches(device, (1 + margin) * found.voltage));
+    EXPECT_FALSE(reaches(model, (1 - margin) * found.voltage));
+    EXPECT_TRUE(reaches(model, (1 + margin) * found.voltage));
   }
 }
 
@@ -133,13 +133,13 @@ TEST(DynamicPullIn, PassesOnWhatStaticPullInSaid) {
 
 TEST(PullIn, IsNotForAnElectrodeOnTheFarSide) {
   const Switch device(test::plate_between_electrodes());
-  EXPECT_TRUE(pulls_in(device.device(), 0));
-  EXPECT_FALSE(pulls_in(device.device(), 1));
-  const StaticPullIn none = static_pull_in(device, 1);
+  EXPECT_TRUE(pulls_in(model.device(), 0));
+  EXPECT_FALSE(pulls_in(model.device(), 1));
+  const StaticPullIn none = static_pull_in(model, 1);
   EXPECT_EQ(none.status, Status::no_contact);
-  EXPECT_EQ(dynamic_pull_in(device, 1, none).status, Status::no_contact);
-  EXPECT_TRUE(std::isnan(release_voltage(device, 1)));
-  EXPECT_EQ(static_pull_in(device, 0).status, Status::done);
+  EXPECT_EQ(dynamic_pull_in(model, 1, none).status, Status::no_contact);
+  EXPECT_TRUE(std::isnan(release_voltage(model, 1)));
+  EXPECT_EQ(static_pull_in(model, 0).status, Status::done);
 }
 
 TEST(StaticPullIn, OfFacesOnBothSidesIsTheMaximumOfTheBalance) {
@@ -164,11 +164,11 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishes) {
   Device spring = test::gold_cantilever();
   spring.contact->model = ContactModel::linear;
   spring.contact->stiffness = 1e3_N_m;
-  for (const Switch& device : {gold(), Switch(spring), contact_first()}) {
-    const double release = release_voltage(device, 0);
-    EXPECT_FALSE(closed_equilibrium(device, std::vector<double>{(1 - margin) * release}));
-    EXPECT_TRUE(closed_equilibrium(device, std::vector<double>{(1 + margin) * release}));
-    EXPECT_LE(release, static_pull_in(device, 0).voltage * (1 + margin));
+  for (const Switch& model : {gold(), Switch(spring), contact_first()}) {
+    const double release = release_voltage(model, 0);
+    EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{(1 - margin) * release}));
+    EXPECT_TRUE(closed_equilibrium(model, std::vector<double>{(1 + margin) * release}));
+    EXPECT_LE(release, static_pull_in(model, 0).voltage * (1 + margin));
   }
 }
 
@@ -180,10 +180,10 @@ TEST(ReleaseVoltage, IsWhereAClosedSwitchOpens) {
   soft.contact->asperity_density = 1e6;  // so soft that the branch falls well below the plane before contact turns it up
   for (const Device& d : {gold_damped, soft}) {
     const Switch device(d);
-    const double release = release_voltage(device, 0), high = 1.2 * static_pull_in(device, 0).voltage;
+    const double release = release_voltage(model, 0), high = 1.2 * static_pull_in(model, 0).voltage;
     const auto opens = [&](double low) {
       const std::vector<Signal> drives{Signal::piecewise_linear({{0, high}, {500_us, high}, {1500_us, low}})};
-      const Trajectory t = simulate_closing(device, drives, {.duration = 20'000_us});
+      const Trajectory t = simulate_closing(model, drives, {.duration = 20'000_us});
       return std::isfinite(t.touches.back().end);
     };
     constexpr double margin = 2e-4;  // relative; nearer the fold opening takes longer than the window
@@ -217,8 +217,8 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact) {
   int holding = 0, never = 0;
   for (const Device& d : contacts_of_every_stiffness()) {
     const Switch device(d);
-    const double release = release_voltage(device, 0);
-    const auto closed = [&](double volts) { return closed_equilibrium(device, std::vector<double>{volts}); };
+    const double release = release_voltage(model, 0);
+    const auto closed = [&](double volts) { return closed_equilibrium(model, std::vector<double>{volts}); };
     const std::string name =
         d.contact->model == ContactModel::linear
             ? fmt::format("linear, {} N/m", d.contact->stiffness)
@@ -254,23 +254,23 @@ TEST(ReleaseVoltage, NeedsAContact) {
 TEST(ClosedEquilibrium, IsAnEquilibrium) {
   const Switch pzt(test::gold_pzt_cantilever());
   struct Case {
-    const Switch& device;
+    const Switch& model;
     std::vector<double> volts;
   };
-  for (const auto& [device, volts] :
+  for (const auto& [model, volts] :
        {Case{gold(), {15.5}}, Case{gold(), {17.771}}, Case{pzt, {28, 0}}, Case{pzt, {28, -0.3}}, Case{pzt, {28, 0.1}}}) {
-    const auto closed = closed_equilibrium(device, volts);
+    const auto closed = closed_equilibrium(model, volts);
     ASSERT_TRUE(closed.has_value());
-    Switch::Workspace work = device.workspace();
-    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
-    Eigen::VectorXd a(device.modes());
-    device.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
-    const double contact = closed->contact_force * device.contact_shape().maxCoeff();
+    Switch::Workspace work = model.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+    Eigen::VectorXd a(model.modes());
+    model.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
+    const double contact = closed->contact_force * model.contact_shape().maxCoeff();
     EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * contact);
     EXPECT_GT(closed->contact_force, 0);
-    const double d = device.contact_deflection(closed->q.data()) - device.device().gap.contact;
-    EXPECT_NEAR(contact_force(device.contact(), d), closed->contact_force, 1e-6 * closed->contact_force);
-    EXPECT_DOUBLE_EQ(closed->potential, device.potential(closed->q.data(), volts, true, work));
+    const double d = model.contact_deflection(closed->q.data()) - model.device().gap.contact;
+    EXPECT_NEAR(contact_force(model.contact(), d), closed->contact_force, 1e-6 * closed->contact_force);
+    EXPECT_DOUBLE_EQ(closed->potential, model.potential(closed->q.data(), volts, true, work));
   }
 }
 
@@ -282,14 +282,14 @@ TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
   d.electrodes[0].begin = 0;
   d.electrodes[0].end = d.structure.length / 2;
   const Switch device(d);
-  const std::vector<double> volts{1.05 * release_voltage(device, 0)};
-  const auto closed = closed_equilibrium(device, volts);
+  const std::vector<double> volts{1.05 * release_voltage(model, 0)};
+  const auto closed = closed_equilibrium(model, volts);
   ASSERT_TRUE(closed.has_value());
-  Switch::Workspace work = device.workspace();
-  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
-  Eigen::VectorXd a(device.modes());
-  device.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
-  EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * closed->contact_force * device.contact_shape().maxCoeff());
+  Switch::Workspace work = model.workspace();
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+  Eigen::VectorXd a(model.modes());
+  model.accelerations(closed->q.data(), rest.data(), volts, true, work, a.data());
+  EXPECT_LT(a.cwiseAbs().maxCoeff(), 1e-6 * closed->contact_force * model.contact_shape().maxCoeff());
 }
 
 TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
@@ -298,10 +298,10 @@ TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
   for (const ContactDistribution distribution : {ContactDistribution::centre, ContactDistribution::pad}) {
     d.contact->distribution = distribution;
     const Switch device(d);
-    const auto closed = closed_equilibrium(device, std::vector<double>{17.771});
+    const auto closed = closed_equilibrium(model, std::vector<double>{17.771});
     ASSERT_TRUE(closed.has_value());
     const std::vector<Signal> drives{Signal::constant(17.771)};
-    const Trajectory t = simulate_closing(device, drives, {.duration = 1000_us, .tolerance = 1e-8});
+    const Trajectory t = simulate_closing(model, drives, {.duration = 1000_us, .tolerance = 1e-8});
     EXPECT_NEAR(t.points.back().contact_force, closed->contact_force, 1e-3 * closed->contact_force);
   }
 }
@@ -309,7 +309,7 @@ TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
 TEST(ClosedEquilibrium, IsPressedHarderByAPiezoThatPullsDown) {
   const Switch device(test::gold_pzt_cantilever());
   const auto force = [&](double piezo_volts) {
-    return closed_equilibrium(device, std::vector<double>{28, piezo_volts})->contact_force;
+    return closed_equilibrium(model, std::vector<double>{28, piezo_volts})->contact_force;
   };
   EXPECT_GT(force(-0.1), force(0));
   EXPECT_LT(force(0.1), force(0));
@@ -323,17 +323,16 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
     Device d = test::gold_cantilever();
     d.contact = contact;
     const Switch device(d);
-    const auto closed = closed_equilibrium(device, volts);
+    const auto closed = closed_equilibrium(model, volts);
     ASSERT_TRUE(closed.has_value()) << name_of(contact_laws, contact.model);
     EXPECT_GT(closed->contact_force, 0);
-    Switch::Workspace work = device.workspace();
-    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(device.modes());
-    Eigen::VectorXd left(device.modes());
-    device.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
+    Switch::Workspace work = model.workspace();
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
+    Eigen::VectorXd left(model.modes());
+    model.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
     constexpr double digits = 1e-6;  // of the contact force
-    EXPECT_LT(left.norm(), digits * closed->contact_force * device.contact_shape().norm())
-        << name_of(contact_laws, contact.model);
-    EXPECT_GT(release_voltage(device, 0), 0) << name_of(contact_laws, contact.model);
+    EXPECT_LT(left.norm(), digits * closed->contact_force * model.contact_shape().norm()) << name_of(contact_laws, contact.model);
+    EXPECT_GT(release_voltage(model, 0), 0) << name_of(contact_laws, contact.model);
   }
 }
 

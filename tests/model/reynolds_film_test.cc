@@ -204,24 +204,24 @@ TEST(Switch, WithAFilmOfItsOwnStatesHasTheExactJacobian) {
   for (Device d : {gold_with(air), test::gold_bridge(), test::full_plate()}) {
     d.gas = air;
     const Switch device(d);
-    Switch::Workspace work = device.workspace();
-    const Eigen::Index n = device.modes(), size = 2 * n + static_cast<Eigen::Index>(device.film_states());
-    EXPECT_EQ(device.film_states(), static_cast<std::size_t>(nodes * device.points()));
+    Switch::Workspace work = model.workspace();
+    const Eigen::Index n = model.modes(), size = 2 * n + static_cast<Eigen::Index>(model.film_states());
+    EXPECT_EQ(model.film_states(), static_cast<std::size_t>(nodes * model.points()));
     std::mt19937_64 random(4);
     std::uniform_real_distribution<double> uniform(-1, 1);
     Eigen::VectorXd state = Eigen::VectorXd::NullaryExpr(size, [&] { return 0.3 * uniform(random); });
-    const double shape = device.contact_shape()[0];
+    const double shape = model.contact_shape()[0];
     state.head(n).setZero();
     state[0] = 1_um / shape;
     state.segment(n, n) *= 0.1 / shape;
-    std::vector<double> volts(device.drives(), 5.0);
+    std::vector<double> volts(model.drives(), 5.0);
     Eigen::MatrixXd full = Eigen::MatrixXd::Zero(size, size);
     full.block(0, n, n, n).setIdentity();
-    device.jacobian(state.data(), state.data() + n, volts, false, work, full.block(n, 0, n, n), full.block(n, n, n, n));
-    device.add_film_derivatives(state.data(), work, full);
+    model.jacobian(state.data(), state.data() + n, volts, false, work, full.block(n, 0, n, n), full.block(n, n, n, n));
+    model.add_film_derivatives(state.data(), work, full);
     const auto rates = [&](const Eigen::VectorXd& at) {
       Eigen::VectorXd r(size - n);
-      device.rates(at.data(), volts, false, work, r.data());
+      model.rates(at.data(), volts, false, work, r.data());
       return r;
     };
     for (Eigen::Index i = 0; i < size; ++i) {

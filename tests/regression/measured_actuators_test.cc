@@ -39,11 +39,11 @@ TEST(GapClosingActuators, CloseInTheMeasuredTime) {
   for (const test::MeasuredTimes& m : test::measured_times) {
     const Device d = test::gap_closing_actuator(m.overlap);
     const Switch device(d);
-    const double threshold = static_pull_in(device, 0).voltage;
+    const double threshold = static_pull_in(model, 0).voltage;
     for (const test::MeasuredTime& t : m.times) {
       if (t.volts < well_above * threshold) continue;
       const Trajectory closing =
-          simulate_closing(device, std::vector<Signal>{Signal::constant(t.volts)}, {.duration = 200e-6, .after_contact = 0});
+          simulate_closing(model, std::vector<Signal>{Signal::constant(t.volts)}, {.duration = 200e-6, .after_contact = 0});
       ASSERT_FALSE(closing.touches.empty()) << t.volts;
       EXPECT_NEAR(closing.touches[0].begin, t.time, time_error * t.time) << m.overlap << " m, " << t.volts << " V";
     }

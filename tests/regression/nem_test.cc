@@ -16,10 +16,10 @@ namespace {
 
 using namespace literals;
 
-Trajectory step(const Switch& device, double value, double periods) {
-  std::vector<Signal> drives(device.drives());
+Trajectory step(const Switch& model, double value, double periods) {
+  std::vector<Signal> drives(model.drives());
   drives[0] = Signal::constant(value);
-  return simulate_closing(device, drives, {.duration = periods * 2 * pi / device.angular_frequencies()[0], .tolerance = 1e-8});
+  return simulate_closing(model, drives, {.duration = periods * 2 * pi / model.angular_frequencies()[0], .tolerance = 1e-8});
 }
 
 TEST(NemTin, PullsInNearTheClosedFormOfTheFullLengthElectrode) {
@@ -30,7 +30,7 @@ TEST(NemTin, PullsInNearTheClosedFormOfTheFullLengthElectrode) {
   const double ideal = static_pull_in(Switch(d), 0).voltage;
   EXPECT_NEAR(ideal, 13.6, 0.05);
   const Switch device(test::nano_cantilever());
-  const StaticPullIn fold = static_pull_in(device, 0);
+  const StaticPullIn fold = static_pull_in(model, 0);
   EXPECT_EQ(fold.kind, StaticKind::fold);
   EXPECT_LT(fold.voltage, ideal);
   EXPECT_GT(fold.voltage, 0.9 * ideal);
@@ -50,38 +50,38 @@ TEST(NemTin, DispersionLowersBothPullInVoltagesAndTheirDeflection) {
 
 TEST(NemTin, ClosesBouncesAndSettlesAtItsVoltage) {
   const Switch device(test::nano_cantilever());
-  const DynamicPullIn dynamic = dynamic_pull_in(device, 0, static_pull_in(device, 0));
+  const DynamicPullIn dynamic = dynamic_pull_in(model, 0, static_pull_in(model, 0));
   ASSERT_EQ(dynamic.status, Status::done);
-  const Trajectory t = step(device, 1.25 * dynamic.voltage, 40);
+  const Trajectory t = step(model, 1.25 * dynamic.voltage, 40);
   ASSERT_EQ(t.status, Status::done) << t.message;
   const Metrics m = metrics(t, {.significant_rebound = 1e-11});
-  EXPECT_LT(m.initial_contact_time, 2 * pi / device.angular_frequencies()[0]);
+  EXPECT_LT(m.initial_contact_time, 2 * pi / model.angular_frequencies()[0]);
   EXPECT_GT(m.bounce_count, 0);
   EXPECT_GT(t.smallest_gap, 2.5_nm) << "2.8 nm with four times the quadrature points, which then come nearest to the end";
 }
 
 TEST(NemCasimir, HangsFreeAndClosesWhenTheForceGrowsByAQuarter) {
   const Switch device(test::casimir_cantilever());
-  ASSERT_TRUE(device.rest().has_value());
-  const StaticPullIn fold = static_pull_in(device, 0);
+  ASSERT_TRUE(model.rest().has_value());
+  const StaticPullIn fold = static_pull_in(model, 0);
   ASSERT_EQ(fold.status, Status::done);
   EXPECT_EQ(fold.kind, StaticKind::fold);
-  const DynamicPullIn dynamic = dynamic_pull_in(device, 0, fold);
+  const DynamicPullIn dynamic = dynamic_pull_in(model, 0, fold);
   ASSERT_EQ(dynamic.status, Status::done);
   // From rest a step overshoots, so it needs less than the fold; both lie between the nominal force and a quarter more.
   EXPECT_GT(dynamic.voltage, 0.02);
   EXPECT_LT(dynamic.voltage, fold.voltage);
   EXPECT_LT(fold.voltage, 0.22);
   for (const double part : {0.999, 1.001}) {
-    EXPECT_EQ(step(device, part * dynamic.voltage, 100).touches.empty(), part < 1);
+    EXPECT_EQ(step(model, part * dynamic.voltage, 100).touches.empty(), part < 1);
   }
 
-  const Trajectory t = step(device, 0.25, 40);
+  const Trajectory t = step(model, 0.25, 40);
   ASSERT_EQ(t.status, Status::done) << t.message;
   EXPECT_FALSE(t.touches.empty());
   EXPECT_GT(metrics(t, {.significant_rebound = 1e-10}).bounce_count, 0);
   // The closed switch stays closed when the force falls back.
-  EXPECT_TRUE(closed_equilibrium(device, std::vector<double>{0.0}).has_value());
+  EXPECT_TRUE(closed_equilibrium(model, std::vector<double>{0.0}).has_value());
 }
 
 }  // namespace

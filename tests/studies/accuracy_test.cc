@@ -240,7 +240,7 @@ TEST(Accuracy, CallsIllConditionedWhatImperceptibleChangesMove) {
   while (above / below - 1 > 1e-9) {
     const double middle = (below + above) / 2;
     const Prepared p = at(middle);
-    const Trajectory t = simulate_closing(p.device, p.signals(), {.duration = p.duration, .tolerance = 1e-5, .after_contact = 0});
+    const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = 1e-5, .after_contact = 0});
     (t.touches.empty() ? below : above) = middle;
   }
   AccuracyOptions options = few_settings();

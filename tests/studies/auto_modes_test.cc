@@ -17,7 +17,9 @@ using testing::HasSubstr;
 
 SceneFile gold_with_modes(const char* modes) { return gold_at_17_volts({std::string("structure.modes=") + modes}); }
 
-double rebound(const char* modes) { return simulate(prepare_and_choose(gold_with_modes(modes)), false).metrics.major_bounce_height; }
+double rebound(const char* modes) {
+  return simulate(prepare_and_choose(gold_with_modes(modes)), false).metrics.major_bounce_height;
+}
 
 TEST(AutoModes, AreNotTakenInByModesThatAgreeByChance) {
   // Three to five modes agree, and are wrong by a tenth.
@@ -45,7 +47,7 @@ TEST(AutoModes, SayWhenNoClosingCouldBeJudged) {
 TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
   const Prepared p = prepare_and_choose(gold_with_modes("auto"));
   const int modes = p.scene.device.structure.modes;
-  EXPECT_EQ(p.device.modes(), modes);
+  EXPECT_EQ(p.model.modes(), modes);
   EXPECT_FALSE(p.scene.auto_modes);
   const std::string note = R"(structure.modes = "auto": )" + std::to_string(modes) +
                            " modes; further ones move t_i, v_i, the highest rebound of the first period after contact and the "

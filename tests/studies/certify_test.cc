@@ -98,7 +98,7 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
     const Prepared p = prepare(file);
     constexpr long most_steps = 1000;  // long ones are left to the bench
     const ClosingOptions options{.duration = p.duration, .tolerance = p.tolerance, .max_steps = most_steps};
-    if (p.device.film_states() > 0 || simulate_closing(p.device, p.signals(), options).work.steps >= most_steps) continue;
+    if (p.model.film_states() > 0 || simulate_closing(p.model, p.signals(), options).work.steps >= most_steps) continue;
     const Closing c = certify(p);
     if (!c.certificate) continue;
     const auto [yes, no] = coverage(p, c);

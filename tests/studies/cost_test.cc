@@ -140,10 +140,10 @@ TEST(CostObserver, GathersTheFiguresThatATrajectoryHas) {
       const Prepared p =
           prepare(gold({fmt::format("waveform.main.level={}", level), fmt::format("simulate.duration={}", window)}));
       const ClosingOptions run{.duration = p.duration, .tolerance = 1e-4, .closed_potential = -1e-12};
-      const Trajectory t = simulate_closing(p.device, p.signals(), run);
+      const Trajectory t = simulate_closing(p.model, p.signals(), run);
       const CostFigures expected = cost_figures(t, options);
       CostObserver observer(t.contact_gap, options);
-      const Trajectory end = observe_closing(p.device, p.signals(), run, observer);
+      const Trajectory end = observe_closing(p.model, p.signals(), run, observer);
       EXPECT_TRUE(end.points.empty() && end.touches.empty());
       EXPECT_EQ(end.status, t.status);
       const CostFigures own = observer.figures(end.landing_excess);

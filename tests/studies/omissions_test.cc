@@ -82,7 +82,7 @@ TEST(Without, IsTheSceneWithoutTheSectionUnderTheSameVolts) {
   EXPECT_EQ(own(vacuum).initial_contact_time, own(prepare(without(gold_at_17_volts(), "gas"))).initial_contact_time);
   const Prepared bare = without(p, all);
   EXPECT_EQ(bare.scene.device.electrodes[0].fringing, Fringing::none);
-  EXPECT_EQ(bare.device.modes(), 1);
+  EXPECT_EQ(bare.model.modes(), 1);
   EXPECT_EQ(bare.signals()[0].hold_level(), 17.771);
   // A level in Vdp keeps the volts of the whole scene.
   const Prepared relative = prepare(gold());

@@ -21,7 +21,7 @@ TEST(Accuracy, TakesATenthForTheToleranceAndFourPointsADigit) {
   EXPECT_DOUBLE_EQ(quadrature_for(1e-6, 4).points_per_length, 24);
   EXPECT_DOUBLE_EQ(quadrature_for(0.1, 1).points_per_length, 8);
   EXPECT_DOUBLE_EQ(quadrature_for(1e-3, 10).points_per_length, 24) << "two to a mode";
-  EXPECT_LT(prepare(gold({"simulate.accuracy=1e-3"})).device.points(), prepare(gold({"simulate.accuracy=1e-6"})).device.points());
+  EXPECT_LT(prepare(gold({"simulate.accuracy=1e-3"})).model.points(), prepare(gold({"simulate.accuracy=1e-6"})).model.points());
 }
 
 TEST(Prepare, ComputesPullInOnlyWhereAUnitNeedsIt) {
@@ -48,7 +48,7 @@ TEST(Prepare, OrdersSignalsAsTheSwitchDoesAndLeavesUndrivenDrivesAtZero) {
   const Prepared p = prepare(gold_pzt({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"}));
   EXPECT_THAT(p.drive_names(), ElementsAre("main", "piezo"));
   const std::vector<Signal> signals = p.signals();
-  ASSERT_EQ(signals.size(), p.device.drives());
+  ASSERT_EQ(signals.size(), p.model.drives());
   EXPECT_DOUBLE_EQ(signals[0].hold_level(), 30);
   EXPECT_TRUE(signals[1].is_zero());
 }
@@ -74,7 +74,7 @@ TEST(Prepare, TakesWindowAndToleranceFromTheScene) {
 
 TEST(Prepare, ChoosesAWindowOfSixPeriodsWhereTheSceneHasNone) {
   const Prepared p = prepare(without(gold(), "simulate"));
-  EXPECT_NEAR(p.duration * p.device.angular_frequencies()[0], 6 * 2 * 3.14159265358979, 1e-9);
+  EXPECT_NEAR(p.duration * p.model.angular_frequencies()[0], 6 * 2 * 3.14159265358979, 1e-9);
 }
 
 TEST(Prepare, RefusesWhatNoComputerWouldSeeTheEndOf) {

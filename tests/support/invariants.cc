@@ -14,12 +14,12 @@ namespace {
 // Follows a run from its observer: energy that is there against energy that the drives have brought.
 class Energy {
  public:
-  Energy(const Switch& device, std::span<const Signal> drives)
-      : device_(device), drives_(drives), work_(device.workspace()), volts_(drives.size(), 0.0), potentials_(drives.size()) {
-    if (!device.rest()) return;
-    q_.assign(device.rest()->begin(), device.rest()->end());
+  Energy(const Switch& model, std::span<const Signal> drives)
+      : device_(model), drives_(drives), work_(model.workspace()), volts_(drives.size(), 0.0), potentials_(drives.size()) {
+    if (!model.rest()) return;
+    q_.assign(model.rest()->begin(), model.rest()->end());
     look(q_.data(), potentials_);
-    at_rest_ = device.potential(q_.data(), volts_, false, work_);
+    at_rest_ = model.potential(q_.data(), volts_, false, work_);
   }
 
   void step(double t, const double* q, const double* v) {
@@ -172,33 +172,32 @@ void check_figures(const Metrics& m, const std::string& message, bool has_contac
 
 }  // namespace
 
-CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options, double energy,
+CheckedRun checked_run(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options, double energy,
                        const MetricsOptions& metrics_options) {
-  Energy energies(device, drives);
+  Energy energies(model, drives);
   ClosingOptions observed = options;
   observed.observer = [&](double t, const double* q, const double* v) {
     energies.step(t, q, v);
     return false;
   };
-  CheckedRun run{.trajectory = simulate_closing(device, drives, observed)};
+  CheckedRun run{.trajectory = simulate_closing(model, drives, observed)};
   const Trajectory& t = run.trajectory;
   run.metrics = metrics(t, metrics_options);
-  run.surplus = energies.surplus() / device.bending_energy();
+  run.surplus = energies.surplus() / model.bending_energy();
   Findings found;
-  const bool rigid = device.rigid_contact() != nullptr, completed = t.status == Status::done;
+  const bool rigid = model.rigid_contact() != nullptr, completed = t.status == Status::done;
   // Where a run fails its steps need not fit together.
   const double off = completed ? options.tolerance * t.contact_gap : std::numeric_limits<double>::infinity();
   check_knots(t, run.metrics, rigid, off, found);
   found.expect(rebounds(t).size() <= t.touches.size() || !completed, "{} rebounds after {} touches", rebounds(t).size(),
                t.touches.size());
-  check_figures(run.metrics, t.message, device.has_contact(), rigid, found);
+  check_figures(run.metrics, t.message, model.has_contact(), rigid, found);
   if (completed) {
-    found.expect(energies.surplus() <= energy * std::max(device.bending_energy(), energies.moved()),
+    found.expect(energies.surplus() <= energy * std::max(model.bending_energy(), energies.moved()),
                  "the energy balance is off by {:.3g} of the bending energy", run.surplus);
     found.expect(t.smallest_gap > 0, "smallest gap {} m", t.smallest_gap);
-    if (device.has_contact() && !device.has_pad_contact()) {
-      run.largest_penetration =
-          rigid ? 1e-9 * t.contact_gap : takes_up(device.contact(), 2 * energies.available(), t.contact_gap);
+    if (model.has_contact() && !model.has_pad_contact()) {
+      run.largest_penetration = rigid ? 1e-9 * t.contact_gap : takes_up(model.contact(), 2 * energies.available(), t.contact_gap);
       found.expect(t.deepest_penetration <= run.largest_penetration,
                    "interference {:.3g} m, and no more than {:.3g} m is possible", t.deepest_penetration,
                    run.largest_penetration);

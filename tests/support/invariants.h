@@ -30,7 +30,7 @@ struct CheckedRun {
 /// - bounded work: no more steps than allowed, no more evaluations than the steps explain;
 /// - a run that is not done says where and why.
 /// The observer of the options must be free.
-[[nodiscard]] CheckedRun checked_run(const Switch& device, std::span<const Signal> drives, const ClosingOptions& options,
+[[nodiscard]] CheckedRun checked_run(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options,
                                      double energy = 1e-3, const MetricsOptions& metrics = {});
 
 /// The well-conditioned figures of a closing: its landing and its first rebound higher than a hundredth of the contact gap, 0

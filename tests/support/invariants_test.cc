@@ -18,7 +18,7 @@ TEST(MissedTouch, IsFoundInEitherRunAsLongAsTheyAgree) {
   const Switch device(gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(17.771)};
   const auto run = [&](double tolerance) {
-    return simulate_closing(device, drives, {.duration = 100_us, .tolerance = tolerance});
+    return simulate_closing(model, drives, {.duration = 100_us, .tolerance = tolerance});
   };
   const Trajectory one = run(1e-8), tighter = run(1e-10);
   EXPECT_EQ(missed_touch(one, tighter), "");
@@ -39,7 +39,7 @@ TEST(MissedTouch, IsFoundInEitherRunAsLongAsTheyAgree) {
 TEST(MissedTouch, IsNoneWhereRunsPartLittleByLittle) {
   const Prepared p = prepare(random_scene(2, 2368));  // lands softly and rattles two hundred times
   const auto run = [&](double tolerance) {
-    return simulate_closing(p.device, p.signals(), {.duration = p.duration, .tolerance = tolerance});
+    return simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = tolerance});
   };
   const Trajectory one = run(1e-7), tighter = run(1e-9);
   EXPECT_GT(one.touches.size(), 100u);

@@ -298,7 +298,7 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
       vary_dispersion(file, dice);
       vary_contact(file, dice);
       put_waveforms(file, dice);
-      const bool stands_open = prepare(file).device.rest().has_value();
+      const bool stands_open = prepare(file).model.rest().has_value();
       if (stands_open || dice.chance(0.1)) return file;  // of those that collapse at rest a few are enough
     } catch (const InvalidInput&) {
     }

@@ -32,7 +32,7 @@ TEST(RandomScenes, CanBePreparedAndSayEverythingThatAScenePossiblyCan) {
     if (scene.contains("electrode")) {
       for (const auto& [name, electrode] : scene["electrode"].items()) seen["fringing"].insert(electrode["fringing"]);
     }
-    if (p.scene.device.structure.kind != StructureKind::plate) seen["modes"].insert(std::to_string(p.device.modes()));
+    if (p.scene.device.structure.kind != StructureKind::plate) seen["modes"].insert(std::to_string(p.model.modes()));
   }
   EXPECT_EQ(seen["structure"].size(), 3u);
   EXPECT_GE(seen["gas"].size(), 8u) << "seven laws and none; a compressible film is rare";
@@ -60,7 +60,7 @@ TEST(RandomFilmScenes, AreTheSameSwitchInACompressibleFilm) {
       ++rigid;
       continue;
     }
-    EXPECT_GT(prepare(*file).device.film_states(), 0u);
+    EXPECT_GT(prepare(*file).model.film_states(), 0u);
     EXPECT_EQ(file->json()["structure"], random_scene(seed, i).json()["structure"]);
     EXPECT_EQ(file->text(), random_film_scene(seed, i)->text());
   }
