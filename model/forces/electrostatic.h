@@ -25,6 +25,7 @@
 #include "base/choice.h"
 #include "model/constants.h"
 #include "model/device.h"
+#include "model/power.h"
 
 namespace softland {
 
@@ -61,9 +62,13 @@ struct MeijsFokkemaFringingOf {
 
   template <class S>
   S factor(S h) const {
-    using std::sqrt;
-    const S root = sqrt(h);
-    return S(1) + root * (S(side) * sqrt(root) + S(face));
+    return h * h * factor_over_square(h);
+  }
+  /// phi / h^2, in powers of w = h^(-1/4)
+  template <class S>
+  [[nodiscard, gnu::always_inline]] S factor_over_square(S h) const {
+    const S w = inverse_fourth_root(h), w2 = w * w, w4 = w2 * w2;
+    return w4 * (w4 + w * (S(side) + S(face) * w));
   }
   [[nodiscard]] double capacitance_over_eps0(double h) const {
     return width / h + 0.77 + 1.06 * std::sqrt(std::sqrt(width / h)) + 1.06 * std::sqrt(thickness / h);
@@ -127,8 +132,13 @@ struct ElectrostaticForce {
 
   /// [N / (m V^2)]
   template <class S>
-  S load(S gap, S /*velocity*/) const {
-    return S(0.5 * vacuum_permittivity * fringing.width) / (gap * gap) * fringing.factor(gap);
+  [[gnu::always_inline]] S load(S gap, S /*velocity*/) const {
+    const S plane = S(0.5 * vacuum_permittivity * fringing.width);
+    if constexpr (requires { fringing.factor_over_square(gap); }) {
+      return plane * fringing.factor_over_square(gap);
+    } else {
+      return plane / (gap * gap) * fringing.factor(gap);
+    }
   }
   /// [F/m]
   [[nodiscard]] double capacitance(double gap) const { return vacuum_permittivity * fringing.capacitance_over_eps0(gap); }

@@ -62,7 +62,7 @@ constexpr double scanned = 1e-7;  // relative: a scan of 200 000 places near a f
 
 TEST(AdhesiveRepulsive, StaticPullInIsTheFoldThatItsAttractionMakes) {
   const Device d = soft_plate(5e-3);
-  const Switch device(d);
+  const Switch model(d);
   const StaticPullIn found = static_pull_in(model, 0);
   ASSERT_EQ(found.status, Status::done);
   EXPECT_EQ(found.kind, StaticKind::fold);
@@ -79,7 +79,7 @@ TEST(AdhesiveRepulsive, StaticPullInIsTheFoldThatItsAttractionMakes) {
 
 TEST(AdhesiveRepulsive, DynamicPullInGoesOverItsPass) {
   const Device d = soft_plate(5e-3);
-  const Switch device(d);
+  const Switch model(d);
   const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
   ASSERT_EQ(found.status, Status::done);
   const double area = vacuum_permittivity * side * side, g = d.gap.electrode;
@@ -95,7 +95,7 @@ TEST(AdhesiveRepulsive, DynamicPullInGoesOverItsPass) {
 
 TEST(AdhesiveRepulsive, HoldsUntilItsDeepestWellLetsGo) {
   const Device d = soft_plate(5);
-  const Switch device(d);
+  const Switch model(d);
   const Scan well = extreme([&](double s) { return square(d, model.contact(), s); }, d.gap.contact, d.gap.contact + 100_nm, -1);
   EXPECT_NEAR(well.at - d.gap.contact, 52.4_nm, 1_nm) << "where asperities meet, not at the plane";
   EXPECT_NEAR(release_voltage(model, 0), std::sqrt(well.value), 1e-5 * std::sqrt(well.value));
@@ -111,7 +111,7 @@ TEST(AdhesiveRepulsive, HoldsUntilItsDeepestWellLetsGo) {
 
 TEST(AdhesiveRepulsive, BookkeepsEveryPassageOfItsReach) {
   const Device d = soft_plate(0.05);
-  const Switch device(d);
+  const Switch model(d);
   const double vdp = dynamic_pull_in(model, 0, static_pull_in(model, 0)).voltage;
   for (const Integrator integrator : {Integrator::lawson, Integrator::esdirk}) {
     const std::vector<Signal> drives{Signal::piecewise_linear({{0, 1.2 * vdp}, {1e-3, 1.2 * vdp}, {1e-3, 0}})};

@@ -72,7 +72,7 @@ TEST(ClampedClamped, DynamicPullInOfAnUndampedStepIsTheReference) {
   // V_DPI / V_SPI of the distributed static value: 0.9127 to 0.9128 with 1, 3 and 5 modes.
   for (const int modes : {1, 3, 5}) {
     const Device d = bridge(modes);
-    const Switch device(d);
+    const Switch model(d);
     const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
     ASSERT_EQ(found.status, Status::done);
     const double ratio = found.voltage / test::volts(d, reference_beta);

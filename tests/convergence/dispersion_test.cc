@@ -139,7 +139,7 @@ TEST(Dispersion, AtRestTheBendingBalancesTheForce) {
   Device d = casimir_cantilever();
   d.structure.length *= std::pow(1e-4 / casimir_parameter(d), 0.25);
   d.electrodes[0].end = d.structure.length;
-  const Switch device(d);
+  const Switch model(d);
   ASSERT_TRUE(model.rest().has_value());
   const double tip = model.contact_deflection(model.rest()->data()) / d.gap.electrode;
   EXPECT_NEAR(tip, 1e-4 / 8, 1e-4 / 8 * 1e-3);

@@ -23,7 +23,7 @@ TEST(DynamicPullIn, OfAnUndampedStepIsNinePercentBelowTheStaticOne) {
   };
   for (const auto& [modes, ratio] : {Row{1, 0.9093}, Row{2, 0.9094}, Row{3, 0.9094}}) {
     const Device d = test::device({.modes = modes});
-    const Switch device(d);
+    const Switch model(d);
     const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
     ASSERT_EQ(found.status, Status::done);
     EXPECT_NEAR(found.voltage / test::volts(d, test::full_length_beta), ratio, printed) << modes << " modes";
@@ -46,7 +46,7 @@ TEST(ClosingTime, OfAnUndampedStepIsTheReference) {
                                           {2.0, 1.370, 1.384}}};
   for (const int modes : {4, 1}) {
     const Device d = test::device({.modes = modes});
-    const Switch device(d);
+    const Switch model(d);
     const double frequency = model.angular_frequencies()[0];
     for (const Row& row : reference) {
       const std::vector<Signal> drives{Signal::constant(row.over_static * test::volts(d, test::full_length_beta))};

@@ -52,7 +52,7 @@ struct Figures {
 };
 
 Figures closing(const SwitchOptions& options, double tolerance) {
-  const Switch device(test::gold_cantilever(), options);
+  const Switch model(test::gold_cantilever(), options);
   const std::vector<Signal> drives{Signal::constant(reference_step)};
   const Metrics m = metrics(simulate_closing(model, drives, {.duration = 60_us, .tolerance = tolerance}));
   return {m.initial_contact_time, m.impact_velocity, m.major_bounce_height};

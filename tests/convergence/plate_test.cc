@@ -75,7 +75,7 @@ TEST(Plate, DispersionForcesCollapseItAtAFifthAndAQuarterOfTheGap) {
 TEST(Plate, AnUndampedStepPullsInAtTheRootOf27Over32) {
   constexpr double bisected = 2e-7;  // relative: what dynamic_pull_in promises
   const Device d = plate(0.9);
-  const Switch device(d);
+  const Switch model(d);
   const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
   ASSERT_EQ(found.status, Status::done);
   EXPECT_NEAR(found.voltage / static_voltage(d), std::sqrt(27.0 / 32), bisected);
@@ -89,7 +89,7 @@ TEST(Plate, DampingRaisesTheVoltageOfAStepToTheStaticOne) {
   for (const auto& [quality, over_static] : {Row{0.5, 1}, Row{1, 1}, Row{2, 0.98814}, Row{3, 0.97151}, Row{5, 0.95341},
                                              Row{10, 0.93713}, Row{50, 0.92246}, Row{1000, 0.91876}}) {
     const Device d = plate(0.9, 1 / (2 * quality));
-    const Switch device(d);
+    const Switch model(d);
     const DynamicPullIn found = dynamic_pull_in(model, 0, static_pull_in(model, 0));
     ASSERT_EQ(found.status, Status::done) << quality;
     EXPECT_NEAR(found.voltage / static_voltage(d), over_static, printed) << "Q = " << quality;
@@ -112,7 +112,7 @@ TEST(Plate, ClosesInTheTimeOfItsQuadratureWithTheSpeedOfItsEnergy) {
   constexpr double printed = 2e-6;  // absolute: six decimals, of which times carry 1e-6 relative
   for (const Row& row : reference) {
     const auto touch = [&](double contact_over_gap) {
-      const Switch device(plate(contact_over_gap));
+      const Switch model(plate(contact_over_gap));
       const std::vector<Signal> drives{Signal::constant(row.over_static * static_voltage(model.device()))};
       const double frequency = model.angular_frequencies()[0];
       const Trajectory t = simulate_closing(model, drives, {.duration = 10 / frequency, .tolerance = 1e-11});
@@ -136,7 +136,7 @@ TEST(Plate, HeavilyDampedLingersAtTheGhostOfTheFold) {
   };
   for (const auto& [excess, time] :
        {Row{1e-4, 360.300}, Row{1e-3, 112.2597}, Row{0.01, 33.8409}, Row{0.1, 9.13712}, Row{1, 1.77676}}) {
-    const Switch device(plate(0.98, damping_ratio));
+    const Switch model(plate(0.98, damping_ratio));
     const double unit = 2 * damping_ratio / model.angular_frequencies()[0];  // c / k
     const std::vector<Signal> drives{Signal::constant(std::sqrt(1 + excess) * static_voltage(model.device()))};
     const Trajectory t =

@@ -108,7 +108,7 @@ Device stopped_plate(double restitution) {
 TEST(RigidContact, HoldsThePlateUntilTheForceOfTheSpringsWins) {
   Device d = stopped_plate(0.4);
   d.electrodes.pop_back();
-  const Switch device(d);
+  const Switch model(d);
   const double release = release_voltage(model, 0);
   // Falls linearly from 110 V at 100 us to 0 V at 200 us.
   const std::vector<Signal> drives{Signal::piecewise_linear({{0, 110}, {100_us, 110}, {200_us, 0}})};
@@ -135,7 +135,7 @@ TEST(RigidContact, HoldsThePlateUntilTheForceOfTheSpringsWins) {
 TEST(RigidContact, LetsGoAtOnceWhenTheVoltageJumpsBelowRelease) {
   Device d = stopped_plate(0);
   d.electrodes.pop_back();
-  const Switch device(d);
+  const Switch model(d);
   const double release = release_voltage(model, 0);
   for (const double left : {0.999, 1.001}) {
     const std::vector<Signal> drives{Signal::piecewise_linear({{0, 110}, {60_us, 110}, {60_us, left * release}})};
@@ -154,7 +154,7 @@ TEST(RigidContact, LetsGoAtOnceWhenTheVoltageJumpsBelowRelease) {
 TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
   Device d = stopped_plate(0.5);
   d.electrodes.pop_back();
-  const Switch device(d);
+  const Switch model(d);
   const double release = release_voltage(model, 0);
   // Swings between -0.5 and 2.5 times the release voltage, 16 times: each time the plate is let go.
   constexpr double begin = 60_us, angular_frequency = 1e6_rad_s;
@@ -174,7 +174,7 @@ TEST(RigidContact, LeavesAndReturnsWithEveryDipOfADither) {
 }
 
 TEST(RigidContact, ClosedEquilibriumIsThePlateOnThePlane) {
-  const Switch device(stopped_plate(0.5));
+  const Switch model(stopped_plate(0.5));
   const Device& d = model.device();
   const std::vector<double> volts_there{110, 0};
   const auto closed = closed_equilibrium(model, volts_there);
@@ -195,7 +195,7 @@ TEST(RigidContact, LandingExcessIsTheSameWhateverTheImpactTakes) {
   const auto excess = [](double e) {
     Device d = stopped_plate(e);
     d.gas.reset();
-    const Switch device(d);
+    const Switch model(d);
     const std::vector<double> hold{110, 0};
     const std::vector<Signal> drives{Signal::constant(110), Signal()};
     const auto closed = closed_equilibrium(model, hold);

@@ -54,7 +54,7 @@ void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int k
   if (!loss.gas) d.gas.reset();
   d.structure.damping_ratio = loss.damping_ratio;
   d.contact = contact;
-  const Switch device(d);
+  const Switch model(d);
   const Trajectory t =
       simulate_closing(model, waveforms(kind, layer ? 28_V : step_level, layer), {.duration = 150_us, .tolerance = tolerance});
   const std::string name = fmt::format("piezo {}, loss {}, contact {} {}, waveform {}", layer, loss.name,
@@ -149,7 +149,7 @@ TEST(EnergyBalance, ClosesBetweenTwoClamps) {
       Device d = test::gold_bridge();
       if (!gas) d.gas.reset();
       d.structure.stretching = stretching;
-      const Switch device(d);
+      const Switch model(d);
       const std::vector<Signal> drives{Signal::constant(static_pull_in(model, 0).voltage),
                                        signal(Pulse{.levels = {30_V, 0_V}, .times = {2_us}, .edge = 0.5_us})};
       const Trajectory t = simulate_closing(model, drives, {.duration = 20_us, .tolerance = 1e-9});
@@ -184,16 +184,16 @@ TEST(EnergyBalance, ClosesForThePlate) {
 
 TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
   constexpr double balance = 1e-6;  // of the energy that bends the beam by the contact gap
-  for (const DispersionModel model : {DispersionModel::casimir, DispersionModel::van_der_waals, DispersionModel::automatic}) {
+  for (const DispersionModel law : {DispersionModel::casimir, DispersionModel::van_der_waals, DispersionModel::automatic}) {
     for (const Conductor conductor : {Conductor::ideal, Conductor::gold}) {
       for (const double edge : {0.0, 0.3}) {
         Device d = test::casimir_cantilever();
         // Weak enough to leave an open state under every law; the crossover of `auto` lies inside the travel.
         d.structure.length = 3_um;
         d.dispersion =
-            Dispersion{.model = model, .conductor = conductor, .hamaker_constant = 6e-19, .equilibrium_distance = 0.4_nm};
-        if (model == DispersionModel::automatic && conductor == Conductor::gold) d.dispersion->hamaker_constant = 1.2e-19;
-        const Switch device(d);
+            Dispersion{.model = law, .conductor = conductor, .hamaker_constant = 6e-19, .equilibrium_distance = 0.4_nm};
+        if (law == DispersionModel::automatic && conductor == Conductor::gold) d.dispersion->hamaker_constant = 1.2e-19;
+        const Switch model(d);
         ASSERT_TRUE(model.rest().has_value());
         const double period = 2 * pi / model.angular_frequencies()[0];
         const StaticPullIn fold = static_pull_in(model, 0);
@@ -203,7 +203,7 @@ TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
                                                       .edge = edge * period})};
         const Trajectory t = simulate_closing(model, drives, {.duration = 4 * period, .tolerance = 1e-9});
         const std::string name =
-            fmt::format("model {}, conductor {}, edge {}", static_cast<int>(model), static_cast<int>(conductor), edge);
+            fmt::format("model {}, conductor {}, edge {}", static_cast<int>(law), static_cast<int>(conductor), edge);
         ASSERT_EQ(t.status, Status::done) << name << ": " << t.message;
         EXPECT_GE(t.touches.size(), 1u) << name;
         EXPECT_LT(std::abs(t.energy.source_work), 1e3 * model.bending_energy()) << name;
@@ -215,7 +215,7 @@ TEST(EnergyBalance, ClosesForEveryDispersionForceWhileItsFactorChanges) {
 }
 
 TEST(EnergyBalance, ClosesWhenAVoltageAndADispersionForceClose) {
-  const Switch device(test::nano_cantilever());
+  const Switch model(test::nano_cantilever());
   const std::vector<Signal> drives{signal(Pulse{.levels = {16_V, 10_V, 16_V}, .times = {1e-9, 2e-9}, .edge = 2e-10}),
                                    signal(Pulse{.levels = {0.5, -0.5}, .times = {1.5e-9}, .edge = 1e-10})};
   const Trajectory t = simulate_closing(model, drives, {.duration = 10e-9, .tolerance = 1e-9});
@@ -225,7 +225,7 @@ TEST(EnergyBalance, ClosesWhenAVoltageAndADispersionForceClose) {
 }
 
 TEST(Rest, IsWhereARunBegins) {
-  const Switch device(test::casimir_cantilever());
+  const Switch model(test::casimir_cantilever());
   ASSERT_TRUE(model.rest().has_value());
   const double tip = model.contact_deflection(model.rest()->data());
   EXPECT_GT(tip, 1_nm);
@@ -239,7 +239,7 @@ TEST(Rest, IsWhereARunBegins) {
 TEST(Rest, IsMissingWhereTheForceClosesTheSwitchByItself) {
   Device d = test::casimir_cantilever();
   d.structure.length = 6_um;
-  const Switch device(d);
+  const Switch model(d);
   EXPECT_FALSE(model.rest().has_value());
   const Trajectory t = simulate_closing(model, std::vector<Signal>(1), {.duration = 1_us});
   EXPECT_EQ(t.status, Status::collapsed_at_rest);
@@ -249,7 +249,7 @@ TEST(Rest, IsMissingWhereTheForceClosesTheSwitchByItself) {
 }
 
 TEST(Rest, OfASwitchWithoutDispersionForceIsTheStraightBeam) {
-  const Switch device(test::gold_cantilever());
+  const Switch model(test::gold_cantilever());
   ASSERT_TRUE(model.rest().has_value());
   EXPECT_TRUE(model.rest()->isZero(0));
 }
@@ -271,7 +271,7 @@ TEST(EnergyBalance, ClosesBetweenElectrodes) {
 }
 
 TEST(EnergyBalance, ResidualFallsWithTheTolerance) {
-  const Switch device(test::gold_cantilever());
+  const Switch model(test::gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto residual = [&](double tolerance) {
     const Trajectory t = simulate_closing(model, drives, {.duration = 60_us, .tolerance = tolerance});
@@ -283,7 +283,7 @@ TEST(EnergyBalance, ResidualFallsWithTheTolerance) {
 }
 
 TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
-  const Switch device(test::gold_cantilever());
+  const Switch model(test::gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto run = [&](double tolerance) {
     return simulate_closing(model, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = Integrator::arkode_erk});
@@ -308,7 +308,7 @@ TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   Device d = test::gold_cantilever();
   d.contact->model = ContactModel::linear;
   d.contact->stiffness = 1e9_N_m;
-  const Switch device(d);
+  const Switch model(d);
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto run = [&](Integrator integrator, double tolerance) {
     return simulate_closing(model, drives, {.duration = 100_us, .tolerance = tolerance, .integrator = integrator});
@@ -326,7 +326,7 @@ TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
 }
 
 TEST(DriveEnergy, OfAStepIsChargingAtRestPlusVoltageTimesTheMovedCharge) {
-  const Switch device(test::gold_cantilever());
+  const Switch model(test::gold_cantilever());
   Switch::Workspace work = model.workspace();
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
   const std::vector<Signal> drives{Signal::constant(step_level)};
@@ -342,7 +342,7 @@ TEST(DriveEnergy, OfAStepIsChargingAtRestPlusVoltageTimesTheMovedCharge) {
 }
 
 TEST(DriveEnergy, OfAJumpIsTheLimitOfSteepEdges) {
-  const Switch device(test::gold_pzt_cantilever());
+  const Switch model(test::gold_pzt_cantilever());
   const auto run = [&](double edge) {
     const std::vector<Signal> drives{signal(Pulse{.levels = {28_V, 20_V, 28_V}, .times = {10_us, 16_us}, .edge = edge}),
                                      signal(Pulse{.levels = {0.1_V, -0.1_V, 0_V}, .times = {9_us, 17_us}, .edge = edge})};
@@ -362,7 +362,7 @@ TEST(DriveEnergy, OfAJumpIsTheLimitOfSteepEdges) {
 TEST(LandingExcess, WithoutLossesIsTheEnergyAtRestAboveTheClosedEquilibrium) {
   Device d = test::gold_cantilever();
   d.gas.reset();
-  const Switch device(d);
+  const Switch model(d);
   const std::vector<double> volts{step_level};
   const auto closed = closed_equilibrium(model, volts);
   ASSERT_TRUE(closed.has_value());
@@ -377,7 +377,7 @@ TEST(LandingExcess, WithoutLossesIsTheEnergyAtRestAboveTheClosedEquilibrium) {
 }
 
 TEST(LandingExcess, WaitsForTheHoldLevels) {
-  const Switch device(test::gold_cantilever());
+  const Switch model(test::gold_cantilever());
   const auto closed = closed_equilibrium(model, std::vector<double>{step_level});
   ASSERT_TRUE(closed.has_value());
   // A last edge that ends after the window: the drives never stand at their hold levels.
@@ -395,7 +395,7 @@ TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
     d.gas.reset();
     d.contact->model = ContactModel::linear;
     d.contact->stiffness = stiffness;
-    const Switch device(d);
+    const Switch model(d);
     Switch::Workspace work = model.workspace();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
     const double at_rest = model.capacitance(0, rest.data(), work);

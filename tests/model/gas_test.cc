@@ -33,7 +33,7 @@ TEST(LinearDamper, GivesTheFirstModeItsQualityFactor) {
   constexpr double quadrature = 1e-9;
   for (Device d : {test::gold_cantilever(), test::gold_pzt_cantilever()}) {
     d.gas = Gas{.model = GasModel::linear, .quality_factor = 8};
-    const Switch device(d);
+    const Switch model(d);
     Switch::Workspace work = model.workspace();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
     const Eigen::VectorXd v = Eigen::VectorXd::Unit(model.modes(), 0);

@@ -9,7 +9,7 @@ namespace softland::test {
 constexpr double step_level = 17.771;  // [V], about 1.25 Vdp
 
 inline const Switch& gold() {
-  static const Switch device(gold_cantilever());
+  static const Switch model(gold_cantilever());
   return model;
 }
 

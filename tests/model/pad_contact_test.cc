@@ -111,7 +111,7 @@ TEST(PadContact, IsTheLawIntegratedAlongTheBentBeam) {
   constexpr double straight = 1e-3;  // relative: the second mode, bent over the pad by 3e-6 of up to 1 um
   std::mt19937_64 random(1);
   for (const Contact& contact : test::pad_contacts()) {
-    const Switch device(padded(contact));
+    const Switch model(padded(contact));
     const Device& d = model.device();
     const BeamModes modes(beam_sections(d), model.modes());
     Device without = d;
@@ -151,7 +151,7 @@ TEST(PadContact, HasItsExactDerivativesAndEnergy) {
   constexpr double step = 0.2e-9;       // [m] at the free end
   std::mt19937_64 random(2);
   for (const Contact& contact : test::pad_contacts()) {
-    const Switch device(padded(contact));
+    const Switch model(padded(contact));
     Switch::Workspace work = model.workspace();
     const Eigen::Index n = model.modes();
     for (const auto& tilt : tilts) {
@@ -214,7 +214,7 @@ TEST(PadContact, OfAVeryShortPadIsTheContactAtItsCentre) {
 }
 
 TEST(PadContact, IsSeenFromTheFreeEnd) {
-  const Switch device(padded(test::pad_contacts().front()));
+  const Switch model(padded(test::pad_contacts().front()));
   const Device& d = model.device();
   const BeamModes modes(beam_sections(d), model.modes());
   EXPECT_EQ(d.contact_position(), d.structure.length);
@@ -240,7 +240,7 @@ TEST(PadContact, LeavesTheFoldOfTheStaticBranchWhereItIs) {
 TEST(PadContact, PushesFromTheTouchOfTheFreeEndOn) {
   Device d = padded(*test::gold_cantilever().contact);
   d.contact->distribution = ContactDistribution::pad;
-  const Switch device(d);
+  const Switch model(d);
   const std::vector<Signal> drives{Signal::constant(17.771)};
   const Trajectory t = simulate_closing(model, drives, {.duration = 100_us, .tolerance = 1e-8});
   ASSERT_EQ(t.status, Status::done);

@@ -40,7 +40,7 @@ TEST(StaticPullIn, AtTheFoldLeavesNoEquilibriumForASlowerRamp) {
   // An independent path: a step damped to rest settles below the fold and closes above it.
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.7;
-  const Switch device(d);
+  const Switch model(d);
   const StaticPullIn found = static_pull_in(model, 0);
   EXPECT_EQ(found.kind, StaticKind::fold);
   EXPECT_LT(found.deflection, d.gap.contact);
@@ -52,7 +52,7 @@ TEST(StaticPullIn, SettledBeamStandsOnTheBranch) {
   // Damped to rest at the voltage of an equilibrium beyond no fold: the fold's deflection is the limit of such rests.
   Device d = test::gold_cantilever();
   d.structure.damping_ratio = 0.7;
-  const Switch device(d);
+  const Switch model(d);
   const StaticPullIn found = static_pull_in(model, 0);
   const std::vector<Signal> drives{Signal::constant(0.9999 * found.voltage)};
   const double rest = simulate_closing(model, drives, {.duration = 20'000_us, .tolerance = 1e-8}).points.back().position;
@@ -132,7 +132,7 @@ TEST(DynamicPullIn, PassesOnWhatStaticPullInSaid) {
 }
 
 TEST(PullIn, IsNotForAnElectrodeOnTheFarSide) {
-  const Switch device(test::plate_between_electrodes());
+  const Switch model(test::plate_between_electrodes());
   EXPECT_TRUE(pulls_in(model.device(), 0));
   EXPECT_FALSE(pulls_in(model.device(), 1));
   const StaticPullIn none = static_pull_in(model, 1);
@@ -179,7 +179,7 @@ TEST(ReleaseVoltage, IsWhereAClosedSwitchOpens) {
   Device soft = gold_damped;
   soft.contact->asperity_density = 1e6;  // so soft that the branch falls well below the plane before contact turns it up
   for (const Device& d : {gold_damped, soft}) {
-    const Switch device(d);
+    const Switch model(d);
     const double release = release_voltage(model, 0), high = 1.2 * static_pull_in(model, 0).voltage;
     const auto opens = [&](double low) {
       const std::vector<Signal> drives{Signal::piecewise_linear({{0, high}, {500_us, high}, {1500_us, low}})};
@@ -216,7 +216,7 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact) {
   constexpr double margin = 1e-5;
   int holding = 0, never = 0;
   for (const Device& d : contacts_of_every_stiffness()) {
-    const Switch device(d);
+    const Switch model(d);
     const double release = release_voltage(model, 0);
     const auto closed = [&](double volts) { return closed_equilibrium(model, std::vector<double>{volts}); };
     const std::string name =
@@ -281,7 +281,7 @@ TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
   d.contact->stiffness = 0.15_N_m;
   d.electrodes[0].begin = 0;
   d.electrodes[0].end = d.structure.length / 2;
-  const Switch device(d);
+  const Switch model(d);
   const std::vector<double> volts{1.05 * release_voltage(model, 0)};
   const auto closed = closed_equilibrium(model, volts);
   ASSERT_TRUE(closed.has_value());
@@ -297,7 +297,7 @@ TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
   d.structure.damping_ratio = 0.3;
   for (const ContactDistribution distribution : {ContactDistribution::centre, ContactDistribution::pad}) {
     d.contact->distribution = distribution;
-    const Switch device(d);
+    const Switch model(d);
     const auto closed = closed_equilibrium(model, std::vector<double>{17.771});
     ASSERT_TRUE(closed.has_value());
     const std::vector<Signal> drives{Signal::constant(17.771)};
@@ -307,7 +307,7 @@ TEST(ClosedEquilibrium, IsWhereABouncingSwitchComesToRest) {
 }
 
 TEST(ClosedEquilibrium, IsPressedHarderByAPiezoThatPullsDown) {
-  const Switch device(test::gold_pzt_cantilever());
+  const Switch model(test::gold_pzt_cantilever());
   const auto force = [&](double piezo_volts) {
     return closed_equilibrium(model, std::vector<double>{28, piezo_volts})->contact_force;
   };
@@ -322,7 +322,7 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
   for (const Contact& contact : contacts) {
     Device d = test::gold_cantilever();
     d.contact = contact;
-    const Switch device(d);
+    const Switch model(d);
     const auto closed = closed_equilibrium(model, volts);
     ASSERT_TRUE(closed.has_value()) << name_of(contact_laws, contact.model);
     EXPECT_GT(closed->contact_force, 0);

@@ -203,7 +203,7 @@ TEST(Switch, WithAFilmOfItsOwnStatesHasTheExactJacobian) {
   constexpr double differences = 1e-7;  // of the largest entry of the column
   for (Device d : {gold_with(air), test::gold_bridge(), test::full_plate()}) {
     d.gas = air;
-    const Switch device(d);
+    const Switch model(d);
     Switch::Workspace work = model.workspace();
     const Eigen::Index n = model.modes(), size = 2 * n + static_cast<Eigen::Index>(model.film_states());
     EXPECT_EQ(model.film_states(), static_cast<std::size_t>(nodes * model.points()));

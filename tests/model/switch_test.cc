@@ -175,6 +175,54 @@ TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
   }
 }
 
+// Everything that a closing asks of a switch, in bits.
+void expect_same(const Switch& a, const Switch& b) {
+  ASSERT_EQ(a.modes(), b.modes());
+  ASSERT_EQ(a.points(), b.points());
+  EXPECT_EQ(a.angular_frequencies(), b.angular_frequencies());
+  EXPECT_EQ(a.contact_shape(), b.contact_shape());
+  EXPECT_EQ(a.piezo_shape(), b.piezo_shape());
+  EXPECT_EQ(a.in_contact_period(), b.in_contact_period());
+  EXPECT_EQ(a.penetration_scale(), b.penetration_scale());
+  EXPECT_EQ(a.bending_energy(), b.bending_energy());
+  EXPECT_EQ(a.rest(), b.rest());
+  EXPECT_TRUE((a.point_positions() == b.point_positions()).all());
+  const auto accelerations = [](const Switch& s) {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(s.modes()), v = Eigen::VectorXd::Constant(s.modes(), 1e-8), result(s.modes());
+    q[0] = 1.001 * s.device().gap.contact / s.contact_shape()[0];
+    const std::vector<double> drives(s.drives(), 1.5);
+    Switch::Workspace work = s.workspace();
+    s.accelerations(q.data(), v.data(), drives, s.has_contact(), work, result.data());
+    return result;
+  };
+  EXPECT_EQ(accelerations(a), accelerations(b));
+}
+
+TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
+  const std::vector<void (*)(Device&)> changes{
+      [](Device& d) { d.structure.thickness *= 1.02; },
+      [](Device& d) { d.structure.width *= 0.98, d.structure.youngs_modulus *= 1.03, d.structure.density *= 1.01; },
+      [](Device& d) { d.gap.electrode *= 1.02, d.gap.contact *= 1.02; },
+      [](Device& d) { d.structure.length *= 1.01; },
+      [](Device& d) { d.electrodes[0].begin += 1_um; },
+      [](Device& d) { d.contact->pad_length *= 1.1; },
+      [](Device& d) { d.structure.modes = 3; },
+      [](Device& d) { d.piezo.reset(); },
+      [](Device& d) { d.structure.residual_stress = 1e6; },
+  };
+  for (const Combination& c : combinations()) {
+    const Switch nominal(c.device);
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      Device changed = c.device;
+      if (changed.electrodes.empty() || !changed.contact) continue;
+      changes[k](changed);
+      SCOPED_TRACE(fmt::format("{}, change {}", c.name, k));
+      expect_same(Switch(changed, {}, &nominal), Switch(changed));
+    }
+    expect_same(Switch(c.device, {.points_per_length = 17}, &nominal), Switch(c.device, {.points_per_length = 17}));
+  }
+}
+
 TEST(Switch, StaticForceIsMinusTheGradientOfThePotential) {
   constexpr double differences = 1e-7;
   std::mt19937_64 random(2);

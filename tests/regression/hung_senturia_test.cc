@@ -24,7 +24,7 @@ constexpr double reference_pull_in = 8.7326_V;
 double pull_in_time(const Gas& gas, double over_pull_in) {
   Device d = test::hung_senturia();
   d.gas = gas;
-  const Switch device(d);
+  const Switch model(d);
   const std::vector<Signal> drives{Signal::constant(over_pull_in * static_pull_in(model, 0).voltage)};
   const Trajectory t = simulate_closing(model, drives, {.duration = 1000_us, .tolerance = 1e-6});
   EXPECT_EQ(t.touches.size(), 1u) << t.message;

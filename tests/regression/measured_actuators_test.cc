@@ -38,7 +38,7 @@ TEST(GapClosingActuators, LetGoWhereMeasured) {
 TEST(GapClosingActuators, CloseInTheMeasuredTime) {
   for (const test::MeasuredTimes& m : test::measured_times) {
     const Device d = test::gap_closing_actuator(m.overlap);
-    const Switch device(d);
+    const Switch model(d);
     const double threshold = static_pull_in(model, 0).voltage;
     for (const test::MeasuredTime& t : m.times) {
       if (t.volts < well_above * threshold) continue;

@@ -29,7 +29,7 @@ TEST(NemTin, PullsInNearTheClosedFormOfTheFullLengthElectrode) {
   d.electrodes[0].fringing = Fringing::none;
   const double ideal = static_pull_in(Switch(d), 0).voltage;
   EXPECT_NEAR(ideal, 13.6, 0.05);
-  const Switch device(test::nano_cantilever());
+  const Switch model(test::nano_cantilever());
   const StaticPullIn fold = static_pull_in(model, 0);
   EXPECT_EQ(fold.kind, StaticKind::fold);
   EXPECT_LT(fold.voltage, ideal);
@@ -49,7 +49,7 @@ TEST(NemTin, DispersionLowersBothPullInVoltagesAndTheirDeflection) {
 }
 
 TEST(NemTin, ClosesBouncesAndSettlesAtItsVoltage) {
-  const Switch device(test::nano_cantilever());
+  const Switch model(test::nano_cantilever());
   const DynamicPullIn dynamic = dynamic_pull_in(model, 0, static_pull_in(model, 0));
   ASSERT_EQ(dynamic.status, Status::done);
   const Trajectory t = step(model, 1.25 * dynamic.voltage, 40);
@@ -61,7 +61,7 @@ TEST(NemTin, ClosesBouncesAndSettlesAtItsVoltage) {
 }
 
 TEST(NemCasimir, HangsFreeAndClosesWhenTheForceGrowsByAQuarter) {
-  const Switch device(test::casimir_cantilever());
+  const Switch model(test::casimir_cantilever());
   ASSERT_TRUE(model.rest().has_value());
   const StaticPullIn fold = static_pull_in(model, 0);
   ASSERT_EQ(fold.status, Status::done);

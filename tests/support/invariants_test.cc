@@ -15,7 +15,7 @@ namespace {
 using namespace literals;
 
 TEST(MissedTouch, IsFoundInEitherRunAsLongAsTheyAgree) {
-  const Switch device(gold_cantilever());
+  const Switch model(gold_cantilever());
   const std::vector<Signal> drives{Signal::constant(17.771)};
   const auto run = [&](double tolerance) {
     return simulate_closing(model, drives, {.duration = 100_us, .tolerance = tolerance});

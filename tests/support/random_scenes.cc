@@ -248,7 +248,7 @@ void put_waveforms(SceneFile& file, Dice& dice) {
   file.erase("waveform");
   file.erase("driver");
   const Scene scene = read_scene(file);
-  const Switch device(scene.device);
+  const Switch model(scene.device);
   const double period = 2 * pi / device.angular_frequencies()[0];
   double volts = 0;  // that the electrodes before pull in at
   for (std::size_t k = 0; k < device.drives(); ++k) {
