@@ -26,4 +26,22 @@ inline void require(bool rule_holds, std::string_view message, std::source_locat
   if (!rule_holds) throw InvalidInput(std::string(message), where);
 }
 
+/// A parameter that breaks the rules of what it belongs to: a waveform family, a distribution.
+class InvalidParameter : public InvalidInput {
+ public:
+  InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)
+      : InvalidInput(message, where), parameter_(parameter) {}
+  /// The name of the parameter.
+  [[nodiscard]] const std::string& parameter() const noexcept { return parameter_; }
+
+ private:
+  std::string parameter_;
+};
+
+/// Throws InvalidParameter with `message` unless `rule_holds`. Write the rule so that NaN fails it.
+inline void require_of(std::string_view parameter, bool rule_holds, const std::string& message,
+                       std::source_location where = std::source_location::current()) {
+  if (!rule_holds) throw InvalidParameter(parameter, message, where);
+}
+
 }  // namespace softland
