@@ -14,7 +14,17 @@ namespace softland {
 
 /// What a number is drawn for. Each purpose has a number of its own, which keeps the streams of one seed apart; none may change,
 /// or the same seed gives other results than before.
-enum class Stream : std::uint64_t { sobol_shift = 1, skew = 2, library_seed = 3, normals = 4, scene = 5, perturbation = 6 };
+enum class Stream : std::uint64_t {
+  sobol_shift = 1,
+  skew = 2,
+  library_seed = 3,
+  normals = 4,
+  scene = 5,
+  perturbation = 6,
+  spread = 7,     ///< the switches of an ensemble
+  indices = 8,    ///< the evaluations for Sobol' indices
+  bootstrap = 9,  ///< which samples a repetition of a bootstrap takes
+};
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.
 [[nodiscard]] constexpr std::uint64_t split_mix_64(std::uint64_t seed, std::uint64_t n) {

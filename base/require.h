@@ -33,4 +33,22 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   if (!rule_holds) throw InvalidInput(message(), where);
 }
 
+/// A parameter that breaks the rules of what it belongs to: a waveform family, a distribution.
+class InvalidParameter : public InvalidInput {
+ public:
+  InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)
+      : InvalidInput(message, where), parameter_(parameter) {}
+  /// The name of the parameter.
+  [[nodiscard]] const std::string& parameter() const noexcept { return parameter_; }
+
+ private:
+  std::string parameter_;
+};
+
+/// Throws InvalidParameter with `message` unless `rule_holds`. Write the rule so that NaN fails it.
+inline void require_of(std::string_view parameter, bool rule_holds, const std::string& message,
+                       std::source_location where = std::source_location::current()) {
+  if (!rule_holds) throw InvalidParameter(parameter, message, where);
+}
+
 }  // namespace softland

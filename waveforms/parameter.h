@@ -1,13 +1,11 @@
 // What a waveform family is called and what its parameters are: a scene reads, checks and writes a waveform by these tables.
 #pragma once
 
-#include <source_location>
-#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "base/require.h"
+#include "base/require.h"  // InvalidParameter
 
 namespace softland {
 
@@ -34,23 +32,5 @@ struct Parameter {
 /// Specialised beside each family, with its `name` and its `parameters`; `from_file` where the rows may stand in a file.
 template <class Family>
 struct FamilyOf;
-
-/// A parameter that breaks its family's rules.
-class InvalidParameter : public InvalidInput {
- public:
-  InvalidParameter(std::string_view parameter, const std::string& message, std::source_location where)
-      : InvalidInput(message, where), parameter_(parameter) {}
-  /// The name of the parameter.
-  [[nodiscard]] const std::string& parameter() const noexcept { return parameter_; }
-
- private:
-  std::string parameter_;
-};
-
-/// Throws InvalidParameter with `message` unless `rule_holds`. Write the rule so that NaN fails it.
-inline void require_of(std::string_view parameter, bool rule_holds, const std::string& message,
-                       std::source_location where = std::source_location::current()) {
-  if (!rule_holds) throw InvalidParameter(parameter, message, where);
-}
 
 }  // namespace softland

@@ -31,6 +31,9 @@ TEST(Random, GivesTheNumbersItAlwaysGave) {
   EXPECT_EQ(random_bits(7, Stream::normals, 99999), 0xae30a32adca1410fu);
   EXPECT_EQ(random_bits(0, Stream::perturbation, 0), 0x50cf6f5f4343b2afu);
   EXPECT_EQ(random_bits(largest, Stream::scene, largest), 0x0de043bd7088a120u);
+  EXPECT_EQ(random_bits(1, Stream::spread, 0), 0x6bb1fcc8494f3b37u);
+  EXPECT_EQ(random_bits(1, Stream::indices, 0), 0x717108a07d3e8a49u);
+  EXPECT_EQ(random_bits(1, Stream::bootstrap, 0), 0x40a8e2b0daf32125u);
   EXPECT_EQ(random_uniform(20240101, Stream::skew, 5), 0x1.90418c9fb2badp-1);
 }
 

@@ -1,0 +1,87 @@
+#include "sampling/copula.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "base/engineering.h"
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+std::string text(double value) { return engineering(value, "", 6); }
+
+void require_correlation(bool rule_holds, const std::string& message) { require_of("correlation", rule_holds, message); }
+
+void require_in_range(double value) {
+  require(-1 <= value && value <= 1, "a correlation of " + text(value) + " must be between -1 and 1");
+}
+
+// The variables that the vector consists of, most of all: those with at least half of its largest element.
+std::string main_parts(const Eigen::VectorXd& vector, const std::vector<std::string>& names) {
+  const double largest = vector.cwiseAbs().maxCoeff();
+  std::string parts;
+  for (Eigen::Index i = 0; i < vector.size(); ++i) {
+    if (std::abs(vector[i]) >= largest / 2) parts += (parts.empty() ? "" : ", ") + names[static_cast<std::size_t>(i)];
+  }
+  return parts;
+}
+
+}  // namespace
+
+GaussianCopula::GaussianCopula(const Eigen::MatrixXd& correlation, const std::vector<std::string>& names) {
+  const Eigen::Index n = correlation.rows();
+  require_correlation(n >= 1 && correlation.cols() == n, "a correlation matrix has " + std::to_string(n) + " rows and " +
+                                                             std::to_string(correlation.cols()) + " columns; it must be square");
+  std::vector<std::string> known = names;
+  for (std::size_t i = known.size(); i < static_cast<std::size_t>(n); ++i) known.push_back("variable " + std::to_string(i + 1));
+  const auto name = [&](Eigen::Index i) { return known[static_cast<std::size_t>(i)]; };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    require_correlation(correlation(i, i) == 1,
+                        "the correlation of " + name(i) + " with itself is " + text(correlation(i, i)) + "; it must be 1");
+    for (Eigen::Index k = 0; k < i; ++k) {
+      const double rho = correlation(k, i);
+      const std::string pair = "the correlation of " + name(k) + " and " + name(i) + " is " + text(rho);
+      require_correlation(-1 <= rho && rho <= 1, pair + "; it must be between -1 and 1");
+      require_correlation(rho == correlation(i, k),
+                          pair + " above the diagonal and " + text(correlation(i, k)) + " below it; both must be equal");
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  const double least = eigen.eigenvalues()[0];
+  if (!(least >= least_eigenvalue)) {
+    require_correlation(false, "the correlations of " + main_parts(eigen.eigenvectors().col(0), known) +
+                                   " contradict each other: the smallest eigenvalue of their matrix is " + text(least) +
+                                   "; it must be at least " + text(least_eigenvalue));
+  }
+  factor_ = correlation.llt().matrixL();
+}
+
+void GaussianCopula::correlate(std::span<double> u) const {
+  require(u.size() == dimensions(), "a point has another number of coordinates than the copula");
+  const boost::math::normal_distribution<> normal;
+  Eigen::VectorXd z(factor_.rows());
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const double p = u[static_cast<std::size_t>(i)];
+    require(p > 0 && p < 1, "a coordinate must be above 0 and below 1");
+    z[i] = quantile(normal, p);
+  }
+  for (Eigen::Index i = 1; i < z.size(); ++i) {  // the first one stays as it is, to the last bit
+    const double correlated = factor_.row(i).head(i + 1).dot(z.head(i + 1));
+    u[static_cast<std::size_t>(i)] = std::clamp(cdf(normal, correlated), 0x1p-53, 1 - 0x1p-53);
+  }
+}
+
+double rank_correlation(double correlation) {
+  require_in_range(correlation);
+  return 6 / std::numbers::pi * std::asin(correlation / 2);
+}
+
+double correlation_of_ranks(double rank_correlation) {
+  require_in_range(rank_correlation);
+  return 2 * std::sin(std::numbers::pi / 6 * rank_correlation);
+}
+
+}  // namespace softland

@@ -1,0 +1,108 @@
+// Distributions of one number: a dimension, a pressure, a surface energy of the switches of a wafer.
+//
+//   normal      f(x) ~ exp(-(x - m)^2 / (2 s^2))                      mean m, standard deviation s > 0
+//   lognormal   ln x is normal; given by the mean m > 0 and standard deviation s > 0 of x itself:
+//               the variance of ln x is ln(1 + (s/m)^2), its mean ln m - ln(1 + (s/m)^2) / 2
+//   uniform     f(x) constant                                         low < high
+//   triangular  f(x) rises from low to mode and falls to high         low <= mode <= high, low < high
+//   empirical   Q(p) = x_j + (h - j) (x_(j+1) - x_j),  h = 1 + (n - 1) p,  j = floor(h),  x_1 <= ... <= x_n
+//
+// The quantile of n values is linear between order statistics: definition 7 of Hyndman & Fan, The American Statistician 50 (1996)
+// 361. So an empirical distribution has no value outside those it was given, a step where values are equal, and a variance
+// slightly below that of the values.
+//
+// Each may be truncated to [low, high]: X given low <= X <= high, Q_t(p) = Q(F(low-) + p (F(high) - F(low-))). All in the unit of
+// the variable.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/choice.h"
+#include "sampling/interval.h"
+
+namespace softland {
+
+enum class DistributionKind { normal, lognormal, uniform, triangular, empirical };
+
+/// The keys are the names of the parameters, as they stand in the messages of InvalidParameter.
+struct DistributionRow {
+  DistributionKind value;
+  std::string_view name;
+  Words keys;
+};
+inline constexpr std::array distribution_kinds{
+    DistributionRow{DistributionKind::normal, "normal", {"mean", "standard_deviation"}},
+    DistributionRow{DistributionKind::lognormal, "lognormal", {"mean", "standard_deviation"}},
+    DistributionRow{DistributionKind::uniform, "uniform", {"low", "high"}},
+    DistributionRow{DistributionKind::triangular, "triangular", {"low", "mode", "high"}},
+    DistributionRow{DistributionKind::empirical, "empirical", {"values"}},
+};
+static_assert(is_complete<distribution_kinds>());
+
+struct Normal {
+  double mean = 0;
+  double standard_deviation = 0;
+};
+struct Lognormal {
+  double mean = 0;                ///< of the variable, not of its logarithm
+  double standard_deviation = 0;  ///< likewise
+};
+struct Uniform {
+  double low = 0;
+  double high = 0;
+};
+struct Triangular {
+  double low = 0;
+  double mode = 0;
+  double high = 0;
+};
+struct Empirical {
+  std::vector<double> values = {};  ///< at least two, in any order
+};
+struct Truncation {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+class Distribution {
+ public:
+  /// In the order of DistributionKind.
+  using Parameters = std::variant<Normal, Lognormal, Uniform, Triangular, Empirical>;
+
+  /// The least probability that a truncation may keep: one with less is a mistake of units, and rounding would be seen in it.
+  static constexpr double least_kept = 1e-6;
+
+  /// Throws InvalidParameter: `parameter()` is a key of distribution_kinds, or truncate_low or truncate_high.
+  explicit Distribution(Parameters parameters, const Truncation& truncation = {});
+
+  [[nodiscard]] DistributionKind kind() const { return static_cast<DistributionKind>(parameters_.index()); }
+  /// As given, with the values of an empirical distribution sorted.
+  [[nodiscard]] const Parameters& parameters() const { return parameters_; }
+  [[nodiscard]] const Truncation& truncation() const { return truncation_; }
+
+  /// The least x with cdf(x) >= p. Throws InvalidInput unless 0 < p < 1.
+  [[nodiscard]] double quantile(double p) const;
+  /// The probability of a value of at most x.
+  [[nodiscard]] double cdf(double x) const;
+  /// Of the truncated distribution, to 1e-12 of the standard deviation or of the mean, whichever is larger.
+  [[nodiscard]] double mean() const { return mean_; }
+  [[nodiscard]] double standard_deviation() const { return standard_deviation_; }
+  /// Where it has its values.
+  [[nodiscard]] const Interval& support() const { return support_; }
+
+ private:
+  void find_moments();
+
+  Parameters parameters_;
+  Truncation truncation_;
+  Interval support_;
+  double below_ = 0;  // the probability of what the truncation cuts off below,
+  double kept_ = 1;   // and of what it keeps
+  double mean_ = 0, standard_deviation_ = 0;
+};
+
+}  // namespace softland

@@ -1,0 +1,102 @@
+#include "sampling/points.h"
+
+#include <bit>
+#include <boost/random/sobol.hpp>
+#include <string>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+constexpr int resolved_bits = 32;  // of a coordinate, by the direction numbers
+
+// The middle of one of 2^52 equal intervals, from the highest bits.
+double in_open_interval(std::uint64_t bits) { return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52; }
+
+std::vector<std::uint32_t> direction_numbers(std::size_t dimensions) {
+  boost::random::sobol_engine<std::uint32_t, resolved_bits> sequence(dimensions);
+  std::vector<std::uint32_t> directions;
+  for (int r = 0; r < resolved_bits; ++r) {
+    // Boost's point s is the sum of the direction numbers of the bits of the Gray code of s + 1, which is 2^r here.
+    sequence.seed(static_cast<std::uint32_t>((std::uint64_t{2} << r) - 2));
+    for (std::size_t i = 0; i < dimensions; ++i) directions.push_back(sequence());
+  }
+  return directions;
+}
+
+// 64 bits of which the highest 32 are those of `digits`, scrambled.
+std::uint64_t scrambled(std::uint64_t key, std::uint32_t digits) {
+  // Node 2^j + (the first j bits) decides on bit j, counted from 0 at the highest.
+  std::uint32_t flips = 0;
+  for (unsigned j = 0; j < resolved_bits; ++j) {
+    const std::uint64_t node = (std::uint64_t{digits} | std::uint64_t{1} << resolved_bits) >> (resolved_bits - j);
+    flips |= static_cast<std::uint32_t>(split_mix_64(key, node) >> 63) << (resolved_bits - 1 - j);
+  }
+  const std::uint64_t below = split_mix_64(key, std::uint64_t{digits} | std::uint64_t{1} << resolved_bits);
+  return std::uint64_t{digits ^ flips} << resolved_bits | below >> resolved_bits;
+}
+
+// Where a random permutation of 0, ..., size - 1 takes k.
+std::uint64_t permuted(std::uint64_t key, std::uint64_t k, std::uint64_t size) {
+  constexpr std::uint64_t rounds = 8;  // four suffice for large halves; a half may be one bit
+  const int width = static_cast<int>(std::bit_width(size - 1)), right_width = (width + 1) / 2;
+  const std::uint64_t right_mask = (std::uint64_t{1} << right_width) - 1,
+                      left_mask = (std::uint64_t{1} << (width - right_width)) - 1;
+  do {
+    std::uint64_t left = k >> right_width, right = k & right_mask;
+    for (std::uint64_t round = 0; round < rounds; ++round) {
+      right ^= split_mix_64(key, (2 * round) << 32 | left) >> 32 & right_mask;
+      left ^= split_mix_64(key, (2 * round + 1) << 32 | right) >> 32 & left_mask;
+    }
+    k = left << right_width | right;
+  } while (k >= size);
+  return k;
+}
+
+// Inside stratum `stratum` of `size`: as many bits as leave the sum exact, so that it rounds neither to the next one nor to 1.
+double in_stratum(std::uint64_t bits, std::uint64_t stratum, std::uint64_t size) {
+  const int kept = 52 - static_cast<int>(std::bit_width(size - 1));
+  const double inside = (static_cast<double>(bits >> (64 - kept)) + 0.5) / static_cast<double>(std::uint64_t{1} << kept);
+  return (static_cast<double>(stratum) + inside) / static_cast<double>(size);
+}
+
+}  // namespace
+
+Points::Points(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size)
+    : kind_(kind), size_(size) {
+  require_of("dimensions", 1 <= dimensions && dimensions <= most_dimensions,
+             "dimensions = " + std::to_string(dimensions) + " must be between 1 and " + std::to_string(most_dimensions));
+  require_of("size", 1 <= size && size <= largest_size,
+             "size = " + std::to_string(size) + " must be between 1 and " + std::to_string(largest_size));
+  // Not a draw of the stream, so that it stays free for other numbers of the same purpose.
+  for (std::size_t i = 0; i < dimensions; ++i) keys_.push_back(split_mix_64(random_bits(seed, stream, 0), i));
+  if (kind == PointSet::sobol) directions_ = direction_numbers(dimensions);
+}
+
+void Points::point(std::uint64_t k, std::span<double> u) const {
+  require(k < size_, "there is no point of that number");
+  require(u.size() == dimensions(), "a point has another number of coordinates");
+  switch (kind_) {
+    case PointSet::sobol:
+      for (std::size_t i = 0; i < u.size(); ++i) {
+        std::uint32_t digits = 0;
+        for (std::uint64_t bits = k; bits != 0; bits &= bits - 1) {
+          digits ^= directions_[static_cast<std::size_t>(std::countr_zero(bits)) * u.size() + i];
+        }
+        u[i] = in_open_interval(scrambled(keys_[i], digits));
+      }
+      break;
+    case PointSet::latin_hypercube:
+      for (std::size_t i = 0; i < u.size(); ++i) {
+        // The complement of the key is the seed of the places inside the strata.
+        u[i] = in_stratum(split_mix_64(~keys_[i], k), permuted(keys_[i], k, size_), size_);
+      }
+      break;
+    case PointSet::monte_carlo:
+      for (std::size_t i = 0; i < u.size(); ++i) u[i] = in_open_interval(split_mix_64(keys_[i], k));
+      break;
+  }
+}
+
+}  // namespace softland
