@@ -8,6 +8,7 @@
 #include "base/require.h"
 #include "config/drives.h"
 #include "config/section_reader.h"
+#include "config/spread_reader.h"
 
 namespace softland {
 namespace {
@@ -62,45 +63,7 @@ void check_electrodes(const Device& device, const SceneFile::Impl& file) {
   in.fail(conflict->why);
 }
 
-/// The key that [spread."NAME"] varies. Throws InvalidInput unless it is a number that is in force in this scene.
-const internal::Key& varied_key(const SceneFile::Impl& file, const SectionReader& in, const std::string& name) {
-  std::vector<std::string> parts;
-  try {
-    parts = internal::split_path(name);
-  } catch (const InvalidInput& error) {
-    file.fail_section(in.path(), error.what());
-  }
-  std::vector<std::string_view> candidates;
-  const internal::Section* section = internal::find_section(parts.front(), parts.size() > 1 ? parts[1] : std::string());
-  const std::size_t depth = section && section->is_named ? 3 : 2;
-  if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
-    const SectionReader varied(file, parts[0], section->is_named ? parts[1] : std::string());
-    for (const internal::Key& key : section->keys) {
-      if (key.type == internal::KeyType::quantity && varied.find(key.name) == &key && varied.has_value(key.name))
-        candidates.push_back(key.name);
-    }
-    if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) return *varied.find(parts.back());
-  }
-  file.fail_section(in.path(), fmt::format("'{}' is not a key of this scene that holds one number of the device{}", name,
-                                           internal::hint(parts.back(), candidates)));
-}
-
-/// Returns whether there is a spread.
-bool check_spread(const SceneFile::Impl& file) {
-  const std::vector<std::string> names = file.names_in("spread");
-  for (const std::string& name : names) {
-    const SectionReader in(file, "spread", name);
-    const auto& allowed = varied_key(file, in, name).dimensions;
-    if (!in.is_given("half_width")) continue;
-    const Dimension given = in.quantities("half_width").front().dimension;
-    const bool is_percentage = given == dimension::none;
-    in.require(is_percentage || std::find(allowed.begin(), allowed.end(), given) != allowed.end(), "half_width",
-               fmt::format("expected {}, got {}", describe(allowed.front()), describe(given)));
-  }
-  return !names.empty();
-}
-
-std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device& device, bool has_spread) {
+std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device& device) {
   std::vector<std::string> warnings;
   if (device.electrodes.empty() && !device.piezo && !file.find({"waveform", "dispersion"})) {
     warnings.push_back(file.name + ": neither an electrode nor a piezo layer: nothing drives this switch");
@@ -121,10 +84,6 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
         "use E / (1 - nu^2)",
         file.origin("structure.width").text, file.written("structure.width")));
   }
-  if (has_spread) {
-    warnings.push_back(
-        fmt::format("{}: [spread] describes device variation and is not used by this command", file.origin("spread").text));
-  }
   return warnings;
 }
 
@@ -137,7 +96,8 @@ Scene read_scene(const SceneFile& file) {
   read_sections(scene, impl);
   check_electrodes(scene.device, impl);
   scene.need_pull_in = internal::check_drives(impl, scene.device);
-  scene.warnings = find_warnings(impl, scene.device, check_spread(impl));
+  internal::read_spread(scene, impl);
+  scene.warnings = find_warnings(impl, scene.device);
   try {
     validate(scene.device);
   } catch (const InvalidInput& error) {
@@ -165,7 +125,9 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   for (const internal::Section& section : internal::schema()) {
     const std::string name(section.name);
     if (name == "waveform" || name == "driver") continue;
-    if (name.empty()) {
+    if (name == "spread") {
+      if (toml::table spread = internal::resolved_spread(impl); !spread.empty()) root.insert(name, std::move(spread));
+    } else if (name.empty()) {
       root = SectionReader(impl, "").with_defaults();
     } else if (!section.is_named) {
       const SectionReader in(impl, name);
@@ -173,9 +135,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
     } else {
       toml::table named;
       for (const std::string& entry : impl.names_in(name)) {
-        toml::table keys = SectionReader(impl, name, entry).with_defaults();
-        keys.is_inline(name == "spread");
-        named.insert(entry, std::move(keys));
+        named.insert(entry, SectionReader(impl, name, entry).with_defaults());
       }
       if (!named.empty()) root.insert(name, std::move(named));
     }

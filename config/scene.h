@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "config/spread.h"
 #include "model/device.h"
 #include "objectives/metrics.h"
 #include "waveforms/limits.h"
@@ -89,6 +90,7 @@ struct Scene {
   SimulateOptions simulate;
   bool auto_modes = false;  ///< modes = "auto": device has the default number until someone chooses (studies/auto_modes.h)
   MetricsOptions metrics;
+  DeviceSpread spread;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
   std::vector<std::string> warnings;

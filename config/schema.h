@@ -19,7 +19,7 @@ namespace softland::internal {
 
 class SectionReader;
 
-enum class KeyType { text, flag, integer, choice, quantity, quantities };
+enum class KeyType { text, texts, flag, integer, choice, quantity, quantities };
 
 /// An interval in SI units; an end that is open is not part of it.
 struct Range {
@@ -74,9 +74,10 @@ struct Key {
 };
 
 struct Section {
-  std::string_view name;        ///< empty: the keys above the first section
-  std::string_view entry = {};  ///< of a named section: the one NAME these keys are for; empty: every other one
-  bool is_named = false;        ///< [name.NAME], any number of them
+  std::string_view name;         ///< empty: the keys above the first section
+  std::string_view entry = {};   ///< of a named section: the one NAME these keys are for; empty: every other one
+  bool is_named = false;         ///< [name.NAME], any number of them
+  std::string_view beside = {};  ///< a key that stands among the NAMEs and is read by code of its own
   bool required = false;
   bool always_in_force = false;    ///< its defaults hold when the section is absent
   bool may_vary = false;           ///< [spread] may name its numbers

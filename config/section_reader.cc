@@ -18,6 +18,8 @@ std::string wanted(const Key& key) {
   switch (key.type) {
     case KeyType::text:
       return "a text in quotes";
+    case KeyType::texts:
+      return "a list of texts";
     case KeyType::flag:
       return "true or false";
     case KeyType::integer:
@@ -160,6 +162,17 @@ SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node
     case KeyType::text:
       if (text) return text->get();
       break;
+    case KeyType::texts:
+      if (const auto* array = node.as_array()) {
+        std::vector<std::string> all;
+        for (const auto& element : *array) {
+          const auto* one = element.as_string();
+          if (!one) throw InvalidInput(fmt::format("value {}: expected a text in quotes", all.size() + 1));
+          all.push_back(one->get());
+        }
+        return all;
+      }
+      break;
     case KeyType::choice:
       if (text) return parse_choice(key, text->get());
       break;
@@ -213,6 +226,9 @@ int SectionReader::integer(std::string_view key) const { return static_cast<int>
 bool SectionReader::is_word(std::string_view key) const {
   const auto found = values_.find(key);
   return found != values_.end() && std::holds_alternative<std::string>(found->second);
+}
+const std::vector<std::string>& SectionReader::texts(std::string_view key) const {
+  return std::get<std::vector<std::string>>(values_.at(key));
 }
 bool SectionReader::flag(std::string_view key) const { return std::get<bool>(values_.at(key)); }
 const std::string& SectionReader::text(std::string_view key) const { return std::get<std::string>(values_.at(key)); }

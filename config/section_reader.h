@@ -41,6 +41,7 @@ class SectionReader {
   [[nodiscard]] bool flag(std::string_view key) const;
   /// Of a text or a choice.
   [[nodiscard]] const std::string& text(std::string_view key) const;
+  [[nodiscard]] const std::vector<std::string>& texts(std::string_view key) const;
 
   /// Keys whose values are multiples of a pull-in voltage.
   [[nodiscard]] std::vector<std::string_view> keys_in_pull_in_units() const;
@@ -68,7 +69,7 @@ class SectionReader {
   [[nodiscard]] std::string written(std::string_view key) const { return file_.written(path(key)); }
 
  private:
-  using Value = std::variant<std::vector<Quantity>, std::string, bool, std::int64_t>;
+  using Value = std::variant<std::vector<Quantity>, std::string, std::vector<std::string>, bool, std::int64_t>;
 
   static Value parse(const Key& key, const toml::node& node);
   void check_keys() const;

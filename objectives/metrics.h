@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "model/closing/observer.h"
 #include "model/trajectory.h"
 #include "objectives/rebounds.h"
 
@@ -33,6 +34,29 @@ struct Metrics {
   double peak_voltage =
       unset;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
   double peak_slew = unset;  ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
+};
+
+/// Gathers the figures while a closing runs, and keeps nothing of its course.
+class MetricsObserver final : public ClosingObserver {
+ public:
+  /// `contact_gap` [m]
+  explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {}) : options_(options), rebounds_(contact_gap) {}
+  void knot(const TrajectoryPoint& point) override;
+  void touch(const Touch& touch) override;
+  /// Of the run, once it has ended: see metrics().
+  [[nodiscard]] Metrics metrics(const Trajectory& end);
+  /// Of all touches, which the first may not be [m/s]; NaN where nothing touched.
+  [[nodiscard]] double largest_impact_velocity() const { return touched_ ? largest_impact_velocity_ : Metrics::unset; }
+
+ private:
+  void take(const Rebound& rebound);
+
+  MetricsOptions options_;
+  ReboundFinder rebounds_;
+  double highest_ = 0, last_end_ = Metrics::unset;
+  int significant_ = 0;
+  bool touched_ = false;
+  double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0;
 };
 
 /// All rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact gap is

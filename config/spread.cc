@@ -1,0 +1,298 @@
+#include "config/spread.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "base/csv.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "config/section_reader.h"
+#include "config/spread_reader.h"
+
+namespace softland {
+
+void DeviceSpread::to_values(std::span<double> u) const {
+  if (copula) copula->correlate(u);
+  for (std::size_t i = 0; i < variables.size(); ++i) u[i] = variables[i].distribution.quantile(u[i]);
+}
+
+namespace internal {
+namespace {
+
+/// A key of the scene and the dimensions that its value may have.
+struct FoundKey {
+  VariedKey varied;
+  std::vector<Dimension> dimensions;
+};
+
+/// The key that an entry of [spread] names. Throws InvalidInput unless it is a number that is in force in this scene.
+FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader& in, const std::string& name) {
+  std::vector<std::string> parts;
+  try {
+    parts = split_path(name);
+  } catch (const InvalidInput& error) {
+    file.fail_section(in.path(), error.what());
+  }
+  std::vector<std::string_view> candidates;
+  const std::string entry_name = parts.size() > 1 ? parts[1] : std::string();
+  const Section* section = find_section(parts.front(), entry_name);
+  const std::size_t depth = section && section->is_named ? 3 : 2;
+  if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
+    const SectionReader of_key(file, parts[0], section->is_named ? entry_name : std::string());
+    for (const Key& key : section->keys) {
+      if (key.type == KeyType::quantity && of_key.find(key.name) == &key && of_key.has_value(key.name))
+        candidates.push_back(key.name);
+    }
+    if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) {
+      const Key& key = *of_key.find(parts.back());
+      const Quantity given = of_key.quantities(key.name).front();
+      FoundKey found{
+          .varied = {.path = name, .unit = unit_symbol(given.dimension), .nominal = given.value, .member = {}, .refusal = {}},
+          .dimensions = {given.dimension}};
+      if (key.bound.number != nullptr) {
+        std::size_t entry = 0;
+        if (section->name == "electrode") {
+          const auto& all = scene.device.electrodes;
+          while (entry < all.size() && all[entry].name != entry_name) ++entry;
+        }
+        found.varied.member = [number = key.bound.number, entry](Scene& s) -> double& { return number(s, entry); };
+      }
+      found.varied.refusal = [range = key.range_of(given.dimension), unit = found.varied.unit](double value) {
+        return range.contains(value) ? std::string() : range.rule(unit);
+      };
+      return found;
+    }
+  }
+  file.fail_section(in.path(), fmt::format("'{}' is not a key of this scene that holds one number of the device{}", name,
+                                           hint(parts.back(), candidates)));
+}
+
+/// The numbers of an entry in the unit of what varies: of the one key, or of the factor.
+class Scale {
+ public:
+  Scale(const SectionReader& in, const std::vector<FoundKey>& keys) : in_(in), keys_(keys) {
+    for (const std::string_view key :
+         {"standard_deviation", "half_width", "low", "mode", "high", "truncate_low", "truncate_high"}) {
+      if (in.is_given(key)) check(key, in.quantities(key).front().dimension);
+    }
+    if (in.is_given("values")) {
+      for (const Quantity& one : in.quantities("values")) check("values", one.dimension);
+    }
+    if (in.is_given("unit")) check("unit", unit().dimension);
+    if (is_factor_) return;
+    in_.require(keys_.size() == 1, blamed_, "several keys vary by one factor: give a percentage");
+  }
+
+  [[nodiscard]] bool is_factor() const { return is_factor_; }
+  /// The scene's value of what varies.
+  [[nodiscard]] double nominal() const { return is_factor_ ? 1 : keys_.front().varied.nominal; }
+  [[nodiscard]] double of(const Quantity& q) const {
+    return is_factor_ || q.dimension != dimension::none ? q.value : q.value * keys_.front().varied.nominal;
+  }
+  [[nodiscard]] double of(std::string_view key) const { return of(in_.quantities(key).front()); }
+  /// The same of what cannot be negative.
+  [[nodiscard]] double width(std::string_view key) const { return std::abs(of(key)); }
+  [[nodiscard]] double of(std::string_view key, double otherwise) const { return in_.is_given(key) ? of(key) : otherwise; }
+
+  /// One of the unit that values of a file are in.
+  [[nodiscard]] Quantity unit() const {
+    try {
+      return parse_quantity("1 " + in_.text("unit"));
+    } catch (const InvalidInput& error) {
+      in_.file().fail(in_.path("unit"), error.what());
+    }
+  }
+
+ private:
+  // A plain number is a ratio, whatever the key; anything else must be of its dimension.
+  void check(std::string_view key, const Dimension& given) {
+    if (given == dimension::none) return;
+    const std::vector<Dimension>& allowed = keys_.front().dimensions;
+    in_.require(std::find(allowed.begin(), allowed.end(), given) != allowed.end(), key,
+                fmt::format("expected {}, got {}", describe(allowed.front()), describe(given)));
+    is_factor_ = false;
+    blamed_ = key;
+  }
+
+  const SectionReader& in_;
+  const std::vector<FoundKey>& keys_;
+  bool is_factor_ = true;
+  std::string_view blamed_;
+};
+
+/// The values of an empirical distribution that stand in a file, in its unit.
+std::vector<double> file_values(const SectionReader& in) {
+  const std::string& name = in.text("file");
+  in.require(!name.empty() && name.find('\0') == std::string::npos, "file", "must be the name of a file");
+  if (!in.is_given("column")) in.fail("missing key 'column': which column of the file holds the values");
+  const std::string path = (in.file().directory / name).string(), &column = in.text("column");
+  std::vector<double> values;
+  try {
+    read_csv(read_file(path), path, {column}, fmt::format("names of columns, \"{}\" among them", column),
+             [&](std::span<const double> row, const CsvPlace&) { values.push_back(row[0]); });
+  } catch (const InvalidInput& error) {
+    in.file().fail(in.path("file"), error.what());
+  }
+  return values;
+}
+
+Distribution::Parameters parameters_of(const SectionReader& in, const Scale& scale) {
+  const double mean = scale.nominal();
+  const auto deviation = [&] {
+    return in.is_given("cov") ? in.number("cov") * std::abs(mean) : scale.width("standard_deviation");
+  };
+  switch (find_named(distribution_kinds, in.text("distribution"))->value) {
+    case DistributionKind::normal:
+      return Normal{.mean = mean, .standard_deviation = deviation()};
+    case DistributionKind::lognormal:
+      return Lognormal{.mean = mean, .standard_deviation = deviation()};
+    case DistributionKind::uniform: {
+      const double half =
+          in.is_given("half_width") ? scale.width("half_width") : std::sqrt(3.0) * in.number("cov") * std::abs(mean);
+      return Uniform{.low = mean - half, .high = mean + half};
+    }
+    case DistributionKind::triangular:
+      return Triangular{.low = scale.of("low"), .mode = scale.of("mode", mean), .high = scale.of("high")};
+    case DistributionKind::empirical:
+      break;
+  }
+  Empirical all;
+  if (in.is_given("values")) {
+    for (const Quantity& one : in.quantities("values")) all.values.push_back(scale.of(one));
+  } else {
+    const Quantity unit = in.is_given("unit") ? scale.unit() : Quantity{.value = 1, .dimension = dimension::none};
+    for (const double value : file_values(in))
+      all.values.push_back(scale.of({.value = value * unit.value, .dimension = unit.dimension}));
+  }
+  return all;
+}
+
+/// The key of [spread.NAME] that sets a parameter of its distribution.
+std::string_view key_of_parameter(const SectionReader& in, std::string_view parameter) {
+  for (const std::string_view key :
+       {parameter, std::string_view("cov"), std::string_view("half_width"), std::string_view("file")}) {
+    if (in.find(key) != nullptr && in.is_given(key)) return key;
+  }
+  return "distribution";
+}
+
+SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const std::string& name) {
+  const SectionReader in(file, "spread", name);
+  std::vector<std::string> paths{name};
+  if (in.is_given("keys")) {
+    paths = in.texts("keys");
+    in.require(!paths.empty(), "keys", "must name at least one key");
+    in.require(std::set<std::string>(paths.begin(), paths.end()).size() == paths.size(), "keys", "names a key twice");
+  }
+  std::vector<FoundKey> keys;
+  for (const std::string& path : paths) keys.push_back(find_key(file, scene, in, path));
+  const Scale scale(in, keys);
+  SpreadVariable variable{.name = name, .keys = {}, .is_factor = scale.is_factor(), .distribution = Distribution(Normal{1, 1})};
+  for (FoundKey& key : keys) {
+    if (scale.is_factor() && key.varied.nominal == 0)
+      in.fail(fmt::format("{} is 0 in this scene, and stays 0 by any factor", key.varied.path));
+    variable.keys.push_back(std::move(key.varied));
+  }
+  try {
+    variable.distribution = Distribution(parameters_of(in, scale), {.low = scale.of("truncate_low", Truncation{}.low),
+                                                                    .high = scale.of("truncate_high", Truncation{}.high)});
+  } catch (const InvalidParameter& error) {
+    file.fail(in.path(key_of_parameter(in, error.parameter())), error.what());
+  }
+  return variable;
+}
+
+/// [[first, second, correlation], ...]
+void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
+  const auto count = static_cast<Eigen::Index>(spread.variables.size());
+  spread.correlation = Eigen::MatrixXd::Identity(count, count);
+  const toml::node* node = file.find({"spread", std::string(correlation_key)});
+  if (node == nullptr) return;
+  const std::string path = join_path("spread", correlation_key);
+  const auto require_that = [&](bool holds, std::string_view rule) {
+    if (!holds) file.fail(path, rule);
+  };
+  constexpr std::string_view form = R"(expected a list such as [["structure.thickness", "gaps", 0.3]])";
+  const toml::array* pairs = node->as_array();
+  require_that(pairs != nullptr, form);
+  std::vector<std::string_view> known;
+  std::vector<std::string> names;
+  for (const SpreadVariable& variable : spread.variables) {
+    known.push_back(variable.name);
+    names.push_back(variable.name);
+  }
+  for (const toml::node& element : *pairs) {
+    const toml::array* pair = element.as_array();
+    require_that(pair != nullptr && pair->size() == 3 && pair->get(0)->is_string() && pair->get(1)->is_string() &&
+                     pair->get(2)->is_number(),
+                 form);
+    std::array<Eigen::Index, 2> at{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::string& name = pair->get(i)->as_string()->get();
+      const auto found = std::find(names.begin(), names.end(), name);
+      require_that(found != names.end(), fmt::format("'{}' does not vary{}", name, hint(name, known)));
+      at[i] = found - names.begin();
+    }
+    require_that(at[0] != at[1], fmt::format("'{}' is correlated with itself", names[static_cast<std::size_t>(at[0])]));
+    require_that(spread.correlation(at[0], at[1]) == 0,
+                 fmt::format("'{}' and '{}' stand here twice", names[static_cast<std::size_t>(at[0])],
+                             names[static_cast<std::size_t>(at[1])]));
+    spread.correlation(at[0], at[1]) = spread.correlation(at[1], at[0]) = pair->get(2)->value<double>().value();
+  }
+  try {
+    spread.copula.emplace(spread.correlation, names);
+  } catch (const InvalidParameter& error) {
+    file.fail(path, error.what());
+  }
+}
+
+/// Two variables must not set one key.
+void check_keys_once(const SceneFile::Impl& file, const DeviceSpread& spread) {
+  std::set<std::string_view> seen;
+  for (const SpreadVariable& variable : spread.variables) {
+    for (const VariedKey& key : variable.keys) {
+      if (!seen.insert(key.path).second)
+        file.fail_section(join_path("spread", variable.name), fmt::format("{} varies by another entry already", key.path));
+    }
+  }
+}
+
+}  // namespace
+
+void read_spread(Scene& scene, const SceneFile::Impl& file) {
+  DeviceSpread spread;
+  for (const std::string& name : file.names_in("spread")) spread.variables.push_back(read_variable(file, scene, name));
+  check_keys_once(file, spread);
+  read_correlation(file, spread);
+  scene.spread = std::move(spread);
+}
+
+toml::table resolved_spread(const SceneFile::Impl& file) {
+  toml::table all;
+  for (const std::string& name : file.names_in("spread")) {
+    const SectionReader in(file, "spread", name);
+    toml::table keys = in.with_defaults();
+    if (in.is_given("file")) {
+      const std::string unit = in.is_given("unit") ? in.text("unit") : "%";
+      toml::array values;
+      for (const double value : file_values(in))
+        values.push_back(fmt::format("{} {}", number_text(in.is_given("unit") ? value : 100 * value), unit));
+      for (const std::string_view key : {"file", "column", "unit"}) keys.erase(key);
+      keys.insert("values", std::move(values));
+    }
+    keys.is_inline(true);
+    all.insert(name, std::move(keys));
+  }
+  if (const toml::node* node = file.find({"spread", std::string(correlation_key)}))
+    node->visit([&](const auto& correlation) { all.insert(correlation_key, correlation); });
+  return all;
+}
+
+}  // namespace internal
+}  // namespace softland
