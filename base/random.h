@@ -24,6 +24,7 @@ enum class Stream : std::uint64_t {
   spread = 7,     ///< the switches of an ensemble
   indices = 8,    ///< the evaluations for Sobol' indices
   bootstrap = 9,  ///< which samples a repetition of a bootstrap takes
+  folds = 10,     ///< which figures a cross-validation holds back together
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

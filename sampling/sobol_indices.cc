@@ -69,19 +69,14 @@ SobolIndex index_of(double value, const std::vector<double>& repetitions, double
 SobolIndices indices_of(std::size_t dimensions, const std::vector<double>& kept, const BootstrapOptions& options) {
   const std::size_t width = dimensions + 2;
   double sum = 0;
-  bool equal = true;
-  for (std::size_t j = 0; j < kept.size(); j += width) {
-    sum += kept[j] + kept[j + 1];
-    equal = equal && kept[j] == kept[0] && kept[j + 1] == kept[0];
-  }
+  for (std::size_t j = 0; j < kept.size(); j += width) sum += kept[j] + kept[j + 1];
   const double mean = sum * static_cast<double>(width) / (2 * static_cast<double>(kept.size()));
   SobolIndices made{.mean = mean, .variance = 0};
   made.first_order.resize(dimensions);
   made.total.resize(dimensions);
-  if (equal) return made;
-
   const Rows rows = rows_of(dimensions, kept, mean);
   const Estimate whole = estimate(rows, [](std::size_t k) { return k; });
+  if (!(whole.variance > 0)) return made;
   made.variance = whole.variance;
   std::vector<std::vector<double>> first_order(dimensions), total(dimensions);
   for (std::size_t repetition = 0; repetition < static_cast<std::size_t>(options.repetitions); ++repetition) {
