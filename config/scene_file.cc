@@ -263,6 +263,15 @@ namespace {
 
 using internal::join_path;
 
+/// Tables within one another.
+std::size_t levels(const toml::node& node) {
+  const toml::table* table = node.as_table();
+  if (!table) return 0;
+  std::size_t deepest = 0;
+  for (const auto& [key, value] : *table) deepest = std::max(deepest, levels(value));
+  return deepest + 1;
+}
+
 void record_origins(SceneFile::Impl& impl, const toml::table& table, const std::string& path, std::size_t parts = 1) {
   for (const auto& [key, node] : table) {
     const std::string key_path = join_path(path, key.str());
@@ -417,7 +426,10 @@ void SceneFile::set(std::string_view assignment) {
     }
   }
 
-  impl_->insert(path, *parsed.get(internal::value_key), {option, true});
+  const toml::node& node = *parsed.get(internal::value_key);
+  require(path.size() + levels(node) <= internal::deepest_path,
+          [&] { return fmt::format("{}: a key has more than {} parts", option, internal::deepest_path); });
+  impl_->insert(path, node, {option, true});
 }
 
 void SceneFile::assign(const std::string& path, const SceneValue& value) {

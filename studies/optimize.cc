@@ -10,6 +10,7 @@
 #include "base/require.h"
 #include "model/constants.h"
 #include "studies/choices.h"
+#include "studies/plain_step.h"
 #include "studies/two_stages.h"
 
 namespace softland {
@@ -114,34 +115,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   Prepared given = prepare_and_choose(file, true, before);
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
 
-  // The baseline: plain steps to the hold levels the scene describes, as steep as the driver permits.
-  std::map<std::string, Waveform> plain;
-  const auto hold = [&](const std::string& drive) {
-    const auto found = given.drives.waveforms.find(drive);
-    return found == given.drives.waveforms.end() ? 0.0 : signal(found->second).hold_level();
-  };
-  const auto step_of = [&](const std::string& drive) {
-    const auto limits = given.drives.limits.find(drive);
-    const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
-    return Step{.level = hold(drive), .rise_time = std::abs(hold(drive)) / slew};
-  };
-  if (options.actuator != Actuator::pzt) {
-    const std::string electrode = searched_electrode(given.scene.device);
-    plain[electrode] = step_of(electrode);
-    for (const std::string& name : braking_electrodes(given)) plain[name] = Step{.level = 0};
-  }
-  if (given.model.has_piezo()) {
-    const std::string piezo(piezo_drive);
-    const std::vector<std::string> drives = given.drive_names();
-    // A piezo that nothing else helps has to close the switch itself.
-    const bool alone = std::none_of(drives.begin(), drives.end(), [&](const std::string& drive) {
-      const auto& waveforms = plain.contains(drive) ? plain : given.drives.waveforms;
-      const auto found = waveforms.find(drive);
-      return drive != piezo && found != waveforms.end() && !signal(found->second).is_zero();
-    });
-    plain[piezo] = alone ? step_of(piezo) : Step{.level = 0};
-  }
-  Prepared baseline_scene = read_back(with_waveforms(given, plain), "baseline.toml", given);
+  Prepared baseline_scene = read_back(with_waveforms(given, plain_step(given, options.actuator)), "baseline.toml", given);
   OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true, before)};
   before.throw_if_stopped();
 

@@ -249,26 +249,26 @@ void put_waveforms(SceneFile& file, Dice& dice) {
   file.erase("driver");
   const Scene scene = read_scene(file);
   const Switch model(scene.device);
-  const double period = 2 * pi / device.angular_frequencies()[0];
+  const double period = 2 * pi / model.angular_frequencies()[0];
   double volts = 0;  // that the electrodes before pull in at
-  for (std::size_t k = 0; k < device.drives(); ++k) {
-    const DriveKind kind = device.drive_kind(k);
+  for (std::size_t k = 0; k < model.drives(); ++k) {
+    const DriveKind kind = model.drive_kind(k);
     if (kind == DriveKind::piezo) {
       const double per_volt =
-          (device.contact_shape().cwiseProduct(device.piezo_shape()).cwiseQuotient(device.angular_frequencies().cwiseAbs2()))
+          (model.contact_shape().cwiseProduct(model.piezo_shape()).cwiseQuotient(model.angular_frequencies().cwiseAbs2()))
               .sum();
       const double bends = dice.log_between(0.01, 0.3) * (dice.chance(0.5) ? -1 : 1) * scene.device.gap.contact;
       file.set_waveform(std::string(piezo_drive), waveform(dice, bends / per_volt, period));
     } else if (kind == DriveKind::dispersion) {
       if (volts > 0) continue;
-      const StaticPullIn found = static_pull_in(device, k);
+      const StaticPullIn found = static_pull_in(model, k);
       require(found.status == Status::done, "no pull-in");
       const double more = (1 + found.voltage) * dice.log_between(0.8, 2) - 1;  // than the force itself
       file.set_waveform(std::string(dispersion_drive), more > 0 ? waveform(dice, more, period) : Step{.level = more});
     } else {
       const bool closes = pulls_in(scene.device, k);
       if (closes) {
-        const StaticPullIn found = static_pull_in(device, k);
+        const StaticPullIn found = static_pull_in(model, k);
         require(found.status == Status::done, "no pull-in");
         volts = found.voltage;
       }

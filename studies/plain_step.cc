@@ -1,0 +1,42 @@
+#include "studies/plain_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace softland {
+namespace {
+
+Step step_of(const Prepared& given, const std::string& drive) {
+  const auto found = given.drives.waveforms.find(drive);
+  const double hold = found == given.drives.waveforms.end() ? 0.0 : signal(found->second).hold_level();
+  const auto limits = given.drives.limits.find(drive);
+  const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
+  return {.level = hold, .rise_time = std::abs(hold) / slew};
+}
+
+}  // namespace
+
+std::map<std::string, Waveform> plain_step(const Prepared& given, Actuator actuator) {
+  std::map<std::string, Waveform> plain;
+  if (actuator != Actuator::pzt) {
+    const std::string electrode = searched_electrode(given.scene.device);
+    plain[electrode] = step_of(given, electrode);
+    for (const std::string& name : braking_electrodes(given)) plain[name] = Step{.level = 0};
+  }
+  if (given.model.has_piezo()) {
+    const std::string piezo(piezo_drive);
+    const std::vector<std::string> drives = given.drive_names();
+    // A piezo that nothing else helps has to close the switch itself.
+    const bool alone = std::none_of(drives.begin(), drives.end(), [&](const std::string& drive) {
+      const auto& waveforms = plain.contains(drive) ? plain : given.drives.waveforms;
+      const auto found = waveforms.find(drive);
+      return drive != piezo && found != waveforms.end() && !signal(found->second).is_zero();
+    });
+    plain[piezo] = alone ? step_of(given, piezo) : Step{.level = 0};
+  }
+  return plain;
+}
+
+}  // namespace softland

@@ -1,0 +1,86 @@
+// How drives do on devices as they come from manufacturing: statistics of every figure of merit over one ensemble, the same
+// devices for every drive.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "objectives/figures.h"
+#include "sampling/interval.h"
+#include "studies/ensemble.h"
+
+namespace softland {
+
+/// A figure that is given as a distribution. Larger is worse, and a device that does not close has the worst of all, +infinity.
+struct EnsembleFigure {
+  std::string_view key;  ///< in JSON and as a column; ends with the unit
+  std::string_view name;
+  std::string_view symbol;
+  std::string_view unit;
+  double (*value)(const DeviceOutcome&);
+};
+[[nodiscard]] const std::vector<EnsembleFigure>& ensemble_figures();
+
+/// The probabilities of the quantiles that are given.
+inline constexpr std::array robustness_quantiles{0.05, 0.5, 0.95, 0.99};
+
+struct EstimatedQuantile {
+  double value = Metrics::unset;
+  Interval interval = {};  ///< 95 %, from order statistics; a side is infinite where there are too few devices
+};
+
+struct FigureStatistics {
+  double mean = Metrics::unset, standard_deviation = Metrics::unset, skewness = Metrics::unset;  ///< of the devices that have it
+  std::size_t devices = 0;                                                                       ///< that have it
+  std::array<EstimatedQuantile, robustness_quantiles.size()> quantiles = {};                     ///< of all devices
+};
+
+/// A share of all devices.
+struct Yield {
+  std::size_t devices = 0;
+  double value = Metrics::unset;
+  Interval interval = {};  ///< 95 %, Wilson
+};
+
+struct DriveRobustness {
+  std::string name;
+  std::map<std::string, Waveform> waveforms;  ///< in volts
+  std::vector<DeviceOutcome> outcomes;        ///< by device
+  std::vector<FigureStatistics> figures;      ///< as ensemble_figures()
+  Yield closing;                              ///< the contact is reached, and the run could be followed
+  Yield bounce_free;                          ///< and it settles without a significant rebound
+  std::vector<std::size_t> worst;             ///< devices, the highest rebound first; failures before all
+};
+
+struct RobustnessOptions {
+  std::uint64_t samples = 2000;
+  std::uint64_t seed = 1;
+  PointSet points = PointSet::sobol;
+  int jobs = 1;  ///< threads; does not change the result
+};
+
+struct Robustness {
+  std::vector<DriveRobustness> drives;  ///< the plain step first
+  std::size_t devices = 0;              ///< fewer than asked for where it was interrupted
+  bool interrupted = false;
+  double duration = 0;   ///< window [s]
+  double tolerance = 0;  ///< of the integrator
+};
+
+/// A drive to be judged.
+struct NamedDrive {
+  std::string name;
+  std::map<std::string, Waveform> waveforms;  ///< in volts
+};
+
+/// The drives on the devices of the spread of `nominal`, and the plain step to the same hold levels before them. Throws
+/// InvalidInput for a scene without [spread] or without contact, and a drive that the scene does not have or beyond its limits.
+[[nodiscard]] Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& drives,
+                                    const RobustnessOptions& options, const Watch& watch = {});
+
+}  // namespace softland
