@@ -36,7 +36,7 @@ std::string optimizer_help() {
   return text;
 }
 
-const std::vector<std::string> coming{"explore", "robustness"};
+const std::vector<std::string> coming{"explore"};
 
 int run(int argc, char** argv) {
   Common common{.command = command_line(argc, argv), .stop = &stop_requested()};
@@ -53,7 +53,7 @@ int run(int argc, char** argv) {
     if (!words.empty() && words.front() == verb) throw InvalidInput("the verb '" + verb + "' is not available yet");
   }
   for (const std::string& word : words) {
-    for (const char* option : {"--robust", "--samples", "--resume", "--shard"}) {
+    for (const char* option : {"--robust", "--resume", "--shard"}) {
       if (word == option || word.starts_with(std::string(option) + "="))
         throw InvalidInput("the option " + std::string(option) + " is not available yet");
     }
@@ -168,6 +168,26 @@ int run(int argc, char** argv) {
       "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
       "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3");
 
+  RobustnessRequest robust;
+  CLI::App* robustness = add_verb("robustness", "how drives do on devices that differ as [spread] says");
+  positional(robustness, "SCENE", common.scene, "scene file with [spread], folder that --out named, or result.json")->required();
+  robustness->add_option("RESULT", robust.results, "more of them, whose drives are judged on the devices of the first")
+      ->type_name("");
+  robustness->add_option("--set", common.set, "change one key of the first: --set spread.gaps.cov=\"1 %\"; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  robustness->add_flag("--quiet", common.quiet, "no progress and no notes on standard error");
+  with_json(robustness);
+  optional(robustness, "--samples", robust.samples, "N", "devices (default: 2000)");
+  option(robustness, "--points", robust.points, "NAME", "how they are chosen: sobol (default), latin_hypercube or monte_carlo");
+  optional(robustness, "--seed", robust.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
+  optional(robustness, "--jobs", robust.jobs, "N", "threads (default: one per core); the result does not depend on them");
+  option(robustness, "--out", common.out, "FOLDER", "folder for result.json, devices.csv and the worst devices as scenes");
+  robustness->footer(
+      "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one.\n"
+      "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"
+      "  softland robustness scenes/mem-gold.toml softland-out --out robust");
+
   CLI::App* fresh = add_verb("new", "print a commented scene to start from");
   positional(fresh, "KIND", kind,
              "cantilever (default), cantilever-pzt, clamped-clamped, plate, two-electrodes, nem-cantilever or nem-casimir");
@@ -202,8 +222,8 @@ int run(int argc, char** argv) {
     const auto chosen = app.get_subcommands();
     if (chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
       throw InvalidInput(
-          "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, new, export or report (see softland "
-          "--help)");
+          "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, robustness, new, export or report "
+          "(see softland --help)");
     }
     throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
                        "--help)");
@@ -211,6 +231,7 @@ int run(int argc, char** argv) {
 
   try {
     if (*simulate) return simulate_verb(common, certified, request.jobs);
+    if (*robustness) return robustness_verb(common, robust);
     if (*pull_in) return pull_in_verb(common);
     if (*modes) return modes_verb(common);
     if (*check) return check_verb(common);

@@ -29,6 +29,7 @@
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
 #include "reports/result_reader.h"
+#include "reports/robustness_report.h"
 #include "reports/text.h"
 #include "studies/certify.h"
 #include "studies/choices.h"
@@ -467,6 +468,48 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   print_result(c, found, left_in(place, left));
   if (interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
+}
+
+int robustness_verb(const Common& c, const RobustnessRequest& request) {
+  RobustnessOptions options{.jobs = job_count(request.jobs)};
+  if (request.samples) options.samples = whole_number<std::uint64_t>("--samples", *request.samples, 1);
+  if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
+  const auto* points = find_named(point_sets, request.points);
+  require(points != nullptr,
+          [&] { return fmt::format("--points {}: must be one of {}", request.points, fmt::join(names_of(point_sets), ", ")); });
+  options.points = points->value;
+  require(options.samples <= SamplePoints::largest_size,
+          [&] { return fmt::format("--samples {}: must be at most {}", options.samples, SamplePoints::largest_size); });
+
+  SceneFile file = scene_of_result(c.scene);
+  for (const std::string& assignment : c.set) file.set(assignment);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared nominal = prepare_and_choose(file, true, work->watch());
+  std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms}};
+  for (const std::string& result : request.results)
+    drives.push_back({.name = result, .waveforms = prepare(scene_of_result(result), false, work->watch()).drives.waveforms});
+  std::vector<std::string> files{"result.json", "devices.csv"};
+  constexpr std::size_t most_worst = 3;
+  for (std::size_t i = 1; i <= most_worst; ++i) files.push_back(fmt::format("worst-{}.toml", i));
+  std::optional<ResultFolder> folder = claim_places(c, files);
+
+  const Robustness found = robustness(nominal, drives, options, work->watch());
+  const json j = robustness_json(nominal, found, options, {.command = c.command});
+  std::string text = robustness_text(nominal, found, options);
+  work.reset();
+  if (folder) {
+    folder->write("result.json", json_text(j, 2));
+    folder->write("devices.csv", robustness_csv(nominal, found, options));
+    const DriveRobustness& last = found.drives.back();
+    for (std::size_t i = 0; i < most_worst && i < last.worst.size(); ++i)
+      folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());
+    text +=
+        left_in(folder->destination(found.interrupted),
+                {"result.json", "devices.csv", "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
+    folder->publish(found.interrupted);
+  }
+  print_json_or(c, j, text);
+  return found.interrupted ? exit_interrupted : exit_done;
 }
 
 int new_verb(const std::string& kind) {

@@ -30,6 +30,14 @@ struct OptimizeRequest {
   std::optional<std::string> jobs;    ///< default: one per core
 };
 
+struct RobustnessRequest {
+  std::vector<std::string> results;  ///< whose drives are judged as well
+  std::string points = "sobol";
+  std::optional<std::string> samples;  ///< default: 2000
+  std::optional<std::string> seed;     ///< default: 1
+  std::optional<std::string> jobs;     ///< default: one per core
+};
+
 /// `jobs`: threads of a certified run; default: one per core.
 int simulate_verb(const Common& common, bool certified, const std::optional<std::string>& jobs);
 int pull_in_verb(const Common& common);
@@ -38,6 +46,7 @@ int check_verb(const Common& common);
 int effects_verb(const Common& common);
 int accuracy_verb(const Common& common);
 int optimize_verb(const Common& given, const OptimizeRequest& request);
+int robustness_verb(const Common& common, const RobustnessRequest& request);
 int new_verb(const std::string& kind);
 int export_verb(const Common& common, const std::string& result, const std::string& format);
 int report_verb(const Common& given, const std::string& result);

@@ -11,24 +11,19 @@
 #include "reports/findings.h"
 
 namespace softland {
-namespace {
 
-// Columns on a terminal: UTF-8 continuation bytes take no room.
-std::size_t columns_of(std::string_view text) {
+std::size_t internal::columns_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-std::string padded(const std::string& text, std::size_t columns) {
-  return text + std::string(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ');
+std::string internal::left_aligned(const std::string& text, std::size_t columns) {
+  return text + std::string(columns - std::min(columns, columns_of(text)), ' ');
 }
 
-std::string right_aligned(const std::string& text) {
-  constexpr std::size_t columns = 16;
-  return std::string(columns > columns_of(text) ? columns - columns_of(text) : 0, ' ') + text;
+std::string internal::right_aligned(const std::string& text, std::size_t columns) {
+  return std::string(columns - std::min(columns, columns_of(text)), ' ') + text;
 }
-
-}  // namespace
 
 std::string wrapped(std::string_view paragraph, std::size_t columns) {
   const std::string clean = printable_line(paragraph);
@@ -39,12 +34,12 @@ std::string wrapped(std::string_view paragraph, std::size_t columns) {
     const std::string_view word = text.substr(0, text.find(' '));
     text.remove_prefix(std::min(text.size(), word.size() + 1));
     if (used > 0) {
-      const bool fits = used + 1 + columns_of(word) <= columns;
+      const bool fits = used + 1 + internal::columns_of(word) <= columns;
       out += fits ? ' ' : '\n';
       used = fits ? used + 1 : 0;
     }
     out += word;
-    used += columns_of(word);
+    used += internal::columns_of(word);
   }
   return out;
 }
@@ -52,22 +47,23 @@ std::string wrapped(std::string_view paragraph, std::size_t columns) {
 std::string text_report(const Result& result) {
   std::string out = wrapped(internal::headline(result).whole()) + "\n\n";
   const ResultRun &best = result.best, &baseline = result.baseline;
+  const auto aligned = [](const std::string& value) { return internal::right_aligned(value, 16); };
   out += result.is_search ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")
                           : fmt::format("{:<36}{:>16}   {}\n", "", "value", internal::error_heading(result));
   for (const Figure& f : all_figures) {
     const double own = internal::figure_of_run(best, f.member), step = internal::figure_of_run(baseline, f.member);
     if (std::isnan(own) && std::isnan(step)) continue;  // as on the page
-    out += padded(f.label(), 36);
+    out += internal::left_aligned(f.label(), 36);
     if (result.is_search) {
       const internal::Change change = internal::figure_change(baseline, best, f);
-      out += right_aligned(internal::figure_text(f, step, baseline.errors[f], own)) +
-             right_aligned(internal::figure_text(f, own, best.errors[f], step)) + "   " + change.words;
+      out += aligned(internal::figure_text(f, step, baseline.errors[f], own)) +
+             aligned(internal::figure_text(f, own, best.errors[f], step)) + "   " + change.words;
     } else {
       const std::string cloud = internal::cloud_text(result, f);
       const std::string shown = !cloud.empty()                  ? cloud
                                 : std::isfinite(best.errors[f]) ? internal::error_text(f, own, best.errors[f])
                                                                 : std::string();
-      out += right_aligned(internal::figure_text(f, own, best.errors[f], Metrics::unset)) + "   " + shown;
+      out += aligned(internal::figure_text(f, own, best.errors[f], Metrics::unset)) + "   " + shown;
     }
     while (!out.empty() && out.back() == ' ') out.pop_back();
     out += "\n";

@@ -63,7 +63,7 @@ double in_stratum(std::uint64_t bits, std::uint64_t stratum, std::uint64_t size)
 
 }  // namespace
 
-Points::Points(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size)
+SamplePoints::SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size)
     : kind_(kind), size_(size) {
   require_of("dimensions", 1 <= dimensions && dimensions <= most_dimensions,
              "dimensions = " + std::to_string(dimensions) + " must be between 1 and " + std::to_string(most_dimensions));
@@ -74,7 +74,7 @@ Points::Points(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream
   if (kind == PointSet::sobol) directions_ = direction_numbers(dimensions);
 }
 
-void Points::point(std::uint64_t k, std::span<double> u) const {
+void SamplePoints::point(std::uint64_t k, std::span<double> u) const {
   require(k < size_, "there is no point of that number");
   require(u.size() == dimensions(), "a point has another number of coordinates");
   switch (kind_) {

@@ -43,13 +43,13 @@ inline constexpr std::array point_sets{
 };
 static_assert(is_complete<point_sets>());
 
-class Points {
+class SamplePoints {
  public:
   static constexpr std::uint64_t largest_size = std::uint64_t{1} << 31;
   static constexpr std::size_t most_dimensions = 3667;  ///< for which Boost.Random has direction numbers
 
   /// Throws InvalidParameter, `dimensions` or `size`, unless 1 <= dimensions <= most_dimensions and 1 <= size <= largest_size.
-  Points(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size);
+  SamplePoints(PointSet kind, std::size_t dimensions, std::uint64_t seed, Stream stream, std::uint64_t size);
 
   [[nodiscard]] PointSet kind() const { return kind_; }
   [[nodiscard]] std::size_t dimensions() const { return keys_.size(); }

@@ -111,7 +111,7 @@ Pursuit pursue(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, Eigen::
 // Which tenth a figure belongs to, at random: neighbours in a set of points may have something in common.
 std::vector<std::size_t> folds_of(std::size_t figures) {
   constexpr std::size_t most_folds = 10;
-  const Points order(PointSet::latin_hypercube, 1, 0, Stream::folds, figures);
+  const SamplePoints order(PointSet::latin_hypercube, 1, 0, Stream::folds, figures);
   const std::size_t folds = std::min(most_folds, figures);
   std::vector<std::size_t> fold(figures);
   for (std::size_t j = 0; j < figures; ++j) {

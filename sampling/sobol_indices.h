@@ -36,7 +36,7 @@ namespace softland {
 /// fewer rows are the first of more.
 class SobolDesign {
  public:
-  /// From points of 2 d dimensions, stream `indices`. Throws what Points throws.
+  /// From points of 2 d dimensions, stream `indices`. Throws what SamplePoints throws.
   SobolDesign(PointSet kind, std::size_t dimensions, std::uint64_t seed, std::uint64_t rows);
 
   [[nodiscard]] std::size_t dimensions() const { return points_.dimensions() / 2; }
@@ -47,7 +47,7 @@ class SobolDesign {
   void point(std::uint64_t m, std::span<double> u) const;
 
  private:
-  Points points_;
+  SamplePoints points_;
 };
 
 struct SobolIndex {

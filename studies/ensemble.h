@@ -25,7 +25,7 @@ struct SampledDevice {
 class Ensemble {
  public:
   /// Devices 0 to size - 1 of this scene, which keep the volts that its waveforms have on the nominal device. Keeps a reference
-  /// to `nominal`. Throws InvalidInput where the scene has no [spread], and what Points throws.
+  /// to `nominal`. Throws InvalidInput where the scene has no [spread], and what SamplePoints throws.
   Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t seed = 1, PointSet points = PointSet::sobol);
 
   [[nodiscard]] const Prepared& nominal() const { return *nominal_; }
@@ -39,7 +39,7 @@ class Ensemble {
 
  private:
   const Prepared* nominal_;
-  Points points_;
+  SamplePoints points_;
   SceneFile resolved_;       // of the nominal device
   bool reads_anew_ = false;  // a key varies that sets no member by itself
 };

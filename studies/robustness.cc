@@ -101,7 +101,7 @@ const std::vector<EnsembleFigure>& ensemble_figures() {
       figure<&Metrics::major_bounce_height>(),
       figure<&Metrics::impact_velocity>(),
       {.key = "largest_impact_velocity_m_s",
-       .name = "Impact velocity, largest of all touches",
+       .name = "Largest impact speed",
        .symbol = "v_max",
        .unit = "m/s",
        .value = [](const DeviceOutcome& o) { return or_worst(o, o.largest_impact_velocity); }},
@@ -119,10 +119,20 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   NamedDrive plain{.name = "plain step",
                    .waveforms = plain_step(nominal, nominal.scene.device.electrodes.empty() ? Actuator::pzt : Actuator::both)};
   plain.waveforms.insert(nominal.drives.waveforms.begin(), nominal.drives.waveforms.end());  // of the drives that do not step
-  std::vector<NamedDrive> all{std::move(plain)};
-  all.insert(all.end(), drives.begin(), drives.end());
+  std::vector<NamedDrive> all;
   std::vector<std::vector<Signal>> signals;
-  for (const NamedDrive& drive : all) signals.push_back(signals_of(nominal, drive));
+  const auto add = [&](const NamedDrive& drive) {
+    std::vector<Signal> own = signals_of(nominal, drive);
+    const auto same = [&](const std::vector<Signal>& other) {
+      return std::equal(own.begin(), own.end(), other.begin(),
+                        [](const Signal& a, const Signal& b) { return a.pieces() == b.pieces(); });
+    };
+    if (std::any_of(signals.begin(), signals.end(), same)) return;  // the scene's own drive may be the plain step
+    all.push_back(drive);
+    signals.push_back(std::move(own));
+  };
+  add(plain);
+  for (const NamedDrive& drive : drives) add(drive);
 
   result.devices = options.samples;
   for (std::size_t i = 0; i < all.size() && !watch.stopped(); ++i) {
@@ -143,6 +153,14 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
     summarise(drive);
   }
   return result;
+}
+
+SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
+                          const RobustnessOptions& options) {
+  const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
+  SceneFile file = ensemble.scene(ensemble.values(device));
+  for (const auto& [name, waveform] : drive.waveforms) file.set_waveform(name, waveform);
+  return file;
 }
 
 }  // namespace softland

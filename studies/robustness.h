@@ -83,4 +83,8 @@ struct NamedDrive {
 [[nodiscard]] Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& drives,
                                     const RobustnessOptions& options, const Watch& watch = {});
 
+/// The scene of a device of that ensemble under one of its drives: what `simulate` runs to the same closing.
+[[nodiscard]] SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
+                                        const RobustnessOptions& options);
+
 }  // namespace softland

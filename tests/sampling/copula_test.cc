@@ -23,7 +23,7 @@ Eigen::Matrix3d of_three(double r12, double r13, double r23) {
 }
 
 std::vector<std::vector<double>> correlated_columns(const GaussianCopula& copula, std::uint64_t count) {
-  const Points points(PointSet::monte_carlo, copula.dimensions(), 3, Stream::spread, count);
+  const SamplePoints points(PointSet::monte_carlo, copula.dimensions(), 3, Stream::spread, count);
   std::vector<std::vector<double>> columns(copula.dimensions());
   std::vector<double> u(copula.dimensions());
   for (std::uint64_t k = 0; k < count; ++k) {

@@ -15,13 +15,13 @@ namespace {
 
 using Point = std::vector<double>;
 
-Point point_of(const Points& points, std::uint64_t k) {
+Point point_of(const SamplePoints& points, std::uint64_t k) {
   Point u(points.dimensions());
   points.point(k, u);
   return u;
 }
 
-std::vector<Point> all_of(const Points& points) {
+std::vector<Point> all_of(const SamplePoints& points) {
   std::vector<Point> all;
   for (std::uint64_t k = 0; k < points.size(); ++k) all.push_back(point_of(points, k));
   return all;
@@ -35,7 +35,7 @@ TEST(SobolPoints, AreANetInTheFirstTwoDimensions) {
   constexpr std::size_t m = 8, count = 1u << m;
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     for (const std::uint64_t first : {std::uint64_t{0}, std::uint64_t{5 * count}}) {
-      const Points points(PointSet::sobol, 2, seed, Stream::spread, first + count);
+      const SamplePoints points(PointSet::sobol, 2, seed, Stream::spread, first + count);
       for (std::size_t split = 0; split <= m; ++split) {
         const std::size_t columns = std::size_t{1} << split, rows = count / columns;
         std::vector<int> held(count, 0);
@@ -52,7 +52,7 @@ TEST(SobolPoints, AreANetInTheFirstTwoDimensions) {
 
 TEST(SobolPoints, HaveOnePerIntervalInEachOfAHundredDimensions) {
   constexpr std::size_t count = 256;
-  const auto points = all_of(Points(PointSet::sobol, 100, 4, Stream::spread, count));
+  const auto points = all_of(SamplePoints(PointSet::sobol, 100, 4, Stream::spread, count));
   for (std::size_t i = 0; i < 100; ++i) {
     std::set<std::size_t> cells;
     for (const Point& u : points) cells.insert(cell(u[i], count));
@@ -63,7 +63,7 @@ TEST(SobolPoints, HaveOnePerIntervalInEachOfAHundredDimensions) {
 // Nested scrambling keeps how many leading bits two points have in common: with those of Boost, which are not scrambled.
 TEST(SobolPoints, AreAScrambledSequenceOfJoeAndKuo) {
   constexpr std::size_t dimensions = 40, count = 200;
-  const Points points(PointSet::sobol, dimensions, 9, Stream::spread, count);
+  const SamplePoints points(PointSet::sobol, dimensions, 9, Stream::spread, count);
   boost::random::sobol sequence(dimensions);
   std::vector<std::vector<std::uint64_t>> plain(count, std::vector<std::uint64_t>(dimensions, 0));  // Boost leaves out the first
   for (std::uint64_t k = 0; k + 1 < count; ++k) {
@@ -95,7 +95,7 @@ double error_of_mean(PointSet kind, std::uint64_t size) {
   double squares = 0;
   for (int seed = 0; seed < seeds; ++seed) {
     double sum = 0;
-    for (const Point& u : all_of(Points(kind, 4, static_cast<std::uint64_t>(seed), Stream::spread, size))) sum += smooth(u);
+    for (const Point& u : all_of(SamplePoints(kind, 4, static_cast<std::uint64_t>(seed), Stream::spread, size))) sum += smooth(u);
     squares += std::pow(sum / static_cast<double>(size) - 1, 2);
   }
   return std::sqrt(squares / seeds);
@@ -122,7 +122,7 @@ TEST(LatinHypercube, LeavesTheErrorOfTheInteractions) {
 
 TEST(LatinHypercube, HasOnePointInEachStratumOfEachDimension) {
   for (const std::uint64_t size : {1u, 2u, 3u, 5u, 16u, 17u, 100u, 1023u, 1025u}) {
-    const auto points = all_of(Points(PointSet::latin_hypercube, 7, 5, Stream::spread, size));
+    const auto points = all_of(SamplePoints(PointSet::latin_hypercube, 7, 5, Stream::spread, size));
     for (std::size_t i = 0; i < 7; ++i) {
       std::set<std::size_t> strata;
       for (const Point& u : points) strata.insert(cell(u[i], size));
@@ -138,7 +138,8 @@ TEST(LatinHypercube, PermutesTheStrataAtRandom) {
   std::map<std::vector<std::size_t>, int> counts;
   for (int seed = 0; seed < seeds; ++seed) {
     std::vector<std::size_t> order;
-    for (const Point& u : all_of(Points(PointSet::latin_hypercube, 1, static_cast<std::uint64_t>(seed), Stream::spread, 4))) {
+    for (const Point& u :
+         all_of(SamplePoints(PointSet::latin_hypercube, 1, static_cast<std::uint64_t>(seed), Stream::spread, 4))) {
       order.push_back(cell(u[0], 4));
     }
     ++counts[order];
@@ -151,7 +152,7 @@ TEST(LatinHypercube, PermutesTheStrataAtRandom) {
 
 TEST(LatinHypercube, HasStrataThatAreUncorrelatedBetweenDimensionsAndInOrder) {
   constexpr std::size_t size = 10'000;
-  const auto points = all_of(Points(PointSet::latin_hypercube, 3, 8, Stream::spread, size));
+  const auto points = all_of(SamplePoints(PointSet::latin_hypercube, 3, 8, Stream::spread, size));
   const auto correlation = [&](auto first, auto second) {
     double sum = 0;
     for (std::size_t k = 0; k < size; ++k) sum += (first(k) - 0.5) * (second(k) - 0.5) * 12 / size;
@@ -178,23 +179,24 @@ TEST_P(EveryPointSet, GivesThePointsItAlwaysGave) {
       {PointSet::latin_hypercube, {0x1.afda64a650434p-1, 0x1.df7062bf6cc46p-3, 0x1.c9322632e8fb9p-1}},
       {PointSet::monte_carlo, {0x1.2837d414a9823p-1, 0x1.61daabd2ac8c8p-4, 0x1.1951b502608cap-2}},
   };
-  EXPECT_EQ(point_of(Points(GetParam(), 3, 20240101, Stream::spread, 1000), 777), kept.at(GetParam()));
+  EXPECT_EQ(point_of(SamplePoints(GetParam(), 3, 20240101, Stream::spread, 1000), 777), kept.at(GetParam()));
 }
 
 TEST_P(EveryPointSet, GivesAPointWhateverWasAskedBefore) {
-  const Points points(GetParam(), 5, 6, Stream::spread, 100), others(GetParam(), 5, 6, Stream::spread, 100);
+  const SamplePoints points(GetParam(), 5, 6, Stream::spread, 100), others(GetParam(), 5, 6, Stream::spread, 100);
   const auto all = all_of(points);
   for (std::uint64_t k = 100; k-- > 0;) EXPECT_EQ(point_of(others, k), all[k]);
 }
 
 TEST_P(EveryPointSet, HasTheSamePointsInALargerSet) {
   if (GetParam() == PointSet::latin_hypercube) return;  // whose strata are those of its size
-  const Points small(GetParam(), 5, 6, Stream::spread, 100), large(GetParam(), 5, 6, Stream::spread, Points::largest_size);
+  const SamplePoints small(GetParam(), 5, 6, Stream::spread, 100),
+      large(GetParam(), 5, 6, Stream::spread, SamplePoints::largest_size);
   for (std::uint64_t k = 0; k < 100; ++k) EXPECT_EQ(point_of(small, k), point_of(large, k));
 }
 
 TEST_P(EveryPointSet, HasTheSameCoordinatesInFewerDimensions) {
-  const Points few(GetParam(), 2, 6, Stream::spread, 100), many(GetParam(), 5, 6, Stream::spread, 100);
+  const SamplePoints few(GetParam(), 2, 6, Stream::spread, 100), many(GetParam(), 5, 6, Stream::spread, 100);
   for (std::uint64_t k = 0; k < 100; ++k) {
     Point u = point_of(many, k);
     u.resize(2);
@@ -203,9 +205,9 @@ TEST_P(EveryPointSet, HasTheSameCoordinatesInFewerDimensions) {
 }
 
 TEST_P(EveryPointSet, DependsOnSeedAndStream) {
-  const auto points = all_of(Points(GetParam(), 3, 6, Stream::spread, 64));
-  for (const auto& others :
-       {all_of(Points(GetParam(), 3, 7, Stream::spread, 64)), all_of(Points(GetParam(), 3, 6, Stream::indices, 64))}) {
+  const auto points = all_of(SamplePoints(GetParam(), 3, 6, Stream::spread, 64));
+  for (const auto& others : {all_of(SamplePoints(GetParam(), 3, 7, Stream::spread, 64)),
+                             all_of(SamplePoints(GetParam(), 3, 6, Stream::indices, 64))}) {
     for (std::size_t k = 0; k < points.size(); ++k) EXPECT_NE(points[k], others[k]);
   }
 }
@@ -215,7 +217,7 @@ TEST_P(EveryPointSet, HasUniformCoordinatesOverTheSeeds) {
   std::array<int, 8> counts{};
   for (int seed = 0; seed < seeds; ++seed) {
     // The last dimension of a point that is not the first.
-    ++counts[cell(point_of(Points(GetParam(), 3, static_cast<std::uint64_t>(seed), Stream::spread, 10), 7)[2], 8)];
+    ++counts[cell(point_of(SamplePoints(GetParam(), 3, static_cast<std::uint64_t>(seed), Stream::spread, 10), 7)[2], 8)];
   }
   double chi_squared = 0;
   for (const int count : counts) chi_squared += std::pow(count - seeds / 8.0, 2) / (seeds / 8.0);
@@ -223,20 +225,20 @@ TEST_P(EveryPointSet, HasUniformCoordinatesOverTheSeeds) {
 }
 
 TEST_P(EveryPointSet, StaysInsideTheCubeUpToItsLastPoint) {
-  const Points points(GetParam(), 3, 6, Stream::spread, Points::largest_size);
-  for (std::uint64_t k = Points::largest_size - 10'000; k < Points::largest_size; ++k) {
+  const SamplePoints points(GetParam(), 3, 6, Stream::spread, SamplePoints::largest_size);
+  for (std::uint64_t k = SamplePoints::largest_size - 10'000; k < SamplePoints::largest_size; ++k) {
     for (const double x : point_of(points, k)) ASSERT_TRUE(x > 0 && x < 1) << k;
   }
 }
 
 TEST_P(EveryPointSet, RefusesWhatItHasNot) {
-  test::expect_parameter_refused([] { Points(GetParam(), 0, 1, Stream::spread, 10); }, "dimensions",
+  test::expect_parameter_refused([] { SamplePoints(GetParam(), 0, 1, Stream::spread, 10); }, "dimensions",
                                  {"= 0", "between 1 and 3667"});
-  test::expect_parameter_refused([] { Points(GetParam(), 3668, 1, Stream::spread, 10); }, "dimensions", {"= 3668"});
-  test::expect_parameter_refused([] { Points(GetParam(), 2, 1, Stream::spread, 0); }, "size", {"= 0"});
-  test::expect_parameter_refused([] { Points(GetParam(), 2, 1, Stream::spread, Points::largest_size + 1); }, "size",
+  test::expect_parameter_refused([] { SamplePoints(GetParam(), 3668, 1, Stream::spread, 10); }, "dimensions", {"= 3668"});
+  test::expect_parameter_refused([] { SamplePoints(GetParam(), 2, 1, Stream::spread, 0); }, "size", {"= 0"});
+  test::expect_parameter_refused([] { SamplePoints(GetParam(), 2, 1, Stream::spread, SamplePoints::largest_size + 1); }, "size",
                                  {"2147483648"});
-  const Points points(GetParam(), 2, 1, Stream::spread, 10);
+  const SamplePoints points(GetParam(), 2, 1, Stream::spread, 10);
   Point two(2), three(3);
   EXPECT_THROW(points.point(10, two), InvalidInput);
   EXPECT_THROW(points.point(0, three), InvalidInput);

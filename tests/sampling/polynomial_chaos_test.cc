@@ -20,7 +20,7 @@ using test::expect_parameter_refused;
 using test::Ishigami;
 
 Eigen::MatrixXd sobol_points(std::size_t dimensions, std::uint64_t count, std::uint64_t seed = 1) {
-  const Points points(PointSet::sobol, dimensions, seed, Stream::spread, count);
+  const SamplePoints points(PointSet::sobol, dimensions, seed, Stream::spread, count);
   Eigen::MatrixXd matrix(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(dimensions));
   std::vector<double> u(dimensions);
   for (std::uint64_t k = 0; k < count; ++k) {
