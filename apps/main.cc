@@ -53,7 +53,8 @@ int run(int argc, char** argv) {
     if (!words.empty() && words.front() == verb) throw InvalidInput("the verb '" + verb + "' is not available yet");
   }
   for (const std::string& word : words) {
-    for (const char* option : {"--robust", "--resume", "--shard"}) {
+    for (const std::string_view option : {"--robust", "--samples", "--resume", "--shard"}) {
+      if (option == "--samples" && words.front() == "robustness") continue;
       if (word == option || word.starts_with(std::string(option) + "="))
         throw InvalidInput("the option " + std::string(option) + " is not available yet");
     }

@@ -146,6 +146,7 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
                                {.duration = result.duration, .tolerance = result.tolerance, .jobs = options.jobs}, share)});
     result.devices = std::min(result.devices, result.drives.back().outcomes.size());
   }
+  if (result.drives.empty() || result.devices == 0) watch.throw_if_stopped();
   // All drives are judged by the same devices.
   result.interrupted = watch.stopped();
   for (DriveRobustness& drive : result.drives) {

@@ -54,14 +54,13 @@ class BadInput : public ::testing::Test {
 
 TEST_F(BadInput, Verbs) {
   const std::string missing =
-      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, new, export or report (see softland "
-      "--help)";
+      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, robustness, new, export or report "
+      "(see softland --help)";
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "there is no verb 'frobnicate' (see softland --help)"},
       {{"--frob"}, missing},
       {{"explore", "gold.toml", "--shard", "1/2"}, "the verb 'explore' is not available yet"},
-      {{"robustness", "gold.toml"}, "the verb 'robustness' is not available yet"},
   });
 }
 
@@ -98,6 +97,11 @@ TEST_F(BadInput, Options) {
       {{"optimize", "gold.toml", "--resume"}, "the option --resume is not available yet"},
       {{"optimize", "gold.toml", "--robust", "worst"}, "the option --robust is not available yet"},
       {{"optimize", "--samples=3"}, "the option --samples is not available yet"},
+      {{"robustness", "gold.toml", "--samples", "0"}, "--samples 0: must be a whole number from 1 on"},
+      {{"robustness", "gold.toml", "--samples", "3000000000"}, "--samples 3000000000: must be at most 2147483648"},
+      {{"robustness", "gold.toml", "--points", "grid"}, "--points grid: must be one of sobol, latin_hypercube, monte_carlo"},
+      {{"robustness"}, "SCENE is required (see softland robustness --help)"},
+      {{"robustness", "gold.toml", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
   });
 }
 

@@ -146,6 +146,23 @@ TEST_P(EveryVerb, Measures) {
   EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
 }
 
+TEST_P(EveryVerb, Judges) {
+  const std::string& name = scene().name;
+  const std::vector<std::string> words = scene().quickly({"robustness", name, "--quiet", "--samples", "20", "--jobs", "1"});
+  if (!scene().has("\\[contact\\]")) {
+    refused(words, "robustness needs a [contact] section");
+    return;
+  }
+  std::vector<std::string> kept = words;
+  kept.insert(kept.end(), {"--out", "out"});
+  const std::string text = done(kept).out;
+  EXPECT_NE(text.find("plain step"), std::string::npos) << text;
+  const json j = json::parse(read(here.path() / "out/result.json"), nullptr, false);
+  EXPECT_EQ(j["devices"], 20);
+  EXPECT_EQ(j["drives"][0]["worst"].size(), 10U);
+  (void)done({"simulate", "out/worst-1.toml", "--quiet"});
+}
+
 TEST_P(EveryVerb, Searches) {
   for (const char* actuator : {"electrostatic", "pzt", "both"}) {
     const std::vector<std::string> words = scene().quickly(

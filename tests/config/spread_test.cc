@@ -1,0 +1,218 @@
+// [spread]: which numbers vary, how, and what is refused.
+#include "config/spread.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "config/scene.h"
+#include "message.h"
+#include "small_scene.h"
+
+namespace softland::spread_test {
+namespace {
+
+std::string with_spread(const std::string& lines) { return std::string(small_scene) + "[spread]\n" + lines + "\n"; }
+
+DeviceSpread spread_of(const std::string& lines) { return read_scene(SceneFile::parse(with_spread(lines), "x.toml")).spread; }
+
+constexpr double rounding = 1e-12;  // relative
+
+TEST(Spread, OfOneKeyIsAFactorOfItsValue) {
+  const DeviceSpread spread = spread_of(R"("structure.thickness" = { distribution = "normal", cov = "2 %" })");
+  ASSERT_EQ(spread.variables.size(), 1U);
+  const SpreadVariable& v = spread.variables[0];
+  EXPECT_EQ(v.keys.at(0).path, "structure.thickness");
+  EXPECT_EQ(v.keys.at(0).nominal, 4e-6);
+  EXPECT_TRUE(v.is_factor);
+  EXPECT_EQ(v.distribution.mean(), 1);
+  EXPECT_NEAR(v.distribution.standard_deviation(), 0.02, rounding);
+  EXPECT_FALSE(spread.copula);
+  EXPECT_NEAR(DeviceSpread::value(v, v.keys[0], 1.1), 4.4e-6, rounding * 4e-6);
+}
+
+TEST(Spread, InTheUnitOfTheKeyIsItsValue) {
+  const DeviceSpread spread = spread_of(R"(
+"structure.thickness" = { distribution = "normal", standard_deviation = "80 nm" }
+"structure.youngs_modulus" = { distribution = "uniform", half_width = "5 GPa" }
+"gap.contact" = { distribution = "triangular", low = "1.8 um", high = "2.1 um" }
+"piezo.d31" = { distribution = "normal", standard_deviation = "9 pm/V", truncate_low = "-190 pm/V" }
+)");
+  ASSERT_EQ(spread.variables.size(), 4U);  // by name
+  const auto& [gap, d31, thickness, modulus] =
+      std::tie(spread.variables[0], spread.variables[1], spread.variables[2], spread.variables[3]);
+  for (const SpreadVariable& v : spread.variables) EXPECT_FALSE(v.is_factor) << v.name;
+  EXPECT_EQ(thickness.distribution.mean(), 4e-6);
+  EXPECT_NEAR(thickness.distribution.standard_deviation(), 80e-9, rounding * 80e-9);
+  EXPECT_NEAR(modulus.distribution.support().high, 83e9, rounding * 83e9);
+  EXPECT_NEAR(gap.distribution.mean(), (1.8e-6 + 2e-6 + 2.1e-6) / 3, 1e-9 * 2e-6);
+  EXPECT_NEAR(d31.distribution.quantile(1e-9), -190e-12, 1e-15);
+}
+
+TEST(Spread, OfSeveralKeysIsOneFactorOfAll) {
+  const DeviceSpread spread =
+      spread_of(R"(gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "lognormal", cov = "10 %" })");
+  const SpreadVariable& v = spread.variables.at(0);
+  ASSERT_EQ(v.keys.size(), 2U);
+  EXPECT_EQ(v.name, "gaps");
+  EXPECT_EQ(v.keys[0].nominal, 3.5e-6);
+  EXPECT_EQ(v.keys[1].nominal, 2e-6);
+  EXPECT_NEAR(v.distribution.standard_deviation(), 0.1, 1e-9);
+}
+
+TEST(Spread, SetsTheMembersOfADevice) {
+  Scene scene = read_scene(SceneFile::parse(with_spread(R"("electrode.main.span" = 1)").substr(0, small_scene.size()), "x.toml"));
+  const DeviceSpread spread = spread_of(R"(
+gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov = "2 %" }
+"contact.stiffness" = { distribution = "normal", cov = "2 %" }
+"gas.viscosity" = { distribution = "normal", cov = "2 %" }
+"waveform.main.level" = { distribution = "normal", cov = "2 %" }
+)");
+  for (const SpreadVariable& v : spread.variables) {
+    for (const VariedKey& key : v.keys) {
+      if (v.name == "waveform.main.level") {
+        EXPECT_FALSE(key.member) << "a waveform is read anew";
+        EXPECT_EQ(key.unit, "Vdp");
+        continue;
+      }
+      EXPECT_EQ(key.member(scene), key.nominal) << key.path;
+      key.member(scene) = 1.5 * key.nominal;
+    }
+  }
+  EXPECT_DOUBLE_EQ(scene.device.gap.electrode, 1.5 * 3.5e-6);
+  EXPECT_DOUBLE_EQ(scene.device.gap.contact, 1.5 * 2e-6);
+  EXPECT_DOUBLE_EQ(scene.device.contact->stiffness, 150);
+  EXPECT_DOUBLE_EQ(scene.device.gas->viscosity, 1.5 * 1.86e-5);
+}
+
+TEST(Spread, RefusesValuesThatTheKeyCannotHave) {
+  const DeviceSpread spread = spread_of(R"("structure.thickness" = { distribution = "normal", cov = "2 %" })");
+  EXPECT_EQ(spread.variables[0].keys[0].refusal(4e-6), "");
+  EXPECT_NE(spread.variables[0].keys[0].refusal(-1e-6), "");
+}
+
+TEST(Spread, CorrelatesWhatItIsToldTo) {
+  const DeviceSpread spread = spread_of(R"(
+"structure.thickness" = { distribution = "normal", cov = "2 %" }
+gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov = "2 %" }
+"structure.density" = { distribution = "normal", cov = "2 %" }
+correlation = [["structure.thickness", "gaps", 0.8]]
+)");
+  ASSERT_TRUE(spread.copula);
+  const auto at = [&](const std::string& name) {
+    Eigen::Index i = 0;
+    while (spread.variables[static_cast<std::size_t>(i)].name != name) ++i;
+    return i;
+  };
+  EXPECT_EQ(spread.correlation(at("gaps"), at("structure.thickness")), 0.8);
+  EXPECT_EQ(spread.correlation(at("gaps"), at("structure.density")), 0);
+  // The median of both, and one far out that draws the other along: z_2 = 0.8 z_1.
+  std::vector<double> u{0.5, 0.5, 0.5};
+  u[static_cast<std::size_t>(std::min(at("gaps"), at("structure.thickness")))] = 0.5 * std::erfc(-2 / std::sqrt(2.0));  // 2 sigma
+  spread.to_values(u);
+  EXPECT_NEAR(u[static_cast<std::size_t>(std::max(at("gaps"), at("structure.thickness")))], 1 + 0.02 * 0.8 * 2, 1e-9);
+}
+
+class SpreadFile : public testing::Test {
+ protected:
+  SpreadFile() : folder(std::filesystem::temp_directory_path() / fmt::format("softland-spread-{}", ::getpid())) {
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "wafer.csv") << "# measured\nsite, thickness_um, other\n1, 3.9, 0\n2, 4.2, 0\n3, 4.0, 0\n";
+  }
+  ~SpreadFile() override { std::filesystem::remove_all(folder); }
+  [[nodiscard]] SceneFile file(const std::string& lines) const { return SceneFile::parse(with_spread(lines), "x.toml", folder); }
+  std::filesystem::path folder;
+};
+
+TEST_F(SpreadFile, GivesTheValuesOfAColumn) {
+  const SceneFile given =
+      file(R"("structure.thickness" = { distribution = "empirical", file = "wafer.csv", column = "thickness_um", unit = "um" })");
+  const Scene scene = read_scene(given);
+  const SpreadVariable& v = scene.spread.variables.at(0);
+  EXPECT_FALSE(v.is_factor);
+  EXPECT_NEAR(v.distribution.quantile(0.5), 4e-6, rounding * 4e-6);
+  EXPECT_NEAR(v.distribution.support().high, 4.2e-6, rounding * 4e-6);
+
+  // The resolved scene needs no file.
+  const Scene again = read_scene(resolved(scene, {{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}));
+  for (const double p : {0.1, 0.3, 0.77})
+    EXPECT_DOUBLE_EQ(again.spread.variables.at(0).distribution.quantile(p), v.distribution.quantile(p)) << p;
+}
+
+TEST_F(SpreadFile, RefusesColumnsThatAreNotThere) {
+  const auto refused = [&](const std::string& entry) {
+    try {
+      static_cast<void>(read_scene(file("\"structure.thickness\" = { distribution = \"empirical\", " + entry + " }")));
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refused(R"(file = "wafer.csv", column = "width", unit = "um")").find("there are 0 columns named \"width\""),
+            std::string::npos);
+  EXPECT_NE(refused(R"(file = "wafer.csv", unit = "um")").find("missing key 'column'"), std::string::npos);
+  EXPECT_NE(refused(R"(file = "none.csv", column = "a")").find("none.csv: cannot be read"), std::string::npos);
+  EXPECT_NE(refused(R"(file = "wafer.csv", column = "thickness_um", unit = "GPa")").find("expected a length [m], got a pressure"),
+            std::string::npos);
+}
+
+TEST(Spread, IsTheSameWhenTheResolvedSceneIsReadAgain) {
+  const std::string lines = R"(
+"structure.thickness" = { distribution = "normal", cov = "2 %", truncate_low = "95 %", truncate_high = "105 %" }
+"piezo.d31" = { distribution = "empirical", values = ["-170 pm/V", "-160 pm/V", "-181 pm/V"] }
+gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "triangular", low = "97 %", high = "104 %" }
+correlation = [["structure.thickness", "gaps", 0.3], ["gaps", "piezo.d31", -0.2]]
+)";
+  const Scene scene = read_scene(SceneFile::parse(with_spread(lines), "x.toml"));
+  const Scene again = read_scene(resolved(scene, {{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}));
+  ASSERT_EQ(again.spread.variables.size(), 3U);
+  EXPECT_EQ(again.spread.correlation, scene.spread.correlation);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(again.spread.variables[i].name, scene.spread.variables[i].name);
+    for (const double p : {0.03, 0.5, 0.9})
+      EXPECT_EQ(again.spread.variables[i].distribution.quantile(p), scene.spread.variables[i].distribution.quantile(p));
+  }
+}
+
+struct Bad {
+  std::string lines, rule;
+};
+
+TEST(Spread, RefusesWhatMakesNoSense) {
+  const std::string thickness = R"("structure.thickness" = { distribution = "normal", cov = "2 %" })";
+  const std::vector<Bad> all{
+      {R"(gaps = { distribution = "normal", cov = "2 %" })", "'gaps' is not a key of this scene"},
+      {R"(gaps = { keys = [], distribution = "normal", cov = "2 %" })", "must name at least one key"},
+      {R"(gaps = { keys = ["gap.contact", "gap.contact"], distribution = "normal", cov = "2 %" })", "names a key twice"},
+      {R"(gaps = { keys = "gap.contact", distribution = "normal", cov = "2 %" })", "expected a list of texts"},
+      {R"(gaps = { keys = ["gap.contact", "gap.electrode"], distribution = "normal", standard_deviation = "2 nm" })",
+       "several keys vary by one factor: give a percentage"},
+      {thickness + "\nboth = { keys = [\"structure.thickness\", \"structure.width\"], distribution = \"normal\", cov = \"2 %\" }",
+       "structure.thickness varies by another entry already"},
+      {R"("structure.damping_ratio" = { distribution = "normal", cov = "2 %" })",
+       "is 0 in this scene, and stays 0 by any factor"},
+      {R"("structure.thickness" = { distribution = "triangular", low = "110 %", high = "120 %" })", "mode"},
+      {R"("structure.thickness" = { distribution = "normal", cov = "2 %", truncate_low = "130 %" })", "truncate_low"},
+      {R"("structure.thickness" = { distribution = "empirical", values = ["4 um"] })", "values"},
+      {R"("structure.thickness" = { distribution = "lognormal", standard_deviation = "1 GPa" })", "expected a length [m]"},
+      {thickness + "\ncorrelation = 3", "expected a list such as"},
+      {thickness + "\ncorrelation = [[\"structure.thickness\", \"gaps\"]]", "expected a list such as"},
+      {thickness + "\ncorrelation = [[\"structure.thickness\", \"gaps\", 0.3]]", "'gaps' does not vary"},
+      {thickness + "\ncorrelation = [[\"structure.thickness\", \"structure.thickness\", 0.3]]", "is correlated with itself"},
+      {thickness + "\n\"gap.contact\" = { distribution = \"normal\", cov = \"2 %\" }\ncorrelation = [[\"structure.thickness\", "
+                   "\"gap.contact\", 1.5]]",
+       "spread.correlation"},
+  };
+  for (const Bad& bad : all) {
+    const std::string told = message(with_spread(bad.lines));
+    EXPECT_NE(told.find(bad.rule), std::string::npos) << bad.lines << "\nis answered with: " << told;
+    EXPECT_EQ(told.find("x.toml:"), 0U) << told;
+  }
+}
+
+}  // namespace
+}  // namespace softland::spread_test

@@ -1,0 +1,158 @@
+// Devices of a spread, and how drives do on them.
+#include "studies/ensemble.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/closing.h"
+#include "scenes.h"
+#include "studies/robustness.h"
+
+namespace softland::ensemble_test {
+namespace {
+
+const std::vector<Signal>& nothing_of_its_own(const SampledDevice& device, const std::vector<Signal>& drives) {
+  return device.drives ? *device.drives : drives;
+}
+
+// The first touch of a device, by whatever way it was built.
+Metrics closing(const Switch& model, const std::vector<Signal>& drives) {
+  return metrics(simulate_closing(model, drives, {.duration = 60e-6, .tolerance = 1e-7}));
+}
+
+TEST(Ensemble, HasTheDevicesThatItsScenesDescribe) {
+  for (const char* spread : {"spread.\"gas.viscosity\"={distribution=\"lognormal\", cov=\"10 %\"}",
+                             "spread.\"structure.length\"={distribution=\"normal\", cov=\"1 %\"}",
+                             "spread.\"waveform.main.level\"={distribution=\"uniform\", half_width=\"1 V\"}"}) {
+    const Prepared nominal = prepare(gold_at_17_volts({spread}));
+    const Ensemble ensemble(nominal, 8, 3);
+    DeviceBuilder builder(ensemble);
+    for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
+      SCOPED_TRACE(fmt::format("{} device {}", spread, k));
+      const SampledDevice device = builder.device(k);
+      ASSERT_TRUE(device.model) << device.refusal;
+      const Prepared alone = prepare(SceneFile::parse(ensemble.scene(device.values).text(), "alone.toml"));
+      EXPECT_TRUE(alone.scene.spread.empty());
+      const Switch own(alone.scene.device, nominal.quadrature);
+      EXPECT_EQ(device.model->angular_frequencies(), own.angular_frequencies());
+      const Metrics ours = closing(*device.model, nothing_of_its_own(device, nominal.signals())),
+                    theirs = closing(own, alone.signals());
+      EXPECT_EQ(ours.initial_contact_time, theirs.initial_contact_time);
+      EXPECT_EQ(ours.impact_velocity, theirs.impact_velocity);
+      EXPECT_NE(ours.initial_contact_time, closing(nominal.model, nominal.signals()).initial_contact_time);
+    }
+  }
+}
+
+bool same(const DeviceOutcome& a, const DeviceOutcome& b) {
+  return a.metrics.initial_contact_time == b.metrics.initial_contact_time && a.metrics.bounce_count == b.metrics.bounce_count &&
+         a.metrics.major_bounce_height == b.metrics.major_bounce_height && a.failure == b.failure;
+}
+
+TEST(Ensemble, DoesNotDependOnThreadsOrderOrSize) {
+  const Prepared nominal = prepare(gold_at_17_volts());
+  const EnsembleRun run{.duration = nominal.duration};
+  const std::vector<DeviceOutcome> all = close_all(Ensemble(nominal, 600), nominal.signals(), run);
+  EnsembleRun threads = run;
+  threads.jobs = 3;
+  const std::vector<DeviceOutcome> by_threads = close_all(Ensemble(nominal, 600), nominal.signals(), threads);
+  const std::vector<DeviceOutcome> fewer = close_all(Ensemble(nominal, 70), nominal.signals(), run);
+  ASSERT_EQ(all.size(), 600U);
+  ASSERT_EQ(by_threads.size(), 600U);
+  EXPECT_TRUE(std::equal(all.begin(), all.end(), by_threads.begin(), same));
+  ASSERT_EQ(fewer.size(), 70U);
+  EXPECT_TRUE(std::equal(fewer.begin(), fewer.end(), all.begin(), same));
+  const Ensemble ensemble(nominal, 600);
+  DeviceBuilder builder(ensemble), other(ensemble);
+  for (const std::uint64_t k : {5U, 2U, 599U}) static_cast<void>(other.device(k));
+  EXPECT_EQ(builder.device(7).model->angular_frequencies(), other.device(7).model->angular_frequencies());
+  // Another seed, other devices.
+  EXPECT_NE(Ensemble(nominal, 600, 2).values(0), ensemble.values(0));
+}
+
+TEST(Ensemble, CountsImpossibleDevicesAsTheWorst) {
+  // Contact gaps of 1 um to 3 um below an electrode at 2.2 um: four in ten are none.
+  const Prepared nominal = prepare(gold_at_17_volts({"gap.electrode=2.2 um", "waveform.main.level=8 V",
+                                                     "spread.\"gap.contact\"={distribution=\"uniform\", half_width=\"1 um\"}"}));
+  const Robustness found = robustness(nominal, {}, {.samples = 200});
+  ASSERT_EQ(found.drives.size(), 1U);
+  const DriveRobustness& step = found.drives[0];
+  const auto failed =
+      std::count_if(step.outcomes.begin(), step.outcomes.end(), [](const DeviceOutcome& o) { return !o.failure.empty(); });
+  EXPECT_NEAR(static_cast<double>(failed), 80, 12);
+  EXPECT_EQ(step.closing.devices, 200U - static_cast<std::size_t>(failed));
+  const FigureStatistics& t_i = step.figures[0];
+  EXPECT_TRUE(std::isinf(t_i.quantiles[2].value)) << "the 95 % quantile is that of a device that does not close";
+  EXPECT_TRUE(std::isfinite(t_i.quantiles[1].value));
+  EXPECT_EQ(t_i.devices, step.closing.devices);
+  EXPECT_FALSE(step.outcomes[step.worst[0]].failure.empty()) << "failures are the worst";
+}
+
+TEST(Ensemble, NeedsASpread) {
+  const Prepared nominal = prepare(without(gold_at_17_volts(), "spread"));
+  EXPECT_NE(refusal([&] { static_cast<void>(Ensemble(nominal, 10)); }).find("there is no [spread]"), std::string::npos);
+}
+
+TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
+  const Prepared nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=40 us"}));
+  const Robustness found = robustness(nominal, {{.name = "slow", .waveforms = nominal.drives.waveforms}}, {.samples = 128});
+  ASSERT_EQ(found.drives.size(), 2U);
+  EXPECT_EQ(found.drives[0].name, "plain step");
+  EXPECT_EQ(found.drives[1].name, "slow");
+  EXPECT_EQ(std::get<Step>(found.drives[0].waveforms.at("main")).rise_time, 0);
+  for (const DriveRobustness& drive : found.drives) {
+    EXPECT_EQ(drive.outcomes.size(), 128U);
+    EXPECT_EQ(drive.closing.value, 1);
+    EXPECT_GT(drive.closing.interval.high, drive.closing.interval.low);
+  }
+  const std::size_t height = 3, time = 0;
+  EXPECT_EQ(ensemble_figures()[height].key, "major_bounce_height_m");
+  for (const std::size_t q : {0U, 1U, 2U}) {
+    EXPECT_GT(found.drives[1].figures[time].quantiles[q].value, found.drives[0].figures[time].quantiles[q].value);
+  }
+  // Each statistic against its definition.
+  std::vector<double> heights;
+  for (const DeviceOutcome& o : found.drives[0].outcomes) heights.push_back(o.metrics.major_bounce_height);
+  double mean = 0;
+  for (const double h : heights) mean += h / static_cast<double>(heights.size());
+  std::sort(heights.begin(), heights.end());
+  const FigureStatistics& s = found.drives[0].figures[height];
+  EXPECT_NEAR(s.mean, mean, 1e-12 * mean);
+  EXPECT_GE(s.quantiles[1].value, heights[63]);
+  EXPECT_LE(s.quantiles[1].value, heights[64]);
+  EXPECT_EQ(found.drives[0].outcomes[found.drives[0].worst[0]].metrics.major_bounce_height, heights.back());
+  // A drive that is the plain step is not judged twice.
+  const Prepared step = prepare(gold_at_17_volts());
+  EXPECT_EQ(robustness(step, {{.name = "step", .waveforms = step.drives.waveforms}}, {.samples = 2}).drives.size(), 1U);
+}
+
+TEST(Robustness, GivesTheSceneOfEveryDevice) {
+  const Prepared nominal = prepare(gold_at_17_volts());
+  const RobustnessOptions options{.samples = 16};
+  const Robustness found = robustness(nominal, {}, options);
+  for (const std::size_t k : {found.drives[0].worst[0], std::size_t{3}}) {
+    const Prepared alone = prepare(SceneFile::parse(scene_of_device(nominal, found.drives[0], k, options).text(), "worst.toml"));
+    const Metrics own =
+        metrics(simulate_closing(alone.model, alone.signals(), {.duration = found.duration, .tolerance = found.tolerance}),
+                alone.scene.metrics);
+    EXPECT_EQ(own.initial_contact_time, found.drives[0].outcomes[k].metrics.initial_contact_time);
+    EXPECT_EQ(own.major_bounce_height, found.drives[0].outcomes[k].metrics.major_bounce_height);
+  }
+}
+
+TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
+  const Prepared nominal = prepare(gold_at_17_volts());
+  const auto refused = [&](const std::string& drive, const Waveform& waveform) {
+    return refusal([&] {
+      static_cast<void>(robustness(nominal, {{.name = "x.toml", .waveforms = {{drive, waveform}}}}, {.samples = 1}));
+    });
+  };
+  EXPECT_EQ(refused("piezo", Step{.level = 1}), "x.toml: drives 'piezo', which the first scene does not have");
+  EXPECT_EQ(refused("main", Step{.level = 26}).find("x.toml: drive 'main': "), 0U);
+}
+
+}  // namespace
+}  // namespace softland::ensemble_test
