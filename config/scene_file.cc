@@ -370,7 +370,7 @@ std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) c
   if (!node->is_table()) fail(section, fmt::format("expected sections [{}.NAME]", section));
   const std::string_view beside = internal::find_section(section)->beside;
   for (const auto& [key, value] : *node->as_table()) {
-    if (key.str() == beside) continue;
+    if (!beside.empty() && key.str() == beside) continue;
     if (!value.is_table()) fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]", section));
     names.emplace_back(key.str());
   }

@@ -90,16 +90,20 @@ json spread_json(const DeviceSpread& spread) {
   return all;
 }
 
-// "3.4 % (2.7 % to 4.3 %)"
+// "3.4 % (2.7 to 4.3)"
 std::string yield_text(const Yield& y) {
-  return fmt::format("{} ({} to {})", percent(y.value), percent(y.interval.low), percent(y.interval.high));
+  return fmt::format("{} ({} to {})", percent(y.value), internal::plain_number(100 * y.interval.low),
+                     internal::plain_number(100 * y.interval.high));
 }
 
+// "26.9 mm/s (26.6 to 27.1)"
 std::string quantile_text(const EstimatedQuantile& q, std::string_view unit) {
   if (std::isinf(q.value)) return "not closed";
-  return fmt::format("{} ({} to {})", quantity(q.value, unit),
-                     std::isfinite(q.interval.low) ? quantity(q.interval.low, unit) : "?",
-                     std::isfinite(q.interval.high) ? quantity(q.interval.high, unit) : "?");
+  const double factor = unit.empty() ? 1 : internal::prefix_for(q.value).factor;
+  const auto bound = [&](double value) {
+    return std::isfinite(value) ? internal::plain_number(value / factor) : std::string("?");
+  };
+  return fmt::format("{} ({} to {})", quantity(q.value, unit), bound(q.interval.low), bound(q.interval.high));
 }
 
 std::string spread_words(const DeviceSpread& spread) {
@@ -165,7 +169,7 @@ std::string robustness_text(const Prepared& nominal, const Robustness& found, co
           "\n\n";
   if (found.devices == 0) return text;
   constexpr std::size_t label = 34;
-  std::size_t width = 30;
+  std::size_t width = 27;
   for (const DriveRobustness& d : found.drives) width = std::max(width, internal::columns_of(d.name) + 2);
   const auto row = [&](std::string_view name, const auto& cell) {
     std::string line = internal::left_aligned(std::string(name), label);

@@ -29,6 +29,8 @@ std::string some_value(const Key& key) {
   switch (key.type) {
     case KeyType::text:
       return "'text'";
+    case KeyType::texts:
+      return "['text']";
     case KeyType::flag:
       return "true";
     case KeyType::integer:
@@ -39,9 +41,9 @@ std::string some_value(const Key& key) {
     case KeyType::quantities:
       break;
   }
-  const std::string one = key.dimensions.empty() || key.dimensions.front() == dimension::none
-                              ? std::string("0.01")
-                              : fmt::format("'{}'", example(key.dimensions.front()));
+  const std::string one = key.dimensions.empty()                      ? std::string("'1 %'")
+                          : key.dimensions.front() == dimension::none ? std::string("0.01")
+                                                                      : fmt::format("'{}'", example(key.dimensions.front()));
   if (key.type == KeyType::quantity) return one;
   return fmt::format("[{}]", fmt::join(std::vector<std::string>(std::max<std::size_t>(1, key.count), one), ", "));
 }

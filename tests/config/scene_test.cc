@@ -367,15 +367,15 @@ TEST(Scene, AWideBeamWithoutPlateStrainIsWarnedAbout) {
       testing::IsEmpty());
 }
 
-TEST(Scene, ASpreadIsCheckedKeptAndSaidToBeUnused) {
+TEST(Scene, ASpreadIsKept) {
   const Scene scene = read(edited(small_scene, "[gas]", R"([spread]
 "structure.thickness" = { distribution = "normal", cov = "2 %" }
-"structure.damping_ratio" = { distribution = "lognormal", cov = 0.1 }
+"structure.density" = { distribution = "lognormal", cov = 0.1 }
 "gap.contact" = { distribution = "uniform", half_width = "50 nm" }
 "gap.electrode" = { distribution = "uniform", half_width = "2 %" }
 [gas])"));
-  EXPECT_THAT(scene.warnings,
-              testing::ElementsAre("x.toml:14: [spread] describes device variation and is not used by this command"));
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_EQ(scene.spread.variables.size(), 4U);
   EXPECT_THAT(scene.file.text(), testing::HasSubstr("\"gap.contact\" = { distribution = \"uniform\", half_width = \"50 nm\" }"));
   EXPECT_EQ(resolved(scene, {{"main", {50, 40}}}).json()["spread"], scene.file.json()["spread"]);
 }

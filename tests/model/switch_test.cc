@@ -204,7 +204,7 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
       [](Device& d) { d.structure.width *= 0.98, d.structure.youngs_modulus *= 1.03, d.structure.density *= 1.01; },
       [](Device& d) { d.gap.electrode *= 1.02, d.gap.contact *= 1.02; },
       [](Device& d) { d.structure.length *= 1.01; },
-      [](Device& d) { d.electrodes[0].begin += 1_um; },
+      [](Device& d) { d.electrodes[0].begin += 0.01 * d.structure.length; },
       [](Device& d) { d.contact->pad_length *= 1.1; },
       [](Device& d) { d.structure.modes = 3; },
       [](Device& d) { d.piezo.reset(); },
