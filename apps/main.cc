@@ -183,7 +183,7 @@ int run(int argc, char** argv) {
   option(robustness, "--points", robust.points, "NAME", "how they are chosen: sobol (default), latin_hypercube or monte_carlo");
   optional(robustness, "--seed", robust.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
   optional(robustness, "--jobs", robust.jobs, "N", "threads (default: one per core); the result does not depend on them");
-  option(robustness, "--out", common.out, "FOLDER", "folder for result.json, devices.csv and the worst devices as scenes");
+  option(robustness, "--out", common.out, "FOLDER", "folder for robustness.json, devices.csv and the worst devices as scenes");
   robustness->footer(
       "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one.\n"
       "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"

@@ -220,6 +220,39 @@ void log_time_saved(const Prepared& chosen) {
                   quantity(with, "s"), percent(std::max(0.0, 1 - without / with))));
 }
 
+// How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
+// asked to stop.
+std::string on_devices(const Common& c, const Prepared& winner, int jobs, const fs::path& place) {
+  if (winner.scene.spread.empty()) return {};
+  constexpr std::uint64_t devices = 200;
+  try {
+    const WatchedWork work(c.quiet, c.stop);
+    const Robustness found = robustness(winner, {{.name = "found", .waveforms = winner.drives.waveforms}},
+                                        {.samples = devices, .jobs = jobs}, work.watch());
+    if (found.interrupted || found.drives.size() < 2) return {};
+    const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
+      const auto& all = ensemble_figures();
+      const auto figure = std::find_if(all.begin(), all.end(), [&](const EnsembleFigure& f) { return f.key == key; });
+      const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(figure - all.begin())].quantiles[2];
+      return std::isfinite(q.value) ? quantity(q.value, figure->unit) : std::string("without closing");
+    };
+    const auto words = [&](const DriveRobustness& drive) {
+      return fmt::format("rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
+                         at_95_percent(drive, "largest_impact_velocity_m_s"));
+    };
+    const DriveRobustness &step = found.drives[0], &own = found.drives[1];
+    return "\n" +
+           wrapped(fmt::format(
+               "On {} devices that differ as [spread] says, with the same volts: {} land without a rebound, and 95 % have "
+               "{} (plain step: {}, {}). More: softland robustness {}",
+               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
+               shell_word((place / "best.toml").string()))) +
+           "\n";
+  } catch (const Interrupted&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 int simulate_verb(const Common& c, bool certified, const std::optional<std::string>& jobs_option) {
@@ -465,7 +498,8 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   left.emplace_back("evaluations.csv");
   write_result(*folder, found);
   folder->publish(interrupted);
-  print_result(c, found, left_in(place, left));
+  const bool judged = result.best_scene && !interrupted && c.json != "-";
+  print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
   if (interrupted) return exit_interrupted;
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }
@@ -488,7 +522,7 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms}};
   for (const std::string& result : request.results)
     drives.push_back({.name = result, .waveforms = prepare(scene_of_result(result), false, work->watch()).drives.waveforms});
-  std::vector<std::string> files{"result.json", "devices.csv"};
+  std::vector<std::string> files{"robustness.json", "devices.csv"};
   constexpr std::size_t most_worst = 3;
   for (std::size_t i = 1; i <= most_worst; ++i) files.push_back(fmt::format("worst-{}.toml", i));
   std::optional<ResultFolder> folder = claim_places(c, files);
@@ -498,14 +532,14 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   std::string text = robustness_text(nominal, found, options);
   work.reset();
   if (folder) {
-    folder->write("result.json", json_text(j, 2));
+    folder->write("robustness.json", json_text(j, 2));
     folder->write("devices.csv", robustness_csv(nominal, found, options));
     const DriveRobustness& last = found.drives.back();
     for (std::size_t i = 0; i < most_worst && i < last.worst.size(); ++i)
       folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());
-    text +=
-        left_in(folder->destination(found.interrupted),
-                {"result.json", "devices.csv", "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
+    text += left_in(
+        folder->destination(found.interrupted),
+        {"robustness.json", "devices.csv", "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
     folder->publish(found.interrupted);
   }
   print_json_or(c, j, text);

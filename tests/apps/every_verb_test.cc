@@ -157,7 +157,7 @@ TEST_P(EveryVerb, Judges) {
   kept.insert(kept.end(), {"--out", "out"});
   const std::string text = done(kept).out;
   EXPECT_NE(text.find("plain step"), std::string::npos) << text;
-  const json j = json::parse(read(here.path() / "out/result.json"), nullptr, false);
+  const json j = json::parse(read(here.path() / "out/robustness.json"), nullptr, false);
   EXPECT_EQ(j["devices"], 20);
   EXPECT_EQ(j["drives"][0]["worst"].size(), 10U);
   (void)done({"simulate", "out/worst-1.toml", "--quiet"});
