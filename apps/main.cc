@@ -13,6 +13,7 @@
 #include "apps/verbs.h"
 #include "base/require.h"
 #include "optimizers/problem.h"
+#include "studies/search_space.h"
 #include "version.h"
 
 namespace {
@@ -80,7 +81,7 @@ int run(int argc, char** argv) {
       "71 no memory or threads, 74 output lost (disk full, pipe closed), 130 interrupted (what there is is written).");
 
   // `word` stands for the value in --help. Empty text is never meant: it comes from an unset shell variable.
-  const auto option = [](CLI::App* verb, const char* name, std::string& value, const char* word, const char* about) {
+  const auto option = [](CLI::App* verb, const char* name, std::string& value, const char* word, const std::string& about) {
     return verb->add_option(name, value, about)->type_name(word)->check([](const std::string& text) {
       return text.empty() ? "must not be empty" : "";
     });
@@ -149,9 +150,9 @@ int run(int argc, char** argv) {
   with_scene(optimize, false);
   with_json(optimize);
   option(optimize, "--target", request.target, "NAME",
-         "bounce (default), settling, rebound, count, impact or energy; the goal of each asks for no significant rebound");
+         listed(targets) + " (default: bounce); the goal of each asks for no significant rebound");
   option(optimize, "--actuator", request.actuator, "NAME",
-         "drives that the search may shape: electrostatic (default), pzt or both");
+         "drives that the search may shape: " + listed(actuators) + " (default: electrostatic)");
   option(optimize, "--waveform", request.waveform, "NAME", "family to search: pulse (default), harmonic or step");
   option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
   optional(optimize, "--budget", request.budget, "N|TIME",

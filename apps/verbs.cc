@@ -441,18 +441,15 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   Common c = given;
   if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
   if (c.out.empty()) c.out = "softland-out";
-  const auto target = target_from(request.target);
-  require(target.has_value(),
-          fmt::format("--target {}: must be bounce, settling, rebound, count, impact or energy", request.target));
-  OptimizeOptions options{.target = *target, .family = request.waveform, .optimizer = request.optimizer, .stop = c.stop};
-  if (request.actuator == "pzt") {
-    options.actuator = Actuator::pzt;
-  } else if (request.actuator == "both") {
-    options.actuator = Actuator::both;
-  } else {
-    require(request.actuator == "electrostatic",
-            fmt::format("--actuator {}: must be electrostatic, pzt or both", request.actuator));
-  }
+  const TargetRow* target = find_named(targets, request.target);
+  require(target != nullptr, [&] { return fmt::format("--target {}: must be {}", request.target, listed(targets)); });
+  const Named<Actuator>* actuator = find_named(actuators, request.actuator);
+  require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
+  OptimizeOptions options{.target = target->value,
+                          .actuator = actuator->value,
+                          .family = request.waveform,
+                          .optimizer = request.optimizer,
+                          .stop = c.stop};
   options.jobs = job_count(request.jobs);
   if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
   options.max_evaluations = default_budget(options.target, options.actuator);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -84,6 +85,14 @@ template <class Row, std::size_t n>
   std::vector<std::string_view> names;
   for (const Row& row : rows) names.push_back(row.name);
   return names;
+}
+
+/// "bounce, count or energy"
+template <class Row, std::size_t n>
+[[nodiscard]] std::string listed(const std::array<Row, n>& rows) {
+  std::string text;
+  for (std::size_t i = 0; i < n; ++i) text += (i == 0 ? "" : i + 1 == n ? " or " : ", ") + std::string(rows[i].name);
+  return text;
 }
 
 /// The names of the rows whose `keys` hold this one.

@@ -15,8 +15,8 @@ using CsvPlace = std::function<std::string()>;
 
 /// Calls row(values, place) for every row with the numbers of these columns. `file` stands for the content in messages;
 /// `expected` says what the header must hold ("time_s and one column per drive"). Throws InvalidInput with file, line and rule
-/// for a header without exactly one of each column, a row of another length, a cell of these columns that is no finite number, and
-/// for content without header or rows.
+/// for a header without exactly one of each column, a row of another length, a cell of these columns that is no finite number,
+/// and for content without header or rows.
 void read_csv(std::string_view content, const std::string& file, const std::vector<std::string>& columns,
               std::string_view expected, const std::function<void(std::span<const double>, const CsvPlace&)>& row);
 

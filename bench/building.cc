@@ -1,5 +1,5 @@
-// What building a switch costs, for every scene: its own, and that of a device of an ensemble, which differs in thickness, gap and
-// modulus only.
+// What building a switch costs, for every scene: its own, and that of a device of an ensemble, which differs in thickness, gap
+// and modulus only.
 //   bench_building [SCENE ...]     (default: every shipped scene)
 #include <fmt/format.h>
 

@@ -1,41 +1,16 @@
 #include "objectives/cost.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace softland {
 namespace {
-
-constexpr std::array<std::pair<Target, std::string_view>, 6> target_names{{{Target::bounce, "bounce"},
-                                                                           {Target::settling, "settling"},
-                                                                           {Target::rebound, "rebound"},
-                                                                           {Target::count, "count"},
-                                                                           {Target::impact, "impact"},
-                                                                           {Target::energy, "energy"}}};
 
 // A step that lands softly by itself must not turn the ratios into infinities.
 double ratio(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
 
 }  // namespace
-
-std::string_view to_string(Target target) {
-  for (const auto& [t, name] : target_names) {
-    if (t == target) return name;
-  }
-  return "unknown";
-}
-
-std::optional<Target> target_from(std::string_view name) {
-  for (const auto& [target, n] : target_names) {
-    if (n == name) return target;
-  }
-  return std::nullopt;
-}
-
-bool has_own_cost(Target target) { return target == Target::settling || target == Target::impact || target == Target::energy; }
 
 void CostObserver::knot(const TrajectoryPoint& point) {
   if (!figures_.touched) figures_.closest = std::min(figures_.closest, contact_gap_ - point.position);
@@ -101,9 +76,9 @@ double cost(Target target, Status status, const CostFigures& f, const CostScale&
     case Target::impact:
       return judged_by(v);
     case Target::energy:
-      return judged_by(ratio(f.impact_energy, scale.step.impact_energy));
+      break;
   }
-  return std::numeric_limits<double>::infinity();
+  return judged_by(ratio(f.impact_energy, scale.step.impact_energy));
 }
 
 }  // namespace softland

@@ -25,10 +25,11 @@
 // leaves the laws' validity, cannot be integrated) is infeasible: infinity.
 #pragma once
 
+#include <array>
 #include <limits>
-#include <optional>
 #include <string_view>
 
+#include "base/choice.h"
 #include "model/closing/observer.h"
 #include "model/trajectory.h"
 #include "objectives/metrics.h"
@@ -36,11 +37,22 @@
 namespace softland {
 
 enum class Target { bounce, settling, rebound, count, impact, energy };
-[[nodiscard]] std::string_view to_string(Target target);
-[[nodiscard]] std::optional<Target> target_from(std::string_view name);
-/// Whether a search for the target goes on by a figure of its own once it has followed the cost of `bounce`: settling, impact,
-/// energy. Without a significant rebound those of the others have no more to give.
-[[nodiscard]] bool has_own_cost(Target target);
+struct TargetRow {
+  Target value;
+  std::string_view name;
+  /// Whether a search for the target goes on by a figure of its own once it has followed the cost of `bounce`. Without a
+  /// significant rebound those of the others have no more to give.
+  bool has_own_cost;
+};
+inline constexpr auto targets = std::to_array<TargetRow>({{Target::bounce, "bounce", false},
+                                                          {Target::settling, "settling", true},
+                                                          {Target::rebound, "rebound", false},
+                                                          {Target::count, "count", false},
+                                                          {Target::impact, "impact", true},
+                                                          {Target::energy, "energy", true}});
+static_assert(is_complete<targets>());
+[[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }
+[[nodiscard]] constexpr bool has_own_cost(Target target) { return row_of(targets, target).has_own_cost; }
 
 /// The raw figures behind the costs, over a run that ends a fixed time after first contact.
 struct CostFigures {

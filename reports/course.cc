@@ -100,7 +100,8 @@ std::string closing_clause(const Actor& actor, const ResultRun& run, double wind
     words += ", then rebounds up to " + quantity(height, "m");
   }
   if (settles(figures)) return words + " and settles after " + settling(figures, run.errors);
-  return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end) + " (what follows is not counted)";
+  return words + " and has not settled when the window ends" + (end.empty() ? "" : " at " + end) +
+         " (what follows is not counted)";
 }
 
 std::string landing_clause(const std::string& subject, const ResultRun& run) {

@@ -93,11 +93,11 @@ std::string certificate_caption(const Result& result) {
 std::string goal_text(const Result& result, const Figure& figure) {
   if (result.target.empty()) return {};
   if (figure.is_yes_or_no()) return "yes";
-  const std::optional<Target> target = target_from(result.target);
+  const TargetRow* target = find_named(targets, result.target);
   if (!target) return {};
-  if (figure.is_count()) return has_own_cost(*target) ? "" : "0";
+  if (figure.is_count()) return target->has_own_cost ? "" : "0";
   const double step = figure_of_run(result.baseline, figure.member);
-  const bool wanted = has_own_cost(*target) && figure_of(*target).member == figure.member && std::isfinite(step);
+  const bool wanted = target->has_own_cost && figure_of(target->value).member == figure.member && std::isfinite(step);
   return wanted ? "below " + quantity(step, figure.unit, 4) : "";
 }
 

@@ -122,7 +122,7 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
              : found.best ? to_string(found.best->metrics.status)
                           : to_string(Status::no_contact);
   r.target = to_string(options.target);
-  r.actuator = to_string(options.actuator);
+  r.actuator = name_of(actuators, options.actuator);
   r.waveform = options.family;
   r.seed = options.seed;
   r.optimizer = options.optimizer;
@@ -149,18 +149,6 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
         {.name = c.name, .status = std::string(to_string(c.metrics.status)), .figures = finite(FigureValues(c.metrics))});
   }
   return r;
-}
-
-std::string_view to_string(Actuator actuator) {
-  switch (actuator) {
-    case Actuator::electrostatic:
-      return "electrostatic";
-    case Actuator::pzt:
-      return "pzt";
-    case Actuator::both:
-      return "both";
-  }
-  return "unknown";
 }
 
 }  // namespace softland

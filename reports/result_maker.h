@@ -22,6 +22,4 @@ struct Provenance {
 /// those that improved.
 [[nodiscard]] Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const Provenance& provenance);
 
-[[nodiscard]] std::string_view to_string(Actuator actuator);
-
 }  // namespace softland

@@ -11,12 +11,12 @@
 namespace softland {
 namespace {
 
-std::string text(double value) { return engineering(value, "", 6); }
+std::string rounded_text(double value) { return engineering(value, "", 6); }
 
 void require_correlation(bool rule_holds, const std::string& message) { require_of("correlation", rule_holds, message); }
 
 void require_in_range(double value) {
-  require(-1 <= value && value <= 1, "a correlation of " + text(value) + " must be between -1 and 1");
+  require(-1 <= value && value <= 1, "a correlation of " + rounded_text(value) + " must be between -1 and 1");
 }
 
 // The variables that the vector consists of, most of all: those with at least half of its largest element.
@@ -39,22 +39,22 @@ GaussianCopula::GaussianCopula(const Eigen::MatrixXd& correlation, const std::ve
   for (std::size_t i = known.size(); i < static_cast<std::size_t>(n); ++i) known.push_back("variable " + std::to_string(i + 1));
   const auto name = [&](Eigen::Index i) { return known[static_cast<std::size_t>(i)]; };
   for (Eigen::Index i = 0; i < n; ++i) {
-    require_correlation(correlation(i, i) == 1,
-                        "the correlation of " + name(i) + " with itself is " + text(correlation(i, i)) + "; it must be 1");
+    require_correlation(correlation(i, i) == 1, "the correlation of " + name(i) + " with itself is " +
+                                                    rounded_text(correlation(i, i)) + "; it must be 1");
     for (Eigen::Index k = 0; k < i; ++k) {
       const double rho = correlation(k, i);
-      const std::string pair = "the correlation of " + name(k) + " and " + name(i) + " is " + text(rho);
+      const std::string pair = "the correlation of " + name(k) + " and " + name(i) + " is " + rounded_text(rho);
       require_correlation(-1 <= rho && rho <= 1, pair + "; it must be between -1 and 1");
       require_correlation(rho == correlation(i, k),
-                          pair + " above the diagonal and " + text(correlation(i, k)) + " below it; both must be equal");
+                          pair + " above the diagonal and " + rounded_text(correlation(i, k)) + " below it; both must be equal");
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
   const double least = eigen.eigenvalues()[0];
   if (!(least >= least_eigenvalue)) {
     require_correlation(false, "the correlations of " + main_parts(eigen.eigenvectors().col(0), known) +
-                                   " contradict each other: the smallest eigenvalue of their matrix is " + text(least) +
-                                   "; it must be at least " + text(least_eigenvalue));
+                                   " contradict each other: the smallest eigenvalue of their matrix is " + rounded_text(least) +
+                                   "; it must be at least " + rounded_text(least_eigenvalue));
   }
   factor_ = correlation.llt().matrixL();
 }

@@ -13,8 +13,8 @@
 namespace softland {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 bool all_finite(std::span<const double> sample) {
   return std::all_of(sample.begin(), sample.end(), [](double x) { return std::isfinite(x); });
@@ -36,14 +36,14 @@ double sample_mean(std::span<const double> sample) {
 
 double sample_standard_deviation(std::span<const double> sample) {
   const double n = static_cast<double>(sample.size()), mean = sample_mean(sample);
-  if (sample.size() < 2) return not_known;
-  if (!all_finite(sample)) return infinity;
+  if (sample.size() < 2) return unknown;
+  if (!all_finite(sample)) return infinite;
   return std::sqrt(central_moment(sample, mean, 2) * n / (n - 1));
 }
 
 double sample_skewness(std::span<const double> sample) {
   const double n = static_cast<double>(sample.size()), mean = sample_mean(sample);
-  if (sample.size() < 3 || !all_finite(sample) || std::equal(sample.begin() + 1, sample.end(), sample.begin())) return not_known;
+  if (sample.size() < 3 || !all_finite(sample) || std::equal(sample.begin() + 1, sample.end(), sample.begin())) return unknown;
   const double variance = central_moment(sample, mean, 2);
   return std::sqrt(n * (n - 1)) / (n - 2) * central_moment(sample, mean, 3) / (variance * std::sqrt(variance));
 }
@@ -58,7 +58,7 @@ double sample_quantile(std::span<const double> sample, double p) {
 
 void internal::check_sample(std::span<const double> sample) {
   require(!sample.empty(), "a sample must have at least one value");
-  const bool ordered = std::all_of(sample.begin(), sample.end(), [](double x) { return x > -infinity; });
+  const bool ordered = std::all_of(sample.begin(), sample.end(), [](double x) { return x > -infinite; });
   require(ordered, "a sample must hold neither NaN nor -infinity");
 }
 

@@ -12,6 +12,7 @@
 // its base has risen, and caps its amplitude.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
@@ -19,6 +20,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/choice.h"
 #include "optimizers/problem.h"
 #include "studies/prepared.h"
 #include "waveforms/waveform.h"
@@ -26,6 +28,9 @@
 namespace softland {
 
 enum class Actuator { electrostatic, pzt, both };
+inline constexpr auto actuators = std::to_array<Named<Actuator>>(
+    {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
+static_assert(is_complete<actuators>());
 
 /// The waveform parameters of one drive.
 struct DriveSearch {

@@ -12,7 +12,7 @@
 #include "base/require.h"
 #include "sampling/statistics.h"
 
-namespace softland {
+namespace softland::confidence_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -159,4 +159,4 @@ TEST(BootstrapInterval, GoesOnWithFailuresAndWithFiguresThatAreNotKnown) {
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::confidence_test

@@ -11,7 +11,7 @@
 #include "sampling/points.h"
 #include "tests/sampling/refused.h"
 
-namespace softland {
+namespace softland::copula_test {
 namespace {
 
 using test::expect_parameter_refused;
@@ -117,4 +117,4 @@ TEST(RankCorrelation, IsTheInverseOfCorrelationOfRanks) {
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::copula_test

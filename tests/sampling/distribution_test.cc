@@ -8,7 +8,7 @@
 
 #include "tests/sampling/refused.h"
 
-namespace softland {
+namespace softland::distribution_test {
 namespace {
 
 using test::expect_parameter_refused;
@@ -175,4 +175,4 @@ TEST(Distribution, KnowsItsKind) {
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::distribution_test

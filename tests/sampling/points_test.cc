@@ -10,7 +10,7 @@
 
 #include "tests/sampling/refused.h"
 
-namespace softland {
+namespace softland::points_test {
 namespace {
 
 using Point = std::vector<double>;
@@ -245,4 +245,4 @@ TEST_P(EveryPointSet, RefusesWhatItHasNot) {
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::points_test

@@ -13,7 +13,7 @@
 #include "tests/sampling/benchmarks.h"
 #include "tests/sampling/refused.h"
 
-namespace softland {
+namespace softland::polynomial_chaos_test {
 namespace {
 
 using test::expect_parameter_refused;
@@ -193,4 +193,4 @@ TEST(PolynomialChaos, RefusesWhatItCannotFit) {
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::polynomial_chaos_test

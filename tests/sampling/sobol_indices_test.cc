@@ -9,7 +9,7 @@
 #include "base/require.h"
 #include "tests/sampling/benchmarks.h"
 
-namespace softland {
+namespace softland::sobol_indices_test {
 namespace {
 
 using test::GFunction;
@@ -174,4 +174,4 @@ TEST(SobolIndices, NeedWholeRows) {
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::sobol_indices_test

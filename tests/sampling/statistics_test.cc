@@ -10,7 +10,7 @@
 
 #include "base/require.h"
 
-namespace softland {
+namespace softland::statistics_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -128,4 +128,4 @@ TEST(Histogram, HasBoundedBinsWhateverTheSample) {
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::statistics_test

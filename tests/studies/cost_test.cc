@@ -185,11 +185,5 @@ TEST(Cost, IsFiniteWhereTheStepItselfLandsSoftly) {
   }
 }
 
-TEST(Target, NamesReadBack) {
-  for (const Target target : every_target) EXPECT_EQ(target_from(to_string(target)), target);
-  EXPECT_EQ(target_from("Bounce"), std::nullopt);
-  EXPECT_EQ(target_from(""), std::nullopt);
-}
-
 }  // namespace
 }  // namespace softland

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/require.h"
 #include "config/scene.h"
@@ -29,8 +30,11 @@ inline SceneFile gold_at_17_volts(std::initializer_list<std::string_view> change
 }
 
 /// Every figure that a search may lower.
-inline constexpr Target every_target[] = {Target::bounce, Target::settling, Target::rebound,
-                                          Target::count,  Target::impact,   Target::energy};
+inline const std::vector<Target> every_target = [] {
+  std::vector<Target> all;
+  for (const TargetRow& row : targets) all.push_back(row.value);
+  return all;
+}();
 
 /// The scene without one of its sections.
 inline SceneFile without(const SceneFile& file, std::string_view section) {
