@@ -3,8 +3,8 @@
 
     bench/run_robustness.py BUILD/apps/softland > results/robustness.md
 
-Searches every shipped scene that has a contact and whose drive pulls, for three seeds, then judges all of them on the same 2000
-devices over the scene's whole window. Takes about three minutes on two cores.
+Searches the shipped scenes that bounce, for three seeds, then judges all of them on the same 2000
+devices over the scene's whole window. Takes about four minutes on two cores.
 """
 import datetime
 import json
@@ -14,11 +14,10 @@ import platform
 import subprocess
 import sys
 import tempfile
-import time
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 TASKS = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "pzt"), ("mem-gold-pzt.toml", "both"),
-         ("nem-tin.toml", "electrostatic"), ("two-electrodes.toml", "electrostatic"), ("gap-closing-actuator.toml", "electrostatic")]
+         ("nem-tin.toml", "electrostatic"), ("two-electrodes.toml", "electrostatic")]
 SEEDS = (1, 2, 3)
 DEVICES = 2000
 
@@ -75,10 +74,8 @@ than the plain step.
                 run(program, "optimize", SCENES / scene, "--actuator", actuator, "--seed", str(seed), "--out", out)
                 if pathlib.Path(out, "best.toml").exists():
                     found.append(out)
-            start = time.monotonic()
             judged = json.loads(run(program, "robustness", SCENES / scene, *found, "--samples", str(DEVICES), "--json", "-"))
-            wall = time.monotonic() - start
-        print(f"## {scene}, {actuator}: {len(judged['drives'])} drives in {wall:.1f} s\n")
+        print(f"## {scene}, {actuator}\n")
         print("| drive | close | without a rebound (95 % confidence) | t_i | v | B_H | t_p |\n|---|---|---|---|---|---|---|")
         for drive in judged["drives"]:
             free = drive["bounce_free"]
