@@ -80,6 +80,7 @@ int run(int argc, char** argv) {
       "\nExit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 70 internal error (please report),\n"
       "71 no memory or threads, 74 output lost (disk full, pipe closed), 130 interrupted (what there is is written).");
 
+  const auto first_is_default = [](std::string names) { return names.insert(names.find(','), " (default)"); };
   // `word` stands for the value in --help. Empty text is never meant: it comes from an unset shell variable.
   const auto option = [](CLI::App* verb, const char* name, std::string& value, const char* word, const std::string& about) {
     return verb->add_option(name, value, about)->type_name(word)->check([](const std::string& text) {
@@ -150,9 +151,9 @@ int run(int argc, char** argv) {
   with_scene(optimize, false);
   with_json(optimize);
   option(optimize, "--target", request.target, "NAME",
-         listed(targets) + " (default: bounce); the goal of each asks for no significant rebound");
+         first_is_default(listed(targets)) + "; the goal of each asks for no significant rebound");
   option(optimize, "--actuator", request.actuator, "NAME",
-         "drives that the search may shape: " + listed(actuators) + " (default: electrostatic)");
+         "drives that the search may shape: " + first_is_default(listed(actuators)));
   option(optimize, "--waveform", request.waveform, "NAME", "family to search: pulse (default), harmonic or step");
   option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
   optional(optimize, "--budget", request.budget, "N|TIME",
