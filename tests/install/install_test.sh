@@ -38,7 +38,7 @@ missing=$(cd "$prefix/include/softland" && grep -rhoE '^#include "[^"]+"' . | se
 
 # shellcheck disable=SC2086
 quietly "$compiler" $flags "$here/consumer/consumer.cc" -o "$work/by_pkg_config" $libraries
-quietly cmake -S "$here/consumer" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler"
+quietly cmake -G Ninja -S "$here/consumer" -B "$work/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler"
 quietly cmake --build "$work/consumer"
 for program in "$work/by_pkg_config" "$work/consumer/consumer"; do
   said=$("$program" "$scenes/mem-gold.toml")
