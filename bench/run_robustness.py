@@ -63,8 +63,8 @@ device. Median / 95 % quantile; v is the largest impact speed of all touches.
 - made by `bench/run_robustness.py BUILD/apps/softland > results/robustness.md`, {datetime.date.today()}, revision {version}
 - machine: {machine()}
 
-A waveform in fixed volts that lands the drawing without a rebound lands a few devices in a hundred so. It still touches more softly
-than the plain step.
+A waveform in fixed volts that lands the drawing without a rebound does so on few devices. A dash: as many devices do not close, or
+do not settle in the window.
 """)
     for scene, actuator in TASKS:
         with tempfile.TemporaryDirectory() as folder:
