@@ -25,32 +25,6 @@ double lifting_voltage(const Prepared& p, double lift) {
   return -lift / per_volt;
 }
 
-// Pulses of a piezo that closes the switch: full pull, then none, so that a mass on the spring of the first mode comes to rest on
-// the contact plane. With the deflection u that the pull would hold, it is let go at x = g^2 / (2 u), where its energy is that of
-// the deflection g: after acos(1 - x / u) of the period's angle, and it flies for atan2(v / omega, x) more.
-std::vector<std::vector<double>> thrown_by_piezo(const DriveSearch& s, const Prepared& p, double t0) {
-  const double omega = p.model.angular_frequencies()[0], gap = p.scene.device.gap.contact;
-  const double lift = lifting_voltage(p, gap);
-  const auto within = [&](double time) { return std::clamp(time, 0.05 * t0, 1.6 * t0); };
-  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
-  std::vector<std::vector<double>> starts;
-  for (const double pull : {s.hold, lift < 0 ? s.limits.max_voltage : s.limits.min_voltage}) {
-    const double reach = -gap * pull / lift;
-    if (!(2 * reach > gap)) continue;  // it never gets to the plane
-    const double x = gap * gap / (2 * reach), angle = std::acos(1 - x / reach);
-    starts.push_back({inside(pull), inside(0), within(angle / omega), within(std::atan2(reach * std::sin(angle), x) / omega),
-                      0.05 * 2 * pi / omega});
-  }
-  return starts;
-}
-
-// Whether the piezo's hold level pulls the contact point to the contact, and nothing else does.
-bool closes_by_piezo(const DriveSearch& s, const Prepared& p) {
-  if (!(s.hold * lifting_voltage(p, 1) < 0)) return false;
-  return std::all_of(p.scene.device.electrodes.begin(), p.scene.device.electrodes.end(),
-                     [&](const Electrode& e) { return hold_level(p, e.name) == 0; });
-}
-
 void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
   const double period = 2 * pi / p.model.angular_frequencies()[0];
   s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
@@ -59,8 +33,6 @@ void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
                  {"duration_2_s", 0.05 * t0, 1.6 * t0},
                  {"edge_s", 0.005 * period, 0.1 * period}};
   const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
-  if (s.drive == piezo_drive && closes_by_piezo(s, p)) s.starts = thrown_by_piezo(s, p, t0);
-  if (!s.starts.empty()) return;
   if (s.drive == piezo_drive) {
     // Brake late in the flight and let go at touch: lifts of a part of the contact gap.
     const double gap = p.scene.device.gap.contact;
