@@ -13,6 +13,7 @@
 #include "apps/verbs.h"
 #include "base/require.h"
 #include "optimizers/problem.h"
+#include "sampling/points.h"
 #include "studies/search_space.h"
 #include "version.h"
 
@@ -182,7 +183,7 @@ int run(int argc, char** argv) {
   robustness->add_flag("--quiet", common.quiet, "no progress and no notes on standard error");
   with_json(robustness);
   optional(robustness, "--samples", robust.samples, "N", "devices (default: 2000)");
-  option(robustness, "--points", robust.points, "NAME", "how they are chosen: sobol (default), latin_hypercube or monte_carlo");
+  option(robustness, "--points", robust.points, "NAME", "how they are chosen: " + first_is_default(listed(point_sets)));
   optional(robustness, "--seed", robust.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
   optional(robustness, "--jobs", robust.jobs, "N", "threads (default: one per core); the result does not depend on them");
   option(robustness, "--out", common.out, "FOLDER", "folder for robustness.json, devices.csv and the worst devices as scenes");

@@ -234,7 +234,7 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
       const auto& all = ensemble_figures();
       const auto figure = std::find_if(all.begin(), all.end(), [&](const EnsembleFigure& f) { return f.key == key; });
       const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(figure - all.begin())].quantiles[2];
-      return std::isfinite(q.value) ? quantity(q.value, figure->unit) : std::string("without closing");
+      return std::isfinite(q.value) ? quantity(q.value, figure->unit) : std::string("no bound (more than 5 % do not close)");
     };
     const auto words = [&](const DriveRobustness& drive) {
       return fmt::format("rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
@@ -506,8 +506,7 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   if (request.samples) options.samples = whole_number<std::uint64_t>("--samples", *request.samples, 1);
   if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
   const auto* points = find_named(point_sets, request.points);
-  require(points != nullptr,
-          [&] { return fmt::format("--points {}: must be one of {}", request.points, fmt::join(names_of(point_sets), ", ")); });
+  require(points != nullptr, [&] { return fmt::format("--points {}: must be {}", request.points, listed(point_sets)); });
   options.points = points->value;
   require(options.samples <= SamplePoints::largest_size,
           [&] { return fmt::format("--samples {}: must be at most {}", options.samples, SamplePoints::largest_size); });

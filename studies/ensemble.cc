@@ -20,7 +20,7 @@ DeviceOutcome close_one(const SampledDevice& device, const std::vector<Signal>& 
                         const ClosingOptions& run) {
   if (!device.model) return {.metrics = {}, .failure = device.refusal};
   MetricsObserver observer(device.model->device().gap.contact, options);
-  const Trajectory end = observe_closing(*device.model, device.drives.value_or(drives), run, observer);
+  const Trajectory end = observe_closing(*device.model, drives, run, observer);
   DeviceOutcome outcome{.metrics = observer.metrics(end), .largest_impact_velocity = observer.largest_impact_velocity()};
   if (outcome.metrics.status == Status::numerical_failure || outcome.metrics.status == Status::collapsed_at_rest)
     outcome.failure = end.message.empty() ? std::string(to_string(outcome.metrics.status)) : end.message;
@@ -37,6 +37,7 @@ Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t se
     return fmt::format("{}: there is no [spread]: nothing tells how devices differ (see softland new)",
                        nominal.scene.file.name());
   });
+  reads_anew_ = nominal.scene.device.structure.kind == StructureKind::plate;  // its length follows its area and width
   for (const SpreadVariable& variable : nominal.scene.spread.variables) {
     for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || !key.member;
   }
@@ -61,7 +62,7 @@ SceneFile Ensemble::scene(const std::vector<double>& values) const {
 }
 
 SampledDevice DeviceBuilder::device(std::vector<double> values) {
-  SampledDevice sampled{.values = std::move(values), .model = {}, .refusal = {}, .drives = {}};
+  SampledDevice sampled{.values = std::move(values), .model = {}, .refusal = {}};
   for (std::size_t i = 0; i < sampled.values.size(); ++i) {
     const SpreadVariable& variable = ensemble_->nominal().scene.spread.variables[i];
     for (const VariedKey& key : variable.keys) {
@@ -90,14 +91,7 @@ void DeviceBuilder::describe(SampledDevice& sampled) {
     sampled.model.emplace(scratch_.device, nominal.quadrature, &nominal.model);
     return;
   }
-  const Scene read = read_scene(ensemble_->scene(sampled.values));
-  const Drives own = read.drives({});
-  sampled.drives.emplace();
-  for (const std::string& name : nominal.drive_names()) {
-    const auto found = own.waveforms.find(name);
-    sampled.drives->push_back(found == own.waveforms.end() ? Signal() : signal(found->second));
-  }
-  sampled.model.emplace(read.device, nominal.quadrature, &nominal.model);
+  sampled.model.emplace(read_scene(ensemble_->scene(sampled.values)).device, nominal.quadrature, &nominal.model);
 }
 
 std::vector<DeviceOutcome> close_all(const Ensemble& ensemble, const std::vector<Signal>& drives, const EnsembleRun& run,

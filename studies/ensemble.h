@@ -16,10 +16,9 @@ namespace softland {
 
 /// One device of an ensemble.
 struct SampledDevice {
-  std::vector<double> values;                 ///< of the varying quantities, in the order of the spread [SI unit, or factor]
-  std::optional<Switch> model;                ///< none where no such device can be described
-  std::string refusal;                        ///< why
-  std::optional<std::vector<Signal>> drives;  ///< its own where its waveforms vary; else those of the nominal device
+  std::vector<double> values;   ///< of the varying quantities, in the order of the spread [SI unit, or factor]
+  std::optional<Switch> model;  ///< none where no such device can be described
+  std::string refusal;          ///< why
 };
 
 class Ensemble {
@@ -32,7 +31,7 @@ class Ensemble {
   [[nodiscard]] std::uint64_t size() const { return points_.size(); }
   /// Of the varying quantities of device k.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
-  /// Whether a key varies that the scene has to be read anew for.
+  /// Whether a key may vary that other members of a scene follow, so that each is read anew.
   [[nodiscard]] bool reads_anew() const { return reads_anew_; }
   /// The scene of that device alone, in volts and without [spread]: what `simulate` runs to the same figures.
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
@@ -41,7 +40,7 @@ class Ensemble {
   const Prepared* nominal_;
   SamplePoints points_;
   SceneFile resolved_;       // of the nominal device
-  bool reads_anew_ = false;  // a key varies that sets no member by itself
+  bool reads_anew_ = false;  // a key may vary that other members follow
 };
 
 /// Builds devices one after the other. Several threads have one each; a device is the same whatever was built before it.
@@ -67,9 +66,7 @@ struct DeviceOutcome {
   std::string failure = {};                         ///< why it has no figures: refused as a device, or not to be simulated
 
   /// Whether it closed and its closing could be followed to the end of the window.
-  [[nodiscard]] bool closed() const {
-    return failure.empty() && metrics.bounce_count >= 0 && std::isfinite(metrics.major_bounce_height);
-  }
+  [[nodiscard]] bool closed() const { return failure.empty() && std::isfinite(metrics.major_bounce_height); }
 };
 
 struct EnsembleRun {

@@ -81,11 +81,6 @@ struct Verified {
   }
 };
 
-bool same(const std::vector<Signal>& a, const std::vector<Signal>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Signal& one, const Signal& other) { return one.pieces() == other.pieces(); });
-}
-
 // The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
 // reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
@@ -186,7 +181,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   // it starts there.
   double given_cost = never_touched;
   const std::optional<std::vector<double>> given_point = space.parameters(given.drives.waveforms);
-  if (!same(given.signals(), standing)) {
+  if (!same_drives(given.signals(), standing)) {
     given_cost = price(given.signals()).own;
     if (given_point) problem.starts.insert(problem.starts.begin(), *given_point);
     if (given_cost < never_touched) {

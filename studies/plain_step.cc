@@ -39,4 +39,9 @@ std::map<std::string, Waveform> plain_step(const Prepared& given, Actuator actua
   return plain;
 }
 
+bool same_drives(const std::vector<Signal>& a, const std::vector<Signal>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Signal& one, const Signal& other) { return one.pieces() == other.pieces(); });
+}
+
 }  // namespace softland

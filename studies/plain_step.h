@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "studies/prepared.h"
 #include "studies/search_space.h"
@@ -14,5 +15,8 @@ namespace softland {
 /// describes, as steep as the driver permits, and electrodes that brake at 0 V; the piezo at 0 V, unless nothing else drives,
 /// when it steps to its own. Throws InvalidInput where an electrode is needed and there is none that pulls in.
 [[nodiscard]] std::map<std::string, Waveform> plain_step(const Prepared& prepared, Actuator actuator);
+
+/// Whether the signals are the same, one by one.
+[[nodiscard]] bool same_drives(const std::vector<Signal>& a, const std::vector<Signal>& b);
 
 }  // namespace softland

@@ -116,18 +116,17 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   Robustness result{.duration = nominal.duration, .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance)};
 
-  NamedDrive plain{.name = "plain step",
-                   .waveforms = plain_step(nominal, nominal.scene.device.electrodes.empty() ? Actuator::pzt : Actuator::both)};
+  const std::vector<Electrode>& electrodes = nominal.scene.device.electrodes;
+  const bool one_pulls =
+      std::any_of(electrodes.begin(), electrodes.end(), [](const Electrode& e) { return e.side != Side::far; });
+  NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, one_pulls ? Actuator::both : Actuator::pzt)};
   plain.waveforms.insert(nominal.drives.waveforms.begin(), nominal.drives.waveforms.end());  // of the drives that do not step
   std::vector<NamedDrive> all;
   std::vector<std::vector<Signal>> signals;
   const auto add = [&](const NamedDrive& drive) {
     std::vector<Signal> own = signals_of(nominal, drive);
-    const auto same = [&](const std::vector<Signal>& other) {
-      return std::equal(own.begin(), own.end(), other.begin(),
-                        [](const Signal& a, const Signal& b) { return a.pieces() == b.pieces(); });
-    };
-    if (std::any_of(signals.begin(), signals.end(), same)) return;  // the scene's own drive may be the plain step
+    const auto is_same = [&](const std::vector<Signal>& other) { return same_drives(own, other); };
+    if (std::any_of(signals.begin(), signals.end(), is_same)) return;  // the scene's own drive may be the plain step
     all.push_back(drive);
     signals.push_back(std::move(own));
   };

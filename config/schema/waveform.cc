@@ -70,7 +70,6 @@ Section section_of(std::string_view entry, const std::vector<Dimension>& level, 
   return {.name = "waveform",
           .entry = entry,
           .is_named = true,
-          .may_vary = true,
           .selector = "family",
           .keys = std::move(keys),
           .about = about};

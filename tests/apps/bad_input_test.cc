@@ -99,7 +99,7 @@ TEST_F(BadInput, Options) {
       {{"optimize", "--samples=3"}, "the option --samples is not available yet"},
       {{"robustness", "gold.toml", "--samples", "0"}, "--samples 0: must be a whole number from 1 on"},
       {{"robustness", "gold.toml", "--samples", "3000000000"}, "--samples 3000000000: must be at most 2147483648"},
-      {{"robustness", "gold.toml", "--points", "grid"}, "--points grid: must be one of sobol, latin_hypercube, monte_carlo"},
+      {{"robustness", "gold.toml", "--points", "grid"}, "--points grid: must be sobol, latin_hypercube or monte_carlo"},
       {{"robustness"}, "SCENE is required (see softland robustness --help)"},
       {{"robustness", "gold.toml", "none.toml"}, "none.toml: cannot be read: No such file or directory"},
   });

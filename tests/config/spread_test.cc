@@ -70,15 +70,9 @@ TEST(Spread, SetsTheMembersOfADevice) {
 gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov = "2 %" }
 "contact.stiffness" = { distribution = "normal", cov = "2 %" }
 "gas.viscosity" = { distribution = "normal", cov = "2 %" }
-"waveform.main.level" = { distribution = "normal", cov = "2 %" }
 )");
   for (const SpreadVariable& v : spread.variables) {
     for (const VariedKey& key : v.keys) {
-      if (v.name == "waveform.main.level") {
-        EXPECT_FALSE(key.member) << "a waveform is read anew";
-        EXPECT_EQ(key.unit, "Vdp");
-        continue;
-      }
       EXPECT_EQ(key.member(scene), key.nominal) << key.path;
       key.member(scene) = 1.5 * key.nominal;
     }
@@ -186,6 +180,7 @@ TEST(Spread, RefusesWhatMakesNoSense) {
   const std::string thickness = R"("structure.thickness" = { distribution = "normal", cov = "2 %" })";
   const std::vector<Bad> all{
       {R"(gaps = { distribution = "normal", cov = "2 %" })", "'gaps' is not a key of this scene"},
+      {R"("waveform.main.level" = { distribution = "normal", cov = "2 %" })", "is not a key of this scene"},
       {R"(gaps = { keys = [], distribution = "normal", cov = "2 %" })", "must name at least one key"},
       {R"(gaps = { keys = ["gap.contact", "gap.contact"], distribution = "normal", cov = "2 %" })", "names a key twice"},
       {R"(gaps = { keys = "gap.contact", distribution = "normal", cov = "2 %" })", "expected a list of texts"},
