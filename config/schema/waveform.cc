@@ -67,12 +67,7 @@ Section section_of(std::string_view entry, const std::vector<Dimension>& level, 
     for (Key& key : own) keys.push_back(std::move(key));
   });
   keys.front().choices = std::move(names);
-  return {.name = "waveform",
-          .entry = entry,
-          .is_named = true,
-          .selector = "family",
-          .keys = std::move(keys),
-          .about = about};
+  return {.name = "waveform", .entry = entry, .is_named = true, .selector = "family", .keys = std::move(keys), .about = about};
 }
 
 }  // namespace
