@@ -55,8 +55,7 @@ int run(int argc, char** argv) {
     if (!words.empty() && words.front() == verb) throw InvalidInput("the verb '" + verb + "' is not available yet");
   }
   for (const std::string& word : words) {
-    for (const std::string_view option : {"--robust", "--samples", "--resume", "--shard"}) {
-      if (option == "--samples" && words.front() == "robustness") continue;
+    for (const std::string_view option : {"--resume", "--shard"}) {
       if (word == option || word.starts_with(std::string(option) + "="))
         throw InvalidInput("the option " + std::string(option) + " is not available yet");
     }
@@ -155,11 +154,24 @@ int run(int argc, char** argv) {
          first_is_default(listed(targets)) + "; the goal of each asks for no significant rebound");
   option(optimize, "--actuator", request.actuator, "NAME",
          "drives that the search may shape: " + first_is_default(listed(actuators)));
-  option(optimize, "--waveform", request.waveform, "NAME", "family to search: pulse (default), harmonic or step");
+  option(optimize, "--waveform", request.waveform, "NAME",
+         "family to search: pulse (default), step, harmonic, catch, ramp, staircase or knots; with a number of levels or knots: knots:8");
+  option(optimize, "--robust", request.robust, "MEASURE",
+         "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
+         "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");
+  optimize
+      ->add_option("--constrain", request.conditions,
+                   "condition that 95 % of the devices have to fulfil: \"permanent_contact_time < 60 us\"; may be repeated")
+      ->type_name("CONDITION")
+      ->allow_extra_args(false);
+  option(optimize, "--calibrate", request.calibration, "LIST",
+         "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
+         "errors, \"Vdp:1 %,frequency:0.5 %\"; none: not even what [calibration] says");
+  optional(optimize, "--samples", request.samples, "N", "devices that a robust search looks at (default: 128)");
   option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
   optional(optimize, "--budget", request.budget, "N|TIME",
            "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both, half as much again for "
-           "settling, impact and energy");
+           "settling, impact and energy; with --robust closings of devices, 60000");
   optional(optimize, "--seed", request.seed, "N",
            "whole number from 0 on (default 1): same seed, same result, whatever --jobs is");
   optional(optimize, "--jobs", request.jobs, "N", "threads (default: one per core)");
@@ -170,7 +182,9 @@ int run(int argc, char** argv) {
       "A scene that holds a landing already (best.toml of an earlier search) is refined and never ends worse.\n" +
       optimizer_help() +
       "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
-      "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3");
+      "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3\n"
+      "  softland optimize scenes/mem-gold.toml --robust cvar:0.9 --constrain \"initial_contact_time < 65 us\"\n"
+      "  softland optimize scenes/mem-gold.toml --robust cvar:0.9 --waveform catch --calibrate \"Vdp:1 %,frequency:0.5 %\"");
 
   RobustnessRequest robust;
   CLI::App* robustness = add_verb("robustness", "how drives do on devices that differ as [spread] says");
@@ -184,11 +198,14 @@ int run(int argc, char** argv) {
   with_json(robustness);
   optional(robustness, "--samples", robust.samples, "N", "devices (default: 2000)");
   option(robustness, "--points", robust.points, "NAME", "how they are chosen: " + first_is_default(listed(point_sets)));
+  option(robustness, "--calibrate", robust.calibration, "LIST",
+         "measured on every device before it is driven, as for optimize; the report says what each measurement is worth");
   optional(robustness, "--seed", robust.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
   optional(robustness, "--jobs", robust.jobs, "N", "threads (default: one per core); the result does not depend on them");
   option(robustness, "--out", common.out, "FOLDER", "folder for robustness.json, devices.csv and the worst devices as scenes");
   robustness->footer(
-      "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one.\n"
+      "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one,\n"
+      "or, where it is calibrated, the same waveform in its own units.\n"
       "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"
       "  softland robustness scenes/mem-gold.toml softland-out --out robust");
 

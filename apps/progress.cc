@@ -53,8 +53,8 @@ WatchedWork::~WatchedWork() {
   if (shown_ && bar_.terminal_) show_bar("");
 }
 
-SearchProgress::SearchProgress(bool quiet, const OptimizeOptions& options)
-    : bar_(quiet), budget_(options.max_evaluations), seconds_(options.max_seconds) {}
+SearchProgress::SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted)
+    : bar_(quiet), budget_(options.max_evaluations), seconds_(options.max_seconds), counted_(std::move(counted)) {}
 
 void SearchProgress::show(const OptimizeProgress& progress) {
   progress_ = progress;
@@ -67,8 +67,8 @@ void SearchProgress::close() {
 
 std::pair<double, std::string> SearchProgress::state(double elapsed) const {
   const bool timed = std::isfinite(seconds_);
-  std::string state = timed ? fmt::format("{:.0f} of {:g} s, {} evaluations", elapsed, seconds_, progress_.evaluations)
-                            : fmt::format("{} of {} evaluations, {:.0f} s", progress_.evaluations, budget_, elapsed);
+  std::string state = timed ? fmt::format("{:.0f} of {:g} s, {} {}", elapsed, seconds_, progress_.evaluations, counted_)
+                            : fmt::format("{} of {} {}, {:.0f} s", progress_.evaluations, budget_, counted_, elapsed);
   state += std::isfinite(progress_.best_cost)
                ? fmt::format(", cost {:.4f} (plain step {:.4f})", progress_.best_cost, progress_.baseline_cost)
                : ", no feasible waveform yet";

@@ -50,7 +50,8 @@ class WatchedWork {
 /// How far a search is.
 class SearchProgress {
  public:
-  SearchProgress(bool quiet, const OptimizeOptions& options);
+  /// `counted`: what the budget counts, "evaluations".
+  SearchProgress(bool quiet, const OptimizeOptions& options, std::string counted);
 
   void show(const OptimizeProgress& progress);
   void close();
@@ -61,6 +62,7 @@ class SearchProgress {
   Bar bar_;
   long budget_;
   double seconds_;
+  std::string counted_;
   OptimizeProgress progress_;
 };
 

@@ -35,6 +35,7 @@
 #include "studies/choices.h"
 #include "studies/omissions.h"
 #include "studies/optimize.h"
+#include "studies/robust_optimize.h"
 #include "studies/timing.h"
 #include "waveforms/export.h"
 
@@ -437,10 +438,28 @@ int accuracy_verb(const Common& c) {
   return status_code(study.status);
 }
 
-int optimize_verb(const Common& given, const OptimizeRequest& request) {
-  Common c = given;
-  if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
-  if (c.out.empty()) c.out = "softland-out";
+namespace {
+
+// "Vdp,frequency:0.5 %": puts it in the place of what the scene says.
+void calibrate(SceneFile& file, const std::string& list) {
+  if (list.empty()) return;
+  file.erase("calibration");
+  if (list == "none") return;
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = list.find(',', begin);
+    const std::string one = list.substr(begin, end - begin);
+    const std::size_t colon = one.find(':');
+    const std::string name = one.substr(0, colon), error = colon == std::string::npos ? "0 %" : one.substr(colon + 1);
+    require(name == measured_pull_in || name == measured_frequency, [&] {
+      return fmt::format("--calibrate {}: '{}' is no measurement; there are {} and {}, with an error such as {}:1 %", shown(list),
+                         name, measured_pull_in, measured_frequency, measured_pull_in);
+    });
+    file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));
+  }
+}
+
+// What a search is asked for, but for its robustness.
+OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
   const TargetRow* target = find_named(targets, request.target);
   require(target != nullptr, [&] { return fmt::format("--target {}: must be {}", request.target, listed(targets)); });
   const Named<Actuator>* actuator = find_named(actuators, request.actuator);
@@ -452,53 +471,152 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
                           .stop = c.stop};
   options.jobs = job_count(request.jobs);
   if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
-  options.max_evaluations = default_budget(options.target, options.actuator);
+  options.max_evaluations = request.robust.empty() ? default_budget(options.target, options.actuator) : default_closings;
   if (request.budget) read_budget(*request.budget, options);
+  return options;
+}
 
-  const SceneFile file = load_scene(c);
-  std::optional<WatchedWork> preparation(std::in_place, c.quiet, c.stop);
-  options.on_preparation = [&](std::string_view what, double part) { preparation->watch().tell(what, part); };
-  SearchProgress progress(c.quiet, options);
-  std::optional<ResultFolder> folder;
-  std::optional<SearchLog> log;
-  options.on_start = [&](const std::vector<std::string>& variables) {
-    preparation.emplace(c.quiet, c.stop);
-    folder =
-        claim_places(c, {"best.toml", "best.csv", "report.html", "gap.svg", "result.json", "trajectory.csv", "evaluations.csv"});
-    log.emplace(*folder, variables);
-    if (!c.quiet) {
-      say(fmt::format("{}: searching a {} waveform, actuator {}, target {}; results go to {}", c.scene, request.waveform,
-                      request.actuator, request.target, c.out));
+RobustOptions read_robust_options(const OptimizeRequest& request) {
+  const std::vector<FigureName> figures = conditioned_figures();
+  const auto read = [](const std::string& option, const auto& parse) {
+    try {
+      return parse();
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{}: {}", option, error.what()));
     }
   };
-  options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress& p) {
-    log->evaluated(e);
-    progress.show(p);
-  };
-  options.on_improvement = [&](const Evaluation&, const SceneFile& best) { log->improved(best); };
-  const OptimizeResult result = optimize(file, options);
-  preparation.reset();
-  progress.close();
-  log->flush();
+  RobustOptions robust;
+  robust.aim.measure =
+      read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
+  for (const std::string& text : request.conditions)
+    robust.aim.conditions.push_back(read("--constrain", [&] { return parse_criterion(text, figures); }));
+  if (request.samples) robust.samples = whole_number<std::uint64_t>("--samples", *request.samples, 8);
+  require(robust.samples <= most_searched,
+          [&] { return fmt::format("--samples {}: must be at most {}", robust.samples, most_searched); });
+  require(request.optimizer == "auto",
+          [&] { return fmt::format("--optimizer {}: a robust search has a method of its own", request.optimizer); });
+  return robust;
+}
 
-  Result found = result_of(result, options, {.command = c.command});
-  for (const auto& [index, e] : log->evaluations()) found.search.evaluations.push_back({static_cast<double>(index), e.value});
-  const bool interrupted = result.search.termination == Termination::interrupted;
-  const fs::path place = folder->destination(interrupted);
-  found.reproduce = {c.command, "softland simulate " + shell_word((place / "best.toml").string())};
+// A search on its way: its progress, the folder it fills, its log.
+class Searching {
+ public:
+  Searching(const Common& c, const OptimizeRequest& request, OptimizeOptions& options)
+      : preparation_(std::in_place, c.quiet, c.stop), progress_(c.quiet, options, request.robust.empty() ? "evaluations" : "closings") {
+    options.on_preparation = [this](std::string_view what, double part) {
+      if (!preparation_) return;
+      preparation_->watch().tell(what, part);
+    };
+    options.on_start = [this, &c, &request](const std::vector<std::string>& variables) {
+      preparation_.emplace(c.quiet, c.stop);
+      std::vector<std::string> files{"best.toml",   "best.csv",       "report.html",    "gap.svg",
+                                     "result.json", "trajectory.csv", "evaluations.csv"};
+      if (!request.robust.empty()) files.insert(files.end(), {"robustness.json", "devices.csv"});
+      folder_ = claim_places(c, files);
+      log_.emplace(*folder_, variables);
+      if (c.quiet) return;
+      const std::string devices = request.robust.empty() ? "" : fmt::format(", over devices of the spread ({})", request.robust);
+      say(fmt::format("{}: searching a {} waveform, actuator {}, target {}{}; results go to {}", c.scene, request.waveform,
+                      request.actuator, request.target, devices, c.out));
+    };
+    options.on_evaluation = [this](const Evaluation& e, const OptimizeProgress& p) {
+      log_->evaluated(e);
+      progress_.show(p);
+    };
+    options.on_improvement = [this](const Evaluation&, const SceneFile& best) { log_->improved(best); };
+  }
+
+  // When the search has ended.
+  void close() {
+    preparation_.reset();
+    progress_.close();
+    log_->flush();
+  }
+  [[nodiscard]] ResultFolder& folder() { return *folder_; }
+  [[nodiscard]] const SearchLog& log() const { return *log_; }
+
+ private:
+  std::optional<WatchedWork> preparation_;
+  SearchProgress progress_;
+  std::optional<ResultFolder> folder_;
+  std::optional<SearchLog> log_;
+};
+
+// Writes what a search has found, and names the files it leaves.
+std::vector<std::string> write_found(Searching& searching, const OptimizeResult& result, Result& found, const fs::path& place) {
+  for (const auto& [index, e] : searching.log().evaluations())
+    found.search.evaluations.push_back({static_cast<double>(index), e.value});
+  found.reproduce = {found.command, "softland simulate " + shell_word((place / "best.toml").string())};
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
+  ResultFolder& folder = searching.folder();
   if (result.best_scene) {
-    folder->write("best.toml", result.best_scene->scene.file.text());
-    folder->write("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
+    folder.write("best.toml", result.best_scene->scene.file.text());
+    folder.write("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
     left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
   left.emplace_back("evaluations.csv");
-  write_result(*folder, found);
-  folder->publish(interrupted);
+  write_result(folder, found);
+  return left;
+}
+
+int status_of(const OptimizeResult& result) {
+  if (result.search.termination == Termination::interrupted) return exit_interrupted;
+  return result.best && result.better_than_baseline ? exit_done : exit_no_success;
+}
+
+int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
+  Common c = given;
+  if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
+  if (c.out.empty()) c.out = "softland-out";
+  OptimizeOptions options = read_options(c, request);
+  const RobustOptions robust = read_robust_options(request);
+  SceneFile file = load_scene(c);
+  calibrate(file, request.calibration);
+  Searching searching(c, request, options);
+  const RobustResult result = robust_optimize(file, options, robust);
+  searching.close();
+
+  Result found = result_of(result, options, robust, {.command = c.command});
+  const bool interrupted = result.found.search.termination == Termination::interrupted;
+  const fs::path place = searching.folder().destination(interrupted);
+  std::vector<std::string> left = write_found(searching, result.found, found, place);
+  std::string text;
+  if (result.verdict) {
+    const RobustnessOptions of_verdict{.samples = robust.verdict, .seed = options.seed};
+    const Prepared& best = *result.found.best_scene;
+    searching.folder().write("robustness.json", json_text(robustness_json(best, *result.verdict, of_verdict, {.command = c.command}), 2));
+    searching.folder().write("devices.csv", robustness_csv(best, *result.verdict, of_verdict));
+    left.insert(left.end(), {"robustness.json", "devices.csv"});
+    text = "\n" + robustness_text(best, *result.verdict, of_verdict);
+  }
+  searching.folder().publish(interrupted);
+  print_result(c, found, text + left_in(place, left));
+  return status_of(result.found);
+}
+
+}  // namespace
+
+int optimize_verb(const Common& given, const OptimizeRequest& request) {
+  if (!request.robust.empty()) return robust_optimize_verb(given, request);
+  for (const bool is_given : {!request.conditions.empty(), !request.calibration.empty(), request.samples.has_value()})
+    require(!is_given, "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
+  Common c = given;
+  if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
+  if (c.out.empty()) c.out = "softland-out";
+  OptimizeOptions options = read_options(c, request);
+  const SceneFile file = load_scene(c);
+  Searching searching(c, request, options);
+  const OptimizeResult result = optimize(file, options);
+  searching.close();
+
+  Result found = result_of(result, options, {.command = c.command});
+  const bool interrupted = result.search.termination == Termination::interrupted;
+  const fs::path place = searching.folder().destination(interrupted);
+  const std::vector<std::string> left = write_found(searching, result, found, place);
+  searching.folder().publish(interrupted);
   const bool judged = result.best_scene && !interrupted && c.json != "-";
   print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
-  if (interrupted) return exit_interrupted;
-  return result.best && result.better_than_baseline ? exit_done : exit_no_success;
+  return status_of(result);
 }
 
 int robustness_verb(const Common& c, const RobustnessRequest& request) {
@@ -513,11 +631,17 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
 
   SceneFile file = scene_of_result(c.scene);
   for (const std::string& assignment : c.set) file.set(assignment);
+  calibrate(file, request.calibration);
+  options.worth_of_measuring = true;
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Prepared nominal = prepare_and_choose(file, true, work->watch());
-  std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms}};
-  for (const std::string& result : request.results)
-    drives.push_back({.name = result, .waveforms = prepare(scene_of_result(result), false, work->watch()).drives.waveforms});
+  const Calibration& calibration = nominal.scene.calibration;
+  std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms, .calibration = calibration}};
+  for (const std::string& result : request.results) {
+    drives.push_back({.name = result,
+                      .waveforms = prepare(scene_of_result(result), false, work->watch()).drives.waveforms,
+                      .calibration = calibration});
+  }
   std::vector<std::string> files{"robustness.json", "devices.csv"};
   constexpr std::size_t most_worst = 3;
   for (std::size_t i = 1; i <= most_worst; ++i) files.push_back(fmt::format("worst-{}.toml", i));

@@ -25,7 +25,11 @@ struct OptimizeRequest {
   std::string actuator = "electrostatic";
   std::string waveform = "pulse";
   std::string optimizer = "auto";
-  std::optional<std::string> budget;  ///< evaluations ("2500") or time ("90 s"); default: default_budget()
+  std::string robust;                   ///< the measure of a robust search; empty: the nominal device alone
+  std::vector<std::string> conditions;  ///< of a robust search
+  std::string calibration;              ///< what is measured on every device; empty: what the scene says
+  std::optional<std::string> samples;   ///< devices of a robust search
+  std::optional<std::string> budget;    ///< evaluations ("2500") or time ("90 s"); default: default_budget(), or default_closings
   std::optional<std::string> seed;    ///< default: 1
   std::optional<std::string> jobs;    ///< default: one per core
 };
@@ -33,6 +37,7 @@ struct OptimizeRequest {
 struct RobustnessRequest {
   std::vector<std::string> results;  ///< whose drives are judged as well
   std::string points = "sobol";
+  std::string calibration;             ///< what is measured on every device; empty: what the scene says
   std::optional<std::string> samples;  ///< default: 2000
   std::optional<std::string> seed;     ///< default: 1
   std::optional<std::string> jobs;     ///< default: one per core

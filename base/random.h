@@ -25,6 +25,8 @@ enum class Stream : std::uint64_t {
   indices = 8,    ///< the evaluations for Sobol' indices
   bootstrap = 9,  ///< which samples a repetition of a bootstrap takes
   folds = 10,     ///< which figures a cross-validation holds back together
+  measurement = 11,  ///< errors of what is measured on a device
+  fresh = 12,        ///< seeds of devices that a search has not seen
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

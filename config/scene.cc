@@ -63,6 +63,19 @@ void check_electrodes(const Device& device, const SceneFile::Impl& file) {
   in.fail(conflict->why);
 }
 
+Calibration read_calibration(const SceneFile::Impl& file) {
+  Calibration calibration;
+  for (const std::string& name : file.names_in("calibration")) {
+    if (name != measured_pull_in && name != measured_frequency) {
+      file.fail_section(internal::join_path("calibration", name),
+                        "unknown measurement" + internal::hint(name, {measured_pull_in, measured_frequency}));
+    }
+    (name == measured_pull_in ? calibration.pull_in_error : calibration.frequency_error) =
+        SectionReader(file, "calibration", name).number("error");
+  }
+  return calibration;
+}
+
 std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device& device) {
   std::vector<std::string> warnings;
   if (device.electrodes.empty() && !device.piezo && !file.find({"waveform", "dispersion"})) {
@@ -97,6 +110,7 @@ Scene read_scene(const SceneFile& file) {
   check_electrodes(scene.device, impl);
   scene.need_pull_in = internal::check_drives(impl, scene.device);
   internal::read_spread(scene, impl);
+  scene.calibration = read_calibration(impl);
   scene.warnings = find_warnings(impl, scene.device);
   try {
     validate(scene.device);

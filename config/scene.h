@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -84,6 +85,17 @@ struct SimulateOptions {
   double effects_tolerance = 1e-3;  ///< relative, of t_i, v_i and B_H
 };
 
+/// What is measured on every device before it is driven: the waveform is then a recipe in the device's own units, V(t) = Vdp f(t
+/// f_1), and the scene's own waveform is that of the nominal device.
+struct Calibration {
+  /// Of the measurement, relative, one standard deviation; none: it is not measured.
+  std::optional<double> pull_in_error, frequency_error;
+
+  [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error; }
+};
+/// Names of the measurements in a scene.
+inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency";
+
 struct Scene {
   std::string title;
   Device device;
@@ -91,6 +103,7 @@ struct Scene {
   bool auto_modes = false;  ///< modes = "auto": device has the default number until someone chooses (studies/auto_modes.h)
   MetricsOptions metrics;
   DeviceSpread spread;
+  Calibration calibration;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
   std::vector<std::string> warnings;

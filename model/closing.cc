@@ -144,7 +144,9 @@ class Run {
     if (touched && std::isfinite(options_.closed_potential) && !std::isfinite(out_.landing_excess) && parts_.drives.at_hold()) {
       out_.landing_excess = audit_.above_rest(now) - options_.closed_potential;
     }
-    if (touched ? now.time >= parts_.touches.first_begin() + options_.after_contact : now.time >= options_.no_contact_before) {
+    const double over = touched ? std::max(parts_.touches.first_begin() + options_.after_contact, options_.no_end_before)
+                                : options_.no_contact_before;
+    if (now.time >= over) {
       return end(Status::done);
     }
   }

@@ -39,6 +39,7 @@ void check(const Problem& problem, const OptimizerOptions& options) {
   }
   require(options.max_evaluations > 0, fmt::format("max_evaluations = {} must be positive", options.max_evaluations));
   require(options.max_seconds > 0, fmt::format("max_seconds = {} must be positive", options.max_seconds));
+  require(options.step > 0 && options.step <= 1, fmt::format("step = {} must be in (0, 1]", options.step));
   require(options.jobs >= 1, fmt::format("jobs = {} must be at least 1", options.jobs));
   require(!std::isnan(options.target), "target must not be NaN");
 }
@@ -49,7 +50,7 @@ constexpr std::uint64_t infeasible_starts_skipped = 20;
 // Runs that end without a single new evaluation: the method has nothing more to offer, from anywhere.
 constexpr int idle_runs_allowed = 20;
 
-RunReport search_single_method(Ledger& ledger, const Method& method) {
+RunReport search_single_method(Ledger& ledger, const Method& method, double step) {
   RunReport report;
   const auto body = [&](Strand& strand) {
     int idle_runs = 0;
@@ -58,6 +59,7 @@ RunReport search_single_method(Ledger& ledger, const Method& method) {
     for (std::uint64_t k = 0; !strand.over() && idle_runs < idle_runs_allowed; ++k) {
       const Run run{
           .start = k < given ? ledger.starts()[k] : sobol_points(ledger.seed(), ledger.dimension(), k - given, 1).front(),
+          .step = step,
           .seed = random_bits(ledger.seed(), Stream::library_seed, k)};
       const long before = strand.evaluations();
       if (method.reach == Reach::global) {
@@ -126,7 +128,7 @@ OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options
     internal::search_and_finish(ledger, method);
     return ledger.result(true, "");
   }
-  const internal::RunReport report = internal::search_single_method(ledger, method);
+  const internal::RunReport report = internal::search_single_method(ledger, method, options.step);
   return ledger.result(report.converged, report.message);
 }
 

@@ -45,6 +45,7 @@ struct OptimizerOptions {
   long max_evaluations = 2000;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
+  double step = 0.25;                                        ///< first step of a local method, of the box; `auto` takes its own
   int jobs = 1;                                              ///< threads, the calling one among them; `auto` makes use of them
   double target = -std::numeric_limits<double>::infinity();  ///< good enough: stop once a value is at or below it
   const std::atomic<bool>* stop = nullptr;                   ///< set from outside (Ctrl-C): ends the search with what there is

@@ -24,6 +24,8 @@ struct Headline {
 [[nodiscard]] std::string waveform_caption(const Result& result, const std::string& drive);
 [[nodiscard]] std::string search_caption(const Result& result);
 [[nodiscard]] std::string checks_caption(const Result& result);
+/// What a search over devices that differ came to; empty for any other.
+[[nodiscard]] std::string robust_caption(const Result& result);
 /// False when the winner is free of rebounds but one of its confirmations is not.
 [[nodiscard]] bool checks_agree(const Result& result);
 

@@ -100,6 +100,20 @@ struct ResultEffects {
   double influence = Metrics::unset;                     ///< of all together
 };
 
+/// Of a search over devices that differ.
+struct ResultRobust {
+  struct Condition {
+    std::string text;
+    double share = Metrics::unset, low = Metrics::unset, high = Metrics::unset;  ///< of devices that fulfil it, 95 % confidence
+    bool holds = false;
+  };
+  std::string measure;
+  double devices = Metrics::unset, fresh_devices = Metrics::unset, closings = Metrics::unset;
+  double cost_on_searched = Metrics::unset;  ///< of the winner, on the devices that were searched
+  std::optional<Condition> yield;            ///< what was to be fulfilled by as many devices as possible
+  std::vector<Condition> conditions;
+};
+
 struct Result {
   bool is_search = false;  ///< of optimize, else of simulate
   std::string status, message, title;
@@ -112,6 +126,7 @@ struct Result {
   std::optional<Certificate> certificate;
   std::vector<ResultCheck> checks;
   ResultSearch search;
+  std::optional<ResultRobust> robust;
   std::map<std::string, double> parameters;             ///< of the winner, by drive.name
   std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
   std::map<std::string, PullInVoltages> pull_in;        ///< by electrode

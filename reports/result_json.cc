@@ -104,6 +104,25 @@ json effects_json(const ResultEffects& effects) {
   return {{"left_out", std::move(left_out)}, {"influence", json_number(effects.influence)}};
 }
 
+json robust_json(const ResultRobust& robust) {
+  const auto condition = [](const ResultRobust::Condition& c) {
+    return json{{"condition", c.text},
+                {"share", json_number(c.share)},
+                {"interval", {json_number(c.low), json_number(c.high)}},
+                {"holds", c.holds}};
+  };
+  json conditions = json::array();
+  for (const ResultRobust::Condition& c : robust.conditions) conditions.push_back(condition(c));
+  json j{{"measure", robust.measure},
+         {"devices", json_number(robust.devices)},
+         {"fresh_devices", json_number(robust.fresh_devices)},
+         {"closings", json_number(robust.closings)},
+         {"cost_on_searched_devices", json_number(robust.cost_on_searched)},
+         {"conditions", std::move(conditions)}};
+  if (robust.yield) j["yield"] = condition(*robust.yield);
+  return j;
+}
+
 void add_search(json& j, const Result& r) {
   j["target"] = r.target;
   j["actuator"] = r.actuator;
@@ -122,6 +141,7 @@ void add_search(json& j, const Result& r) {
   j["search"] = {{"best_so_far", counted_json(r.search.best_so_far)}, {"value_name", r.search.value_name}};
   if (!r.search.evaluations.empty()) j["search"]["evaluations"] = counted_json(r.search.evaluations);
   j["reproduce"] = r.reproduce;
+  if (r.robust) j["robust"] = robust_json(*r.robust);
   if (!r.best.figures) return;
   j["best"]["parameters"] = r.parameters;
   j["best"]["bounds"] = r.bounds;

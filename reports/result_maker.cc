@@ -151,4 +151,25 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
   return r;
 }
 
+Result result_of(const RobustResult& found, const OptimizeOptions& options, const RobustOptions& robust,
+                 const Provenance& provenance) {
+  Result r = result_of(found.found, options, provenance);
+  r.optimizer = "race of CMA-ES";
+  r.search.value_name = "cost over devices";
+  const auto condition = [](const std::string& text, const Yield& share, bool holds) {
+    return ResultRobust::Condition{
+        .text = text, .share = share.value, .low = share.interval.low, .high = share.interval.high, .holds = holds};
+  };
+  r.robust = ResultRobust{.measure = robust.aim.measure.text,
+                          .devices = static_cast<double>(robust.samples),
+                          .fresh_devices = found.verdict ? static_cast<double>(found.verdict->devices) : Metrics::unset,
+                          .closings = static_cast<double>(found.closings),
+                          .cost_on_searched = found.cost_on_searched,
+                          .yield = {},
+                          .conditions = {}};
+  if (found.yield) r.robust->yield = condition(robust.aim.measure.yield->text, *found.yield, true);
+  for (const FulfilledCondition& c : found.conditions) r.robust->conditions.push_back(condition(c.condition.text, c.share, c.holds));
+  return r;
+}
+
 }  // namespace softland

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "reports/result.h"
-#include "studies/optimize.h"
+#include "studies/robust_optimize.h"
 #include "studies/simulate.h"
 
 namespace softland {
@@ -21,5 +21,9 @@ struct Provenance {
 /// The result of optimize. Equal for equal seeds but for the time that it took and the command line. Of the evaluations it holds
 /// those that improved.
 [[nodiscard]] Result result_of(const OptimizeResult& found, const OptimizeOptions& options, const Provenance& provenance);
+
+/// The result of a robust search.
+[[nodiscard]] Result result_of(const RobustResult& found, const OptimizeOptions& options, const RobustOptions& robust,
+                               const Provenance& provenance);
 
 }  // namespace softland

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "base/require.h"
@@ -176,6 +177,26 @@ std::optional<Work> work(const json& effort) {
   return Work{.steps = whole<long>(at(effort, {"steps"})), .wall = number(effort, {"wall_s"})};
 }
 
+ResultRobust::Condition condition(const json& one) {
+  ResultRobust::Condition c{
+      .text = text(one, {"condition"}), .share = number(one, {"share"}), .holds = truth(one, {"holds"}).value_or(false)};
+  if (const auto interval = pair(at(one, {"interval"}), number)) std::tie(c.low, c.high) = std::tie((*interval)[0], (*interval)[1]);
+  return c;
+}
+
+std::optional<ResultRobust> robust(const json& found) {
+  if (!found.is_object()) return std::nullopt;
+  ResultRobust all{.measure = text(found, {"measure"}),
+                   .devices = number(found, {"devices"}),
+                   .fresh_devices = number(found, {"fresh_devices"}),
+                   .closings = number(found, {"closings"}),
+                   .cost_on_searched = number(found, {"cost_on_searched_devices"}),
+                   .yield = {},
+                   .conditions = each(at(found, {"conditions"}), condition)};
+  if (at(found, {"yield"}).is_object()) all.yield = condition(at(found, {"yield"}));
+  return all;
+}
+
 bool is_search(const json& result) {
   const std::string kind = text(result, {"kind"});
   return kind == "optimize" || (kind.empty() && !at(result, {"baseline"}).is_null());
@@ -227,6 +248,7 @@ Result read_result(const json& result) {
            .search = {.value_name = text(result, {"search", "value_name"}),
                       .best_so_far = points(at(result, {"search", "best_so_far"})),
                       .evaluations = points(at(result, {"search", "evaluations"}))},
+           .robust = robust(at(result, {"robust"})),
            .pull_in = pull_in(at(result, {"pull_in"})),
            .natural_frequencies = numbers(at(result, {"natural_frequencies_rad_s"})),
            .work = work(at(result, {"work"})),

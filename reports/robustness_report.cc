@@ -119,6 +119,39 @@ std::string spread_words(const DeviceSpread& spread) {
   return words;
 }
 
+// "Vdp measured to 1 %, frequency to 0.5 %"
+std::string calibration_words(const Calibration& c) {
+  std::string words;
+  const auto add = [&](std::string_view name, const std::optional<double>& error) {
+    if (!error) return;
+    words += (words.empty() ? "" : ", ") + std::string(name) + (*error > 0 ? " measured to " + percent(*error) : " known exactly");
+  };
+  add(measured_pull_in, c.pull_in_error);
+  add(measured_frequency, c.frequency_error);
+  return words;
+}
+
+const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key) {
+  const auto& all = ensemble_figures();
+  const auto figure = std::find_if(all.begin(), all.end(), [&](const EnsembleFigure& f) { return f.key == key; });
+  return drive.figures[static_cast<std::size_t>(figure - all.begin())].quantiles[2];
+}
+
+// What each measurement is worth: the last drive with more and more known of the devices.
+std::string knowledge_text(const Robustness& found) {
+  if (found.by_knowledge.empty() || found.devices == 0) return {};
+  std::string text = fmt::format("\n{:<34}{:>24}{:>26}{:>26}\n", "Known of every device", "without a rebound", "v_max, 95 % below", "B_H, 95 % below");
+  const auto row = [&](const std::string& name, const DriveRobustness& d) {
+    text += internal::left_aligned(name, 34) + internal::right_aligned(yield_text(d.bounce_free), 24) +
+            internal::right_aligned(quantile_text(quantile_95(d, "largest_impact_velocity_m_s"), "m/s"), 26) +
+            internal::right_aligned(quantile_text(quantile_95(d, "major_bounce_height_m"), "m"), 26) + "\n";
+  };
+  for (const DriveRobustness& d : found.by_knowledge) row(d.name, d);
+  const Calibration& c = found.drives.back().calibration;
+  if (c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0) row(calibration_words(c), found.drives.back());
+  return text;
+}
+
 }  // namespace
 
 json robustness_json(const Prepared& nominal, const Robustness& found, const RobustnessOptions& options,
@@ -164,8 +197,12 @@ json robustness_json(const Prepared& nominal, const Robustness& found, const Rob
 std::string robustness_text(const Prepared& nominal, const Robustness& found, const RobustnessOptions& options) {
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
-  text += wrapped(fmt::format("{} devices of the spread: {}. All have the volts that were designed for the nominal device.",
-                              found.devices, spread_words(nominal.scene.spread))) +
+  const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().calibration;
+  text += wrapped(fmt::format("{} devices of the spread: {}. {}", found.devices, spread_words(nominal.scene.spread),
+                              calibration.is_empty()
+                                  ? "All have the volts that were designed for the nominal device."
+                                  : "The plain step has the volts of the nominal device, every other drive the units of each "
+                                    "device: " + calibration_words(calibration) + ".")) +
           "\n\n";
   if (found.devices == 0) return text;
   constexpr std::size_t label = 34;
@@ -188,6 +225,7 @@ std::string robustness_text(const Prepared& nominal, const Robustness& found, co
           [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
     }
   }
+  text += knowledge_text(found);
   text += "\n" +
           wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. A device "
                               "that does not close counts as the worst.",

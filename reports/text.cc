@@ -73,6 +73,7 @@ std::string text_report(const Result& result) {
   if (const std::string checks = internal::checks_caption(result); lands_softly && !checks.empty())
     out += "\n" + wrapped(checks) + "\n";
   if (const std::string words = internal::certificate_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
+  if (const std::string words = internal::robust_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   for (const std::string& warning : result.warnings) out += "\n" + wrapped("warning: " + warning) + "\n";
   return out;
 }

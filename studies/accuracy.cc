@@ -12,7 +12,6 @@
 namespace softland {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 
 constexpr double enough_seconds = 0.03;     // of timed runs of one setting
 constexpr double reference_tighter = 1e-4;  // than the tightest tolerance
@@ -21,7 +20,6 @@ constexpr double reference_growth = 2.5;    // of the time from one to the next,
 constexpr double told_apart = 9.9;          // times the reference's tolerance, less what rounding takes: errors show from here on
 constexpr CloudOptions cloud_options{.runs = 8};
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
 
@@ -51,7 +49,7 @@ class Study {
     if (!find_reference()) return std::move(found_);
     const Switch& own = prepared_.model;
     gather_cloud(own);
-    start_ = Clock::now();
+    start_ = options_.clock();
     sweep(own, setting(own_integrator_, own_points_), found_.rows);
     for (const double points : other_points_) {
       sweep(Switch(prepared_.scene.device, {.points_per_length = points}), setting(own_integrator_, points), found_.rows);
@@ -78,6 +76,7 @@ class Study {
 
  private:
   [[nodiscard]] bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  [[nodiscard]] double seconds_since(double start) const { return options_.clock() - start; }
   void progress() {
     ++done_;
     if (options_.on_progress) options_.on_progress(done_, all_);
@@ -104,14 +103,14 @@ class Study {
     constexpr int steps_per_look = 64;  // at the clock
     int steps = 0;
     bool cut = false;
-    Clock::time_point start;
+    double start = 0;
     closing_options.observer = [&](double, const double*, const double*) {
       if (++steps % steps_per_look == 0) cut = seconds_since(start) > most_seconds;
       return cut;
     };
     std::vector<double> seconds;
     for (double spent = 0; row.runs < runs && spent < enough_seconds; ++row.runs) {
-      start = Clock::now();
+      start = options_.clock();
       const std::clock_t begin = std::clock();
       const Trajectory t = simulate_closing(model, signals_, closing_options);
       seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
@@ -188,19 +187,20 @@ class Study {
     int steps = 0;
     while (planned * std::pow(reference_looser, steps + 1) * told_apart <= options_.tolerances.front()) ++steps;
     AccuracyRow& best = found_.reference;
-    double growth = reference_growth;
+    double growth = reference_growth, best_seconds = 0;
     for (; steps >= 0 && !stopped(); --steps) {
       const bool found = best.missing.empty();
-      if (found && (!touched(best.figures) || growth * best.work.wall > seconds_left)) return;
+      if (found && (!touched(best.figures) || growth * best_seconds > seconds_left)) return;
       AccuracyRow next = setting(own_integrator_, points, planned * std::pow(reference_looser, steps));
-      const Clock::time_point start = Clock::now();
+      const double start = options_.clock();
       constexpr double first_share = 1.0 / 3;  // so that there is time for one with fewer points
       measure(fine, next, 1, found ? seconds_left : first_share * seconds_left);
       const double seconds = seconds_since(start);
       seconds_left = std::max(0.0, seconds_left - seconds);
       if (found && !next.missing.empty()) return;
-      if (found) growth = std::max(reference_growth, seconds / best.work.wall);
+      if (found) growth = std::max(reference_growth, seconds / best_seconds);
       best = std::move(next);
+      best_seconds = seconds;
       if (best.missing.starts_with("cut")) return;
     }
   }
@@ -300,11 +300,15 @@ class Study {
   Integrator own_integrator_ = Integrator::automatic;
   std::vector<int> other_modes_;
   std::size_t done_ = 0, all_ = 0;
-  Clock::time_point start_ = Clock::now();
+  double start_ = 0;
   AccuracyStudy found_;
 };
 
 }  // namespace
+
+double AccuracyOptions::wall_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options) {
   FigureErrors errors{};

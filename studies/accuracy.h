@@ -39,6 +39,10 @@ struct AccuracyOptions {
   double all_seconds = 15;        ///< for everything else together; what comes later is not tried
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
   const std::atomic<bool>* stop = nullptr;
+  std::function<double()> clock = wall_clock;  ///< what all these limits are held against [s]; looked at once in 64 steps
+
+  /// Of this machine [s].
+  static double wall_clock();
 };
 
 /// One setting and what it delivers.

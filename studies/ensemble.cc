@@ -4,28 +4,20 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <utility>
 
 #include "base/executor.h"
+#include "base/random.h"
 #include "base/require.h"
-#include "model/closing.h"
+#include "model/pull_in.h"
+#include "studies/search_space.h"
 
 namespace softland {
 namespace {
 
 constexpr std::size_t chunk = 256;  // devices of one task
-
-DeviceOutcome close_one(const SampledDevice& device, const std::vector<Signal>& drives, const MetricsOptions& options,
-                        const ClosingOptions& run) {
-  if (!device.model) return {.metrics = {}, .failure = device.refusal};
-  MetricsObserver observer(device.model->device().gap.contact, options);
-  const Trajectory end = observe_closing(*device.model, drives, run, observer);
-  DeviceOutcome outcome{.metrics = observer.metrics(end), .largest_impact_velocity = observer.largest_impact_velocity()};
-  if (outcome.metrics.status == Status::numerical_failure || outcome.metrics.status == Status::collapsed_at_rest)
-    outcome.failure = end.message.empty() ? std::string(to_string(outcome.metrics.status)) : end.message;
-  return outcome;
-}
 
 }  // namespace
 
@@ -94,28 +86,105 @@ void DeviceBuilder::describe(SampledDevice& sampled) {
   sampled.model.emplace(read_scene(ensemble_->scene(sampled.values)).device, nominal.quadrature, &nominal.model);
 }
 
-std::vector<DeviceOutcome> close_all(const Ensemble& ensemble, const std::vector<Signal>& drives, const EnsembleRun& run,
-                                     const Watch& watch) {
-  std::vector<DeviceOutcome> outcomes(ensemble.size());
+DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in) : nominal_(&nominal), need_pull_in_(need_pull_in) {
+  frequency_ = nominal.model.angular_frequencies()[0];
+  if (!need_pull_in) return;
+  const std::string name = searched_electrode(nominal.scene.device);
+  const std::vector<std::string> names = nominal.drive_names();
+  electrode_ = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  pull_in_ = pull_in(nominal.model);
+  require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
+}
+
+double DeviceMeter::pull_in(const Switch& model) const {
+  constexpr double tolerance = 1e-6;  // of the integrator: no measurement is as good
+  return dynamic_pull_in(model, electrode_, static_pull_in(model, electrode_), {}, tolerance).voltage;
+}
+
+DeviceUnits DeviceMeter::exact(const Switch& model) const {
+  return {.volts = need_pull_in_ ? pull_in(model) / pull_in_ : 1, .time = frequency_ / model.angular_frequencies()[0]};
+}
+
+DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed,
+                                  std::uint64_t k) {
+  const auto reading = [&](double error, std::uint64_t which) {
+    constexpr double least = 0.1;  // no instrument reads less than nothing
+    return std::max(least, 1 + error * random_normal(seed, Stream::measurement, 2 * k + which));
+  };
+  DeviceUnits units;
+  if (calibration.pull_in_error) units.volts = exact.volts * reading(*calibration.pull_in_error, 0);
+  if (calibration.frequency_error) units.time = exact.time / reading(*calibration.frequency_error, 1);
+  return units;
+}
+
+std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device, const DeviceUnits& units) {
+  std::vector<Waveform> own = waveforms;
+  for (std::size_t k = 0; k < own.size(); ++k)
+    own[k] = scaled(std::move(own[k]), k < device.electrodes.size() ? units.volts : 1, units.time);
+  return own;
+}
+
+DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
+                           const ClosingOptions& run) {
+  if (!device.model) return {.metrics = {}, .failure = device.refusal};
+  MetricsObserver observer(device.model->device().gap.contact, options);
+  const Trajectory end = observe_closing(*device.model, signals, run, observer);
+  DeviceOutcome outcome{.metrics = observer.metrics(end), .largest_impact_velocity = observer.largest_impact_velocity()};
+  if (outcome.metrics.status == Status::numerical_failure || outcome.metrics.status == Status::collapsed_at_rest)
+    outcome.failure = end.message.empty() ? std::string(to_string(outcome.metrics.status)) : end.message;
+  return outcome;
+}
+
+std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, const std::vector<EnsembleDrive>& drives,
+                                                  const EnsembleRun& run, const Watch& watch) {
+  const Prepared& nominal = ensemble.nominal();
   const ClosingOptions options{.duration = run.duration, .tolerance = run.tolerance, .stop = watch.stop};
+  const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
+  const bool calibrated = any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); });
+  std::optional<DeviceMeter> meter;
+  if (calibrated) meter.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
+  std::vector<std::vector<Signal>> nominal_signals;
+  for (const EnsembleDrive& drive : drives) nominal_signals.push_back(signals_of(drive.waveforms));
+
+  std::vector<std::vector<DeviceOutcome>> outcomes(drives.size(), std::vector<DeviceOutcome>(ensemble.size()));
   std::mutex telling;
   std::atomic<std::size_t> done = 0;
-  const std::size_t chunks = (outcomes.size() + chunk - 1) / chunk;
-  const auto task = [&](std::size_t c) {
-    DeviceBuilder builder(ensemble);
-    for (std::size_t k = c * chunk; k < std::min(outcomes.size(), (c + 1) * chunk) && !watch.stopped(); ++k) {
-      outcomes[k] = close_one(builder.device(k), drives, ensemble.nominal().scene.metrics, options);
-      if (++done % 64 != 0) continue;
-      const std::scoped_lock lock(telling);
-      watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(outcomes.size()));
+  const auto close = [&](DeviceBuilder& builder, std::size_t k) {
+    const SampledDevice device = builder.device(k);
+    DeviceUnits exact;
+    if (meter && device.model) exact = meter->exact(*device.model);
+    for (std::size_t d = 0; d < drives.size() && !watch.stopped(); ++d) {
+      const Calibration& calibration = drives[d].calibration;
+      if (calibration.is_empty() || !device.model) {
+        outcomes[d][k] = close_device(device, nominal_signals[d], nominal.scene.metrics, options);
+      } else if (const DeviceUnits units = DeviceMeter::measured(exact, calibration, run.seed, k); std::isfinite(units.volts)) {
+        outcomes[d][k] = close_device(device, signals_of(in_units(drives[d].waveforms, nominal.scene.device, units)),
+                                      nominal.scene.metrics, options);
+      } else {
+        outcomes[d][k].failure = "its pull-in voltage cannot be measured";
+      }
     }
   };
-  outcomes.resize(std::min(outcomes.size(), chunk * run_tasks(chunks, run.jobs, task, watch.stop)));
+  const auto task = [&](std::size_t c) {
+    DeviceBuilder builder(ensemble);
+    for (std::size_t k = c * chunk; k < std::min<std::size_t>(ensemble.size(), (c + 1) * chunk) && !watch.stopped(); ++k) {
+      close(builder, k);
+      if (++done % 64 != 0) continue;
+      const std::scoped_lock lock(telling);
+      watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(ensemble.size()));
+    }
+  };
+  const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
+  std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, watch.stop));
   // Asked to stop, some chunks hold devices that were not begun, or not ended.
-  const auto missing = std::find_if(outcomes.begin(), outcomes.end(), [](const DeviceOutcome& o) {
+  const auto missing = [](const DeviceOutcome& o) {
     return o.failure.empty() && (o.metrics.status == Status::not_run || o.metrics.status == Status::interrupted);
-  });
-  outcomes.erase(missing, outcomes.end());
+  };
+  for (const auto& of_drive : outcomes) {
+    const auto first = std::find_if(of_drive.begin(), of_drive.begin() + static_cast<std::ptrdiff_t>(complete), missing);
+    complete = static_cast<std::size_t>(first - of_drive.begin());
+  }
+  for (auto& of_drive : outcomes) of_drive.resize(complete);
   return outcomes;
 }
 

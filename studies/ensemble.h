@@ -9,6 +9,7 @@
 
 #include "base/watch.h"
 #include "objectives/metrics.h"
+#include "model/closing.h"
 #include "sampling/points.h"
 #include "studies/prepared.h"
 
@@ -69,15 +70,57 @@ struct DeviceOutcome {
   [[nodiscard]] bool closed() const { return failure.empty() && std::isfinite(metrics.major_bounce_height); }
 };
 
+/// What is known of a device, over what holds for the nominal one: factors of the voltages and of the times of its drives.
+struct DeviceUnits {
+  double volts = 1, time = 1;
+};
+
+/// Measures devices against the nominal one, with the errors of a calibration.
+class DeviceMeter {
+ public:
+  /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there
+  /// is none, or it has no pull-in voltage, and `need_pull_in`.
+  DeviceMeter(const Prepared& nominal, bool need_pull_in);
+  /// Without error. A device whose pull-in voltage cannot be found has NaN volts.
+  [[nodiscard]] DeviceUnits exact(const Switch& model) const;
+  /// What a calibration of device k knows; the errors are functions of seed and k.
+  [[nodiscard]] static DeviceUnits measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed,
+                                            std::uint64_t k);
+
+ private:
+  [[nodiscard]] double pull_in(const Switch& model) const;  // [V]
+
+  const Prepared* nominal_;
+  bool need_pull_in_;
+  std::size_t electrode_ = 0;
+  double pull_in_ = Metrics::unset, frequency_ = Metrics::unset;
+};
+
+/// The drives that every device gets: the waveforms of the nominal device, or, where devices are calibrated, those in the units
+/// of each one. The voltages of a piezo do not follow the pull-in voltage, nor does the factor of a dispersion force.
+struct EnsembleDrive {
+  std::vector<Waveform> waveforms;  ///< in the order of Switch::drives() [V]
+  Calibration calibration = {};
+};
+/// Of one device.
+[[nodiscard]] std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device,
+                                             const DeviceUnits& units);
+
 struct EnsembleRun {
   double duration = 0;      ///< window [s]
   double tolerance = 1e-5;  ///< of the integrator: 95 % quantiles of B_H then move by less than 0.4 %
+  std::uint64_t seed = 1;   ///< of the errors of measurements
   int jobs = 1;             ///< threads; does not change the outcomes
 };
 
-/// The closings of all devices under these drives [V], those of the nominal device. Asked to stop, the outcomes are those of the
-/// first devices.
-[[nodiscard]] std::vector<DeviceOutcome> close_all(const Ensemble& ensemble, const std::vector<Signal>& drives,
-                                                   const EnsembleRun& run, const Watch& watch = {});
+/// The closing of one device; figures are those of the run, however early its options end it.
+[[nodiscard]] DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals,
+                                         const MetricsOptions& options, const ClosingOptions& run);
+
+/// The closings of all devices under each of these drives: the outcomes of a drive, by device. Asked to stop, they are those of
+/// the first devices.
+[[nodiscard]] std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble,
+                                                                const std::vector<EnsembleDrive>& drives,
+                                                                const EnsembleRun& run, const Watch& watch = {});
 
 }  // namespace softland

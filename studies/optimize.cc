@@ -7,39 +7,16 @@
 #include <tuple>
 
 #include "base/engineering.h"
-#include "base/require.h"
-#include "model/constants.h"
-#include "studies/choices.h"
 #include "studies/plain_step.h"
-#include "studies/two_stages.h"
+#include "studies/search_setting.h"
 
 namespace softland {
 namespace {
 
-constexpr double never_touched = 10;  // costs from here on: see cost()
-constexpr double latest_touch = 2.5;  // times the baseline's first touch
-// Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
-constexpr double driven_touch = 1.5, braked_touch = 2.0;
-constexpr double search_tolerance = 1e-6;   // of the integrator: costs good to about 1e-4
 constexpr double tight_tolerance = 1e-9;    // of the confirming run
 constexpr int more_modes = 2;               // of the confirming run
 constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
 constexpr double distinct = 1.01;           // ratio of the costs of two candidates
-
-// The scene with other waveforms on some drives.
-SceneFile with_waveforms(const Prepared& p, const std::map<std::string, Waveform>& waveforms) {
-  SceneFile file = resolved(p.scene, p.voltage_units());
-  for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
-  return file;
-}
-
-// Text of the scene, read back: what a user's `simulate best.toml` will run. Warnings stay those about the file that the user
-// wrote.
-Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
-  Prepared p = prepare_and_choose(SceneFile::parse(file.text(), name));
-  p.scene.warnings = given.scene.warnings;
-  return p;
-}
 
 // The target's own figure, infinite where the closing has none.
 double figure(Target target, const Metrics& m) {
@@ -107,66 +84,13 @@ bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   const Watch before{.stop = options.stop, .progress = options.on_preparation}, after{.progress = options.on_preparation};
-  Prepared given = prepare_and_choose(file, true, before);
-  require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, before);
+  const Prepared& given = setting.given;
+  OptimizeResult result{.scene = given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
+  result.baseline_cost = setting.baseline_cost;
+  result.variables = setting.space.variables();
 
-  Prepared baseline_scene = read_back(with_waveforms(given, plain_step(given, options.actuator)), "baseline.toml", given);
-  OptimizeResult result{.scene = given, .baseline_scene = baseline_scene, .baseline = simulate(baseline_scene, true, before)};
-  before.throw_if_stopped();
-
-  // How candidates are scored.
-  const double period = 2 * pi / given.model.angular_frequencies()[0];
-  const MetricsOptions& metrics_options = given.scene.metrics;
-  CostScale scale{.step = {},
-                  .score_window = std::max(period, 3 * given.model.in_contact_period()),
-                  .contact_gap = given.scene.device.gap.contact,
-                  .free_touch = options.actuator == Actuator::pzt ? braked_touch : driven_touch};
-  ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
-  std::vector<double> rest;
-  for (const Signal& s : baseline_scene.signals()) rest.push_back(s.hold_level());
-  if (const auto closed = closed_equilibrium(given.model, rest)) run.closed_potential = closed->potential;
-  const Trajectory step = simulate_closing(given.model, baseline_scene.signals(), run);
-  scale.step = cost_figures(step, metrics_options);
-  if (!scale.step.touched) {
-    // A hold level that a plain step does not close with may still close with a throw: scale by what a closing of this beam would
-    // be like.
-    scale.step = {.touched = true,
-                  .first_touch = period / 2,
-                  .touch_speed = given.scene.device.gap.contact * given.model.angular_frequencies()[0],
-                  .rebound_height = given.scene.device.gap.contact,
-                  .impact_energy = 0};
-  }
-  result.baseline_cost = cost(options.target, step, scale, metrics_options);
-  // A landing so late that the window ends before the switch could bounce would look like a soft one.
-  run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.model.in_contact_period());
-  require(run.no_contact_before > 0,
-          fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
-                      engineering(given.duration, "s", 3), engineering(2 * given.model.in_contact_period(), "s", 3)));
-  run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
-
-  const SearchSpace space(given, options.actuator, options.family, scale.step.first_touch);
-  const std::vector<std::string> names = given.drive_names();
-  const std::vector<Signal> standing = baseline_scene.signals();
-  result.variables = space.variables();
-  const auto price = [&](const std::vector<Signal>& signals) {
-    CostObserver observer(scale.contact_gap, metrics_options);
-    const Trajectory end = observe_closing(given.model, signals, run, observer);
-    const CostFigures figures = observer.figures(end.landing_excess);
-    const auto by = [&](Target target) { return cost(target, end.status, figures, scale, metrics_options); };
-    const double leading = by(Target::bounce);
-    return Prices{.leading = leading, .own = has_own_cost(options.target) ? by(options.target) : leading};
-  };
-  const auto price_at = [&](std::span<const double> x) {
-    std::vector<Signal> signals = standing;
-    for (const auto& [drive, waveform] : space.waveforms(x)) {
-      const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin());
-      signals[at] = signal(waveform);
-      if (!violation(signals[at], given.drives.limits.at(drive)).empty()) return Prices{};
-    }
-    return price(signals);
-  };
-
-  Problem problem{.variables = space.variables(), .objective = {}, .starts = space.starts()};
+  Problem problem{.variables = result.variables, .objective = {}, .starts = setting.space.starts()};
   std::vector<std::string> variable_names;
   for (const Variable& v : problem.variables) variable_names.push_back(v.name);
   const auto named = [&](std::span<const double> x) {
@@ -180,9 +104,9 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   // A scene that holds a landing already is refined: its drives are the first candidate, and where the search can describe them
   // it starts there.
   double given_cost = never_touched;
-  const std::optional<std::vector<double>> given_point = space.parameters(given.drives.waveforms);
-  if (!same_drives(given.signals(), standing)) {
-    given_cost = price(given.signals()).own;
+  const std::optional<std::vector<double>> given_point = setting.space.parameters(given.drives.waveforms);
+  if (!same_drives(given.signals(), setting.baseline_scene.signals())) {
+    given_cost = setting.price(given.signals()).own;
     if (given_point) problem.starts.insert(problem.starts.begin(), *given_point);
     if (given_cost < never_touched) {
       progress.best_cost = given_cost;
@@ -192,13 +116,13 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
     }
   }
 
-  TwoStages stages(price_at, [&](const Evaluation& e) {
+  TwoStages stages([&](std::span<const double> x) { return setting.price_at(x); }, [&](const Evaluation& e) {
     ++progress.evaluations;
     const bool improves = std::isfinite(e.value) && !(progress.best_cost <= e.value);
     if (improves) progress.best_cost = e.value;
     if (options.on_evaluation) options.on_evaluation(e, progress);
     if (improves && options.on_improvement && e.value < never_touched)
-      options.on_improvement(e, with_waveforms(baseline_scene, space.waveforms(e.x)));
+      options.on_improvement(e, setting.scene(setting.space.waveforms(e.x)));
   });
   result.search = stages.run(std::move(problem),
                              {.optimizer = options.optimizer,
@@ -226,7 +150,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
                            : m.settled ? Belief::settles
                                        : Belief::touches};
     if (options.target == Target::bounce || options.target == Target::rebound)
-      now.figure = std::max(now.figure, metrics_options.significant_rebound);
+      now.figure = std::max(now.figure, given.scene.metrics.significant_rebound);
     if (now.belief == Belief::meets_goal || !winner || now.better_than(*winner)) now.checks = confirm(now.scene);
     if (now.belief == Belief::meets_goal &&
         std::all_of(now.checks.begin(), now.checks.end(), [&](const ConfirmingRun& c) { return met(c.metrics); }))
@@ -236,7 +160,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   if (given_cost < never_touched)
     verify(with_waveforms(given, {}), given_cost, given_point ? named(*given_point) : std::map<std::string, double>{});
   for (const Evaluation& e : candidates(result.search.improvements)) {
-    verify(with_waveforms(baseline_scene, space.waveforms(e.x)), e.value, named(e.x));
+    verify(setting.scene(setting.space.waveforms(e.x)), e.value, named(e.x));
     if (winner->belief == Belief::confirmed && winner->cost <= e.value) break;
   }
   if (winner) {

@@ -1,12 +1,9 @@
 // The search for a drive waveform: scene -> baseline -> search -> verified winner.
 //
-// Baseline: a step of the searched electrode to the scene's hold level, without rise time unless the driver's slew limit asks for
-// one, piezo 0 V unless it is the only drive, which then steps to its hold level. Every candidate is scored over a
-// fixed time after its own first contact, must touch within 2.5 times the baseline's first-touch time, stays inside the driver's
-// limits, and is infeasible if the beam comes near the electrode. The winner is believed only after a run over the whole window
-// at the scene's accuracy, read back from the very text of best.toml; runs with a tighter integrator and with two more modes
-// confirm it. Where the best candidate fails one of these, the next ones of the search are tried. The waveform that the scene
-// holds already is a candidate too, so that refining a winner never ends with a worse one.
+// The winner is believed only after a run over the whole window at the scene's accuracy, read back from the very text of
+// best.toml; runs with a tighter integrator and with two more modes confirm it. Where the best candidate fails one of these, the
+// next ones of the search are tried. The waveform that the scene holds already is a candidate too, so that refining a winner
+// never ends with a worse one. Baseline and scores: search_setting.h.
 #pragma once
 
 #include <atomic>

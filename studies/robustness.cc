@@ -73,7 +73,8 @@ void summarise(DriveRobustness& drive) {
   drive.worst.resize(static_cast<std::size_t>(kept));
 }
 
-std::vector<Signal> signals_of(const Prepared& nominal, const NamedDrive& drive) {
+// In the order of Switch::drives(); what is not driven stays at 0 V.
+std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& drive) {
   const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {
     require(std::find(names.begin(), names.end(), name) != names.end(),
@@ -83,12 +84,33 @@ std::vector<Signal> signals_of(const Prepared& nominal, const NamedDrive& drive)
     const std::string broken = violation(signal(waveform), limits->second);
     require(broken.empty(), [&] { return fmt::format("{}: drive '{}': {}", drive.name, name, broken); });
   }
-  std::vector<Signal> signals;
+  std::vector<Waveform> waveforms;
   for (const std::string& name : names) {
     const auto found = drive.waveforms.find(name);
-    signals.push_back(found == drive.waveforms.end() ? Signal() : signal(found->second));
+    waveforms.push_back(found == drive.waveforms.end() ? Waveform(Step{.level = 0}) : found->second);
   }
-  return signals;
+  return waveforms;
+}
+
+// The source of a device whose own units are larger than those of the nominal one has to give more.
+void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
+  if (violation(signal, limits).empty()) return;
+  if (signal.maximum() > limits.max_voltage) file.assign(driver + ".max_voltage", signal.maximum());
+  if (signal.minimum() < limits.min_voltage) file.assign(driver + ".min_voltage", signal.minimum());
+  if (signal.peak_slew() > limits.max_slew) file.assign(driver + ".max_slew", signal.peak_slew());
+}
+
+// The same drive for every knowledge that one can have of a device, from nothing to all that can be measured, without errors.
+std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
+  const auto with = [&](const char* name, const Calibration& calibration) {
+    return NamedDrive{.name = name, .waveforms = drive.waveforms, .calibration = calibration};
+  };
+  std::vector<NamedDrive> all{with("nothing", {})};
+  const Calibration& c = drive.calibration;
+  if (c.pull_in_error) all.push_back(with("Vdp", {.pull_in_error = 0, .frequency_error = {}}));
+  if (c.frequency_error) all.push_back(with("frequency", {.pull_in_error = {}, .frequency_error = 0}));
+  if (c.pull_in_error && c.frequency_error) all.push_back(with("Vdp and frequency", {.pull_in_error = 0, .frequency_error = 0}));
+  return all;
 }
 
 }  // namespace
@@ -122,35 +144,39 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, one_pulls ? Actuator::both : Actuator::pzt)};
   plain.waveforms.insert(nominal.drives.waveforms.begin(), nominal.drives.waveforms.end());  // of the drives that do not step
   std::vector<NamedDrive> all;
-  std::vector<std::vector<Signal>> signals;
+  std::vector<EnsembleDrive> judged;
   const auto add = [&](const NamedDrive& drive) {
-    std::vector<Signal> own = signals_of(nominal, drive);
-    const auto is_same = [&](const std::vector<Signal>& other) { return same_drives(own, other); };
-    if (std::any_of(signals.begin(), signals.end(), is_same)) return;  // the scene's own drive may be the plain step
+    judged.push_back({.waveforms = waveforms_of(nominal, drive), .calibration = drive.calibration});
     all.push_back(drive);
-    signals.push_back(std::move(own));
+  };
+  const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
+    const std::vector<Signal> own = signals_of(waveforms_of(nominal, drive));
+    return drive.calibration.is_empty() && std::any_of(judged.begin(), judged.end(), [&](const EnsembleDrive& other) {
+             return other.calibration.is_empty() && same_drives(own, signals_of(other.waveforms));
+           });
   };
   add(plain);
-  for (const NamedDrive& drive : drives) add(drive);
-
-  result.devices = options.samples;
-  for (std::size_t i = 0; i < all.size() && !watch.stopped(); ++i) {
-    const Watch share{.stop = watch.stop, .progress = [&](std::string_view what, double part) {
-                        watch.tell(what, (static_cast<double>(i) + part) / static_cast<double>(all.size()));
-                      }};
-    result.drives.push_back(
-        {.name = all[i].name,
-         .waveforms = all[i].waveforms,
-         .outcomes = close_all(ensemble, signals[i],
-                               {.duration = result.duration, .tolerance = result.tolerance, .jobs = options.jobs}, share)});
-    result.devices = std::min(result.devices, result.drives.back().outcomes.size());
+  for (const NamedDrive& drive : drives) {
+    if (!is_judged(drive)) add(drive);
   }
-  if (result.drives.empty() || result.devices == 0) watch.throw_if_stopped();
-  // All drives are judged by the same devices.
+  const std::size_t shown = all.size();
+  if (options.worth_of_measuring && !all.back().calibration.is_empty()) {
+    for (const NamedDrive& known : by_knowledge(NamedDrive(all.back()))) add(known);
+  }
+
+  const EnsembleRun run{
+      .duration = result.duration, .tolerance = result.tolerance, .seed = options.seed, .jobs = options.jobs};
+  std::vector<std::vector<DeviceOutcome>> outcomes = close_all(ensemble, judged, run, watch);
+  result.devices = outcomes.front().size();
   result.interrupted = watch.stopped();
-  for (DriveRobustness& drive : result.drives) {
-    drive.outcomes.resize(result.devices);
+  if (result.devices == 0) watch.throw_if_stopped();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    DriveRobustness drive{.name = std::move(all[i].name),
+                          .waveforms = std::move(all[i].waveforms),
+                          .calibration = all[i].calibration,
+                          .outcomes = std::move(outcomes[i])};
     summarise(drive);
+    (i < shown ? result.drives : result.by_knowledge).push_back(std::move(drive));
   }
   return result;
 }
@@ -158,8 +184,25 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
 SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
                           const RobustnessOptions& options) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
-  SceneFile file = ensemble.scene(ensemble.values(device));
-  for (const auto& [name, waveform] : drive.waveforms) file.set_waveform(name, waveform);
+  const std::vector<double> values = ensemble.values(device);
+  SceneFile file = ensemble.scene(values);
+  std::vector<Waveform> own = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms});
+  if (!drive.calibration.is_empty()) {
+    const SampledDevice sampled = DeviceBuilder(ensemble).device(values);
+    if (sampled.model) {
+      const DeviceMeter meter(nominal, drive.calibration.pull_in_error.has_value());
+      const DeviceUnits units = DeviceMeter::measured(meter.exact(*sampled.model), drive.calibration, options.seed, device);
+      if (std::isfinite(units.volts)) own = in_units(own, nominal.scene.device, units);
+    }
+    file.erase("calibration");  // has been used
+  }
+  const std::vector<std::string> names = nominal.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (!drive.waveforms.contains(names[k])) continue;
+    file.set_waveform(names[k], own[k]);
+    if (const auto limits = nominal.drives.limits.find(names[k]); limits != nominal.drives.limits.end())
+      allow(file, "driver." + names[k], signal(own[k]), limits->second);
+  }
   return file;
 }
 

@@ -49,7 +49,8 @@ struct Yield {
 
 struct DriveRobustness {
   std::string name;
-  std::map<std::string, Waveform> waveforms;  ///< in volts
+  std::map<std::string, Waveform> waveforms;  ///< of the nominal device, in volts
+  Calibration calibration = {};               ///< where every device has them in its own units
   std::vector<DeviceOutcome> outcomes;        ///< by device
   std::vector<FigureStatistics> figures;      ///< as ensemble_figures()
   Yield closing;                              ///< the contact is reached, and the run could be followed
@@ -62,10 +63,14 @@ struct RobustnessOptions {
   std::uint64_t seed = 1;
   PointSet points = PointSet::sobol;
   int jobs = 1;  ///< threads; does not change the result
+  /// A last drive that is calibrated is judged with nothing known of the devices as well, with each measurement alone, and with
+  /// all of them without error.
+  bool worth_of_measuring = false;
 };
 
 struct Robustness {
   std::vector<DriveRobustness> drives;  ///< the plain step first
+  std::vector<DriveRobustness> by_knowledge = {};  ///< the last of them again: what measuring is worth
   std::size_t devices = 0;              ///< fewer than asked for where it was interrupted
   bool interrupted = false;
   double duration = 0;   ///< window [s]
@@ -76,6 +81,7 @@ struct Robustness {
 struct NamedDrive {
   std::string name;
   std::map<std::string, Waveform> waveforms;  ///< in volts
+  Calibration calibration = {};               ///< none: every device gets the volts of the nominal one
 };
 
 /// The drives on the devices of the spread of `nominal`, and the plain step to the same hold levels before them. Throws

@@ -8,6 +8,12 @@
 //   harmonic  amplitude within the limits about the hold level, angular_frequency in [0.2 omega_1, upper], phase in [0, 2 pi],
 //             start in [0, T0], duration in [0.1, 2.5] T0, fade in [0, 0.5] of the duration. upper: the second natural frequency
 //             for an electrode, the third for the piezo (dither above them shakes without steering: Bognash 2019)
+//   catch     a pulse of three levels, each with its duration, and an edge; the third one holds the beam fast on its contact,
+//             duration_3 in [0.05, 4] T0
+//   ramp      a jump to level_1, a line to level_2 in duration in [0.5, 10] T0, an edge in [0.005, 0.5] T1
+//   staircase N levels with durations in [0.05, 3] T0 each, edge in [0.005, 1] T1
+//   knots     a broken line: a jump to level_1, straight lines to level_2 ... level_N and the hold level, all in total_time in
+//             [0.5, 10] T0, of which the lines take shares in proportion to part_1 ... part_N in [0.05, 1]
 // The hold level is the scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when
 // its base has risen, and caps its amplitude.
 #pragma once
@@ -32,10 +38,15 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
+struct SearchedFamily;
+/// "step, pulse, ..., staircase:N or knots:N"
+[[nodiscard]] std::string listed_searched_families();
+
 /// The waveform parameters of one drive.
 struct DriveSearch {
   std::string drive;
-  std::string family;   ///< step | pulse | harmonic
+  const SearchedFamily* family = nullptr;
+  std::size_t count = 0;  ///< of levels or knots, where the family has any number of them
   double hold = 0;      ///< [V]
   bool brakes = false;  ///< an electrode on the far side
   DriverLimits limits;

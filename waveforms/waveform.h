@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
@@ -19,6 +20,9 @@ using Waveform = std::variant<Step, Harmonic, Pulse, Table>;
 
 /// Throws InvalidInput naming the parameter, its value and the rule.
 [[nodiscard]] Signal signal(const Waveform& waveform);
+[[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
+/// The waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
+[[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);
 /// step | harmonic | pulse | table
 [[nodiscard]] std::string_view family(const Waveform& waveform);
 

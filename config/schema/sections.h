@@ -87,6 +87,7 @@ struct Of {
 /// Of every drive without a section of its own, which is that of the force factor.
 [[nodiscard]] Section waveform_section();
 [[nodiscard]] Section force_factor_section();
+[[nodiscard]] Section calibration_section();
 [[nodiscard]] Section driver_section();
 [[nodiscard]] Section simulate_section();
 [[nodiscard]] Section metrics_section();

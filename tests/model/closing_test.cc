@@ -204,6 +204,10 @@ TEST(Closing, EndsAGivenTimeAfterContact) {
   EXPECT_EQ(t.status, Status::done);
   EXPECT_GE(t.points.back().time, t.touches.front().begin + 20_us);
   EXPECT_LT(t.points.back().time, t.touches.front().begin + 30_us);
+  const Trajectory later = simulate_closing(
+      gold(), step(), {.duration = 600_us, .after_contact = 20_us, .no_end_before = t.touches.front().begin + 50_us});
+  EXPECT_GE(later.points.back().time, t.touches.front().begin + 50_us);
+  EXPECT_LT(later.points.back().time, t.touches.front().begin + 55_us);
   const Trajectory at_touch = simulate_closing(gold(), step(), {.duration = 600_us, .after_contact = 0});
   EXPECT_EQ(at_touch.touches.size(), 1u);
   EXPECT_EQ(at_touch.points.back().time, at_touch.touches[0].begin);

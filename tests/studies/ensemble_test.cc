@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "model/closing.h"
+#include "sampling/statistics.h"
 #include "scenes.h"
 #include "studies/robustness.h"
 
@@ -55,12 +56,13 @@ bool same(const DeviceOutcome& a, const DeviceOutcome& b) {
 
 TEST(Ensemble, DoesNotDependOnThreadsOrderOrSize) {
   const Prepared nominal = prepare(gold_at_17_volts());
+  const std::vector<EnsembleDrive> drives{{.waveforms = {nominal.drives.waveforms.at("main")}}};
   const EnsembleRun run{.duration = nominal.duration};
-  const std::vector<DeviceOutcome> all = close_all(Ensemble(nominal, 600), nominal.signals(), run);
+  const std::vector<DeviceOutcome> all = close_all(Ensemble(nominal, 600), drives, run)[0];
   EnsembleRun threads = run;
   threads.jobs = 3;
-  const std::vector<DeviceOutcome> by_threads = close_all(Ensemble(nominal, 600), nominal.signals(), threads);
-  const std::vector<DeviceOutcome> fewer = close_all(Ensemble(nominal, 70), nominal.signals(), run);
+  const std::vector<DeviceOutcome> by_threads = close_all(Ensemble(nominal, 600), drives, threads)[0];
+  const std::vector<DeviceOutcome> fewer = close_all(Ensemble(nominal, 70), drives, run)[0];
   ASSERT_EQ(all.size(), 600U);
   ASSERT_EQ(by_threads.size(), 600U);
   EXPECT_TRUE(std::equal(all.begin(), all.end(), by_threads.begin(), same));
@@ -104,6 +106,96 @@ TEST(Ensemble, CountsImpossibleDevicesAsTheWorst) {
 TEST(Ensemble, NeedsASpread) {
   const Prepared nominal = prepare(without(gold_at_17_volts(), "spread"));
   EXPECT_NE(refusal([&] { static_cast<void>(Ensemble(nominal, 10)); }).find("there is no [spread]"), std::string::npos);
+}
+
+// The pull-in voltage of a device, by another way than the meter's: bisection for a step that touches.
+double pull_in_by_bisection(const Switch& model, double low, double high) {
+  while (high - low > 1e-5 * high) {
+    const double middle = (low + high) / 2;
+    const Trajectory t = simulate_closing(model, std::vector<Signal>{Signal::constant(middle)},
+                                          {.duration = 2e-3, .tolerance = 1e-7, .after_contact = 0});
+    (t.touches.empty() ? low : high) = middle;
+  }
+  return high;
+}
+
+TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
+  const Prepared nominal = prepare(gold_at_17_volts(
+      {"waveform.main={family=\"pulse\", levels=[\"20 V\", \"5 V\", \"17 V\"], times=[\"22 us\", \"30 us\"], edge=\"1 us\"}"}));
+  const Ensemble ensemble(nominal, 6);
+  const Calibration exact{.pull_in_error = 0, .frequency_error = 0};
+  const std::vector<Waveform> drive{nominal.drives.waveforms.at("main")};
+  const EnsembleRun run{.duration = nominal.duration};
+  const auto outcomes =
+      close_all(ensemble, {{.waveforms = drive}, {.waveforms = drive, .calibration = exact}}, run);
+  const double own = pull_in_by_bisection(nominal.model, 10, 20);
+  DeviceBuilder builder(ensemble);
+  for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
+    const SampledDevice device = builder.device(k);
+    const double volts = pull_in_by_bisection(*device.model, 10, 20) / own;
+    const double time = nominal.model.angular_frequencies()[0] / device.model->angular_frequencies()[0];
+    const DeviceUnits units = DeviceMeter(nominal, true).exact(*device.model);
+    EXPECT_NEAR(units.volts, volts, 3e-5);
+    EXPECT_DOUBLE_EQ(units.time, time);
+    const Metrics expected = closing(*device.model, {signal(scaled(drive[0], volts, time))});
+    const Metrics &calibrated = outcomes[1][k].metrics, &fixed = outcomes[0][k].metrics;
+    EXPECT_NEAR(calibrated.initial_contact_time, expected.initial_contact_time, 2e-3 * expected.initial_contact_time);
+    EXPECT_GT(std::abs(fixed.initial_contact_time - calibrated.initial_contact_time), 5e-3 * expected.initial_contact_time);
+  }
+}
+
+TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
+  const DeviceUnits exact{.volts = 1.03, .time = 0.98};
+  const Calibration errors{.pull_in_error = 0.01, .frequency_error = 0.005};
+  double sum = 0, squares = 0, product = 0;
+  constexpr int devices = 4000;
+  for (std::uint64_t k = 0; k < devices; ++k) {
+    const DeviceUnits known = DeviceMeter::measured(exact, errors, 3, k);
+    const double by_volts = known.volts / exact.volts - 1, by_time = exact.time / known.time - 1;
+    sum += by_volts;
+    squares += by_volts * by_volts;
+    product += by_volts * by_time;
+  }
+  EXPECT_NEAR(sum / devices, 0, 4 * 0.01 / std::sqrt(devices));
+  EXPECT_NEAR(std::sqrt(squares / devices), 0.01, 4 * 0.01 / std::sqrt(2.0 * devices));
+  EXPECT_NEAR(product / devices, 0, 4 * 0.01 * 0.005 / std::sqrt(devices)) << "the two measurements err apart";
+  // What is not measured is taken for that of the nominal device.
+  EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).time, 1);
+  EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).volts, exact.volts);
+}
+
+TEST(Robustness, SaysWhatEachMeasurementIsWorth) {
+  const Prepared nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=30 us"}));
+  const Calibration errors{.pull_in_error = 0.01, .frequency_error = 0.01};
+  RobustnessOptions options{.samples = 24, .jobs = 2, .worth_of_measuring = true};
+  const Robustness found =
+      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = errors}}, options);
+  ASSERT_EQ(found.drives.size(), 2U);
+  ASSERT_EQ(found.by_knowledge.size(), 4U);
+  EXPECT_TRUE(found.drives[0].calibration.is_empty()) << "the plain step is that of the nominal device";
+  const std::vector<DeviceOutcome> fixed = robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, options).drives[1].outcomes;
+  EXPECT_TRUE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[0].outcomes.begin(), same)) << "nothing known: fixed volts";
+  for (std::size_t i = 1; i < 4; ++i)
+    EXPECT_FALSE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[i].outcomes.begin(), same)) << found.by_knowledge[i].name;
+  // In its own units every device closes nearly alike: at the same time in its own periods.
+  const Ensemble ensemble(nominal, options.samples);
+  DeviceBuilder builder(ensemble);
+  const auto spread_of_first_contact = [&](const DriveRobustness& d) {
+    std::vector<double> periods;
+    for (std::size_t k = 0; k < d.outcomes.size(); ++k)
+      periods.push_back(d.outcomes[k].metrics.initial_contact_time * builder.device(k).model->angular_frequencies()[0]);
+    return sample_standard_deviation(periods) / sample_mean(periods);
+  };
+  EXPECT_LT(spread_of_first_contact(found.by_knowledge[3]), spread_of_first_contact(found.by_knowledge[0]) / 3);
+  // A device of it is a scene of its own, with its own volts.
+  const std::size_t k = 5;
+  const Prepared alone = prepare(SceneFile::parse(scene_of_device(nominal, found.drives[1], k, options).text(), "worst.toml"));
+  EXPECT_TRUE(alone.scene.calibration.is_empty());
+  const Metrics own =
+      metrics(simulate_closing(alone.model, alone.signals(), {.duration = found.duration, .tolerance = found.tolerance}),
+              alone.scene.metrics);
+  EXPECT_EQ(own.initial_contact_time, found.drives[1].outcomes[k].metrics.initial_contact_time);
+  EXPECT_EQ(own.major_bounce_height, found.drives[1].outcomes[k].metrics.major_bounce_height);
 }
 
 TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {

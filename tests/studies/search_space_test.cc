@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "scenes.h"
@@ -14,6 +15,7 @@ namespace {
 using testing::ElementsAre;
 
 constexpr double first_touch = 25e-6;
+constexpr std::array every_family{"step", "pulse", "harmonic", "catch", "ramp", "staircase", "staircase:2", "knots", "knots:20"};
 
 std::vector<std::string> names(const SearchSpace& space) {
   std::vector<std::string> all;
@@ -80,7 +82,7 @@ TEST(SearchSpace, BrakesWithTheElectrodeOnTheFarSide) {
 
 TEST(SearchSpace, NeverTouchesTheHoldLevel) {
   const double hold = signal(plain().drives.waveforms.at("main")).hold_level();
-  for (const char* family : {"step", "pulse", "harmonic"}) {
+  for (const char* family : every_family) {
     const SearchSpace space(plain(), Actuator::both, family, first_touch);
     for (const auto& x : space.starts()) {
       const auto waveforms = space.waveforms(x);
@@ -91,7 +93,7 @@ TEST(SearchSpace, NeverTouchesTheHoldLevel) {
 }
 
 TEST(SearchSpace, ReadsTheParametersOfItsOwnWaveformsBack) {
-  for (const char* family : {"step", "pulse", "harmonic"}) {
+  for (const char* family : every_family) {
     const SearchSpace space(plain(), Actuator::both, family, first_touch);
     for (const auto& x : space.starts()) {
       const auto back = space.parameters(space.waveforms(x));
@@ -131,7 +133,7 @@ TEST(SearchSpace, BoundsLevelsByTheDriversLimits) {
 }
 
 TEST(SearchSpace, StartsInsideItsBounds) {
-  for (const char* family : {"step", "pulse", "harmonic"}) {
+  for (const char* family : every_family) {
     const SearchSpace space(plain(), Actuator::both, family, first_touch);
     const auto variables = space.variables();
     ASSERT_FALSE(space.starts().empty());
@@ -148,6 +150,34 @@ TEST(SearchSpace, StartsInsideItsBounds) {
 TEST(SearchSpace, StepsStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "step"); }
 TEST(SearchSpace, PulsesStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "pulse"); }
 TEST(SearchSpace, DithersStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "harmonic"); }
+TEST(SearchSpace, CatchesStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "catch"); }
+TEST(SearchSpace, RampsStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "ramp"); }
+TEST(SearchSpace, StaircasesStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "staircase:7"); }
+TEST(SearchSpace, KnotsStayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, "knots:9"); }
+TEST(SearchSpace, CatchesObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "catch"); }
+TEST(SearchSpace, RampsObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "ramp"); }
+TEST(SearchSpace, StaircasesObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "staircase"); }
+TEST(SearchSpace, KnotsObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "knots"); }
+
+TEST(SearchSpace, OfKnotsIsALineThroughThemToTheHoldLevel) {
+  const SearchSpace space(plain(), Actuator::electrostatic, "knots:3", first_touch);
+  EXPECT_THAT(names(space), ElementsAre("main.level_1_V", "main.level_2_V", "main.level_3_V", "main.total_time_s", "main.part_1",
+                                        "main.part_2", "main.part_3"));
+  const auto waveforms = space.waveforms(std::vector<double>{4, 8, 2, 60e-6, 0.5, 1, 0.5});
+  const Table& line = std::get<Table>(waveforms.at("main"));
+  const double hold = signal(plain().drives.waveforms.at("main")).hold_level();
+  EXPECT_THAT(line.voltage, ElementsAre(0, 4, 8, 2, hold));
+  EXPECT_THAT(line.time, ElementsAre(0, 0, testing::DoubleEq(15e-6), testing::DoubleEq(45e-6), testing::DoubleEq(60e-6)));
+}
+
+TEST(SearchSpace, OfACatchHoldsTheBeamFastAndThenLetsItBe) {
+  const SearchSpace space(plain(), Actuator::electrostatic, "catch", first_touch);
+  const auto waveforms = space.waveforms(std::vector<double>{20, 1, 15, 20e-6, 10e-6, 40e-6, 1e-6});
+  const Pulse& pulse = std::get<Pulse>(waveforms.at("main"));
+  EXPECT_THAT(pulse.levels, ElementsAre(20, 1, 15, signal(plain().drives.waveforms.at("main")).hold_level()));
+  EXPECT_THAT(pulse.times, ElementsAre(20e-6, testing::DoubleEq(30e-6), testing::DoubleEq(70e-6)));
+}
+
 TEST(SearchSpace, StepsObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "step"); }
 TEST(SearchSpace, PulsesObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "pulse"); }
 TEST(SearchSpace, DithersOfThePiezoObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::pzt, "harmonic"); }
@@ -171,7 +201,12 @@ TEST(SearchSpace, RefusesThePiezoOfASceneThatHasNone) {
 TEST(SearchSpace, RefusesFamiliesWithoutParameters) {
   for (const std::string family : {"table", "spline", ""})
     EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
-              "--waveform " + family + ": only step, pulse, harmonic have parameters to search");
+              "--waveform " + family + ": must be step, pulse, harmonic, catch, ramp, staircase:N or knots:N");
+  for (const std::string family : {"knots:1", "knots:21", "knots:", "knots:3x", "staircase:-2"})
+    EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
+              "--waveform " + family + ": the number after " + family.substr(0, family.find(':')) + " must be from 2 to 20");
+  EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, "pulse:3", first_touch); }),
+            "--waveform pulse:3: pulse has no number of levels or knots");
 }
 
 TEST(SearchSpace, RefusesADitherWithoutRoomAboutTheHoldLevel) {

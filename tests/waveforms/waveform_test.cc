@@ -25,6 +25,23 @@ TEST(Waveform, KnowsTheNamesOfItsFamilies) {
   EXPECT_EQ(family(Table{}), "table");
 }
 
+TEST(Waveform, ScaledIsTheSameCourseInOtherUnits) {
+  const std::vector<Waveform> all{
+      Step{.level = 3, .rise_time = 1},
+      Harmonic{.base = 1, .rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .phase = 0.3, .start = 1, .end = 9, .fade = 2},
+      Pulse{.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}, Table{.time = {0, 1, 1, 2}, .voltage = {1, 2, 3, -1}}};
+  ASSERT_EQ(all.size(), std::variant_size_v<Waveform>) << "one of each family";
+  constexpr double volts = 1.04, time = 0.97;
+  for (const Waveform& waveform : all) {
+    const Waveform other = scaled(waveform, volts, time);
+    ASSERT_EQ(other.index(), waveform.index());
+    const Signal own = signal(waveform), in_units = signal(other);
+    for (double t = 0.0131; t < 12; t += 0.173)
+      EXPECT_NEAR(in_units.voltage(t * time), volts * own.voltage(t), 1e-12) << family(waveform) << " at " << t;
+  }
+  EXPECT_EQ(signal(scaled(all[1], 1, 1)).pieces(), signal(all[1]).pieces());
+}
+
 TEST(Waveform, PassesOnWhatItsFamilyRefuses) {
   test::expect_invalid([] { (void)signal(Waveform(Step{.rise_time = -1})); }, {"rise_time", "-1 s"});
 }

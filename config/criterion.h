@@ -1,0 +1,50 @@
+// What a robust search is asked for, from text: a measure of risk ("cvar:0.9"), or a condition on a figure of merit
+// ("permanent_contact_time < 60 us").
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sampling/risk.h"
+
+namespace softland {
+
+/// A figure that a condition may be about.
+struct FigureName {
+  std::string_view key;     ///< of results; ends with the unit
+  std::string_view symbol;  ///< "t_p"; may be empty
+  std::string_view unit;    ///< SI; empty for a count
+};
+
+enum class Comparison { below, at_most, equal, at_least, above };
+
+/// A condition on a figure of one closing.
+struct Criterion {
+  std::size_t figure = 0;  ///< its number in the list it was read with
+  Comparison comparison = Comparison::below;
+  double limit = 0;  ///< [SI unit of the figure]
+  std::string text;  ///< as it was given
+
+  /// By which part of the limit (by how much, where that is 0) the figure breaks the condition; 0 or less where it holds,
+  /// infinity for a value that is not finite: that of a switch that failed.
+  [[nodiscard]] double violation(double value) const;
+  [[nodiscard]] bool holds(double value) const;
+};
+
+/// Throws InvalidInput with the broken rule.
+[[nodiscard]] Criterion parse_criterion(std::string_view text, std::span<const FigureName> figures);
+
+/// What a search minimises over the devices of a spread.
+struct RobustMeasure {
+  Risk risk;                       ///< of the cost of a closing; of those that break `yield`, where it is given
+  std::optional<Criterion> yield;  ///< the share of devices for which it holds is to be as large as possible
+  std::string text;                ///< as it was given
+};
+
+/// cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION. Throws InvalidInput with the broken rule.
+[[nodiscard]] RobustMeasure parse_robust_measure(std::string_view text, std::span<const FigureName> figures);
+
+}  // namespace softland

@@ -1,0 +1,13 @@
+#include "config/schema/sections.h"
+
+namespace softland::internal {
+
+Section calibration_section() {
+  return {.name = "calibration",
+          .is_named = true,
+          .keys = {number("error", {dimension::none}, {.least = 0, .most = 0.5}, "of the measurement, one standard deviation")
+                       .by_default("'0 %'")},
+          .about = "what is measured on every device before it is driven: NAME is Vdp or frequency"};
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,28 @@
+// Measures of risk: one number for a sample in which larger is worse (statistics.h), which a robust search minimises.
+//
+//   cvar       conditional value at risk at a level: the mean of the worst 1 - level
+//   quantile   the value that a share `level` stays below
+//   mean+sigma mean + factor times the standard deviation
+//   worst      the largest
+//
+// CVaR uses every value of the tail and bends where the others jump; a quantile looks at one or two values; a mean with its
+// deviation also punishes what lies far on the good side; the worst value grows with the sample. Source: R. T. Rockafellar & S.
+// Uryasev, Journal of Risk 2 (2000) 21.
+#pragma once
+
+#include <span>
+
+namespace softland {
+
+enum class RiskKind { cvar, quantile, mean_sigma, worst };
+
+struct Risk {
+  RiskKind kind = RiskKind::cvar;
+  double parameter = 0.9;  ///< level of cvar and quantile, factor of mean_sigma
+};
+
+/// Throws InvalidInput for a sample without values or with NaN, and for a parameter outside [0, 1) (cvar), [0, 1] (quantile),
+/// [0, infinity) (mean_sigma).
+[[nodiscard]] double risk(std::span<const double> sample, const Risk& measure);
+
+}  // namespace softland

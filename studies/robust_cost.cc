@@ -1,0 +1,153 @@
+#include "studies/robust_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/executor.h"
+#include "model/constants.h"
+#include "sampling/risk.h"
+#include "sampling/statistics.h"
+#include "studies/robustness.h"
+
+namespace softland {
+namespace {
+
+constexpr double worst_score = 3;
+constexpr double weight_of_time = 0.02, weight_of_scores = 0.1, weight_of_violation = 10;
+constexpr double most_violation = 10;
+
+// A step that lands softly by itself must not turn the ratios into infinities.
+double over(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
+
+double last_breakpoint(const std::vector<Signal>& signals) {
+  double last = 0;
+  for (const Signal& signal : signals) last = std::max(last, signal.pieces().back().begin);
+  return last;
+}
+
+double value_of(const DeviceOutcome& outcome, const Criterion& condition) {
+  return ensemble_figures()[condition.figure].value(outcome);
+}
+
+}  // namespace
+
+std::vector<FigureName> conditioned_figures() {
+  std::vector<FigureName> all;
+  for (const EnsembleFigure& f : ensemble_figures()) all.push_back({.key = f.key, .symbol = f.symbol, .unit = f.unit});
+  return all;
+}
+
+bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
+
+BuiltEnsemble build_all(const Ensemble& ensemble, const Calibration& calibration, std::uint64_t seed, int jobs,
+                        const Watch& watch) {
+  constexpr std::size_t together = 16;
+  BuiltEnsemble built{.devices = std::vector<SampledDevice>(ensemble.size()), .units = std::vector<DeviceUnits>(ensemble.size())};
+  std::optional<DeviceMeter> meter;
+  if (!calibration.is_empty()) meter.emplace(ensemble.nominal(), calibration.pull_in_error.has_value());
+  const auto task = [&](std::size_t chunk) {
+    DeviceBuilder builder(ensemble);
+    for (std::size_t k = chunk * together; k < std::min<std::size_t>(ensemble.size(), (chunk + 1) * together); ++k) {
+      if (watch.stopped()) return;
+      SampledDevice& device = built.devices[k] = builder.device(k);
+      if (!meter || !device.model) continue;
+      built.units[k] = DeviceMeter::measured(meter->exact(*device.model), calibration, seed, k);
+      if (std::isfinite(built.units[k].volts)) continue;
+      device.refusal = "its pull-in voltage cannot be measured";
+      device.model.reset();
+    }
+  };
+  run_tasks((ensemble.size() + together - 1) / together, jobs, task, watch.stop);
+  watch.throw_if_stopped();
+  return built;
+}
+
+RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble)
+    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)) {
+  const Switch& model = setting.given.model;
+  const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
+  window_ = std::max(0.6 * period, 2.5 * in_contact);
+  tail_ = in_contact;
+  wait_ = std::max(setting.run.no_contact_before, period);
+  const std::vector<Signal> step = setting.baseline_scene.signals();
+  step_ = close_device({.values = {}, .model = model, .refusal = {}}, step, setting.given.scene.metrics,
+                       {.duration = last_breakpoint(step) + wait_ + window_, .tolerance = EnsembleRun{}.tolerance, .after_contact = window_});
+  if (step_.closed()) return;
+  const CostFigures& imagined = setting.scale.step;
+  step_ = {.metrics = {}, .largest_impact_velocity = imagined.touch_speed};
+  step_.metrics.initial_contact_time = imagined.first_touch;
+  step_.metrics.major_bounce_height = imagined.rebound_height;
+}
+
+std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
+                                             int jobs) const {
+  const std::vector<Signal> nominal = signals_of(waveforms);
+  std::vector<DeviceOutcome> outcomes(last - first);
+  run_tasks(outcomes.size(), jobs, [&](std::size_t i) {
+    const SampledDevice& device = ensemble_.devices[first + i];
+    const DeviceUnits& units = ensemble_.units[first + i];
+    const bool own = device.model && (units.volts != 1 || units.time != 1);
+    const std::vector<Signal> signals =
+        own ? signals_of(in_units(waveforms, setting_.given.scene.device, units)) : nominal;
+    const double end = last_breakpoint(signals);
+    outcomes[i] = close_device(device, signals, setting_.given.scene.metrics,
+                               {.duration = end + wait_ + window_,
+                                .tolerance = EnsembleRun{}.tolerance,
+                                .after_contact = window_,
+                                .no_end_before = end + tail_,
+                                .no_contact_before = end + wait_});
+  });
+  return outcomes;
+}
+
+double RobustCost::score(const DeviceOutcome& outcome) const {
+  if (!outcome.closed()) return worst_score;
+  const Metrics &m = outcome.metrics, &step = step_.metrics;
+  const double speed = over(outcome.largest_impact_velocity, step_.largest_impact_velocity);
+  const double height = over(m.major_bounce_height, step.major_bounce_height);
+  switch (setting_.target) {
+    case Target::bounce:
+      return (speed + height) / 2;
+    case Target::rebound:
+      return height;
+    case Target::count:
+      return over(m.bounce_count, step.bounce_count);
+    case Target::impact:
+      return speed;
+    case Target::settling: {
+      // Of one that bounces on, all that is known is that it comes later.
+      const double settled = m.settled ? m.permanent_contact_time : 2 * (m.initial_contact_time + window_);
+      return over(settled, step.initial_contact_time);
+    }
+    case Target::energy:
+      break;
+  }
+  return over(m.impact_energy, step.impact_energy);
+}
+
+double RobustCost::value(std::span<const DeviceOutcome> outcomes) const {
+  std::vector<double> scores, times, of_devices;
+  for (const DeviceOutcome& o : outcomes) {
+    scores.push_back(std::min(score(o), worst_score));
+    times.push_back(o.closed() ? over(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
+  }
+  double value = 0;
+  if (aim_.measure.yield) {
+    const auto good = std::count_if(outcomes.begin(), outcomes.end(),
+                                    [&](const DeviceOutcome& o) { return fulfils(o, *aim_.measure.yield); });
+    value = 1 - static_cast<double>(good) / static_cast<double>(outcomes.size()) + weight_of_scores * sample_mean(scores);
+  } else {
+    value = risk(scores, aim_.measure.risk);
+  }
+  value += weight_of_time * sample_quantile(times, 0.5);
+  for (const Criterion& condition : aim_.conditions) {
+    of_devices.clear();
+    for (const DeviceOutcome& o : outcomes)
+      of_devices.push_back(std::min(condition.violation(value_of(o, condition)), most_violation));
+    value += weight_of_violation * std::max(0.0, sample_quantile(of_devices, constrained_share));
+  }
+  return value;
+}
+
+}  // namespace softland

@@ -1,0 +1,73 @@
+// What a drive costs on devices that differ: a measure of risk over the costs of their closings, and conditions on their figures.
+//
+//   s_k   cost of the closing of device k, every figure over that of the plain step on the nominal device:
+//           bounce             (largest touch speed + highest rebound) / 2
+//           rebound            highest rebound               impact    largest touch speed
+//           count              rebounds                      settling  permanent contact, over first contact of the step
+//           energy             impact energy
+//         3, or more than any that closes, where the device does not close, or its closing cannot be followed
+//   cost  R(s) + 0.02 (median of first contact over that of the step) + 10 (sum over the conditions: violation, where positive)
+//
+// R is the measure that was asked for (sampling/risk.h), or for a yield 1 less the share of devices that fulfil its condition,
+// plus a tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the
+// devices fulfil it: its violation is the 95 % quantile of that of the devices (config/criterion.h).
+//
+// A closing is scored until 60 % of a period of the first mode, or two and a half in contact, after first touch, and one period in
+// contact after the last breakpoint of its drives.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "config/criterion.h"
+#include "studies/ensemble.h"
+#include "studies/search_setting.h"
+
+namespace softland {
+
+/// The share of devices that has to fulfil a condition.
+inline constexpr double constrained_share = 0.95;
+
+/// The figures that conditions may be about, as ensemble_figures().
+[[nodiscard]] std::vector<FigureName> conditioned_figures();
+
+struct RobustAim {
+  RobustMeasure measure;
+  std::vector<Criterion> conditions;
+};
+
+/// Devices that are built and measured.
+struct BuiltEnsemble {
+  std::vector<SampledDevice> devices;
+  std::vector<DeviceUnits> units;  ///< of a device's own drive, over that of the nominal one
+};
+/// Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const Calibration& calibration, std::uint64_t seed, int jobs,
+                                      const Watch& watch = {});
+
+class RobustCost {
+ public:
+  /// Keeps references to `setting` and `aim`.
+  RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble);
+
+  [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
+  /// The closings of devices [first, last) under their own drives; `waveforms` are those of the nominal device, one per drive.
+  [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
+                                                 int jobs) const;
+  [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const;
+
+ private:
+  [[nodiscard]] double score(const DeviceOutcome& outcome) const;
+
+  const SearchSetting& setting_;
+  const RobustAim& aim_;
+  BuiltEnsemble ensemble_;
+  DeviceOutcome step_;  // of the nominal device
+  double window_, tail_, wait_;  // after first touch, after the last breakpoint, for a touch [s]
+};
+
+/// Whether a device fulfils a condition.
+[[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);
+
+}  // namespace softland

@@ -1,0 +1,370 @@
+#include "studies/robust_optimize.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/random.h"
+#include "base/require.h"
+#include "optimizers/sobol.h"
+#include "sampling/confidence.h"
+#include "sampling/statistics.h"
+#include "studies/plain_step.h"
+
+namespace softland {
+namespace {
+
+constexpr std::array<std::size_t, 2> race{8, 32};  // devices at which a candidate may be given up
+constexpr std::size_t remembered = 14;             // candidates that the next one is compared with
+constexpr std::size_t fewest_remembered = 5;
+constexpr int nominal_searches = 2;
+constexpr std::size_t winners_taken = 4;  // of each
+constexpr std::uint64_t selection_devices = 512;
+constexpr double apart = 0.08;  // of the box: starts of searches
+
+constexpr std::size_t all_devices = std::numeric_limits<std::size_t>::max();
+
+// What is spent on starts, by the budget.
+struct Scouting {
+  long nominal_evaluations;  // of each search on the nominal device
+  std::uint64_t box_points;
+  std::size_t raced;  // starts that are tried on more than the first devices
+};
+Scouting scouting(long budget) {
+  return {.nominal_evaluations = std::clamp(budget / 50, 1L, 1000L),
+          .box_points = static_cast<std::uint64_t>(std::clamp(budget / 400, 0L, 64L)),
+          .raced = static_cast<std::size_t>(std::clamp(budget / 2000, 1L, 24L))};
+}
+
+struct Heat {
+  std::size_t searches;
+  std::size_t devices;  // at the most
+  double share;  // of the budget
+  double step;   // of the box
+};
+constexpr std::array heats{Heat{6, 32, 0.4, 0.15}, Heat{2, all_devices, 0.35, 0.06}, Heat{1, all_devices, 0.25, 0.025}};
+
+using Point = std::vector<double>;
+
+struct Candidate {
+  Point x;
+  double value = std::numeric_limits<double>::infinity();
+};
+
+bool is_better(const Candidate& a, const Candidate& b) { return a.value < b.value; }
+
+double distance(const Point& a, const Point& b, const std::vector<Variable>& variables) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    farthest = std::max(farthest, std::abs(a[i] - b[i]) / std::max(1e-300, variables[i].upper - variables[i].lower));
+  return farthest;
+}
+
+// The best that are apart from each other; the distance shrinks until there are enough.
+std::vector<Candidate> best_apart(std::vector<Candidate> all, std::size_t count, const std::vector<Variable>& variables) {
+  std::stable_sort(all.begin(), all.end(), is_better);
+  std::vector<Candidate> chosen;
+  for (double least = apart; chosen.size() < std::min(count, all.size()) && least > apart / 100; least /= 2) {
+    for (const Candidate& one : all) {
+      if (chosen.size() == count) break;
+      const bool far = std::all_of(chosen.begin(), chosen.end(),
+                                   [&](const Candidate& other) { return distance(one.x, other.x, variables) > least; });
+      if (far) chosen.push_back(one);
+    }
+  }
+  return chosen;
+}
+
+std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t which) { return random_bits(seed, Stream::fresh, which); }
+
+class RobustSearch {
+ public:
+  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const OptimizeOptions& options)
+      : setting_(setting),
+        cost_(cost),
+        options_(options),
+        scouting_(scouting(options.max_evaluations)),
+        variables_(setting.space.variables()),
+        begin_(std::chrono::steady_clock::now()) {}
+
+  // The best points of all heats, the best first; empty where nothing was feasible.
+  std::vector<Candidate> run() {
+    std::vector<Candidate> leaders = first_leaders();
+    std::vector<Candidate> found = leaders;
+    const auto left = static_cast<double>(options_.max_evaluations - closings_);
+    for (const Heat& heat : heats) {
+      if (over() || leaders.empty()) break;
+      leaders.resize(std::min(leaders.size(), heat.searches));
+      if (static_cast<long>(heat.share * left) < static_cast<long>(leaders.size())) break;
+      const std::vector<Candidate> ends = search_from(leaders, heat, static_cast<long>(heat.share * left));
+      found.insert(found.end(), ends.begin(), ends.end());
+      // Whatever is best goes on, from whichever heat.
+      std::vector<Candidate> all = ends;
+      all.insert(all.end(), leaders.begin(), leaders.end());
+      std::stable_sort(all.begin(), all.end(), is_better);
+      leaders = best_apart(all, heat.searches, variables_);
+    }
+    std::erase_if(found, [](const Candidate& c) { return !std::isfinite(c.value); });
+    std::stable_sort(found.begin(), found.end(), is_better);
+    return found;
+  }
+
+  [[nodiscard]] long closings() const { return closings_; }
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+  [[nodiscard]] std::vector<Evaluation> improvements() const {
+    std::vector<Evaluation> all;
+    for (const auto& [index, e] : log_) {
+      if (all.empty() || e.value < all.back().value) all.push_back(e);
+    }
+    return all;
+  }
+  [[nodiscard]] Termination termination() const {
+    if (interrupted()) return Termination::interrupted;
+    if (out_of_time()) return Termination::time_budget;
+    return log_.empty() ? Termination::no_feasible_point : Termination::evaluation_budget;
+  }
+
+ private:
+  [[nodiscard]] bool interrupted() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
+  [[nodiscard]] bool out_of_time() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() > options_.max_seconds;
+  }
+  [[nodiscard]] bool over() const { return interrupted() || out_of_time(); }
+
+  // The cost on the first `devices`, or on as many as it takes to see that it is more than `hopeless`. Adds to `used` the
+  // closings that this took.
+  double evaluate(const Point& x, std::size_t devices, double hopeless, int jobs, long& used) const {
+    const std::map<std::string, Waveform> searched = setting_.space.waveforms(x);
+    if (!setting_.is_allowed(searched)) return std::numeric_limits<double>::infinity();
+    const std::vector<Waveform> drives = setting_.drives(searched);
+    std::vector<DeviceOutcome> outcomes;
+    for (const std::size_t stage : {race[0], race[1], devices}) {
+      if (stage > devices || stage <= outcomes.size()) continue;
+      const std::vector<DeviceOutcome> more = cost_.close(drives, outcomes.size(), stage, jobs);
+      used += static_cast<long>(more.size());
+      outcomes.insert(outcomes.end(), more.begin(), more.end());
+      if (const double value = cost_.value(outcomes); stage == devices || value > hopeless) return value;
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
+  // Notes an evaluation on all devices; `index` orders them whatever the threads.
+  void note(long index, const Point& x, double value) {
+    const std::scoped_lock lock(mutex_);
+    const Evaluation e{.index = index, .value = value, .x = x};
+    log_.emplace(index, e);
+    const bool improves = std::isfinite(value) && !(progress_.best_cost <= value);
+    if (improves) progress_.best_cost = value;
+    progress_.evaluations = closings_;
+    if (options_.on_evaluation) options_.on_evaluation(e, progress_);
+    if (improves && options_.on_improvement) options_.on_improvement(e, setting_.scene(setting_.space.waveforms(x)));
+  }
+
+  // Waveforms that land the nominal device.
+  std::vector<Point> nominal_winners() {
+    std::vector<Point> all;
+    for (int k = 0; k < nominal_searches && !over(); ++k) {
+      const OptimizerResult found =
+          minimize({.variables = variables_,
+                    .objective = [&](std::span<const double> x) { return setting_.price_at(x).leading; },
+                    .starts = setting_.space.starts()},
+                   {.max_evaluations = scouting_.nominal_evaluations,
+                    .seed = fresh_seed(options_.seed, 10 + static_cast<std::uint64_t>(k)),
+                    .jobs = options_.jobs,
+                    .stop = options_.stop});
+      closings_ += found.evaluations;
+      const std::vector<Evaluation>& best = found.improvements;
+      for (std::size_t i = 0; i < std::min(winners_taken, best.size()); ++i) all.push_back(best[best.size() - 1 - i].x);
+    }
+    return all;
+  }
+
+  // Starts for the first heat: the best of many on ever more devices.
+  std::vector<Candidate> first_leaders() {
+    std::vector<Candidate> all;
+    const auto add = [&](const Point& x) { all.push_back({.x = x}); };
+    for (const Point& x : setting_.space.starts()) add(x);
+    if (const auto given = setting_.space.parameters(setting_.given.drives.waveforms)) add(*given);
+    for (const Point& x : nominal_winners()) add(x);
+    for (Point u : internal::sobol_points(options_.seed, variables_.size(), 0, scouting_.box_points)) {
+      for (std::size_t i = 0; i < u.size(); ++i) u[i] = variables_[i].lower + u[i] * (variables_[i].upper - variables_[i].lower);
+      add(u);
+    }
+    for (const std::size_t devices : {std::min(race[0], cost_.devices()), std::min(race[1], cost_.devices()), cost_.devices()}) {
+      std::vector<long> used(all.size(), 0);
+      const std::size_t begun = run_tasks(
+          all.size(), options_.jobs,
+          [&](std::size_t i) {
+            all[i].value = evaluate(all[i].x, devices, std::numeric_limits<double>::infinity(), 1, used[i]);
+            closings_ += used[i];
+            if (devices == cost_.devices()) note(static_cast<long>(i), all[i].x, all[i].value);
+          },
+          options_.stop);
+      all.resize(begun);
+      std::erase_if(all, [](const Candidate& c) { return !std::isfinite(c.value); });
+      const std::size_t kept = std::min(scouting_.raced, devices == race[0] ? all.size() : 2 * heats[0].searches);
+      all = best_apart(std::move(all), kept, variables_);
+    }
+    next_index_ = static_cast<long>(all.size());
+    return best_apart(std::move(all), heats[0].searches, variables_);
+  }
+
+  // One search from each of the starts, with its share of the closings.
+  std::vector<Candidate> search_from(const std::vector<Candidate>& starts, const Heat& heat, long closings) {
+    const long share = closings / static_cast<long>(starts.size()), block = share + 3;
+    const int inner = std::max(1, options_.jobs / static_cast<int>(starts.size()));
+    const long first_index = next_index_ + 1000;
+    std::vector<Candidate> ends = starts;
+    run_tasks(
+        starts.size(), options_.jobs,
+        [&](std::size_t i) { ends[i] = search_one(starts[i], heat, share, inner, first_index + static_cast<long>(i) * block, 100 + 10 * heats_run_ + i); },
+        options_.stop);
+    next_index_ = first_index + static_cast<long>(starts.size()) * block;
+    ++heats_run_;
+    return ends;
+  }
+
+  Candidate search_one(const Candidate& start, const Heat& heat, long share, int jobs, long index, std::uint64_t number) {
+    const std::size_t devices = std::min(heat.devices, cost_.devices());
+    Candidate best = start;
+    long used = 0;
+    if (devices < cost_.devices()) best.value = std::numeric_limits<double>::infinity();  // on fewer devices it is another
+    std::deque<double> recent;
+    std::atomic<bool> enough = false;
+    const auto median = [&] {
+      return recent.size() < fewest_remembered ? std::numeric_limits<double>::infinity()
+                                               : sample_quantile(std::vector<double>(recent.begin(), recent.end()), 0.5);
+    };
+    const auto objective = [&](std::span<const double> given) {
+      const Point x(given.begin(), given.end());
+      const long before = used;
+      const double hopeless = median();
+      const double value = evaluate(x, devices, hopeless, jobs, used);
+      closings_ += used - before;
+      ++evaluations_;
+      if (std::isfinite(value)) recent.push_back(value);
+      if (recent.size() > remembered) recent.pop_front();
+      if (value < best.value) best = {.x = x, .value = value};
+      if (devices == cost_.devices()) note(index++, x, value);
+      if (used >= share || over()) enough = true;
+      return value;
+    };
+    static_cast<void>(minimize({.variables = variables_, .objective = objective, .starts = {start.x}},
+                               {.optimizer = "cma-es",
+                                .max_evaluations = share,
+                                .seed = fresh_seed(options_.seed, number),
+                                .step = heat.step,
+                                .stop = &enough}));
+    if (devices < cost_.devices()) {
+      const long before = used;
+      best.value = evaluate(best.x, cost_.devices(), std::numeric_limits<double>::infinity(), jobs, used);
+      closings_ += used - before;
+      note(index++, best.x, best.value);
+    }
+    return best;
+  }
+
+  const SearchSetting& setting_;
+  const RobustCost& cost_;
+  const OptimizeOptions& options_;
+  Scouting scouting_;
+  std::vector<Variable> variables_;
+  std::chrono::steady_clock::time_point begin_;
+  std::atomic<long> closings_ = 0, evaluations_ = 0;
+  std::uint64_t heats_run_ = 0;
+  long next_index_ = 0;
+
+  std::mutex mutex_;
+  std::map<long, Evaluation> log_;
+  OptimizeProgress progress_;
+};
+
+}  // namespace
+
+RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust) {
+  const Watch before{.stop = options.stop, .progress = options.on_preparation}, after = before;
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, before);
+  const Calibration& calibration = setting.given.scene.calibration;
+  const auto devices = [&](std::uint64_t count, std::uint64_t which) {
+    const std::uint64_t seed = fresh_seed(options.seed, which);
+    return build_all(Ensemble(setting.given, count, seed), calibration, seed, options.jobs, before);
+  };
+  const RobustCost cost(setting, robust.aim, devices(robust.samples, 0));
+
+  OptimizeResult found{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
+  found.variables = setting.space.variables();
+  std::vector<std::string> names;
+  for (const Variable& v : found.variables) names.push_back(v.name);
+  if (options.on_start) options.on_start(names);
+  RobustResult result{.found = std::move(found)};
+  const auto cost_of = [&](const RobustCost& by, const std::map<std::string, Waveform>& searched) {
+    return by.value(by.close(setting.drives(searched), 0, by.devices(), options.jobs));
+  };
+  result.step_cost_on_searched = cost_of(cost, {});
+
+  RobustSearch search(setting, cost, options);
+  std::vector<Candidate> candidates = search.run();
+  result.closings = search.closings();
+  OptimizeResult& out = result.found;
+  out.search.evaluations = search.evaluations();
+  out.search.improvements = search.improvements();
+  out.search.termination = search.termination();
+  if (candidates.empty()) return result;
+
+  // Compared on devices that none of them was made for.
+  const bool interrupted = out.search.termination == Termination::interrupted;
+  Candidate winner = candidates.front();
+  if (!interrupted) {
+    candidates = best_apart(std::move(candidates), heats[0].searches + 1, out.variables);
+    const RobustCost others(setting, robust.aim, devices(selection_devices, 1));
+    double least = std::numeric_limits<double>::infinity();
+    for (const Candidate& candidate : candidates) {
+      const double value = cost_of(others, setting.space.waveforms(candidate.x));
+      if (value < least) {
+        least = value;
+        winner = candidate;
+      }
+    }
+  }
+  result.cost_on_searched = winner.value;
+  const std::map<std::string, Waveform> waveforms = setting.space.waveforms(winner.x);
+  out.best_scene = read_back(setting.scene(waveforms), "best.toml", setting.given);
+  out.best = simulate(*out.best_scene, true, {.progress = options.on_preparation});
+  for (std::size_t k = 0; k < names.size(); ++k) out.parameters[names[k]] = winner.x[k];
+  out.best_cost = winner.value;
+  out.baseline_cost = result.step_cost_on_searched;
+  out.better_than_baseline = out.best_cost < out.baseline_cost;
+  if (interrupted) return result;
+
+  result.verdict = robustness(*out.best_scene, {{.name = "found", .waveforms = out.best_scene->drives.waveforms, .calibration = calibration}},
+                              {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs, .worth_of_measuring = true}, after);
+  const std::vector<DriveRobustness>& drives = result.verdict->drives;
+  const std::vector<DeviceOutcome>& outcomes = drives.back().outcomes;
+  if (outcomes.empty()) return result;
+  out.best_cost = cost.value(outcomes);
+  out.baseline_cost = cost.value(drives.front().outcomes);
+  out.better_than_baseline = out.best_cost < out.baseline_cost;
+  const auto share = [&](const Criterion& condition) {
+    const auto good = static_cast<std::size_t>(
+        std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); }));
+    return Yield{.devices = good,
+                 .value = static_cast<double>(good) / static_cast<double>(outcomes.size()),
+                 .interval = wilson_interval(good, outcomes.size())};
+  };
+  if (robust.aim.measure.yield) result.yield = share(*robust.aim.measure.yield);
+  out.goal_met = out.better_than_baseline;
+  for (const Criterion& condition : robust.aim.conditions) {
+    const Yield fulfilled = share(condition);
+    result.conditions.push_back({.condition = condition, .share = fulfilled, .holds = fulfilled.value >= constrained_share});
+    out.goal_met = out.goal_met && result.conditions.back().holds;
+  }
+  return result;
+}
+
+}  // namespace softland

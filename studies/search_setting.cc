@@ -1,0 +1,119 @@
+#include "studies/search_setting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "model/constants.h"
+#include "studies/choices.h"
+#include "studies/plain_step.h"
+
+namespace softland {
+namespace {
+
+constexpr double latest_touch = 2.5;  // times the baseline's first touch
+// Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
+constexpr double driven_touch = 1.5, braked_touch = 2.0;
+constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
+
+// A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
+CostFigures imagined_step(const Prepared& given, double period) {
+  const double gap = given.scene.device.gap.contact;
+  return {.touched = true,
+          .first_touch = period / 2,
+          .touch_speed = gap * given.model.angular_frequencies()[0],
+          .rebound_height = gap,
+          .impact_energy = 0};
+}
+
+}  // namespace
+
+SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms) {
+  SceneFile file = resolved(prepared.scene, prepared.voltage_units());
+  for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
+  return file;
+}
+
+Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
+  Prepared p = prepare_and_choose(SceneFile::parse(file.text(), name));
+  p.scene.warnings = given.scene.warnings;
+  return p;
+}
+
+SceneFile SearchSetting::scene(const std::map<std::string, Waveform>& searched) const {
+  return with_waveforms(baseline_scene, searched);
+}
+
+std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform>& searched) const {
+  std::vector<Waveform> all;
+  for (const std::string& name : given.drive_names()) {
+    const std::map<std::string, Waveform>& from = searched.contains(name) ? searched : baseline_scene.drives.waveforms;
+    const auto found = from.find(name);
+    all.push_back(found == from.end() ? Waveform(Step{.level = 0}) : found->second);
+  }
+  return all;
+}
+
+bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) const {
+  return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
+    return violation(signal(one.second), given.drives.limits.at(one.first)).empty();
+  });
+}
+
+Prices SearchSetting::price(const std::vector<Signal>& signals) const {
+  CostObserver observer(scale.contact_gap, given.scene.metrics);
+  const Trajectory end = observe_closing(given.model, signals, run, observer);
+  const CostFigures figures = observer.figures(end.landing_excess);
+  const auto by = [&](Target one) { return cost(one, end.status, figures, scale, given.scene.metrics); };
+  const double leading = by(Target::bounce);
+  return {.leading = leading, .own = has_own_cost(target) ? by(target) : leading};
+}
+
+Prices SearchSetting::price_at(std::span<const double> x) const {
+  const std::map<std::string, Waveform> searched = space.waveforms(x);
+  return is_allowed(searched) ? price(signals_of(drives(searched))) : Prices{};
+}
+
+SearchSetting search_setting(const SceneFile& file, Target target, Actuator actuator, const std::string& family,
+                             const Watch& watch) {
+  Prepared given = prepare_and_choose(file, true, watch);
+  require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
+  Prepared baseline_scene = read_back(with_waveforms(given, plain_step(given, actuator)), "baseline.toml", given);
+  Closing baseline = simulate(baseline_scene, true, watch);
+  watch.throw_if_stopped();
+
+  const double period = 2 * pi / given.model.angular_frequencies()[0];
+  CostScale scale{.step = {},
+                  .score_window = std::max(period, 3 * given.model.in_contact_period()),
+                  .contact_gap = given.scene.device.gap.contact,
+                  .free_touch = actuator == Actuator::pzt ? braked_touch : driven_touch};
+  ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
+  std::vector<double> rest;
+  for (const Signal& s : baseline_scene.signals()) rest.push_back(s.hold_level());
+  if (const auto closed = closed_equilibrium(given.model, rest)) run.closed_potential = closed->potential;
+  const Trajectory step = simulate_closing(given.model, baseline_scene.signals(), run);
+  scale.step = cost_figures(step, given.scene.metrics);
+  if (!scale.step.touched) scale.step = imagined_step(given, period);
+  const double baseline_cost = cost(target, step, scale, given.scene.metrics);
+  // A landing so late that the window ends before the switch could bounce would look like a soft one.
+  run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.model.in_contact_period());
+  require(run.no_contact_before > 0, [&] {
+    return fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
+                       engineering(given.duration, "s", 3), engineering(2 * given.model.in_contact_period(), "s", 3));
+  });
+  run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
+  SearchSpace space(given, actuator, family, scale.step.first_touch);
+  return {.target = target,
+          .given = std::move(given),
+          .baseline_scene = std::move(baseline_scene),
+          .baseline = std::move(baseline),
+          .scale = scale,
+          .baseline_cost = baseline_cost,
+          .run = std::move(run),
+          .space = std::move(space)};
+}
+
+}  // namespace softland

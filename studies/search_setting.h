@@ -1,0 +1,57 @@
+// A scene made ready for a search: the plain step that every candidate is measured by, the waveforms that may be tried, and how a
+// candidate is scored on the nominal device.
+//
+// Baseline: a step of the searched electrode to the scene's hold level, without rise time unless the driver's slew limit asks for
+// one, piezo 0 V unless it is the only drive, which then steps to its hold level. Every candidate is scored over a fixed time
+// after its own first contact, must touch within 2.5 times the baseline's first-touch time, stays inside the driver's limits, and
+// is infeasible if the beam comes near the electrode.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "objectives/cost.h"
+#include "studies/search_space.h"
+#include "studies/simulate.h"
+#include "studies/two_stages.h"
+
+namespace softland {
+
+/// Costs from here on are of waveforms that never touch: see cost().
+inline constexpr double never_touched = 10;
+
+struct SearchSetting {
+  Target target;
+  Prepared given;           ///< the scene
+  Prepared baseline_scene;  ///< under the plain step
+  Closing baseline;
+  CostScale scale;
+  double baseline_cost = 0;
+  ClosingOptions run;  ///< of a candidate
+  SearchSpace space;
+
+  /// The scene with these waveforms of the searched drives; the others stand as in the baseline.
+  [[nodiscard]] SceneFile scene(const std::map<std::string, Waveform>& searched) const;
+  /// One waveform per drive of the switch, in its order.
+  [[nodiscard]] std::vector<Waveform> drives(const std::map<std::string, Waveform>& searched) const;
+  /// Whether the searched drives stay inside their limits.
+  [[nodiscard]] bool is_allowed(const std::map<std::string, Waveform>& searched) const;
+  [[nodiscard]] Prices price(const std::vector<Signal>& signals) const;
+  /// Of a point of the search space; infinite where it leaves the limits of a driver.
+  [[nodiscard]] Prices price_at(std::span<const double> x) const;
+};
+
+/// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.
+[[nodiscard]] SearchSetting search_setting(const SceneFile& file, Target target, Actuator actuator, const std::string& family,
+                                           const Watch& watch);
+
+/// The scene of `prepared` in volts, with other waveforms on some drives.
+[[nodiscard]] SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms);
+/// Text of the scene, read back: what a user's `simulate best.toml` will run. Warnings stay those about the file that the user
+/// wrote.
+[[nodiscard]] Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given);
+
+}  // namespace softland
