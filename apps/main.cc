@@ -43,7 +43,8 @@ const std::vector<std::string> coming{"explore"};
 int run(int argc, char** argv) {
   Common common{.command = command_line(argc, argv), .stop = &stop_requested()};
   OptimizeRequest request;
-  std::string kind = "cantilever", result, format = "csv";
+  ExportRequest exported;
+  std::string kind = "cantilever", result;
 
   // Called by the name `optimize`, the program is that verb.
   std::vector<std::string> words(argv + 1, argv + argc);
@@ -215,9 +216,15 @@ int run(int argc, char** argv) {
   fresh->footer("Example:\n  softland new cantilever > my-switch.toml");
 
   CLI::App* exporting = add_verb("export", "print the waveforms of a result for a generator or a circuit simulator");
-  positional(exporting, "RESULT", result, "folder that --out named, result.json, or a scene file")->required();
-  option(exporting, "--format", format, "NAME", "csv (default) or spice-pwl");
-  exporting->footer("Example:\n  softland export softland-out --format spice-pwl > drive.cir");
+  positional(exporting, "RESULT", exported.result, "folder that --out named, result.json, or a scene file")->required();
+  option(exporting, "--format", exported.format, "NAME", "csv (default) or spice-pwl");
+  optional(exporting, "--device-vdp", exported.device_pull_in, "VOLTAGE",
+           "dynamic pull-in voltage measured on a device: its own waveform, with voltages in proportion");
+  optional(exporting, "--device-frequency", exported.device_frequency, "FREQUENCY",
+           "first natural frequency measured on a device, with times in proportion to its period");
+  exporting->footer(
+      "Examples:\n  softland export softland-out --format spice-pwl > drive.cir\n"
+      "  softland export softland-out --device-vdp \"14.6 V\" --device-frequency \"10.2 kHz\" > device-17.csv");
 
   CLI::App* report = add_verb("report", "make report.html and gap.svg of a result.json again");
   positional(report, "RESULT", result, "folder that --out named, or its result.json")->required();
@@ -260,7 +267,7 @@ int run(int argc, char** argv) {
     if (*accuracy) return accuracy_verb(common);
     if (*optimize) return optimize_verb(common, request);
     if (*fresh) return new_verb(kind);
-    if (*exporting) return export_verb(common, result, format);
+    if (*exporting) return export_verb(common, exported);
     return report_verb(common, result);
   } catch (const OutputInterrupted&) {
     throw;

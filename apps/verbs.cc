@@ -680,11 +680,49 @@ int new_verb(const std::string& kind) {
   return exit_done;
 }
 
-int export_verb(const Common& c, const std::string& result, const std::string& format) {
-  const SceneFile file = scene_of_result(result);
-  const Prepared p = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
-  require(format == "csv" || format == "spice-pwl", fmt::format("--format {}: must be csv or spice-pwl", format));
-  print(format == "csv" ? csv(named_signals(p), p.duration) : spice_pwl(named_signals(p), p.duration));
+namespace {
+
+// What was measured on a device.
+std::optional<double> measured(const char* option, const std::optional<std::string>& text, const Dimension& due) {
+  if (!text) return std::nullopt;
+  Quantity q;
+  try {
+    q = parse_quantity(*text);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{} {}: {}", option, shown(*text), error.what()));
+  }
+  require(q.dimension == due && q.value > 0, [&] {
+    return fmt::format("{} {}: must be {} above 0, such as \"{}\"", option, shown(*text), describe(due), example(due));
+  });
+  return q.value;
+}
+
+}  // namespace
+
+int export_verb(const Common& c, const ExportRequest& request) {
+  SceneFile file = scene_of_result(request.result);
+  require(request.format == "csv" || request.format == "spice-pwl",
+          fmt::format("--format {}: must be csv or spice-pwl", request.format));
+  const std::optional<double> pull_in = measured("--device-vdp", request.device_pull_in, dimension::voltage),
+                              frequency = measured("--device-frequency", request.device_frequency, dimension::frequency);
+  const bool is_own = pull_in || frequency;
+  const Prepared p = prepare_and_choose(file, is_own, WatchedWork(c.quiet, c.stop).watch());
+  std::map<std::string, Signal> signals = named_signals(p);
+  if (is_own) {
+    const DeviceMeter meter(p, pull_in.has_value());
+    const DeviceUnits units{.volts = pull_in ? *pull_in / meter.pull_in() : 1, .time = frequency ? meter.frequency() / *frequency : 1};
+    const std::vector<std::string> names = p.drive_names();
+    std::vector<Waveform> waveforms;
+    for (const std::string& name : names) {
+      const auto found = p.drives.waveforms.find(name);
+      waveforms.push_back(found == p.drives.waveforms.end() ? Waveform(Step{.level = 0}) : found->second);
+    }
+    waveforms = in_units(waveforms, p.scene.device, units);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (names[k] != dispersion_drive) signals[names[k]] = signal(waveforms[k]);
+    }
+  }
+  print(request.format == "csv" ? csv(signals, p.duration) : spice_pwl(signals, p.duration));
   return exit_done;
 }
 

@@ -43,6 +43,11 @@ struct RobustnessRequest {
   std::optional<std::string> jobs;     ///< default: one per core
 };
 
+struct ExportRequest {
+  std::string result, format = "csv";
+  std::optional<std::string> device_pull_in, device_frequency;  ///< measured on the device that gets the waveform
+};
+
 /// `jobs`: threads of a certified run; default: one per core.
 int simulate_verb(const Common& common, bool certified, const std::optional<std::string>& jobs);
 int pull_in_verb(const Common& common);
@@ -53,7 +58,7 @@ int accuracy_verb(const Common& common);
 int optimize_verb(const Common& given, const OptimizeRequest& request);
 int robustness_verb(const Common& common, const RobustnessRequest& request);
 int new_verb(const std::string& kind);
-int export_verb(const Common& common, const std::string& result, const std::string& format);
+int export_verb(const Common& common, const ExportRequest& request);
 int report_verb(const Common& given, const std::string& result);
 
 }  // namespace softland::apps

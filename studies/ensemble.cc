@@ -11,6 +11,7 @@
 #include "base/executor.h"
 #include "base/random.h"
 #include "base/require.h"
+#include "model/constants.h"
 #include "model/pull_in.h"
 #include "studies/search_space.h"
 
@@ -87,7 +88,6 @@ void DeviceBuilder::describe(SampledDevice& sampled) {
 }
 
 DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in) : nominal_(&nominal), need_pull_in_(need_pull_in) {
-  frequency_ = nominal.model.angular_frequencies()[0];
   if (!need_pull_in) return;
   const std::string name = searched_electrode(nominal.scene.device);
   const std::vector<std::string> names = nominal.drive_names();
@@ -96,13 +96,15 @@ DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in) : nominal_(
   require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
 }
 
+double DeviceMeter::frequency() const { return nominal_->model.angular_frequencies()[0] / (2 * pi); }
+
 double DeviceMeter::pull_in(const Switch& model) const {
   constexpr double tolerance = 1e-6;  // of the integrator: no measurement is as good
   return dynamic_pull_in(model, electrode_, static_pull_in(model, electrode_), {}, tolerance).voltage;
 }
 
 DeviceUnits DeviceMeter::exact(const Switch& model) const {
-  return {.volts = need_pull_in_ ? pull_in(model) / pull_in_ : 1, .time = frequency_ / model.angular_frequencies()[0]};
+  return {.volts = need_pull_in_ ? pull_in(model) / pull_in_ : 1, .time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0]};
 }
 
 DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed,

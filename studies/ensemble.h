@@ -81,6 +81,9 @@ class DeviceMeter {
   /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there
   /// is none, or it has no pull-in voltage, and `need_pull_in`.
   DeviceMeter(const Prepared& nominal, bool need_pull_in);
+  /// Of the nominal device [V], [Hz].
+  [[nodiscard]] double pull_in() const { return pull_in_; }
+  [[nodiscard]] double frequency() const;
   /// Without error. A device whose pull-in voltage cannot be found has NaN volts.
   [[nodiscard]] DeviceUnits exact(const Switch& model) const;
   /// What a calibration of device k knows; the errors are functions of seed and k.
@@ -93,7 +96,7 @@ class DeviceMeter {
   const Prepared* nominal_;
   bool need_pull_in_;
   std::size_t electrode_ = 0;
-  double pull_in_ = Metrics::unset, frequency_ = Metrics::unset;
+  double pull_in_ = Metrics::unset;
 };
 
 /// The drives that every device gets: the waveforms of the nominal device, or, where devices are calibrated, those in the units

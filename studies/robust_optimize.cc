@@ -116,7 +116,8 @@ class RobustSearch {
   }
 
   [[nodiscard]] long closings() const { return closings_; }
-  [[nodiscard]] long evaluations() const { return evaluations_; }
+  /// On all devices, or as many of them as it took to give a candidate up.
+  [[nodiscard]] long evaluations() const { return static_cast<long>(log_.size()); }
   [[nodiscard]] std::vector<Evaluation> improvements() const {
     std::vector<Evaluation> all;
     for (const auto& [index, e] : log_) {
@@ -247,7 +248,6 @@ class RobustSearch {
       const double hopeless = median();
       const double value = evaluate(x, devices, hopeless, jobs, used);
       closings_ += used - before;
-      ++evaluations_;
       if (std::isfinite(value)) recent.push_back(value);
       if (recent.size() > remembered) recent.pop_front();
       if (value < best.value) best = {.x = x, .value = value};
@@ -276,7 +276,7 @@ class RobustSearch {
   Scouting scouting_;
   std::vector<Variable> variables_;
   std::chrono::steady_clock::time_point begin_;
-  std::atomic<long> closings_ = 0, evaluations_ = 0;
+  std::atomic<long> closings_ = 0;
   std::uint64_t heats_run_ = 0;
   long next_index_ = 0;
 

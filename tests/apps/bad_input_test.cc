@@ -107,6 +107,8 @@ TEST_F(BadInput, Options) {
        "--optimizer bobyqa: a robust search has a method of its own"},
       {{"optimize", "gold.toml", "--samples=3"},
        "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9"},
+      {{"export", "gold.toml", "--device-vdp", "3 A"}, "--device-vdp 3 A: must be a voltage [V] above 0, such as \"45 V\""},
+      {{"export", "gold.toml", "--device-frequency", "0 Hz"}, "--device-frequency 0 Hz: must be a frequency [Hz] above 0, such as \"30 kHz\""},
       {{"robustness", "gold.toml", "--calibrate", "Vdp:99 %"},
        "--set calibration.Vdp.error=\"99 %\": must be in [0, 0.5]"},
       {{"robustness", "gold.toml", "--samples", "0"}, "--samples 0: must be a whole number from 1 on"},

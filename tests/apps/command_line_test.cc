@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "program.h"
 #include "tests/support/printed.h"
@@ -401,6 +403,39 @@ TEST(Export, PrintsTheWaveformsOfAScene) {
   EXPECT_THAT(csv.out, HasSubstr("main"));
   EXPECT_EQ(pwl.status, 0);
   EXPECT_THAT(pwl.out, HasSubstr("PWL"));
+}
+
+// The rows of a file of waveforms with one drive.
+std::vector<std::array<double, 2>> waveform(const std::string& csv) {
+  std::vector<std::array<double, 2>> rows;
+  std::istringstream in(csv.substr(csv.find("\n", csv.find("time_s")) + 1));
+  std::array<double, 2> row{};
+  for (char comma = 0; in >> row[0] >> comma >> row[1];) rows.push_back(row);
+  return rows;
+}
+
+TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits) {
+  const Workplace here;
+  write(here.path() / "pulse.toml",
+        edited(edited(edited(shipped("mem-gold.toml"), "family = \"step\"", "family = \"pulse\""), "level = \"1.25 Vdp\"",
+                      "levels = [\"16 V\", \"3 V\", \"15 V\"]\ntimes = [\"20 us\", \"33 us\"]\nedge = \"1 us\""),
+               "1.5 Vdp", "25 V"));
+  const json pull_in = json::parse(here.run({"pull-in", "pulse.toml", "--json", "-"}).out);
+  const json modes = json::parse(here.run({"modes", "pulse.toml", "--json", "-"}).out);
+  const double own_volts = pull_in["pull_in"]["dynamic_V"], own_frequency = modes["natural_frequencies_rad_s"][0].get<double>() / 6.283185307179586;
+  const auto nominal = waveform(here.run({"export", "pulse.toml"}).out);
+  const Outcome o = here.run({"export", "pulse.toml", "--device-vdp", std::to_string(1.1 * own_volts) + " V", "--device-frequency",
+                              std::to_string(own_frequency / 1.2) + " Hz"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  const auto own = waveform(o.out);
+  ASSERT_GT(nominal.size(), 5U);
+  ASSERT_EQ(own.size(), nominal.size());
+  for (std::size_t i = 0; i + 1 < own.size(); ++i) {  // the last row stands at the end of the window
+    EXPECT_NEAR(own[i][0], 1.2 * nominal[i][0], 1e-5 * own[i][0]);
+    EXPECT_NEAR(own[i][1], 1.1 * nominal[i][1], 1e-5 * own[i][1]);
+  }
+  // What was not measured is that of the nominal device.
+  EXPECT_EQ(waveform(here.run({"export", "pulse.toml", "--device-frequency", std::to_string(own_frequency) + " Hz"}).out).size(), nominal.size());
 }
 
 }  // namespace

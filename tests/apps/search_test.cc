@@ -250,5 +250,66 @@ TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn) {
   EXPECT_EQ(left, expected);
 }
 
+// A search over devices that differ.
+const std::vector<std::string> over_devices{"--robust", "cvar:0.9", "--samples", "16", "--constrain", "t_i < 60 us"};
+
+TEST(RobustSearch, LeavesWhatRobustnessFindsAgain) {
+  const Workplace here;
+  std::vector<std::string> more = over_devices;
+  more.insert(more.end(), {"--calibrate", "Vdp:1 %,frequency", "--json", "out.json"});
+  const Outcome o = search(here, "out", more, "1500");
+  ASSERT_EQ(o.status, 0) << o.err;
+  for (const char* name : {"best.toml", "best.csv", "report.html", "gap.svg", "result.json", "trajectory.csv", "evaluations.csv",
+                           "robustness.json", "devices.csv"})
+    EXPECT_GT(fs::file_size(here.path() / "out" / name), 0U) << name;
+  expect_complete_log(read(here.path() / "out/evaluations.csv"));
+  const json found = result(here, "out"), verdict = json::parse(read(here.path() / "out/robustness.json"));
+  EXPECT_EQ(json::parse(read(here.path() / "out.json"))["robust"], found["robust"]);
+  EXPECT_EQ(found["robust"]["measure"], "cvar:0.9");
+  EXPECT_EQ(found["robust"]["devices"], 16);
+  EXPECT_EQ(found["robust"]["fresh_devices"], 2000);
+  EXPECT_EQ(found["robust"]["conditions"].size(), 1U);
+  EXPECT_LT(found["best"]["cost"], found["baseline"]["cost"]);
+  EXPECT_EQ(lines(read(here.path() / "out/evaluations.csv")).size(), found["evaluations"].get<std::size_t>() + 1);
+  // best.toml says what is measured of a device, so that the report of robustness is the verdict, digit for digit.
+  const Outcome again = here.run({"robustness", "out/best.toml", "--quiet", "--json", "-"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  json figures = json::parse(again.out)["drives"].back();
+  for (const char* key : {"figures", "bounce_free", "closing"}) EXPECT_EQ(figures[key], verdict["drives"].back()[key]) << key;
+  // The report is made of the result alone.
+  const Outcome report = here.run({"report", "out", "--out", "again"});
+  ASSERT_EQ(report.status, 0) << report.err;
+  EXPECT_NE(report.out.find("Searched over 16 devices"), std::string::npos) << report.out;
+  EXPECT_NE(o.out.find("Searched over 16 devices"), std::string::npos) << o.out;
+}
+
+TEST(RobustSearch, KeepsItsBestWhenInterrupted) {
+  const Workplace here;
+  std::vector<std::string> more = over_devices;
+  more.insert(more.end(), {"--budget", "100000000", "--out", "out", "--jobs", "2"});
+  const pid_t child = here.start(words("optimize", more));
+  using namespace std::chrono_literals;
+  for (int i = 0; i < 1200 && !fs::exists(here.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(50ms);
+  kill(child, SIGINT);
+  const Outcome o = here.finish(child);
+  EXPECT_EQ(o.status, 130) << o.err;
+  const json found = json::parse(read(here.path() / "out/result.json"), nullptr, false);
+  ASSERT_TRUE(found.is_object());
+  EXPECT_EQ(found["status"], "interrupted");
+  EXPECT_TRUE(found["robust"]["fresh_devices"].is_null()) << "no verdict";
+  EXPECT_EQ(here.run({"simulate", "out/best.toml", "--quiet"}).status, 0);
+}
+
+TEST(RobustSearch, OfATinyBudgetStillAnswers) {
+  const Workplace here;
+  for (const char* budget : {"1", "100", "700"}) {
+    std::vector<std::string> more{"--robust", "worst", "--samples", "8"};
+    const std::string out = std::string("out") + budget;
+    const int status = search(here, out, more, budget).status;  // 4: no better than the step
+    EXPECT_TRUE(status == 0 || status == 4) << budget << ": " << status;
+    EXPECT_TRUE(result(here, out)["best"]["metrics"].is_object()) << budget;
+  }
+}
+
 }  // namespace
 }  // namespace softland
