@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -232,10 +233,9 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
                                         {.samples = devices, .jobs = jobs}, work.watch());
     if (found.interrupted || found.drives.size() < 2) return {};
     const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
-      const auto& all = ensemble_figures();
-      const auto figure = std::find_if(all.begin(), all.end(), [&](const EnsembleFigure& f) { return f.key == key; });
-      const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(figure - all.begin())].quantiles[2];
-      return std::isfinite(q.value) ? quantity(q.value, figure->unit) : std::string("no bound (more than 5 % do not close)");
+      const EnsembleFigure& figure = ensemble_figure(key);
+      const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(&figure - ensemble_figures().data())].quantiles[2];
+      return std::isfinite(q.value) ? quantity(q.value, figure.unit) : std::string("no bound (more than 5 % do not close)");
     };
     const auto words = [&](const DriveRobustness& drive) {
       return fmt::format("rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
@@ -458,6 +458,24 @@ void calibrate(SceneFile& file, const std::string& list) {
   }
 }
 
+constexpr std::array<const char*, 3> robustness_files{"robustness.html", "robustness.json", "devices.csv"};
+
+// What is known of the last drive beside its figures; nothing where the work was interrupted.
+void add_details(RobustnessReport& report, const Watch& watch) {
+  if (report.found.interrupted || report.found.devices == 0) return;
+  constexpr std::uint64_t devices_per_row = 4, most_rows = 1024;
+  const DriveRobustness& last = report.found.drives.back();
+  report.sensitivity = sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
+                                   report.options, watch);
+  report.courses = device_courses(report.nominal, last, report.found, report.options);
+}
+
+void write_robustness(ResultFolder& folder, const RobustnessReport& report) {
+  folder.write("robustness.html", robustness_html(report));
+  folder.write("robustness.json", json_text(robustness_json(report), 2));
+  folder.write("devices.csv", robustness_csv(report));
+}
+
 // What a search is asked for, but for its robustness.
 OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
   const TargetRow* target = find_named(targets, request.target);
@@ -511,7 +529,7 @@ class Searching {
       preparation_.emplace(c.quiet, c.stop);
       std::vector<std::string> files{"best.toml",   "best.csv",       "report.html",    "gap.svg",
                                      "result.json", "trajectory.csv", "evaluations.csv"};
-      if (!request.robust.empty()) files.insert(files.end(), {"robustness.json", "devices.csv"});
+      if (!request.robust.empty()) files.insert(files.end(), robustness_files.begin(), robustness_files.end());
       folder_ = claim_places(c, files);
       log_.emplace(*folder_, variables);
       if (c.quiet) return;
@@ -582,12 +600,14 @@ int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
   std::vector<std::string> left = write_found(searching, result.found, found, place);
   std::string text;
   if (result.verdict) {
-    const RobustnessOptions of_verdict{.samples = robust.verdict, .seed = options.seed};
-    const Prepared& best = *result.found.best_scene;
-    searching.folder().write("robustness.json", json_text(robustness_json(best, *result.verdict, of_verdict, {.command = c.command}), 2));
-    searching.folder().write("devices.csv", robustness_csv(best, *result.verdict, of_verdict));
-    left.insert(left.end(), {"robustness.json", "devices.csv"});
-    text = "\n" + robustness_text(best, *result.verdict, of_verdict);
+    RobustnessReport report{.nominal = *result.found.best_scene,
+                            .found = *result.verdict,
+                            .options = {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs},
+                            .command = c.command};
+    add_details(report, WatchedWork(c.quiet, c.stop).watch());
+    write_robustness(searching.folder(), report);
+    left.insert(left.end(), robustness_files.begin(), robustness_files.end());
+    text = "\n" + robustness_text(report);
   }
   searching.folder().publish(interrupted);
   print_result(c, found, text + left_in(place, left));
@@ -642,24 +662,25 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
                       .waveforms = prepare(scene_of_result(result), false, work->watch()).drives.waveforms,
                       .calibration = calibration});
   }
-  std::vector<std::string> files{"robustness.json", "devices.csv"};
+  std::vector<std::string> files(robustness_files.begin(), robustness_files.end());
   constexpr std::size_t most_worst = 3;
   for (std::size_t i = 1; i <= most_worst; ++i) files.push_back(fmt::format("worst-{}.toml", i));
   std::optional<ResultFolder> folder = claim_places(c, files);
 
   const Robustness found = robustness(nominal, drives, options, work->watch());
-  const json j = robustness_json(nominal, found, options, {.command = c.command});
-  std::string text = robustness_text(nominal, found, options);
+  RobustnessReport report{.nominal = nominal, .found = found, .options = options, .command = c.command};
+  add_details(report, work->watch());
+  const json j = robustness_json(report);
+  std::string text = robustness_text(report);
   work.reset();
   if (folder) {
-    folder->write("robustness.json", json_text(j, 2));
-    folder->write("devices.csv", robustness_csv(nominal, found, options));
+    write_robustness(*folder, report);
     const DriveRobustness& last = found.drives.back();
     for (std::size_t i = 0; i < most_worst && i < last.worst.size(); ++i)
       folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());
     text += left_in(
         folder->destination(found.interrupted),
-        {"robustness.json", "devices.csv", "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
+        {"robustness.html", "robustness.json", "devices.csv", "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
     folder->publish(found.interrupted);
   }
   print_json_or(c, j, text);

@@ -290,49 +290,30 @@ Picture picture(const AccuracyStudy& study) {
 // ---- the page
 // ---------------------------------------------------------------------------------------------------------------------
 
-// "t<sub>i</sub>"
-std::string symbol_html(std::string_view symbol) {
-  const std::size_t at = symbol.find('_');
-  return at == std::string_view::npos ? std::string(symbol)
-                                      : fmt::format("{}<sub>{}</sub>", symbol.substr(0, at), symbol.substr(at + 1));
-}
-
-std::string table_row(std::string_view cell, const std::vector<std::string>& cells) {
-  return fmt::format(
-      "<tr><{0} scope=\"{1}\">{2}</{0}>{3}</tr>\n", "th", cell == "td" ? "row" : "col", cells[0],
-      fmt::format("<{0}>{1}</{0}>", cell, fmt::join(cells.begin() + 1, cells.end(), fmt::format("</{0}><{0}>", cell))));
-}
-
-std::string table(const std::vector<std::string>& head, const std::string& rows) {
-  return "<div class=\"scroll\"><table><thead>" + table_row("th", head) + "</thead><tbody>\n" + rows + "</tbody></table></div>\n";
-}
-
-std::string section(std::string_view id, std::string_view heading, const std::string& body) {
-  return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, heading, body);
-}
+using internal::section;
+using internal::symbol_html;
+using internal::table_html;
+using internal::TableRow;
 
 // Errors and costs of settings; `first` says what a row is.
 std::string errors_table(const std::vector<std::string>& first, const std::vector<const AccuracyRow*>& rows,
                          const std::function<std::vector<std::string>(const AccuracyRow&)>& setting) {
-  std::vector<std::string> head = first;
-  for (const Figure& f : studied_figures) head.push_back(symbol_html(f.symbol));
+  TableRow head(first.begin(), first.end());
+  for (const Figure& f : studied_figures) head.emplace_back(symbol_html(f.symbol));
   head.insert(head.end(), {"right-hand sides", "time"});
-  std::string body;
+  std::vector<TableRow> body;
   for (const AccuracyRow* row : rows) {
-    std::vector<std::string> cells = setting(*row);
+    const std::vector<std::string> words = setting(*row);
+    TableRow& cells = body.emplace_back(words.begin(), words.end());
     if (!row->missing.empty()) {
-      std::string line = table_row("td", cells);
-      line.insert(line.rfind("</tr>"), fmt::format("<td class=\"missing\" colspan=\"{}\">{}</td>", studied_figures.size() + 2,
-                                                   internal::escaped(row->missing)));
-      body += line;
+      cells.emplace_back(internal::escaped(row->missing), "missing", studied_figures.size() + 2);
       continue;
     }
-    for (const double error : row->errors) cells.push_back(error_cell(error));
-    cells.push_back(fmt::format("{}", row->work.rhs_evaluations));
-    cells.push_back(internal::quantity(row->seconds, "s"));
-    body += table_row("td", cells);
+    for (const double error : row->errors) cells.emplace_back(error_cell(error));
+    cells.emplace_back(fmt::format("{}", row->work.rhs_evaluations));
+    cells.emplace_back(internal::quantity(row->seconds, "s"));
   }
-  return table(head, body);
+  return table_html(head, body);
 }
 
 std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
@@ -344,22 +325,22 @@ std::vector<const AccuracyRow*> all_of(const std::vector<AccuracyRow>& rows) {
 std::string recommendations_html(const AccuracyStudy& study) {
   if (symbols(study, true).empty()) return "<p>" + recommendations(study).front() + "</p>\n";
   const bool has_points = own_points(study).has_value();
-  std::string rows;
+  std::vector<TableRow> rows;
   for (const Recommendation& r : study.recommendations) {
     const std::string accuracy = internal::scientific(r.accuracy);
-    std::vector<std::string> cells{accuracy, "nothing that was tried", "", ""};
+    TableRow cells{accuracy, "nothing that was tried", "", ""};
     if (r.row) {
       const AccuracyRow& row = study.rows[*r.row];
       cells = {accuracy, std::string(to_string(row.integrator)), internal::scientific(row.tolerance),
                internal::quantity(row.seconds, "s", 2)};
     }
     if (has_points) cells.insert(cells.end() - 1, r.row ? fmt::format("{:g}", *study.rows[*r.row].points_per_length) : "");
-    rows += table_row("td", cells);
+    rows.push_back(std::move(cells));
   }
-  std::vector<std::string> head{"Accuracy wanted", "Integrator", "Tolerance", "Time of a closing"};
+  TableRow head{"Accuracy wanted", "Integrator", "Tolerance", "Time of a closing"};
   if (has_points) head.insert(head.end() - 1, "Points per length");
   const std::string ill = symbols(study, false);
-  return table(head, rows) +
+  return table_html(head, rows) +
          fmt::format(
              "<p class=\"below\">The quickest setting with which {} are that accurate, there and at every tighter tolerance "
              "tried.{}</p>\n",
@@ -367,18 +348,18 @@ std::string recommendations_html(const AccuracyStudy& study) {
 }
 
 std::string clouds_html(const AccuracyStudy& study) {
-  std::string rows;
+  std::vector<TableRow> rows;
   const auto add = [&](const Figure& f, const Spread& s, bool ill) {
     const auto value = [&](double v) { return s.runs > 0 ? four_digits(v, f.unit) : std::string("—"); };
-    rows += table_row("td", {symbol_html(f.symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
-                             fmt::format("<span class=\"note\">{}</span>", ill ? "ill-conditioned" : "")});
+    rows.push_back({symbol_html(f.symbol), value(s.low), value(s.median), value(s.high), fmt::format("{}", s.runs),
+                    fmt::format("<span class=\"note\">{}</span>", ill ? "ill-conditioned" : "")});
   };
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     if (study.cloud[i].runs > 0) add(studied_figures[i], study.cloud[i], !study.conditioned[i]);
   }
   add(figure_of(&Metrics::permanent_contact_time), study.permanent_contact_time, ill_conditioned(study.permanent_contact_time));
   add(figure_of(&Metrics::bounce_count), study.bounce_count, ill_conditioned(study.bounce_count));
-  return table({"Figure", "lowest", "median", "highest", "runs", ""}, rows) +
+  return table_html({"Figure", "lowest", "median", "highest", "runs", ""}, rows) +
          "<p class=\"below\">Runs whose drives differ by one part in 1e9 to 1e7, which nobody could notice. Permanent contact "
          "time and "
          "bounce count are properties of such a cloud, not of one run.</p>\n";
@@ -395,13 +376,12 @@ std::string reference_keys(const AccuracyStudy& study) {
   for (std::size_t i = 0; i < studied_figures.size(); ++i) {
     const Figure& f = studied_figures[i];
     const double value = f.value(study.reference.figures);
-    out += fmt::format(
-        "<div class=\"key\"><dt>{}{}</dt><dd><span class=\"after\">{}</span><span class=\"change\">{}</span></dd></div>\n",
-        f.name, f.symbol.find('_') == std::string_view::npos ? "" : ", " + symbol_html(f.symbol),
-        internal::quantity(value, f.unit, 4),
-        !std::isfinite(value)   ? ""
-        : !study.conditioned[i] ? "ill-conditioned"
-                                : "known to " + error_cell(study.resolution[i]));
+    const bool has_index = f.symbol.find('_') != std::string_view::npos;
+    out += internal::key_html(std::string(f.name) + (has_index ? ", " + symbol_html(f.symbol) : ""),
+                              internal::quantity(value, f.unit, 4),
+                              !std::isfinite(value)   ? ""
+                              : !study.conditioned[i] ? "ill-conditioned"
+                                                      : "known to " + error_cell(study.resolution[i]));
   }
   return out;
 }

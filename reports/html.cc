@@ -69,49 +69,44 @@ std::string key_numbers(const Result& result) {
 }
 
 /// What every drive demands of its source, where there are several.
-std::string drive_rows(const Result& result, bool pair, bool estimated) {
-  if (result.best.waveforms.size() < 2) return {};
-  std::string out;
+void add_drive_rows(std::vector<TableRow>& rows, const Result& result, bool pair, bool estimated) {
+  if (result.best.waveforms.size() < 2) return;
   for (const auto& [drive, found] : result.best.waveforms) {
     const DriveScale scale = drive_scale(drive);
     if (scale.unit.empty()) continue;  // a factor has no source
     const DriveDemand own = drive_demand(found, scale.rest);
     const DriveDemand step = drive_demand(waveform(result.baseline, drive), scale.rest);
-    const auto row = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {
-      out += fmt::format("<tr><th scope=\"row\">{}, {}</th>", what.name, escaped(*name));
-      if (pair) out += fmt::format("<td>{}</td><td></td>", before);
-      out += fmt::format("<td class=\"own\">{}</td>", value);
-      if (pair) out += "<td></td>";
-      if (estimated) out += "<td></td>";
-      out += "</tr>\n";
+    const auto add = [&, name = &drive](const Figure& what, const std::string& value, const std::string& before) {
+      TableRow& row = rows.emplace_back(TableRow{fmt::format("{}, {}", what.name, escaped(*name))});
+      if (pair) row.insert(row.end(), {before, ""});
+      row.emplace_back(value, "own");
+      if (pair) row.emplace_back("");
+      if (estimated) row.emplace_back("");
     };
     const auto slew = [](double value) { return std::isinf(value) ? std::string("jumps") : quantity(value, "V/s"); };
-    row(figure_of(&Metrics::peak_voltage), quantity(own.peak(), "V", 4), quantity(step.peak(), "V", 4));
-    row(figure_of(&Metrics::peak_slew), slew(own.slew), slew(step.slew));
+    add(figure_of(&Metrics::peak_voltage), quantity(own.peak(), "V", 4), quantity(step.peak(), "V", 4));
+    add(figure_of(&Metrics::peak_slew), slew(own.slew), slew(step.slew));
   }
-  return out;
 }
 
-std::string figure_row(const Result& result, const Figure& one, bool pair, bool estimated) {
+TableRow figure_row(const Result& result, const Figure& one, bool pair, bool estimated) {
   const double own = figure_of_run(result.best, one.member), step = figure_of_run(result.baseline, one.member);
-  if (std::isnan(own) && std::isnan(step)) return {};
   const double error = result.best.errors[one];
-  std::string out = fmt::format("<tr><th scope=\"row\">{}</th>", one.label());
-  if (pair)
-    out +=
-        fmt::format("<td>{}</td><td>{}</td>", figure_text(one, step, result.baseline.errors[one], own), goal_text(result, one));
-  out += fmt::format("<td class=\"own\">{}</td>", figure_text(one, own, error, step));
+  TableRow row{one.label()};
+  if (pair) row.insert(row.end(), {figure_text(one, step, result.baseline.errors[one], own), goal_text(result, one)});
+  row.emplace_back(figure_text(one, own, error, step), "own");
   if (pair) {
     const Change changed = figure_change(result.baseline, result.best, one);
-    out += fmt::format("<td class=\"change {}\">{}</td>", verdict_class(changed.verdict), changed.words);
+    row.emplace_back(changed.words, "change " + verdict_class(changed.verdict));
   }
   if (estimated) {
     constexpr double ill = 0.1;  // an error above a tenth of the figure
     const std::string cloud = cloud_text(result, one);
-    out += fmt::format("<td>{}{}</td>", !cloud.empty() ? cloud : error_text(one, own, error),
-                       !cloud.empty() || error > ill * std::abs(own) ? " <span class=\"note\">ill-conditioned</span>" : "");
+    const bool is_ill = !cloud.empty() || error > ill * std::abs(own);
+    row.emplace_back((!cloud.empty() ? cloud : error_text(one, own, error)) +
+                     (is_ill ? " <span class=\"note\">ill-conditioned</span>" : ""));
   }
-  return out + "</tr>\n";
+  return row;
 }
 
 std::string figures_table(const Result& result) {
@@ -119,18 +114,22 @@ std::string figures_table(const Result& result) {
   const bool pair = result.is_search && result.baseline.figures;
   const bool estimated = std::any_of(all_figures.begin(), all_figures.end(),
                                      [&](const Figure& one) { return std::isfinite(result.best.errors[one]); });
-  std::string out = "<section id=\"figures\"><h2>Figures</h2>\n";
+  std::string out;
   if (result.goal_met) out += fmt::format("<p>The goal is {}.</p>\n", *result.goal_met ? "met" : "not met");
-  out += "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Figure</th>";
-  if (pair) out += "<th scope=\"col\">Plain step</th><th scope=\"col\">Goal</th>";
-  out += pair ? "<th scope=\"col\">Softland</th><th scope=\"col\">Change</th>" : "<th scope=\"col\">Value</th>";
-  if (estimated) out += fmt::format("<th scope=\"col\">{}</th>", error_heading(result));
-  out += "</tr></thead><tbody>\n";
-  for (const Figure& one : all_figures) out += figure_row(result, one, pair, estimated);
-  out += drive_rows(result, pair, estimated);
-  out += "</tbody></table></div>\n";
+  TableRow head{"Figure"};
+  if (pair) head.insert(head.end(), {"Plain step", "Goal", "Softland", "Change"});
+  if (!pair) head.emplace_back("Value");
+  if (estimated) head.emplace_back(error_heading(result));
+  std::vector<TableRow> rows;
+  for (const Figure& one : all_figures) {
+    const bool known = !std::isnan(figure_of_run(result.best, one.member)) || !std::isnan(figure_of_run(result.baseline, one.member));
+    if (known) rows.push_back(figure_row(result, one, pair, estimated));
+  }
+  add_drive_rows(rows, result, pair, estimated);
+  out += table_html(head, rows);
   if (const std::string words = certificate_caption(result); !words.empty()) out += fmt::format("<p>{}</p>\n", escaped(words));
-  return out + "</section>\n";
+  if (const std::string words = robust_caption(result); !words.empty()) out += fmt::format("<p>{}</p>\n", escaped(words));
+  return section("figures", "Figures", out);
 }
 
 std::string charts(const Picture& drawn) {
@@ -178,21 +177,19 @@ std::string list_of(const std::vector<std::string>& lines, std::string_view head
 
 std::string checks_table(const Result& result) {
   if (result.checks.empty()) return {};
-  std::string out = "<section id=\"checks\"><h2>Confirmations</h2>\n<p>" + escaped(checks_caption(result)) +
-                    "</p>\n<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Simulated with</th>";
-  for (const Figure& one : leading_figures) out += fmt::format("<th scope=\"col\">{}</th>", one.name);
-  out += "</tr></thead><tbody>\n";
-  const auto row = [&](const std::string& name, const std::optional<FigureValues>& figures) {
-    out += fmt::format("<tr><th scope=\"row\">{}</th>", escaped(name));
+  TableRow head{"Simulated with"};
+  for (const Figure& one : leading_figures) head.emplace_back(one.name);
+  std::vector<TableRow> rows;
+  const auto add = [&](const std::string& name, const std::optional<FigureValues>& figures) {
+    TableRow& row = rows.emplace_back(TableRow{escaped(name)});
     for (const Figure& one : leading_figures) {
       const double value = figures ? (*figures)[one] : Metrics::unset;
-      out += fmt::format("<td>{}</td>", figure_text(one, value, Metrics::unset, figure_of_run(result.baseline, one.member)));
+      row.emplace_back(figure_text(one, value, Metrics::unset, figure_of_run(result.baseline, one.member)));
     }
-    out += "</tr>\n";
   };
-  row("as searched", result.best.figures);
-  for (const ResultCheck& check : result.checks) row(check.name, check.figures);
-  return out + "</tbody></table></div></section>\n";
+  add("as searched", result.best.figures);
+  for (const ResultCheck& check : result.checks) add(check.name, check.figures);
+  return section("checks", "Confirmations", "<p>" + escaped(checks_caption(result)) + "</p>\n" + table_html(head, rows));
 }
 
 /// "piezo.level_1_V" as "piezo.level_1" and "V".
@@ -255,23 +252,19 @@ std::string parameters_table(const Result& result) {
   std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
     return std::pair(a.drive, place_in_time(a.name)) < std::pair(b.drive, place_in_time(b.name));
   });
-  std::string out = "<section id=\"parameters\"><h2>The waveform found</h2>\n";
+  std::string out;
   std::string drive = "\n";
   for (const Row& row : rows) {
     if (row.drive != drive) out += parameter_drawing(result, drive = row.drive);
   }
-  out +=
-      "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Parameter</th><th scope=\"col\">Value</th><th "
-      "scope=\"col\">Searched</th></tr></thead><tbody>\n";
-  std::size_t shown = 0;
+  std::vector<TableRow> cells;
   for (const Row& row : rows) {
-    if (shown++ == most_lines) break;
+    if (cells.size() == most_lines) break;
     constexpr int digits = 5;
-    out += fmt::format("<tr><th scope=\"row\">{}{}{}</th><td>{}</td><td>{}</td></tr>\n", escaped(row.drive),
-                       row.drive.empty() ? "" : ".", escaped(row.name), quantity(row.value, row.unit, digits),
-                       searched_words(result, row.key, row.unit));
+    cells.push_back({escaped(row.drive) + (row.drive.empty() ? "" : ".") + escaped(row.name), quantity(row.value, row.unit, digits),
+                     searched_words(result, row.key, row.unit)});
   }
-  return out + "</tbody></table></div></section>\n";
+  return section("parameters", "The waveform found", out + table_html({"Parameter", "Value", "Searched"}, cells));
 }
 
 /// What was asked for, and what the device is like.

@@ -39,6 +39,41 @@ std::string shortened(const std::string& words) {
          fmt::format("\n... cut: {} of {} bytes are not shown", words.size() - most_text, words.size());
 }
 
+std::string table_html(const TableRow& head, const std::vector<TableRow>& rows) {
+  const auto cell = [](const Cell& c, std::string_view tag, std::string_view scope) {
+    std::string out = fmt::format("<{}", tag);
+    if (!scope.empty()) out += fmt::format(" scope=\"{}\"", scope);
+    if (!c.style.empty()) out += fmt::format(" class=\"{}\"", c.style);
+    if (c.columns > 1) out += fmt::format(" colspan=\"{}\"", c.columns);
+    return out + fmt::format(">{}</{}>", c.html, tag);
+  };
+  std::string out = "<div class=\"scroll\"><table><thead><tr>";
+  for (const Cell& c : head) out += cell(c, "th", "col");
+  out += "</tr></thead><tbody>\n";
+  for (const TableRow& row : rows) {
+    out += "<tr>";
+    for (const Cell& c : row) out += &c == row.data() ? cell(c, "th", "row") : cell(c, "td", "");
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string section(std::string_view id, std::string_view heading, const std::string& body) {
+  return fmt::format("<section id=\"{}\"><h2>{}</h2>\n{}</section>\n", id, heading, body);
+}
+
+std::string symbol_html(std::string_view symbol) {
+  const std::size_t at = symbol.find('_');
+  return at == std::string_view::npos ? std::string(symbol)
+                                      : fmt::format("{}<sub>{}</sub>", symbol.substr(0, at), symbol.substr(at + 1));
+}
+
+std::string key_html(std::string_view name, std::string_view value, std::string_view change) {
+  return fmt::format(
+      "<div class=\"key\"><dt>{}</dt><dd><span class=\"after\">{}</span><span class=\"change\">{}</span></dd></div>\n", name,
+      value, change);
+}
+
 std::string still_picture(const CurveTables& tables, const Chart& chart) {
   constexpr double width = 960;
   return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,

@@ -35,41 +35,11 @@ std::map<std::string, Points> waveforms(const Prepared& p) {
   return all;
 }
 
-// Knots, and points of the interpolant where knots are far apart.
-ResultCurve curve(const Trajectory& t, const MetricsOptions& options) {
-  ResultCurve c;
-  const auto add = [&](double at, double position, double velocity, double contact) {
-    c.time.push_back(at);
-    c.gap.push_back(t.contact_gap - position);
-    c.velocity.push_back(velocity);
-    c.force.push_back(contact);
-  };
-  const double longest = t.points.empty() ? 0 : t.points.back().time / 2000;
-  for (std::size_t i = 0; i < t.points.size(); ++i) {
-    const TrajectoryPoint& a = t.points[i];
-    add(a.time, a.position, a.velocity, a.contact_force);
-    if (i + 1 == t.points.size()) break;
-    const TrajectoryPoint& b = t.points[i + 1];
-    const double h = b.time - a.time;
-    if (!(h > longest)) continue;
-    const Quintic between(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
-    const int parts = static_cast<int>(std::ceil(h / longest));
-    for (int k = 1; k < parts; ++k) {
-      const double at = a.time + h * k / parts;
-      add(at, between.position(at), between.velocity(at), a.contact_force + (b.contact_force - a.contact_force) * k / parts);
-    }
-  }
-  for (const Rebound& r : rebounds(t)) {
-    if (r.height > options.significant_rebound) c.rebounds.push_back(r);
-  }
-  return c;
-}
-
 ResultRun run(const Prepared& p, const Closing& closing, const MetricsOptions& options) {
   return {.status = std::string(to_string(closing.metrics.status)),
           .figures = finite(FigureValues(closing.metrics)),
           .errors = finite(closing.errors),
-          .curve = curve(closing.trajectory, options),
+          .curve = curve_of(closing.trajectory, options),
           .waveforms = waveforms(p)};
 }
 
@@ -99,6 +69,35 @@ Result started(const Prepared& p, const Provenance& provenance) {
 }
 
 }  // namespace
+
+ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) {
+  ResultCurve c;
+  const auto add = [&](double at, double position, double velocity, double contact) {
+    c.time.push_back(at);
+    c.gap.push_back(t.contact_gap - position);
+    c.velocity.push_back(velocity);
+    c.force.push_back(contact);
+  };
+  const double longest = t.points.empty() ? 0 : t.points.back().time / 2000;
+  for (std::size_t i = 0; i < t.points.size(); ++i) {
+    const TrajectoryPoint& a = t.points[i];
+    add(a.time, a.position, a.velocity, a.contact_force);
+    if (i + 1 == t.points.size()) break;
+    const TrajectoryPoint& b = t.points[i + 1];
+    const double h = b.time - a.time;
+    if (!(h > longest)) continue;
+    const Quintic between(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
+    const int parts = static_cast<int>(std::ceil(h / longest));
+    for (int k = 1; k < parts; ++k) {
+      const double at = a.time + h * k / parts;
+      add(at, between.position(at), between.velocity(at), a.contact_force + (b.contact_force - a.contact_force) * k / parts);
+    }
+  }
+  for (const Rebound& r : rebounds(t)) {
+    if (r.height > options.significant_rebound) c.rebounds.push_back(r);
+  }
+  return c;
+}
 
 Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {
   Result r = started(prepared, provenance);

@@ -15,6 +15,9 @@ struct Provenance {
   std::string command;  ///< the command line
 };
 
+/// The motion of a run: knots, and points of the interpolant where knots are far apart.
+[[nodiscard]] ResultCurve curve_of(const Trajectory& trajectory, const MetricsOptions& options);
+
 /// The result of simulate. Curves have the resolution of the integration.
 [[nodiscard]] Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance);
 

@@ -1,20 +1,35 @@
-// What `softland robustness` found: JSON with SI units in the names, one line per device as CSV, and a table for a terminal.
+// What `softland robustness` found: JSON with SI units in the names, one line per device as CSV, a table for a terminal, and a page
+// to show around.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "reports/result_maker.h"
 #include "studies/robustness.h"
 
 namespace softland {
 
-[[nodiscard]] nlohmann::json robustness_json(const Prepared& nominal, const Robustness& found, const RobustnessOptions& options,
-                                             const Provenance& provenance);
-[[nodiscard]] std::string robustness_text(const Prepared& nominal, const Robustness& found, const RobustnessOptions& options);
+/// What is reported; `sensitivity` and `courses` are of the last drive and may be left out.
+struct RobustnessReport {
+  const Prepared& nominal;
+  const Robustness& found;
+  RobustnessOptions options;
+  std::string command;  ///< the command line
+  Sensitivity sensitivity = {};
+  std::vector<DeviceCourse> courses = {};
+};
+
+[[nodiscard]] nlohmann::json robustness_json(const RobustnessReport& report);
+[[nodiscard]] std::string robustness_text(const RobustnessReport& report);
 
 /// A line per device: its number, the varying quantities [SI unit, or factor], and for every drive its status and figures; a
 /// figure that a device does not have is empty.
-[[nodiscard]] std::string robustness_csv(const Prepared& nominal, const Robustness& found, const RobustnessOptions& options);
+[[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
+
+/// A self-contained page, as html_report(): statistics, cumulative distributions, the closings of typical devices, what
+/// measuring is worth, where the spread comes from, the worst devices, failures.
+[[nodiscard]] std::string robustness_html(const RobustnessReport& report);
 
 }  // namespace softland

@@ -22,10 +22,8 @@ constexpr std::size_t chunk = 256;  // devices of one task
 
 }  // namespace
 
-Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t seed, PointSet points)
-    : nominal_(&nominal),
-      points_(points, std::max<std::size_t>(1, nominal.scene.spread.variables.size()), seed, Stream::spread, size),
-      resolved_(resolved(nominal.scene, nominal.voltage_units())) {
+Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
+    : nominal_(&nominal), size_(size), point_(std::move(point)), resolved_(resolved(nominal.scene, nominal.voltage_units())) {
   require(!nominal.scene.spread.empty(), [&] {
     return fmt::format("{}: there is no [spread]: nothing tells how devices differ (see softland new)",
                        nominal.scene.file.name());
@@ -36,9 +34,17 @@ Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t se
   }
 }
 
+Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t seed, PointSet points)
+    : Ensemble(nominal, size,
+               [all = SamplePoints(points, std::max<std::size_t>(1, nominal.scene.spread.variables.size()), seed, Stream::spread,
+                                   size)](std::uint64_t k, std::span<double> u) { all.point(k, u); }) {}
+
+Ensemble::Ensemble(const Prepared& nominal, const SobolDesign& design)
+    : Ensemble(nominal, design.evaluations(), [design](std::uint64_t k, std::span<double> u) { design.point(k, u); }) {}
+
 std::vector<double> Ensemble::values(std::uint64_t k) const {
-  std::vector<double> values(points_.dimensions());
-  points_.point(k, values);
+  std::vector<double> values(nominal_->scene.spread.variables.size());
+  point_(k, values);
   nominal_->scene.spread.to_values(values);
   return values;
 }

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "objectives/metrics.h"
 #include "model/closing.h"
 #include "sampling/points.h"
+#include "sampling/sobol_indices.h"
 #include "studies/prepared.h"
 
 namespace softland {
@@ -27,9 +30,11 @@ class Ensemble {
   /// Devices 0 to size - 1 of this scene, which keep the volts that its waveforms have on the nominal device. Keeps a reference
   /// to `nominal`. Throws InvalidInput where the scene has no [spread], and what SamplePoints throws.
   Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t seed = 1, PointSet points = PointSet::sobol);
+  /// The devices at the points of a design for Sobol' indices.
+  Ensemble(const Prepared& nominal, const SobolDesign& design);
 
   [[nodiscard]] const Prepared& nominal() const { return *nominal_; }
-  [[nodiscard]] std::uint64_t size() const { return points_.size(); }
+  [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Of the varying quantities of device k.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
   /// Whether a key may vary that other members of a scene follow, so that each is read anew.
@@ -38,8 +43,11 @@ class Ensemble {
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
 
  private:
+  Ensemble(const Prepared& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point);
+
   const Prepared* nominal_;
-  SamplePoints points_;
+  std::uint64_t size_;
+  std::function<void(std::uint64_t, std::span<double>)> point_;
   SceneFile resolved_;       // of the nominal device
   bool reads_anew_ = false;  // a key may vary that other members follow
 };

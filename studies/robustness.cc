@@ -132,6 +132,11 @@ const std::vector<EnsembleFigure>& ensemble_figures() {
   return all;
 }
 
+const EnsembleFigure& ensemble_figure(std::string_view key) {
+  const auto& all = ensemble_figures();
+  return *std::find_if(all.begin(), all.end(), [&](const EnsembleFigure& f) { return f.key == key; });
+}
+
 Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& drives, const RobustnessOptions& options,
                       const Watch& watch) {
   require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is nothing to land on");
@@ -179,6 +184,67 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
     (i < shown ? result.drives : result.by_knowledge).push_back(std::move(drive));
   }
   return result;
+}
+
+Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, std::uint64_t rows,
+                        const RobustnessOptions& options, const Watch& watch) {
+  const DeviceSpread& spread = nominal.scene.spread;
+  Sensitivity found;
+  for (const SpreadVariable& variable : spread.variables) found.variables.push_back(variable.name);
+  if (spread.copula) found.why_none = "what varies is correlated: shares of the variance cannot be told apart";
+  if (spread.variables.size() < 2) found.why_none = "only one quantity varies: all is due to it";
+  if (!found.why_none.empty()) return found;
+  Calibration exact = drive.calibration;
+  for (std::optional<double>* error : {&exact.pull_in_error, &exact.frequency_error}) {
+    if (*error) *error = 0;
+  }
+  const Ensemble ensemble(nominal, SobolDesign(PointSet::sobol, spread.variables.size(), options.seed, rows));
+  const EnsembleDrive judged{.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
+                             .calibration = exact};
+  const std::vector<DeviceOutcome> outcomes =
+      close_all(ensemble, {judged},
+                {.duration = nominal.duration,
+                 .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
+                 .seed = options.seed,
+                 .jobs = options.jobs},
+                watch)
+          .front();
+  if (outcomes.size() < ensemble.size()) {
+    found.why_none = "interrupted";
+    return found;
+  }
+  for (const std::string_view key : {"initial_contact_time_s", "largest_impact_velocity_m_s", "major_bounce_height_m"}) {
+    std::vector<double> figures;
+    for (const DeviceOutcome& o : outcomes) figures.push_back(ensemble_figure(key).value(o));
+    found.figures.push_back({.key = key, .estimate = sobol_indices(spread.variables.size(), figures)});
+  }
+  return found;
+}
+
+std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRobustness& drive, const Robustness& found,
+                                         const RobustnessOptions& options) {
+  std::vector<std::size_t> order(drive.outcomes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto height = [&](std::size_t k) { return of<&Metrics::major_bounce_height>(drive.outcomes[k]); };
+  const auto speed = [&](std::size_t k) { return or_worst(drive.outcomes[k], drive.outcomes[k].largest_impact_velocity); };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return height(a) != height(b) ? height(a) < height(b) : speed(a) < speed(b);
+  });
+  std::vector<DeviceCourse> courses;
+  for (const double probability : {0.05, 0.5, 0.95}) {
+    if (order.empty()) break;
+    const std::size_t k = order[static_cast<std::size_t>(std::lround(probability * static_cast<double>(order.size() - 1)))];
+    try {
+      const Prepared own = prepare(SceneFile::parse(scene_of_device(nominal, drive, k, options).text(), "device.toml"));
+      courses.push_back({.probability = probability,
+                         .device = k,
+                         .trajectory = simulate_closing(own.model, own.signals(),
+                                                        {.duration = found.duration, .tolerance = found.tolerance})});
+    } catch (const InvalidInput&) {
+      continue;  // a device that cannot be described has no course
+    }
+  }
+  return courses;
 }
 
 SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,

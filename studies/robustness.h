@@ -25,6 +25,8 @@ struct EnsembleFigure {
   double (*value)(const DeviceOutcome&);
 };
 [[nodiscard]] const std::vector<EnsembleFigure>& ensemble_figures();
+/// The one of this key, which must be among them.
+[[nodiscard]] const EnsembleFigure& ensemble_figure(std::string_view key);
 
 /// The probabilities of the quantiles that are given.
 inline constexpr std::array robustness_quantiles{0.05, 0.5, 0.95, 0.99};
@@ -77,6 +79,24 @@ struct Robustness {
   double tolerance = 0;  ///< of the integrator
 };
 
+/// How a figure depends on what varies.
+struct FigureSensitivity {
+  std::string_view key;  ///< of ensemble_figures()
+  SobolEstimate estimate;
+};
+struct Sensitivity {
+  std::vector<std::string> variables;      ///< of the spread
+  std::vector<FigureSensitivity> figures;  ///< first contact, largest impact speed, highest rebound
+  std::string why_none;                    ///< empty where there are indices
+};
+
+/// The closing of a device that has a certain quantile of the highest rebound.
+struct DeviceCourse {
+  double probability = 0;
+  std::size_t device = 0;
+  Trajectory trajectory;
+};
+
 /// A drive to be judged.
 struct NamedDrive {
   std::string name;
@@ -88,6 +108,15 @@ struct NamedDrive {
 /// InvalidInput for a scene without [spread] or without contact, and a drive that the scene does not have or beyond its limits.
 [[nodiscard]] Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& drives,
                                     const RobustnessOptions& options, const Watch& watch = {});
+
+/// Sobol' indices of the figures under this drive, from `rows` rows of a design. There are none where variables are correlated,
+/// since their shares cannot be told apart, nor where there is only one. Measurements count as exact.
+[[nodiscard]] Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, std::uint64_t rows,
+                                      const RobustnessOptions& options, const Watch& watch = {});
+
+/// The devices whose highest rebound is the 5, 50 and 95 % quantile of all, and how they close.
+[[nodiscard]] std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRobustness& drive,
+                                                       const Robustness& found, const RobustnessOptions& options);
 
 /// The scene of a device of that ensemble under one of its drives: what `simulate` runs to the same closing.
 [[nodiscard]] SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,

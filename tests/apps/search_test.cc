@@ -260,7 +260,7 @@ TEST(RobustSearch, LeavesWhatRobustnessFindsAgain) {
   const Outcome o = search(here, "out", more, "1500");
   ASSERT_EQ(o.status, 0) << o.err;
   for (const char* name : {"best.toml", "best.csv", "report.html", "gap.svg", "result.json", "trajectory.csv", "evaluations.csv",
-                           "robustness.json", "devices.csv"})
+                           "robustness.html", "robustness.json", "devices.csv"})
     EXPECT_GT(fs::file_size(here.path() / "out" / name), 0U) << name;
   expect_complete_log(read(here.path() / "out/evaluations.csv"));
   const json found = result(here, "out"), verdict = json::parse(read(here.path() / "out/robustness.json"));
