@@ -156,7 +156,8 @@ int run(int argc, char** argv) {
   option(optimize, "--actuator", request.actuator, "NAME",
          "drives that the search may shape: " + first_is_default(listed(actuators)));
   option(optimize, "--waveform", request.waveform, "NAME",
-         "family to search: pulse (default), step, harmonic, catch, ramp, staircase or knots; with a number of levels or knots: knots:8");
+         "family to search: pulse (default), step, harmonic, catch, ramp, staircase or knots; with a number of levels or knots: "
+         "knots:8");
   option(optimize, "--robust", request.robust, "MEASURE",
          "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
          "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");

@@ -465,8 +465,9 @@ void add_details(RobustnessReport& report, const Watch& watch) {
   if (report.found.interrupted || report.found.devices == 0) return;
   constexpr std::uint64_t devices_per_row = 4, most_rows = 1024;
   const DriveRobustness& last = report.found.drives.back();
-  report.sensitivity = sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
-                                   report.options, watch);
+  report.sensitivity =
+      sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
+                  report.options, watch);
   report.courses = device_courses(report.nominal, last, report.found, report.options);
 }
 
@@ -504,8 +505,7 @@ RobustOptions read_robust_options(const OptimizeRequest& request) {
     }
   };
   RobustOptions robust;
-  robust.aim.measure =
-      read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
+  robust.aim.measure = read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
   for (const std::string& text : request.conditions)
     robust.aim.conditions.push_back(read("--constrain", [&] { return parse_criterion(text, figures); }));
   if (request.samples) robust.samples = whole_number<std::uint64_t>("--samples", *request.samples, 8);
@@ -520,7 +520,8 @@ RobustOptions read_robust_options(const OptimizeRequest& request) {
 class Searching {
  public:
   Searching(const Common& c, const OptimizeRequest& request, OptimizeOptions& options)
-      : preparation_(std::in_place, c.quiet, c.stop), progress_(c.quiet, options, request.robust.empty() ? "evaluations" : "closings") {
+      : preparation_(std::in_place, c.quiet, c.stop),
+        progress_(c.quiet, options, request.robust.empty() ? "evaluations" : "closings") {
     options.on_preparation = [this](std::string_view what, double part) {
       if (!preparation_) return;
       preparation_->watch().tell(what, part);
@@ -541,6 +542,7 @@ class Searching {
       log_->evaluated(e);
       progress_.show(p);
     };
+    options.on_progress = [this](const OptimizeProgress& p) { progress_.show(p); };
     options.on_improvement = [this](const Evaluation&, const SceneFile& best) { log_->improved(best); };
   }
 
@@ -619,7 +621,8 @@ int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
 int optimize_verb(const Common& given, const OptimizeRequest& request) {
   if (!request.robust.empty()) return robust_optimize_verb(given, request);
   for (const bool is_given : {!request.conditions.empty(), !request.calibration.empty(), request.samples.has_value()})
-    require(!is_given, "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
+    require(!is_given,
+            "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
   Common c = given;
   if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
   if (c.out.empty()) c.out = "softland-out";
@@ -678,9 +681,9 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
     const DriveRobustness& last = found.drives.back();
     for (std::size_t i = 0; i < most_worst && i < last.worst.size(); ++i)
       folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());
-    text += left_in(
-        folder->destination(found.interrupted),
-        {"robustness.html", "robustness.json", "devices.csv", "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
+    text += left_in(folder->destination(found.interrupted),
+                    {"robustness.html", "robustness.json", "devices.csv",
+                     "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
     folder->publish(found.interrupted);
   }
   print_json_or(c, j, text);
@@ -731,7 +734,8 @@ int export_verb(const Common& c, const ExportRequest& request) {
   std::map<std::string, Signal> signals = named_signals(p);
   if (is_own) {
     const DeviceMeter meter(p, pull_in.has_value());
-    const DeviceUnits units{.volts = pull_in ? *pull_in / meter.pull_in() : 1, .time = frequency ? meter.frequency() / *frequency : 1};
+    const DeviceUnits units{.volts = pull_in ? *pull_in / meter.pull_in() : 1,
+                            .time = frequency ? meter.frequency() / *frequency : 1};
     const std::vector<std::string> names = p.drive_names();
     std::vector<Waveform> waveforms;
     for (const std::string& name : names) {

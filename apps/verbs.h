@@ -30,8 +30,8 @@ struct OptimizeRequest {
   std::string calibration;              ///< what is measured on every device; empty: what the scene says
   std::optional<std::string> samples;   ///< devices of a robust search
   std::optional<std::string> budget;    ///< evaluations ("2500") or time ("90 s"); default: default_budget(), or default_closings
-  std::optional<std::string> seed;    ///< default: 1
-  std::optional<std::string> jobs;    ///< default: one per core
+  std::optional<std::string> seed;      ///< default: 1
+  std::optional<std::string> jobs;      ///< default: one per core
 };
 
 struct RobustnessRequest {

@@ -21,10 +21,10 @@ enum class Stream : std::uint64_t {
   normals = 4,
   scene = 5,
   perturbation = 6,
-  spread = 7,     ///< the switches of an ensemble
-  indices = 8,    ///< the evaluations for Sobol' indices
-  bootstrap = 9,  ///< which samples a repetition of a bootstrap takes
-  folds = 10,     ///< which figures a cross-validation holds back together
+  spread = 7,        ///< the switches of an ensemble
+  indices = 8,       ///< the evaluations for Sobol' indices
+  bootstrap = 9,     ///< which samples a repetition of a bootstrap takes
+  folds = 10,        ///< which figures a cross-validation holds back together
   measurement = 11,  ///< errors of what is measured on a device
   fresh = 12,        ///< seeds of devices that a search has not seen
 };

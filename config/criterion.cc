@@ -87,7 +87,8 @@ Criterion parse_criterion(std::string_view text, std::span<const FigureName> fig
   std::vector<std::string> names;
   for (const FigureName& f : figures) names.push_back(quantity_name(f));
   std::size_t k = 0;
-  while (k < figures.size() && name != names[k] && name != figures[k].key && (figures[k].symbol.empty() || name != figures[k].symbol))
+  while (k < figures.size() && name != names[k] && name != figures[k].key &&
+         (figures[k].symbol.empty() || name != figures[k].symbol))
     ++k;
   require(k < figures.size(), [&] {
     return fmt::format("'{}' is no figure of merit{}", name,
@@ -100,11 +101,9 @@ Criterion parse_criterion(std::string_view text, std::span<const FigureName> fig
     throw InvalidInput(fmt::format("{} in '{}'", error.what(), all));
   }
   const Dimension due = figures[k].unit.empty() ? dimension::none : parse_quantity("1 " + std::string(figures[k].unit)).dimension;
-  require(limit.dimension == due,
-          [&] { return fmt::format("{} in '{}' must be {}", names[k], all, describe(due)); });
-  require(limit.value != 0 || figures[k].unit.empty(), [&] {
-    return fmt::format("the limit of {} in '{}' must not be 0: give what is small enough", names[k], all);
-  });
+  require(limit.dimension == due, [&] { return fmt::format("{} in '{}' must be {}", names[k], all, describe(due)); });
+  require(limit.value != 0 || figures[k].unit.empty(),
+          [&] { return fmt::format("the limit of {} in '{}' must not be 0: give what is small enough", names[k], all); });
   return {.figure = k, .comparison = sign->comparison, .limit = limit.value, .text = std::string(all)};
 }
 
@@ -119,7 +118,8 @@ RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure
   } else if (text.starts_with("cvar:")) {
     measure.risk = {.kind = RiskKind::cvar, .parameter = number_after(after("cvar:"), "the level of cvar", 0, 1, true)};
   } else if (text.starts_with("quantile:")) {
-    measure.risk = {.kind = RiskKind::quantile, .parameter = number_after(after("quantile:"), "the level of quantile", 0, 1, false)};
+    measure.risk = {.kind = RiskKind::quantile,
+                    .parameter = number_after(after("quantile:"), "the level of quantile", 0, 1, false)};
   } else if (text.starts_with("mean+") && text.ends_with("sigma")) {
     std::string_view factor = after("mean+");
     factor.remove_suffix(std::string_view("sigma").size());
@@ -127,9 +127,10 @@ RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure
   } else if (text.starts_with("yield:")) {
     measure.yield = parse_criterion(after("yield:"), figures);
   } else {
-    throw InvalidInput(fmt::format("'{}' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst and "
-                                   "yield:\"bounce_count == 0\"",
-                                   text));
+    throw InvalidInput(
+        fmt::format("'{}' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst and "
+                    "yield:\"bounce_count == 0\"",
+                    text));
   }
   return measure;
 }

@@ -44,7 +44,7 @@ struct ClosingOptions {
   double duration = 0;      ///< window [s]
   double tolerance = 1e-6;  ///< relative, of the integrator
   Integrator integrator = Integrator::automatic;
-  double after_contact = std::numeric_limits<double>::infinity();      ///< end this long after first touch [s]
+  double after_contact = std::numeric_limits<double>::infinity();  ///< end this long after first touch [s]
   double no_end_before = 0;  ///< a run that has touched goes on until then, whatever after_contact is [s]
   double no_contact_before = std::numeric_limits<double>::infinity();  ///< end here if nothing has touched [s]
   long max_steps = 2'000'000;  ///< work bound: a run that needs more ends as numerical_failure

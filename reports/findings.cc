@@ -196,11 +196,12 @@ std::string robust_caption(const Result& result) {
   if (!result.robust) return {};
   const ResultRobust& r = *result.robust;
   const auto whole = [](double value) { return std::isfinite(value) ? fmt::format("{:.0f}", value) : std::string("?"); };
-  std::string words = fmt::format("Searched over {} devices of the spread, {} closings, by {}.", whole(r.devices),
-                                  whole(r.closings), r.measure);
+  std::string words =
+      fmt::format("Searched over {} devices of the spread, {} closings, by {}.", whole(r.devices), whole(r.closings), r.measure);
   const double own = result.best.cost, step = result.baseline.cost;
   if (std::isfinite(r.fresh_devices) && std::isfinite(own)) {
-    words += fmt::format(" Cost {} on {} fresh devices (plain step {})", plain_number(own), whole(r.fresh_devices), plain_number(step));
+    words += fmt::format(" Cost {} on {} fresh devices (plain step {})", plain_number(own), whole(r.fresh_devices),
+                         plain_number(step));
     const double optimism = own / r.cost_on_searched - 1;
     if (std::isfinite(optimism)) {
       words += fmt::format(", {} on those that it was searched on: {} {}", plain_number(r.cost_on_searched),

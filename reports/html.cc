@@ -122,7 +122,8 @@ std::string figures_table(const Result& result) {
   if (estimated) head.emplace_back(error_heading(result));
   std::vector<TableRow> rows;
   for (const Figure& one : all_figures) {
-    const bool known = !std::isnan(figure_of_run(result.best, one.member)) || !std::isnan(figure_of_run(result.baseline, one.member));
+    const bool known =
+        !std::isnan(figure_of_run(result.best, one.member)) || !std::isnan(figure_of_run(result.baseline, one.member));
     if (known) rows.push_back(figure_row(result, one, pair, estimated));
   }
   add_drive_rows(rows, result, pair, estimated);
@@ -261,8 +262,8 @@ std::string parameters_table(const Result& result) {
   for (const Row& row : rows) {
     if (cells.size() == most_lines) break;
     constexpr int digits = 5;
-    cells.push_back({escaped(row.drive) + (row.drive.empty() ? "" : ".") + escaped(row.name), quantity(row.value, row.unit, digits),
-                     searched_words(result, row.key, row.unit)});
+    cells.push_back({escaped(row.drive) + (row.drive.empty() ? "" : ".") + escaped(row.name),
+                     quantity(row.value, row.unit, digits), searched_words(result, row.key, row.unit)});
   }
   return section("parameters", "The waveform found", out + table_html({"Parameter", "Value", "Searched"}, cells));
 }

@@ -34,13 +34,12 @@ struct Page {
 /// A cell of a table, or a heading.
 struct Cell {
   std::string html;
-  std::string style = {};       ///< name of a class; may be empty
-  std::size_t columns = 1;      ///< that it takes
+  std::string style = {};                            ///< name of a class; may be empty
+  std::size_t columns = 1;                           ///< that it takes
   Cell(std::string text) : html(std::move(text)) {}  // NOLINT(google-explicit-constructor): a cell is its text
   Cell(const char* text) : html(text) {}             // NOLINT(google-explicit-constructor)
   Cell(std::string_view text) : html(text) {}        // NOLINT(google-explicit-constructor)
-  Cell(std::string text, std::string name, std::size_t wide = 1)
-      : html(std::move(text)), style(std::move(name)), columns(wide) {}
+  Cell(std::string text, std::string name, std::size_t wide = 1) : html(std::move(text)), style(std::move(name)), columns(wide) {}
 };
 /// The first cell of a row is its heading.
 using TableRow = std::vector<Cell>;

@@ -167,7 +167,8 @@ Result result_of(const RobustResult& found, const OptimizeOptions& options, cons
                           .yield = {},
                           .conditions = {}};
   if (found.yield) r.robust->yield = condition(robust.aim.measure.yield->text, *found.yield, true);
-  for (const FulfilledCondition& c : found.conditions) r.robust->conditions.push_back(condition(c.condition.text, c.share, c.holds));
+  for (const FulfilledCondition& c : found.conditions)
+    r.robust->conditions.push_back(condition(c.condition.text, c.share, c.holds));
   return r;
 }
 

@@ -180,7 +180,8 @@ std::optional<Work> work(const json& effort) {
 ResultRobust::Condition condition(const json& one) {
   ResultRobust::Condition c{
       .text = text(one, {"condition"}), .share = number(one, {"share"}), .holds = truth(one, {"holds"}).value_or(false)};
-  if (const auto interval = pair(at(one, {"interval"}), number)) std::tie(c.low, c.high) = std::tie((*interval)[0], (*interval)[1]);
+  if (const auto interval = pair(at(one, {"interval"}), number))
+    std::tie(c.low, c.high) = std::tie((*interval)[0], (*interval)[1]);
   return c;
 }
 

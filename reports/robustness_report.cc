@@ -179,8 +179,8 @@ std::string sensitivity_text(const Sensitivity& sensitivity) {
   for (std::size_t i = 0; i < sensitivity.variables.size(); ++i) {
     text += internal::left_aligned(sensitivity.variables[i], 37);
     for (const FigureSensitivity& f : sensitivity.figures) {
-      text += internal::right_aligned(f.estimate.indices ? percent(std::max(0.0, f.estimate.indices->first_order[i].value)) + " / " +
-                                                               percent(f.estimate.indices->total[i].value)
+      text += internal::right_aligned(f.estimate.indices ? percent(std::max(0.0, f.estimate.indices->first_order[i].value)) +
+                                                               " / " + percent(f.estimate.indices->total[i].value)
                                                          : std::string("too many fail"),
                                       18);
     }
@@ -192,7 +192,8 @@ std::string sensitivity_text(const Sensitivity& sensitivity) {
 // What each measurement is worth: the last drive with more and more known of the devices.
 std::string knowledge_text(const Robustness& found) {
   if (found.by_knowledge.empty() || found.devices == 0) return {};
-  std::string text = fmt::format("\n{:<34}{:>24}{:>26}{:>26}\n", "Known of every device", "without a rebound", "v_max, 95 % below", "B_H, 95 % below");
+  std::string text = fmt::format("\n{:<34}{:>24}{:>26}{:>26}\n", "Known of every device", "without a rebound",
+                                 "v_max, 95 % below", "B_H, 95 % below");
   const auto row = [&](const std::string& name, const DriveRobustness& d) {
     text += internal::left_aligned(name, 34) + internal::right_aligned(yield_text(d.bounce_free), 24) +
             internal::right_aligned(quantile_text(quantile_95(d, "largest_impact_velocity_m_s"), "m/s"), 26) +
@@ -260,7 +261,8 @@ std::string robustness_text(const RobustnessReport& report) {
                               calibration.is_empty()
                                   ? "All have the volts that were designed for the nominal device."
                                   : "The plain step has the volts of the nominal device, every other drive the units of each "
-                                    "device, known of it: " + calibration_words(calibration) + ".")) +
+                                    "device, known of it: " +
+                                        calibration_words(calibration) + ".")) +
           "\n\n";
   if (found.devices == 0) return text;
   constexpr std::size_t label = 34;
@@ -401,18 +403,19 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
 }
 
 internal::Chart course_chart(const RobustnessReport& report, internal::CurveTables& tables) {
-  internal::Chart chart{.id = "courses",
-                        .title = "Typical closings",
-                        .caption = fmt::format("Gap of the devices whose highest rebound is the 5, 50 and 95 % quantile under {}.",
-                                               report.found.drives.back().name),
-                        .x_column = "time_s",
-                        .x_label = "Time",
-                        .x_unit = "s",
-                        .y_label = "Gap",
-                        .y_unit = "m",
-                        .zero_line = true,
-                        .zero_label = "contact",
-                        .height = 260};
+  internal::Chart chart{
+      .id = "courses",
+      .title = "Typical closings",
+      .caption = fmt::format("Gap of the devices whose highest rebound is the 5, 50 and 95 % quantile under {}.",
+                             report.found.drives.back().name),
+      .x_column = "time_s",
+      .x_label = "Time",
+      .x_unit = "s",
+      .y_label = "Gap",
+      .y_unit = "m",
+      .zero_line = true,
+      .zero_label = "contact",
+      .height = 260};
   constexpr std::array roles{internal::Role::third, internal::Role::best, internal::Role::baseline};
   double touch = 0;
   for (std::size_t i = 0; i < report.courses.size(); ++i) {
@@ -496,12 +499,13 @@ std::string sensitivity_table(const Sensitivity& sensitivity) {
       row.emplace_back(index_text(f.estimate.indices->total[i]));
     }
   }
-  return section("sensitivity", "Where the spread comes from",
-                 table_html(head, rows) +
-                     fmt::format("<p class=\"below\">Sobol' indices under the last drive, {} rows: the share of a figure's variance "
-                                 "that would be gone if the quantity were known (alone), and the share in which it has a part (in "
-                                 "all). Where rebounds set in at once, variances say less than quantiles.</p>\n",
-                                 sensitivity.figures.front().estimate.rows));
+  return section(
+      "sensitivity", "Where the spread comes from",
+      table_html(head, rows) +
+          fmt::format("<p class=\"below\">Sobol' indices under the last drive, {} rows: the share of a figure's variance "
+                      "that would be gone if the quantity were known (alone), and the share in which it has a part (in "
+                      "all). Where rebounds set in at once, variances say less than quantiles.</p>\n",
+                      sensitivity.figures.front().estimate.rows));
 }
 
 std::string worst_table(const RobustnessReport& report) {
@@ -516,7 +520,8 @@ std::string worst_table(const RobustnessReport& report) {
     TableRow& row = rows.emplace_back(TableRow{fmt::format("{}", k)});
     const std::vector<double> values = ensemble.values(k);
     for (std::size_t i = 0; i < values.size(); ++i)
-      row.emplace_back(variables[i].is_factor ? fmt::format("× {:.4f}", values[i]) : quantity(values[i], variables[i].keys.front().unit, 5));
+      row.emplace_back(variables[i].is_factor ? fmt::format("× {:.4f}", values[i])
+                                              : quantity(values[i], variables[i].keys.front().unit, 5));
     const DeviceOutcome& o = last.outcomes[k];
     if (!o.closed()) {
       row.emplace_back(escaped(o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure), "missing", 3);
@@ -546,7 +551,8 @@ std::pair<std::string, std::string> headline_of(const Robustness& found) {
 std::string keys_of(const Robustness& found) {
   const DriveRobustness &step = found.drives.front(), &own = found.drives.back();
   const auto before = [&](const std::string& value) { return found.drives.size() > 1 ? "plain step " + value : std::string(); };
-  std::string keys = internal::key_html("Without a rebound", percent(own.bounce_free.value), before(percent(step.bounce_free.value)));
+  std::string keys =
+      internal::key_html("Without a rebound", percent(own.bounce_free.value), before(percent(step.bounce_free.value)));
   for (const std::string_view key : drawn_figures) {
     const EnsembleFigure& f = ensemble_figure(key);
     const auto value = [&](const DriveRobustness& d) {
@@ -576,7 +582,8 @@ std::string robustness_html(const RobustnessReport& report) {
       escaped(spread_words(nominal.scene.spread)),
       calibration.is_empty() ? "All have the volts that were designed for the nominal device."
                              : "The plain step has the volts of the nominal device; every other drive is in the units of each "
-                               "device, known of it: " + calibration_words(calibration) + ".");
+                               "device, known of it: " +
+                                   calibration_words(calibration) + ".");
   if (found.interrupted) about += "<p>Interrupted: these are not all devices.</p>\n";
   return internal::page({.title = nominal.scene.title,
                          .origin = "robustness",

@@ -1,5 +1,5 @@
-// What `softland robustness` found: JSON with SI units in the names, one line per device as CSV, a table for a terminal, and a page
-// to show around.
+// What `softland robustness` found: JSON with SI units in the names, one line per device as CSV, a table for a terminal, and a
+// page to show around.
 #pragma once
 
 #include <nlohmann/json.hpp>

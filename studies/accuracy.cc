@@ -12,14 +12,12 @@
 namespace softland {
 namespace {
 
-
 constexpr double enough_seconds = 0.03;     // of timed runs of one setting
 constexpr double reference_tighter = 1e-4;  // than the tightest tolerance
 constexpr double reference_looser = 100;    // the second reference, than the first; and every reference tried than the next
 constexpr double reference_growth = 2.5;    // of the time from one to the next, of a fifth-order method
 constexpr double told_apart = 9.9;          // times the reference's tolerance, less what rounding takes: errors show from here on
 constexpr CloudOptions cloud_options{.runs = 8};
-
 
 bool touched(const Metrics& m) { return std::isfinite(m.initial_contact_time); }
 

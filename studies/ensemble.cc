@@ -110,11 +110,11 @@ double DeviceMeter::pull_in(const Switch& model) const {
 }
 
 DeviceUnits DeviceMeter::exact(const Switch& model) const {
-  return {.volts = need_pull_in_ ? pull_in(model) / pull_in_ : 1, .time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0]};
+  return {.volts = need_pull_in_ ? pull_in(model) / pull_in_ : 1,
+          .time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0]};
 }
 
-DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed,
-                                  std::uint64_t k) {
+DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
   const auto reading = [&](double error, std::uint64_t which) {
     constexpr double least = 0.1;  // no instrument reads less than nothing
     return std::max(least, 1 + error * random_normal(seed, Stream::measurement, 2 * k + which));

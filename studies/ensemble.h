@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/watch.h"
-#include "objectives/metrics.h"
 #include "model/closing.h"
+#include "objectives/metrics.h"
 #include "sampling/points.h"
 #include "sampling/sobol_indices.h"
 #include "studies/prepared.h"
@@ -131,7 +131,7 @@ struct EnsembleRun {
 /// The closings of all devices under each of these drives: the outcomes of a drive, by device. Asked to stop, they are those of
 /// the first devices.
 [[nodiscard]] std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble,
-                                                                const std::vector<EnsembleDrive>& drives,
-                                                                const EnsembleRun& run, const Watch& watch = {});
+                                                                const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+                                                                const Watch& watch = {});
 
 }  // namespace softland

@@ -116,14 +116,15 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
     }
   }
 
-  TwoStages stages([&](std::span<const double> x) { return setting.price_at(x); }, [&](const Evaluation& e) {
-    ++progress.evaluations;
-    const bool improves = std::isfinite(e.value) && !(progress.best_cost <= e.value);
-    if (improves) progress.best_cost = e.value;
-    if (options.on_evaluation) options.on_evaluation(e, progress);
-    if (improves && options.on_improvement && e.value < never_touched)
-      options.on_improvement(e, setting.scene(setting.space.waveforms(e.x)));
-  });
+  TwoStages stages([&](std::span<const double> x) { return setting.price_at(x); },
+                   [&](const Evaluation& e) {
+                     ++progress.evaluations;
+                     const bool improves = std::isfinite(e.value) && !(progress.best_cost <= e.value);
+                     if (improves) progress.best_cost = e.value;
+                     if (options.on_evaluation) options.on_evaluation(e, progress);
+                     if (improves && options.on_improvement && e.value < never_touched)
+                       options.on_improvement(e, setting.scene(setting.space.waveforms(e.x)));
+                   });
   result.search = stages.run(std::move(problem),
                              {.optimizer = options.optimizer,
                               .max_evaluations = options.max_evaluations,

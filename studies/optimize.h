@@ -56,6 +56,8 @@ struct OptimizeOptions {
   std::function<void(const std::vector<std::string>&)> on_start = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
+  /// Called under the same lock where a search is at work that is not on record, as on a part of the devices.
+  std::function<void(const OptimizeProgress&)> on_progress = {};
   /// Called under the same lock at every improvement that touches, with the scene file that gives it. The first may be the
   /// scene's own waveform, before the search: its index is given_index, and x is empty where the searched family cannot describe
   /// it.

@@ -71,8 +71,9 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
   tail_ = in_contact;
   wait_ = std::max(setting.run.no_contact_before, period);
   const std::vector<Signal> step = setting.baseline_scene.signals();
-  step_ = close_device({.values = {}, .model = model, .refusal = {}}, step, setting.given.scene.metrics,
-                       {.duration = last_breakpoint(step) + wait_ + window_, .tolerance = EnsembleRun{}.tolerance, .after_contact = window_});
+  step_ = close_device(
+      {.values = {}, .model = model, .refusal = {}}, step, setting.given.scene.metrics,
+      {.duration = last_breakpoint(step) + wait_ + window_, .tolerance = EnsembleRun{}.tolerance, .after_contact = window_});
   if (step_.closed()) return;
   const CostFigures& imagined = setting.scale.step;
   step_ = {.metrics = {}, .largest_impact_velocity = imagined.touch_speed};
@@ -88,8 +89,7 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
     const SampledDevice& device = ensemble_.devices[first + i];
     const DeviceUnits& units = ensemble_.units[first + i];
     const bool own = device.model && (units.volts != 1 || units.time != 1);
-    const std::vector<Signal> signals =
-        own ? signals_of(in_units(waveforms, setting_.given.scene.device, units)) : nominal;
+    const std::vector<Signal> signals = own ? signals_of(in_units(waveforms, setting_.given.scene.device, units)) : nominal;
     const double end = last_breakpoint(signals);
     outcomes[i] = close_device(device, signals, setting_.given.scene.metrics,
                                {.duration = end + wait_ + window_,
@@ -134,8 +134,8 @@ double RobustCost::value(std::span<const DeviceOutcome> outcomes) const {
   }
   double value = 0;
   if (aim_.measure.yield) {
-    const auto good = std::count_if(outcomes.begin(), outcomes.end(),
-                                    [&](const DeviceOutcome& o) { return fulfils(o, *aim_.measure.yield); });
+    const auto good =
+        std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, *aim_.measure.yield); });
     value = 1 - static_cast<double>(good) / static_cast<double>(outcomes.size()) + weight_of_scores * sample_mean(scores);
   } else {
     value = risk(scores, aim_.measure.risk);

@@ -12,8 +12,8 @@
 // plus a tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the
 // devices fulfil it: its violation is the 95 % quantile of that of the devices (config/criterion.h).
 //
-// A closing is scored until 60 % of a period of the first mode, or two and a half in contact, after first touch, and one period in
-// contact after the last breakpoint of its drives.
+// A closing is scored until 60 % of a period of the first mode, or two and a half in contact, after first touch, and one period
+// in contact after the last breakpoint of its drives.
 #pragma once
 
 #include <cstddef>
@@ -63,7 +63,7 @@ class RobustCost {
   const SearchSetting& setting_;
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
-  DeviceOutcome step_;  // of the nominal device
+  DeviceOutcome step_;           // of the nominal device
   double window_, tail_, wait_;  // after first touch, after the last breakpoint, for a touch [s]
 };
 

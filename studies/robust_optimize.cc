@@ -45,8 +45,8 @@ Scouting scouting(long budget) {
 struct Heat {
   std::size_t searches;
   std::size_t devices;  // at the most
-  double share;  // of the budget
-  double step;   // of the box
+  double share;         // of the budget
+  double step;          // of the box
 };
 constexpr std::array heats{Heat{6, 32, 0.4, 0.15}, Heat{2, all_devices, 0.35, 0.06}, Heat{1, all_devices, 0.25, 0.025}};
 
@@ -85,13 +85,16 @@ std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t which) { return rando
 
 class RobustSearch {
  public:
-  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const OptimizeOptions& options)
+  /// `step_cost` of the plain step, for the progress.
+  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const OptimizeOptions& options, double step_cost)
       : setting_(setting),
         cost_(cost),
         options_(options),
         scouting_(scouting(options.max_evaluations)),
         variables_(setting.space.variables()),
-        begin_(std::chrono::steady_clock::now()) {}
+        begin_(std::chrono::steady_clock::now()) {
+    progress_.baseline_cost = step_cost;
+  }
 
   // The best points of all heats, the best first; empty where nothing was feasible.
   std::vector<Candidate> run() {
@@ -167,6 +170,13 @@ class RobustSearch {
     if (improves && options_.on_improvement) options_.on_improvement(e, setting_.scene(setting_.space.waveforms(x)));
   }
 
+  void tell() {
+    if (!options_.on_progress) return;
+    const std::scoped_lock lock(mutex_);
+    progress_.evaluations = closings_;
+    options_.on_progress(progress_);
+  }
+
   // Waveforms that land the nominal device.
   std::vector<Point> nominal_winners() {
     std::vector<Point> all;
@@ -204,7 +214,7 @@ class RobustSearch {
           [&](std::size_t i) {
             all[i].value = evaluate(all[i].x, devices, std::numeric_limits<double>::infinity(), 1, used[i]);
             closings_ += used[i];
-            if (devices == cost_.devices()) note(static_cast<long>(i), all[i].x, all[i].value);
+            devices == cost_.devices() ? note(static_cast<long>(i), all[i].x, all[i].value) : tell();
           },
           options_.stop);
       all.resize(begun);
@@ -224,7 +234,10 @@ class RobustSearch {
     std::vector<Candidate> ends = starts;
     run_tasks(
         starts.size(), options_.jobs,
-        [&](std::size_t i) { ends[i] = search_one(starts[i], heat, share, inner, first_index + static_cast<long>(i) * block, 100 + 10 * heats_run_ + i); },
+        [&](std::size_t i) {
+          ends[i] =
+              search_one(starts[i], heat, share, inner, first_index + static_cast<long>(i) * block, 100 + 10 * heats_run_ + i);
+        },
         options_.stop);
     next_index_ = first_index + static_cast<long>(starts.size()) * block;
     ++heats_run_;
@@ -251,7 +264,7 @@ class RobustSearch {
       if (std::isfinite(value)) recent.push_back(value);
       if (recent.size() > remembered) recent.pop_front();
       if (value < best.value) best = {.x = x, .value = value};
-      if (devices == cost_.devices()) note(index++, x, value);
+      devices == cost_.devices() ? note(index++, x, value) : tell();
       if (used >= share || over()) enough = true;
       return value;
     };
@@ -287,82 +300,102 @@ class RobustSearch {
 
 }  // namespace
 
+namespace {
+
+// The devices of a search, of the comparison of what it finds, of nothing else: which ones they are depends on the seed.
+BuiltEnsemble own_devices(const SearchSetting& setting, const OptimizeOptions& options, std::uint64_t count, std::uint64_t which,
+                          const Watch& watch) {
+  const std::uint64_t seed = fresh_seed(options.seed, which);
+  return build_all(Ensemble(setting.given, count, seed), setting.given.scene.calibration, seed, options.jobs, watch);
+}
+
+// The best of the candidates on devices that none of them was made for.
+Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setting, const RobustCost& others, int jobs) {
+  candidates = best_apart(std::move(candidates), heats[0].searches + 1, setting.space.variables());
+  Candidate winner = candidates.front();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate& candidate : candidates) {
+    const std::vector<Waveform> drives = setting.drives(setting.space.waveforms(candidate.x));
+    const double value = others.value(others.close(drives, 0, others.devices(), jobs));
+    if (value < least) {
+      least = value;
+      winner = candidate;
+    }
+  }
+  return winner;
+}
+
+Yield share_that_fulfils(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition) {
+  const auto good = static_cast<std::size_t>(
+      std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); }));
+  return {.devices = good,
+          .value = static_cast<double>(good) / static_cast<double>(outcomes.size()),
+          .interval = wilson_interval(good, outcomes.size())};
+}
+
+// The winner and the plain step on fresh devices, over the whole window.
+void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& options, const RobustOptions& robust,
+           const Watch& watch) {
+  OptimizeResult& out = result.found;
+  const Prepared& best = *out.best_scene;
+  result.verdict =
+      robustness(best, {{.name = "found", .waveforms = best.drives.waveforms, .calibration = best.scene.calibration}},
+                 {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs, .worth_of_measuring = true}, watch);
+  if (result.verdict->interrupted) out.search.termination = Termination::interrupted;
+  const std::vector<DeviceOutcome>& outcomes = result.verdict->drives.back().outcomes;
+  out.best_cost = cost.value(outcomes);
+  out.baseline_cost = cost.value(result.verdict->drives.front().outcomes);
+  out.better_than_baseline = out.goal_met = out.best_cost < out.baseline_cost;
+  if (robust.aim.measure.yield) result.yield = share_that_fulfils(outcomes, *robust.aim.measure.yield);
+  for (const Criterion& condition : robust.aim.conditions) {
+    const Yield share = share_that_fulfils(outcomes, condition);
+    result.conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
+    out.goal_met = out.goal_met && result.conditions.back().holds;
+  }
+}
+
+}  // namespace
+
 RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust) {
-  const Watch before{.stop = options.stop, .progress = options.on_preparation}, after = before;
-  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, before);
-  const Calibration& calibration = setting.given.scene.calibration;
-  const auto devices = [&](std::uint64_t count, std::uint64_t which) {
-    const std::uint64_t seed = fresh_seed(options.seed, which);
-    return build_all(Ensemble(setting.given, count, seed), calibration, seed, options.jobs, before);
-  };
-  const RobustCost cost(setting, robust.aim, devices(robust.samples, 0));
-
-  OptimizeResult found{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
-  found.variables = setting.space.variables();
+  const Watch watch{.stop = options.stop, .progress = options.on_preparation};
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
+  const RobustCost cost(setting, robust.aim, own_devices(setting, options, robust.samples, 0, watch));
+  RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline}};
+  OptimizeResult& out = result.found;
+  out.variables = setting.space.variables();
   std::vector<std::string> names;
-  for (const Variable& v : found.variables) names.push_back(v.name);
+  for (const Variable& v : out.variables) names.push_back(v.name);
   if (options.on_start) options.on_start(names);
-  RobustResult result{.found = std::move(found)};
-  const auto cost_of = [&](const RobustCost& by, const std::map<std::string, Waveform>& searched) {
-    return by.value(by.close(setting.drives(searched), 0, by.devices(), options.jobs));
-  };
-  result.step_cost_on_searched = cost_of(cost, {});
+  out.baseline_cost = cost.value(cost.close(setting.drives({}), 0, cost.devices(), options.jobs));
 
-  RobustSearch search(setting, cost, options);
+  RobustSearch search(setting, cost, options, out.baseline_cost);
   std::vector<Candidate> candidates = search.run();
   result.closings = search.closings();
-  OptimizeResult& out = result.found;
   out.search.evaluations = search.evaluations();
   out.search.improvements = search.improvements();
   out.search.termination = search.termination();
   if (candidates.empty()) return result;
 
-  // Compared on devices that none of them was made for.
-  const bool interrupted = out.search.termination == Termination::interrupted;
+  // Asked to stop from here on, what there is stands without the verdict.
   Candidate winner = candidates.front();
-  if (!interrupted) {
-    candidates = best_apart(std::move(candidates), heats[0].searches + 1, out.variables);
-    const RobustCost others(setting, robust.aim, devices(selection_devices, 1));
-    double least = std::numeric_limits<double>::infinity();
-    for (const Candidate& candidate : candidates) {
-      const double value = cost_of(others, setting.space.waveforms(candidate.x));
-      if (value < least) {
-        least = value;
-        winner = candidate;
-      }
-    }
+  try {
+    if (out.search.termination != Termination::interrupted)
+      winner =
+          compared(std::move(candidates), setting,
+                   RobustCost(setting, robust.aim, own_devices(setting, options, selection_devices, 1, watch)), options.jobs);
+  } catch (const Interrupted&) {
+    out.search.termination = Termination::interrupted;
   }
-  result.cost_on_searched = winner.value;
-  const std::map<std::string, Waveform> waveforms = setting.space.waveforms(winner.x);
-  out.best_scene = read_back(setting.scene(waveforms), "best.toml", setting.given);
+  result.cost_on_searched = out.best_cost = winner.value;
+  out.better_than_baseline = out.best_cost < out.baseline_cost;
+  out.best_scene = read_back(setting.scene(setting.space.waveforms(winner.x)), "best.toml", setting.given);
   out.best = simulate(*out.best_scene, true, {.progress = options.on_preparation});
   for (std::size_t k = 0; k < names.size(); ++k) out.parameters[names[k]] = winner.x[k];
-  out.best_cost = winner.value;
-  out.baseline_cost = result.step_cost_on_searched;
-  out.better_than_baseline = out.best_cost < out.baseline_cost;
-  if (interrupted) return result;
-
-  result.verdict = robustness(*out.best_scene, {{.name = "found", .waveforms = out.best_scene->drives.waveforms, .calibration = calibration}},
-                              {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs, .worth_of_measuring = true}, after);
-  const std::vector<DriveRobustness>& drives = result.verdict->drives;
-  const std::vector<DeviceOutcome>& outcomes = drives.back().outcomes;
-  if (outcomes.empty()) return result;
-  out.best_cost = cost.value(outcomes);
-  out.baseline_cost = cost.value(drives.front().outcomes);
-  out.better_than_baseline = out.best_cost < out.baseline_cost;
-  const auto share = [&](const Criterion& condition) {
-    const auto good = static_cast<std::size_t>(
-        std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); }));
-    return Yield{.devices = good,
-                 .value = static_cast<double>(good) / static_cast<double>(outcomes.size()),
-                 .interval = wilson_interval(good, outcomes.size())};
-  };
-  if (robust.aim.measure.yield) result.yield = share(*robust.aim.measure.yield);
-  out.goal_met = out.better_than_baseline;
-  for (const Criterion& condition : robust.aim.conditions) {
-    const Yield fulfilled = share(condition);
-    result.conditions.push_back({.condition = condition, .share = fulfilled, .holds = fulfilled.value >= constrained_share});
-    out.goal_met = out.goal_met && result.conditions.back().holds;
+  if (out.search.termination == Termination::interrupted) return result;
+  try {
+    judge(result, cost, options, robust, watch);
+  } catch (const Interrupted&) {
+    out.search.termination = Termination::interrupted;
   }
   return result;
 }

@@ -3,9 +3,9 @@
 // The same devices for all candidates. Starts are those of the family, the best of two searches on the nominal device, the
 // waveform of the scene and points of the whole box; all are tried on 8 devices, the best of them on 32, and the best six of
 // these begin CMA-ES on 32 devices; on all of them it goes on from the best two, and then from the best, by smaller steps. A
-// candidate that is worse on the first 8 or 32 devices than the median of those before it is not tried on the rest, and has the cost of those.
-// The best point of every heat is compared on 512 other devices, and what wins there is judged on 2000 fresh ones over the whole
-// window: its cost on the devices that were searched is too good by what the search has learned of them by heart.
+// candidate that is worse on the first 8 or 32 devices than the median of those before it is not tried on the rest, and has the
+// cost of those. The best point of every heat is compared on 512 other devices, and what wins there is judged on 2000 fresh ones
+// over the whole window: its cost on the devices that were searched is too good by what the search has learned of them by heart.
 //
 // Source for the races: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the candidates
 // before).
@@ -25,7 +25,7 @@ inline constexpr std::uint64_t most_searched = 100'000;  ///< devices of a searc
 
 struct RobustOptions {
   RobustAim aim;
-  std::uint64_t samples = 128;  ///< devices that are searched
+  std::uint64_t samples = 128;   ///< devices that are searched
   std::uint64_t verdict = 2000;  ///< fresh ones
 };
 
@@ -37,7 +37,7 @@ struct FulfilledCondition {
 
 struct RobustResult {
   OptimizeResult found;  ///< costs are those on fresh devices
-  double cost_on_searched = Metrics::unset, step_cost_on_searched = Metrics::unset;
+  double cost_on_searched = Metrics::unset;
   std::optional<Robustness> verdict;  ///< plain step and winner on the same fresh devices; none where it was interrupted
   std::optional<Yield> yield;         ///< of the condition that was to be fulfilled by as many as possible
   std::vector<FulfilledCondition> conditions;

@@ -169,8 +169,7 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
     for (const NamedDrive& known : by_knowledge(NamedDrive(all.back()))) add(known);
   }
 
-  const EnsembleRun run{
-      .duration = result.duration, .tolerance = result.tolerance, .seed = options.seed, .jobs = options.jobs};
+  const EnsembleRun run{.duration = result.duration, .tolerance = result.tolerance, .seed = options.seed, .jobs = options.jobs};
   std::vector<std::vector<DeviceOutcome>> outcomes = close_all(ensemble, judged, run, watch);
   result.devices = outcomes.front().size();
   result.interrupted = watch.stopped();
@@ -201,14 +200,13 @@ Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, s
   const Ensemble ensemble(nominal, SobolDesign(PointSet::sobol, spread.variables.size(), options.seed, rows));
   const EnsembleDrive judged{.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
                              .calibration = exact};
-  const std::vector<DeviceOutcome> outcomes =
-      close_all(ensemble, {judged},
-                {.duration = nominal.duration,
-                 .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
-                 .seed = options.seed,
-                 .jobs = options.jobs},
-                watch)
-          .front();
+  const std::vector<DeviceOutcome> outcomes = close_all(ensemble, {judged},
+                                                        {.duration = nominal.duration,
+                                                         .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
+                                                         .seed = options.seed,
+                                                         .jobs = options.jobs},
+                                                        watch)
+                                                  .front();
   if (outcomes.size() < ensemble.size()) {
     found.why_none = "interrupted";
     return found;
@@ -236,10 +234,10 @@ std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRob
     const std::size_t k = order[static_cast<std::size_t>(std::lround(probability * static_cast<double>(order.size() - 1)))];
     try {
       const Prepared own = prepare(SceneFile::parse(scene_of_device(nominal, drive, k, options).text(), "device.toml"));
-      courses.push_back({.probability = probability,
-                         .device = k,
-                         .trajectory = simulate_closing(own.model, own.signals(),
-                                                        {.duration = found.duration, .tolerance = found.tolerance})});
+      courses.push_back(
+          {.probability = probability,
+           .device = k,
+           .trajectory = simulate_closing(own.model, own.signals(), {.duration = found.duration, .tolerance = found.tolerance})});
     } catch (const InvalidInput&) {
       continue;  // a device that cannot be described has no course
     }

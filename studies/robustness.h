@@ -71,9 +71,9 @@ struct RobustnessOptions {
 };
 
 struct Robustness {
-  std::vector<DriveRobustness> drives;  ///< the plain step first
+  std::vector<DriveRobustness> drives;             ///< the plain step first
   std::vector<DriveRobustness> by_knowledge = {};  ///< the last of them again: what measuring is worth
-  std::size_t devices = 0;              ///< fewer than asked for where it was interrupted
+  std::size_t devices = 0;                         ///< fewer than asked for where it was interrupted
   bool interrupted = false;
   double duration = 0;   ///< window [s]
   double tolerance = 0;  ///< of the integrator

@@ -58,9 +58,8 @@ std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform
 }
 
 bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) const {
-  return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
-    return violation(signal(one.second), given.drives.limits.at(one.first)).empty();
-  });
+  return std::all_of(searched.begin(), searched.end(),
+                     [&](const auto& one) { return violation(signal(one.second), given.drives.limits.at(one.first)).empty(); });
 }
 
 Prices SearchSetting::price(const std::vector<Signal>& signals) const {

@@ -75,7 +75,9 @@ void add_step(DriveSearch& s, const Prepared&, double t0) {
 
 // Levels that last for a while each, by edges of one length.
 void add_levels(DriveSearch& s, const std::vector<double>& longest, double longest_edge, double t0, double period) {
-  const auto numbered = [](const char* what, std::size_t k, const char* unit) { return fmt::format("{}_{}{}", what, k + 1, unit); };
+  const auto numbered = [](const char* what, std::size_t k, const char* unit) {
+    return fmt::format("{}_{}{}", what, k + 1, unit);
+  };
   for (std::size_t k = 0; k < longest.size(); ++k)
     s.variables.push_back({numbered("level", k, "_V"), s.limits.min_voltage, s.limits.max_voltage});
   for (std::size_t k = 0; k < longest.size(); ++k)
@@ -146,9 +148,9 @@ void add_knots(DriveSearch& s, const Prepared& p, double t0) {
     // Pull towards the contact, brake, let go.
     line([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2, 1);
   } else {
-    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);                 // a slow ramp
-    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);                // a quicker one
-    line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);       // throw and coast
+    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);                  // a slow ramp
+    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);                 // a quicker one
+    line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);        // throw and coast
     line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8, 0.1);  // leave it to others
   }
 }
@@ -161,8 +163,7 @@ void add_ramp(DriveSearch& s, const Prepared& p, double t0) {
                  {"duration_s", 0.5 * t0, 10 * t0},
                  {"edge_s", 0.005 * period, 0.5 * period}};
   for (const double duration : {8.0, 3.0}) {
-    s.starts.push_back(
-        {inside(0.7 * s.hold), inside(0.9 * s.hold), duration * t0, 0.05 * period});
+    s.starts.push_back({inside(0.7 * s.hold), inside(0.9 * s.hold), duration * t0, 0.05 * period});
   }
 }
 
@@ -250,7 +251,8 @@ Parameters of_pulse(const DriveSearch& s, const Waveform& waveform) {
 Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
   const Harmonic& dither = std::get<Harmonic>(waveform);
   const double duration = dither.end - dither.start;
-  return std::vector<double>{dither.amplitude, dither.angular_frequency, dither.phase, dither.start, duration, dither.fade / duration};
+  return std::vector<double>{dither.amplitude, dither.angular_frequency, dither.phase, dither.start,
+                             duration,         dither.fade / duration};
 }
 
 // Lines that begin with a jump, as all that are searched without a limit of the slew.
@@ -313,11 +315,13 @@ void choose_family(DriveSearch& s, const std::string& text) {
   if (colon == std::string::npos) return;
   const std::string_view number = std::string_view(text).substr(colon + 1);
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), s.count);
-  require(found->count > 0 && error == std::errc() && end == number.data() + number.size() && s.count >= fewest && s.count <= most,
-          [&] {
-            return found->count == 0 ? fmt::format("--waveform {}: {} has no number of levels or knots", text, name)
-                                     : fmt::format("--waveform {}: the number after {} must be from {} to {}", text, name, fewest, most);
-          });
+  require(
+      found->count > 0 && error == std::errc() && end == number.data() + number.size() && s.count >= fewest && s.count <= most,
+      [&] {
+        return found->count == 0
+                   ? fmt::format("--waveform {}: {} has no number of levels or knots", text, name)
+                   : fmt::format("--waveform {}: the number after {} must be from {} to {}", text, name, fewest, most);
+      });
 }
 
 }  // namespace
@@ -326,7 +330,11 @@ std::string listed_searched_families() {
   std::string text;
   for (std::size_t i = 0; i < searched_families.size(); ++i) {
     const SearchedFamily& family = searched_families[i];
-    text += fmt::format("{}{}{}", i == 0 ? "" : i + 1 == searched_families.size() ? " or " : ", ", family.name, family.count > 0 ? ":N" : "");
+    text += fmt::format("{}{}{}",
+                        i == 0                              ? ""
+                        : i + 1 == searched_families.size() ? " or "
+                                                            : ", ",
+                        family.name, family.count > 0 ? ":N" : "");
   }
   return text;
 }

@@ -47,8 +47,8 @@ struct DriveSearch {
   std::string drive;
   const SearchedFamily* family = nullptr;
   std::size_t count = 0;  ///< of levels or knots, where the family has any number of them
-  double hold = 0;      ///< [V]
-  bool brakes = false;  ///< an electrode on the far side
+  double hold = 0;        ///< [V]
+  bool brakes = false;    ///< an electrode on the far side
   DriverLimits limits;
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;

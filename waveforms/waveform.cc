@@ -26,7 +26,7 @@ void scale(Family& family, double volts, double time) {
   for (const Parameter<Family>& parameter : FamilyOf<Family>::parameters) {
     const double factor = factor_of(parameter.meaning, volts, time);
     if (const auto* one = std::get_if<double Family::*>(&parameter.member)) {
-      family.**one *= factor;
+      family.** one *= factor;
     } else {
       for (double& value : family.*std::get<std::vector<double> Family::*>(parameter.member)) value *= factor;
     }

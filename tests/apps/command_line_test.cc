@@ -422,10 +422,11 @@ TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits) {
                "1.5 Vdp", "25 V"));
   const json pull_in = json::parse(here.run({"pull-in", "pulse.toml", "--json", "-"}).out);
   const json modes = json::parse(here.run({"modes", "pulse.toml", "--json", "-"}).out);
-  const double own_volts = pull_in["pull_in"]["dynamic_V"], own_frequency = modes["natural_frequencies_rad_s"][0].get<double>() / 6.283185307179586;
+  const double own_volts = pull_in["pull_in"]["dynamic_V"],
+               own_frequency = modes["natural_frequencies_rad_s"][0].get<double>() / 6.283185307179586;
   const auto nominal = waveform(here.run({"export", "pulse.toml"}).out);
-  const Outcome o = here.run({"export", "pulse.toml", "--device-vdp", std::to_string(1.1 * own_volts) + " V", "--device-frequency",
-                              std::to_string(own_frequency / 1.2) + " Hz"});
+  const Outcome o = here.run({"export", "pulse.toml", "--device-vdp", std::to_string(1.1 * own_volts) + " V",
+                              "--device-frequency", std::to_string(own_frequency / 1.2) + " Hz"});
   ASSERT_EQ(o.status, 0) << o.err;
   const auto own = waveform(o.out);
   ASSERT_GT(nominal.size(), 5U);
@@ -435,7 +436,8 @@ TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits) {
     EXPECT_NEAR(own[i][1], 1.1 * nominal[i][1], 1e-5 * own[i][1]);
   }
   // What was not measured is that of the nominal device.
-  EXPECT_EQ(waveform(here.run({"export", "pulse.toml", "--device-frequency", std::to_string(own_frequency) + " Hz"}).out).size(), nominal.size());
+  EXPECT_EQ(waveform(here.run({"export", "pulse.toml", "--device-frequency", std::to_string(own_frequency) + " Hz"}).out).size(),
+            nominal.size());
 }
 
 }  // namespace

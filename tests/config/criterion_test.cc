@@ -68,7 +68,8 @@ TEST(Criterion, IsRefusedWithTheReason) {
   EXPECT_EQ(refused("t_i < 60 V"), "initial_contact_time in 't_i < 60 V' must be a time [s]");
   EXPECT_EQ(refused("t_i < 60"), "initial_contact_time in 't_i < 60' must be a time [s]");
   EXPECT_EQ(refused("N_B == 0 us"), "bounce_count in 'N_B == 0 us' must be a plain number");
-  EXPECT_EQ(refused("t_i <= 0 us"), "the limit of initial_contact_time in 't_i <= 0 us' must not be 0: give what is small enough");
+  EXPECT_EQ(refused("t_i <= 0 us"),
+            "the limit of initial_contact_time in 't_i <= 0 us' must not be 0: give what is small enough");
   EXPECT_NE(refused("t_i < "), "");
   EXPECT_NE(refused("< 3 us"), "");
   EXPECT_NE(refused(""), "");
@@ -115,7 +116,8 @@ TEST(Calibration, SaysWhatIsMeasured) {
 }
 
 TEST(Calibration, StandsInTheResolvedScene) {
-  const Scene scene = calibrated({"calibration={frequency={}}", "waveform.main.level=\"17 V\"", "driver.main.max_voltage=\"25 V\""});
+  const Scene scene =
+      calibrated({"calibration={frequency={}}", "waveform.main.level=\"17 V\"", "driver.main.max_voltage=\"25 V\""});
   const Calibration again = read_scene(resolved(scene, {})).calibration;
   EXPECT_EQ(again.frequency_error, 0);
   EXPECT_FALSE(again.pull_in_error);

@@ -54,9 +54,10 @@ const Study& study() {
 
 TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth) {
   const std::string text = robustness_text(study().report());
-  for (const char* words : {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
-                            "<slow>, \"mine\"", "Known of every device", "\nnothing ", "\nVdp and frequency ",
-                            "\nVdp ± 1.0 %, frequency exactly ", "Share of the variance, alone / in all", "\nstructure.thickness "})
+  for (const char* words :
+       {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step", "<slow>, \"mine\"",
+        "Known of every device", "\nnothing ", "\nVdp and frequency ", "\nVdp ± 1.0 %, frequency exactly ",
+        "Share of the variance, alone / in all", "\nstructure.thickness "})
     EXPECT_THAT(text, HasSubstr(words));
   RobustnessReport bare = study().report();
   bare.sensitivity = {};

@@ -30,7 +30,8 @@ TEST(Risk, OfMeanAndDeviation) {
   const double deviation = std::sqrt(82.5 / 9);
   EXPECT_NEAR(risk(sample, {.kind = RiskKind::mean_sigma, .parameter = 2}), 5.5 + 2 * deviation, 1e-12);
   EXPECT_DOUBLE_EQ(risk(sample, {.kind = RiskKind::mean_sigma, .parameter = 0}), 5.5);
-  EXPECT_DOUBLE_EQ(risk(std::vector<double>{3}, {.kind = RiskKind::mean_sigma, .parameter = 2}), 3) << "one device has no deviation";
+  EXPECT_DOUBLE_EQ(risk(std::vector<double>{3}, {.kind = RiskKind::mean_sigma, .parameter = 2}), 3)
+      << "one device has no deviation";
 }
 
 TEST(Risk, CountsAFailureAsInfinitelyBad) {

@@ -126,8 +126,7 @@ TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
   const Calibration exact{.pull_in_error = 0, .frequency_error = 0};
   const std::vector<Waveform> drive{nominal.drives.waveforms.at("main")};
   const EnsembleRun run{.duration = nominal.duration};
-  const auto outcomes =
-      close_all(ensemble, {{.waveforms = drive}, {.waveforms = drive, .calibration = exact}}, run);
+  const auto outcomes = close_all(ensemble, {{.waveforms = drive}, {.waveforms = drive, .calibration = exact}}, run);
   const double own = pull_in_by_bisection(nominal.model, 10, 20);
   DeviceBuilder builder(ensemble);
   for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
@@ -173,10 +172,13 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth) {
   ASSERT_EQ(found.drives.size(), 2U);
   ASSERT_EQ(found.by_knowledge.size(), 4U);
   EXPECT_TRUE(found.drives[0].calibration.is_empty()) << "the plain step is that of the nominal device";
-  const std::vector<DeviceOutcome> fixed = robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, options).drives[1].outcomes;
-  EXPECT_TRUE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[0].outcomes.begin(), same)) << "nothing known: fixed volts";
+  const std::vector<DeviceOutcome> fixed =
+      robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, options).drives[1].outcomes;
+  EXPECT_TRUE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[0].outcomes.begin(), same))
+      << "nothing known: fixed volts";
   for (std::size_t i = 1; i < 4; ++i)
-    EXPECT_FALSE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[i].outcomes.begin(), same)) << found.by_knowledge[i].name;
+    EXPECT_FALSE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[i].outcomes.begin(), same))
+        << found.by_knowledge[i].name;
   // In its own units every device closes nearly alike: at the same time in its own periods.
   const Ensemble ensemble(nominal, options.samples);
   DeviceBuilder builder(ensemble);

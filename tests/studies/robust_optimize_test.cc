@@ -100,7 +100,8 @@ TEST(RobustOptimize, OfAYieldSaysHowManyDevicesHaveIt) {
   const Log log = search(quick(), aim("yield:v_max < 50 mm/s"));
   ASSERT_TRUE(log.result.yield && log.result.verdict);
   const auto& outcomes = log.result.verdict->drives[1].outcomes;
-  const auto good = std::count_if(outcomes.begin(), outcomes.end(), [](const DeviceOutcome& o) { return o.largest_impact_velocity < 0.05; });
+  const auto good =
+      std::count_if(outcomes.begin(), outcomes.end(), [](const DeviceOutcome& o) { return o.largest_impact_velocity < 0.05; });
   EXPECT_EQ(log.result.yield->devices, static_cast<std::size_t>(good));
   EXPECT_GT(log.result.yield->value, 0.5);
 }

@@ -28,7 +28,8 @@ TEST(Waveform, KnowsTheNamesOfItsFamilies) {
 TEST(Waveform, ScaledIsTheSameCourseInOtherUnits) {
   const std::vector<Waveform> all{
       Step{.level = 3, .rise_time = 1},
-      Harmonic{.base = 1, .rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .phase = 0.3, .start = 1, .end = 9, .fade = 2},
+      Harmonic{
+          .base = 1, .rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .phase = 0.3, .start = 1, .end = 9, .fade = 2},
       Pulse{.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5}, Table{.time = {0, 1, 1, 2}, .voltage = {1, 2, 3, -1}}};
   ASSERT_EQ(all.size(), std::variant_size_v<Waveform>) << "one of each family";
   constexpr double volts = 1.04, time = 0.97;

@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""Searches over devices that differ, each judged on 2000 fresh devices over the whole window.
+
+    bench/run_robust_search.py BUILD/apps/softland [NAME ...] > results/robust-search.md
+
+With names only those searches. Takes about half an hour on two cores.
+"""
+import datetime
+import json
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+
+SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
+GOLD = ["mem-gold.toml", "--robust", "cvar:0.9"]
+PZT = ["mem-gold-pzt.toml", "--robust", "cvar:0.9"]
+UNITS = ["--calibrate", "Vdp,frequency"]
+SEARCHES = {
+    "gold-65us": ("gold, nothing known, t_i 95 % below 65 us", GOLD + [
+        "--waveform", "knots:4", "--constrain", "initial_contact_time < 65 us", "--budget", "150000"]),
+    "gold-220us": ("gold, nothing known, below 220 us", GOLD + [
+        "--waveform", "knots:6", "--constrain", "initial_contact_time < 220 us", "--budget", "150000"]),
+    "gold-units": ("gold, Vdp and period known", GOLD + ["--waveform", "catch", *UNITS, "--budget", "100000", "--seed", "2"]),
+    "gold-units-yield": ("gold, Vdp and period known, by yield", [
+        "mem-gold.toml", "--robust", "yield:bounce_count == 0", "--waveform", "catch", *UNITS, "--budget", "100000"]),
+    "gold-errors": ("gold, Vdp to 1 %, period to 0.5 %", GOLD + [
+        "--waveform", "catch", "--calibrate", "Vdp:1 %,frequency:0.5 %", "--budget", "150000"]),
+    "pzt-both-45us": ("piezo and electrode, below 45 us", PZT + [
+        "--actuator", "both", "--waveform", "knots:6", "--constrain", "initial_contact_time < 45 us", "--budget", "250000"]),
+    "pzt-both-200us": ("piezo and electrode, below 200 us", PZT + [
+        "--actuator", "both", "--waveform", "knots:4", "--constrain", "initial_contact_time < 200 us", "--budget", "200000"]),
+    "pzt-alone": ("piezo alone", PZT + ["--actuator", "pzt", "--budget", "100000"]),
+    "nem-tin": ("nem-tin, nothing known", ["nem-tin.toml", "--robust", "cvar:0.9", "--budget", "60000"]),
+    "two-electrodes": ("two electrodes, nothing known", ["two-electrodes.toml", "--robust", "cvar:0.9", "--budget", "60000"]),
+}
+
+
+def prefixed(value, unit):
+    if value is None:
+        return "-"
+    for factor, prefix in ((1, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"), (1e-12, "p")):
+        if abs(value) >= factor:
+            return f"{value / factor:.3g} {prefix}{unit}"
+    return f"0 {unit}"
+
+
+def at_95_percent(drive, key, unit):
+    q = next(q for q in drive["figures"][key]["quantiles"] if q["probability"] == 0.95)
+    low, high = q["interval"]
+    return f"{prefixed(q['value'], unit)} ({prefixed(low, unit)} to {prefixed(high, unit)})"
+
+
+def share(part):
+    return f"{100 * part['share']:.1f} % ({100 * part['interval'][0]:.1f} to {100 * part['interval'][1]:.1f})"
+
+
+def row(name, drive, *more):
+    cells = [name, at_95_percent(drive, "largest_impact_velocity_m_s", "m/s"), at_95_percent(drive, "major_bounce_height_m", "m"),
+             at_95_percent(drive, "initial_contact_time_s", "s"), share(drive["bounce_free"]), *more]
+    return "| " + " | ".join(cells) + " |"
+
+
+def machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as info:
+        names = [line.split(":", 1)[1].strip() for line in info if line.startswith("model name")]
+    return f"{names[0] if names else platform.machine()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}"
+
+
+def main():
+    program = pathlib.Path(sys.argv[1]).resolve()
+    chosen = sys.argv[2:] or list(SEARCHES)
+    version = subprocess.run(["git", "-C", SCENES, "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
+                             check=True).stdout.strip()
+    print(f"""# Searches over devices that differ
+
+`softland optimize ... --robust ...` on the shipped scenes with their own `[spread]` (2 % of thickness, 2 % of both gaps by one factor,
+3 % of the modulus, one standard deviation, normal; see the scenes for the others), each winner judged on 2000 devices that no search has seen, over the scene's whole
+window. 95 % of the devices are below the given values; in brackets 95 % confidence. v is the largest impact speed of all touches.
+
+- made by `bench/run_robust_search.py BUILD/apps/softland > results/robust-search.md`, {datetime.date.today()}, revision {version}
+- machine: {machine()}
+
+| search | v | B_H | t_i | without a rebound | cost on fresh devices (searched) | closings | time |
+|---|---|---|---|---|---|---|---|""")
+    steps, commands, worth = {}, [], []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in chosen:
+            what, words = SEARCHES[name]
+            out = pathlib.Path(folder) / name
+            begin = time.monotonic()
+            done = subprocess.run([program, "optimize", SCENES / words[0], *words[1:], "--out", out, "--quiet"],
+                                  capture_output=True, text=True)
+            if done.returncode not in (0, 4):
+                sys.exit(f"{name}: exit status {done.returncode}\n{done.stderr}")
+            seconds = time.monotonic() - begin
+            found = json.loads((out / "result.json").read_text())
+            verdict = json.loads((out / "robustness.json").read_text())
+            print(row(what, verdict["drives"][-1],
+                      f"{found['best']['cost']:.3f} ({found['robust']['cost_on_searched_devices']:.3f})",
+                      f"{found['robust']['closings']:.0f}", f"{seconds:.0f} s"), flush=True)
+            steps[words[0]] = verdict["drives"][0]
+            commands.append(" ".join(["softland optimize scenes/" + words[0]] +
+                                     [f'"{word}"' if " " in word or "," in word else word for word in words[1:]]))
+            if verdict["by_knowledge"]:
+                worth.append((what, verdict["by_knowledge"]))
+    for scene, step in steps.items():
+        print(row(f"plain step of {scene}", step, "", "", ""))
+    for what, drives in worth:
+        print(f"\n## What measuring is worth: {what}\n\n| known of every device | v | B_H | t_i | without a rebound |\n|---|---|---|---|---|")
+        for drive in drives:
+            print(row(drive["name"], drive))
+    print("\n## Commands\n\n```sh")
+    print("\n".join(commands))
+    print("```")
+
+
+if __name__ == "__main__":
+    main()
