@@ -28,7 +28,7 @@ SEARCHES = {
     "gold-units-yield": ("gold, Vdp and period known, by yield", [
         "mem-gold.toml", "--robust", "yield:bounce_count == 0", "--waveform", "catch", *UNITS, "--budget", "100000"]),
     "gold-errors": ("gold, Vdp to 1 %, period to 0.5 %", GOLD + [
-        "--waveform", "catch", "--calibrate", "Vdp:1 %,frequency:0.5 %", "--budget", "150000"]),
+        "--waveform", "knots:5", "--calibrate", "Vdp:1 %,frequency:0.5 %", "--budget", "150000"]),
     "pzt-both-45us": ("piezo and electrode, below 45 us", PZT + [
         "--actuator", "both", "--waveform", "knots:6", "--constrain", "initial_contact_time < 45 us", "--budget", "250000"]),
     "pzt-both-200us": ("piezo and electrode, below 200 us", PZT + [
