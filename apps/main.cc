@@ -181,7 +181,8 @@ int run(int argc, char** argv) {
          "folder for the report, the waveform found and all data (default: softland-out)");
   optimize->footer(
       "Without a scene: scenes/mem-gold-pzt.toml. The hold level is the scene's own; its [driver.*] limits are never left.\n"
-      "A scene that holds a landing already (best.toml of an earlier search) is refined and, without --robust, never ends worse.\n" +
+      "A scene that holds a landing already (best.toml of an earlier search) is refined and, without --robust, never ends "
+      "worse.\n" +
       optimizer_help() +
       "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
       "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3\n"
@@ -204,7 +205,8 @@ int run(int argc, char** argv) {
          "measured on every device before it is driven, as for optimize; the report says what each measurement is worth");
   optional(robustness, "--seed", robust.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
   optional(robustness, "--jobs", robust.jobs, "N", "threads (default: one per core); the result does not depend on them");
-  option(robustness, "--out", common.out, "FOLDER", "folder for robustness.html, robustness.json, devices.csv and the worst devices as scenes");
+  option(robustness, "--out", common.out, "FOLDER",
+         "folder for robustness.html, robustness.json, devices.csv and the worst devices as scenes");
   robustness->footer(
       "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one,\n"
       "or, where it is calibrated, the same waveform in its own units.\n"

@@ -469,6 +469,7 @@ void add_details(RobustnessReport& report, const Watch& watch) {
       sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
                   report.options, watch);
   report.courses = device_courses(report.nominal, last, report.found, report.options);
+  report.interrupted = watch.stopped();
 }
 
 void write_robustness(ResultFolder& folder, const RobustnessReport& report) {
@@ -593,7 +594,16 @@ int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
   SceneFile file = load_scene(c);
   calibrate(file, request.calibration);
   Searching searching(c, request, options);
-  const RobustResult result = robust_optimize(file, options, robust);
+  RobustResult result = robust_optimize(file, options, robust);
+  std::optional<RobustnessReport> report;
+  if (result.verdict) {
+    report.emplace(RobustnessReport{.nominal = *result.found.best_scene,
+                                    .found = *result.verdict,
+                                    .options = {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs},
+                                    .command = c.command});
+    add_details(*report, {.stop = c.stop, .progress = options.on_preparation});
+    if (report->interrupted) result.found.search.termination = Termination::interrupted;
+  }
   searching.close();
 
   Result found = result_of(result, options, robust, {.command = c.command});
@@ -601,15 +611,10 @@ int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
   const fs::path place = searching.folder().destination(interrupted);
   std::vector<std::string> left = write_found(searching, result.found, found, place);
   std::string text;
-  if (result.verdict) {
-    RobustnessReport report{.nominal = *result.found.best_scene,
-                            .found = *result.verdict,
-                            .options = {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs},
-                            .command = c.command};
-    add_details(report, WatchedWork(c.quiet, c.stop).watch());
-    write_robustness(searching.folder(), report);
+  if (report) {
+    write_robustness(searching.folder(), *report);
     left.insert(left.end(), robustness_files.begin(), robustness_files.end());
-    text = "\n" + robustness_text(report);
+    text = "\n" + robustness_text(*report);
   }
   searching.folder().publish(interrupted);
   print_result(c, found, text + left_in(place, left));
@@ -681,13 +686,13 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
     const DriveRobustness& last = found.drives.back();
     for (std::size_t i = 0; i < most_worst && i < last.worst.size(); ++i)
       folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());
-    text += left_in(folder->destination(found.interrupted),
+    text += left_in(folder->destination(report.interrupted),
                     {"robustness.html", "robustness.json", "devices.csv",
                      "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
-    folder->publish(found.interrupted);
+    folder->publish(report.interrupted);
   }
   print_json_or(c, j, text);
-  return found.interrupted ? exit_interrupted : exit_done;
+  return report.interrupted ? exit_interrupted : exit_done;
 }
 
 int new_verb(const std::string& kind) {

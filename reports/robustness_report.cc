@@ -208,7 +208,7 @@ std::string knowledge_text(const Robustness& found) {
 }  // namespace
 
 json robustness_json(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
@@ -234,7 +234,7 @@ json robustness_json(const RobustnessReport& report) {
   for (const DriveRobustness& d : found.by_knowledge) by_knowledge.push_back(drive_json(d));
   const SceneFile scene = resolved(nominal.scene, nominal.voltage_units());
   return {{"kind", "robustness"},
-          {"status", found.interrupted ? "interrupted" : "done"},
+          {"status", interrupted ? "interrupted" : "done"},
           {"devices", found.devices},
           {"seed", options.seed},
           {"points", name_of(point_sets, options.points)},
@@ -253,7 +253,7 @@ json robustness_json(const RobustnessReport& report) {
 }
 
 std::string robustness_text(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().calibration;
@@ -297,7 +297,7 @@ std::string robustness_text(const RobustnessReport& report) {
 }
 
 std::string robustness_csv(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
   // Names may hold commas and quotes.
@@ -567,7 +567,7 @@ std::string keys_of(const Robustness& found) {
 }  // namespace
 
 std::string robustness_html(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
   const internal::Picture drawn = picture_of(report);
   std::string charts;
   for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);

@@ -19,6 +19,7 @@ struct RobustnessReport {
   std::string command;  ///< the command line
   Sensitivity sensitivity = {};
   std::vector<DeviceCourse> courses = {};
+  bool interrupted = found.interrupted;  ///< in the study, or in what was to be known beside it
 };
 
 [[nodiscard]] nlohmann::json robustness_json(const RobustnessReport& report);

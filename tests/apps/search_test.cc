@@ -311,5 +311,14 @@ TEST(RobustSearch, OfATinyBudgetStillAnswers) {
   }
 }
 
+TEST(RobustSearch, RefusesToMeasureAPullInVoltageThatThereIsNot) {
+  const Workplace here;
+  write(here.path() / "casimir.toml", here.run({"new", "nem-casimir"}).out);
+  const Outcome o = here.run({"robustness", "casimir.toml", "--samples", "4", "--calibrate", "Vdp"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_EQ(o.err, "softland: casimir.toml: Vdp cannot be measured: there is no electrode that pulls in\n");
+  EXPECT_EQ(here.run({"robustness", "casimir.toml", "--samples", "4", "--quiet", "--calibrate", "frequency"}).status, 0);
+}
+
 }  // namespace
 }  // namespace softland
