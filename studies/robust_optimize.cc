@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <deque>
 #include <mutex>
@@ -25,6 +24,7 @@ constexpr std::size_t remembered = 14;             // candidates that the next o
 constexpr std::size_t fewest_remembered = 5;
 constexpr int nominal_searches = 2;
 constexpr std::size_t winners_taken = 4;  // of each
+constexpr double scouting_time = 0.05;    // of a budget of time, for each search on the nominal device
 constexpr std::uint64_t selection_devices = 512;
 constexpr double apart = 0.08;  // of the box: starts of searches
 
@@ -86,13 +86,15 @@ std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t which) { return rando
 class RobustSearch {
  public:
   /// `step_cost` of the plain step, for the progress.
-  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const OptimizeOptions& options, double step_cost)
+  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const OptimizeOptions& options,
+               const std::function<double()>& clock, double step_cost)
       : setting_(setting),
         cost_(cost),
         options_(options),
         scouting_(scouting(options.max_evaluations)),
         variables_(setting.space.variables()),
-        begin_(std::chrono::steady_clock::now()) {
+        clock_(clock),
+        begin_(clock()) {
     progress_.baseline_cost = step_cost;
   }
 
@@ -101,10 +103,14 @@ class RobustSearch {
     std::vector<Candidate> leaders = first_leaders();
     std::vector<Candidate> found = leaders;
     const auto left = static_cast<double>(options_.max_evaluations - closings_);
+    double shares_left = 0;
+    for (const Heat& heat : heats) shares_left += heat.share;
     for (const Heat& heat : heats) {
       if (over() || leaders.empty()) break;
       leaders.resize(std::min(leaders.size(), heat.searches));
       if (static_cast<long>(heat.share * left) < static_cast<long>(leaders.size())) break;
+      heat_end_ = elapsed() + (options_.max_seconds - elapsed()) * heat.share / shares_left;
+      shares_left -= heat.share;
       const std::vector<Candidate> ends = search_from(leaders, heat, static_cast<long>(heat.share * left));
       found.insert(found.end(), ends.begin(), ends.end());
       // Whatever is best goes on, from whichever heat.
@@ -136,9 +142,8 @@ class RobustSearch {
 
  private:
   [[nodiscard]] bool interrupted() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
-  [[nodiscard]] bool out_of_time() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() > options_.max_seconds;
-  }
+  [[nodiscard]] double elapsed() const { return clock_() - begin_; }
+  [[nodiscard]] bool out_of_time() const { return elapsed() > options_.max_seconds; }
   [[nodiscard]] bool over() const { return interrupted() || out_of_time(); }
 
   // The cost on the first `devices`, or on as many as it takes to see that it is more than `hopeless`. Adds to `used` the
@@ -186,6 +191,7 @@ class RobustSearch {
                     .objective = [&](std::span<const double> x) { return setting_.price_at(x).leading; },
                     .starts = setting_.space.starts()},
                    {.max_evaluations = scouting_.nominal_evaluations,
+                    .max_seconds = std::max(1e-3, scouting_time * options_.max_seconds),
                     .seed = fresh_seed(options_.seed, 10 + static_cast<std::uint64_t>(k)),
                     .jobs = options_.jobs,
                     .stop = options_.stop});
@@ -265,7 +271,7 @@ class RobustSearch {
       if (recent.size() > remembered) recent.pop_front();
       if (value < best.value) best = {.x = x, .value = value};
       devices == cost_.devices() ? note(index++, x, value) : tell();
-      if (used >= share || over()) enough = true;
+      if (used >= share || interrupted() || elapsed() > heat_end_) enough = true;
       return value;
     };
     static_cast<void>(minimize({.variables = variables_, .objective = objective, .starts = {start.x}},
@@ -288,9 +294,11 @@ class RobustSearch {
   const OptimizeOptions& options_;
   Scouting scouting_;
   std::vector<Variable> variables_;
-  std::chrono::steady_clock::time_point begin_;
+  std::function<double()> clock_;
+  double begin_;  // [s]
   std::atomic<long> closings_ = 0;
   std::uint64_t heats_run_ = 0;
+  double heat_end_ = 0;  // of a budget of time, since the beginning [s]
   long next_index_ = 0;
 
   std::mutex mutex_;
@@ -368,7 +376,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   if (options.on_start) options.on_start(names);
   out.baseline_cost = cost.value(cost.close(setting.drives({}), 0, cost.devices(), options.jobs));
 
-  RobustSearch search(setting, cost, options, out.baseline_cost);
+  RobustSearch search(setting, cost, options, robust.clock, out.baseline_cost);
   std::vector<Candidate> candidates = search.run();
   result.closings = search.closings();
   out.search.evaluations = search.evaluations();

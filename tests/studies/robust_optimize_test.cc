@@ -115,6 +115,21 @@ TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot) {
   EXPECT_EQ(log.result.verdict->by_knowledge.size(), 4U);
 }
 
+TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats) {
+  // A clock that counts how often it is looked at, which is once in an evaluation: what is in time does not depend on the
+  // machine.
+  double looks = 0;
+  long on_all_devices = 0;
+  OptimizeOptions options{.max_evaluations = 1'000'000'000, .max_seconds = 120, .jobs = 1};
+  options.on_evaluation = [&](const Evaluation&, const OptimizeProgress&) { ++on_all_devices; };
+  const RobustResult result = robust_optimize(
+      quick(), options, {.aim = aim("cvar:0.9"), .samples = 40, .verdict = 60, .clock = [&looks] { return looks++; }});
+  EXPECT_EQ(result.found.search.termination, Termination::time_budget);
+  ASSERT_TRUE(result.verdict);
+  // Starts and ends of the first heat are at most 18; the others try every candidate on all devices, in three fifths of the time.
+  EXPECT_GT(on_all_devices, 50);
+}
+
 TEST(RobustOptimize, NeedsASpread) {
   EXPECT_NE(refusal([] { static_cast<void>(search(without(quick(), "spread"), aim("worst"))); }).find("there is no [spread]"),
             std::string::npos);
