@@ -32,8 +32,7 @@ TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
     EXPECT_THAT(o.out, HasSubstr(std::string("Usage: softland ") + verb)) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("ubcommand"))) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("TEXT"))) << verb;
-    for (const char* coming : {"explore", "--resume", "--shard", "--vary"})
-      EXPECT_THAT(o.out, Not(HasSubstr(coming))) << verb;
+    for (const char* coming : {"explore", "--resume", "--shard", "--vary"}) EXPECT_THAT(o.out, Not(HasSubstr(coming))) << verb;
   }
 }
 
