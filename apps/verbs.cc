@@ -496,6 +496,12 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
   return options;
 }
 
+Common with_defaults(Common c) {
+  if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
+  if (c.out.empty()) c.out = "softland-out";
+  return c;
+}
+
 RobustOptions read_robust_options(const OptimizeRequest& request) {
   const std::vector<FigureName> figures = conditioned_figures();
   const auto read = [](const std::string& option, const auto& parse) {
@@ -586,9 +592,7 @@ int status_of(const OptimizeResult& result) {
 }
 
 int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
-  Common c = given;
-  if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
-  if (c.out.empty()) c.out = "softland-out";
+  const Common c = with_defaults(given);
   OptimizeOptions options = read_options(c, request);
   const RobustOptions robust = read_robust_options(request);
   SceneFile file = load_scene(c);
@@ -628,9 +632,7 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   for (const bool is_given : {!request.conditions.empty(), !request.calibration.empty(), request.samples.has_value()})
     require(!is_given,
             "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
-  Common c = given;
-  if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
-  if (c.out.empty()) c.out = "softland-out";
+  const Common c = with_defaults(given);
   OptimizeOptions options = read_options(c, request);
   const SceneFile file = load_scene(c);
   Searching searching(c, request, options);
@@ -742,12 +744,7 @@ int export_verb(const Common& c, const ExportRequest& request) {
     const DeviceUnits units{.volts = pull_in ? *pull_in / meter.pull_in() : 1,
                             .time = frequency ? meter.frequency() / *frequency : 1};
     const std::vector<std::string> names = p.drive_names();
-    std::vector<Waveform> waveforms;
-    for (const std::string& name : names) {
-      const auto found = p.drives.waveforms.find(name);
-      waveforms.push_back(found == p.drives.waveforms.end() ? Waveform(Step{.level = 0}) : found->second);
-    }
-    waveforms = in_units(waveforms, p.scene.device, units);
+    const std::vector<Waveform> waveforms = in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units);
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (names[k] != dispersion_drive) signals[names[k]] = signal(waveforms[k]);
     }

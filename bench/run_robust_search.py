@@ -7,13 +7,13 @@ With names only those searches. Takes about half an hour on two cores.
 """
 import datetime
 import json
-import os
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
 import time
+
+from tables import machine, prefixed
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 GOLD = ["mem-gold.toml", "--robust", "cvar:0.9"]
@@ -39,15 +39,6 @@ SEARCHES = {
 }
 
 
-def prefixed(value, unit):
-    if value is None:
-        return "-"
-    for factor, prefix in ((1, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"), (1e-12, "p")):
-        if abs(value) >= factor:
-            return f"{value / factor:.3g} {prefix}{unit}"
-    return f"0 {unit}"
-
-
 def at_95_percent(drive, key, unit):
     q = next(q for q in drive["figures"][key]["quantiles"] if q["probability"] == 0.95)
     low, high = q["interval"]
@@ -62,12 +53,6 @@ def row(name, drive, *more):
     cells = [name, at_95_percent(drive, "largest_impact_velocity_m_s", "m/s"), at_95_percent(drive, "major_bounce_height_m", "m"),
              at_95_percent(drive, "initial_contact_time_s", "s"), share(drive["bounce_free"]), *more]
     return "| " + " | ".join(cells) + " |"
-
-
-def machine():
-    with open("/proc/cpuinfo", encoding="utf-8") as info:
-        names = [line.split(":", 1)[1].strip() for line in info if line.startswith("model name")]
-    return f"{names[0] if names else platform.machine()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}"
 
 
 def main():

@@ -8,12 +8,12 @@ devices over the scene's whole window. Takes about four minutes on two cores.
 """
 import datetime
 import json
-import os
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
+
+from tables import machine, prefixed
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 TASKS = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "pzt"), ("mem-gold-pzt.toml", "both"),
@@ -29,24 +29,9 @@ def run(program, *words):
     return done.stdout
 
 
-def prefixed(value, unit):
-    if value is None:
-        return "-"
-    for factor, prefix in ((1, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"), (1e-12, "p")):
-        if abs(value) >= factor:
-            return f"{value / factor:.3g} {prefix}{unit}"
-    return f"0 {unit}"
-
-
 def quantiles(drive, key, unit):
     values = [q["value"] for q in drive["figures"][key]["quantiles"]]
     return f"{prefixed(values[1], unit)} / {prefixed(values[2], unit)}"
-
-
-def machine():
-    with open("/proc/cpuinfo", encoding="utf-8") as info:
-        names = [line.split(":", 1)[1].strip() for line in info if line.startswith("model name")]
-    return f"{names[0] if names else platform.machine()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}"
 
 
 def main():

@@ -33,12 +33,9 @@ std::string_view trimmed(std::string_view text) {
   return begin == std::string_view::npos ? std::string_view() : text.substr(begin, end - begin + 1);
 }
 
-/// The key less the unit that it ends with: "impact_velocity_m_s" of unit "m/s" is "impact_velocity".
+/// The key without its unit: "impact_velocity".
 std::string quantity_name(const FigureName& figure) {
-  std::string suffix = "_" + std::string(figure.unit);
-  std::replace(suffix.begin(), suffix.end(), '/', '_');
-  const bool ends = !figure.unit.empty() && figure.key.ends_with(suffix);
-  return std::string(figure.key.substr(0, figure.key.size() - (ends ? suffix.size() : 0)));
+  return std::string(figure.key.substr(0, figure.key.size() - (figure.unit.empty() ? 0 : figure.unit.size() + 1)));
 }
 
 double number_after(std::string_view text, std::string_view what, double least, double most, bool most_open) {
@@ -46,8 +43,9 @@ double number_after(std::string_view text, std::string_view what, double least, 
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool is_number = !text.empty() && error == std::errc() && end == text.data() + text.size();
   require(is_number && value >= least && (most_open ? value < most : value <= most), [&] {
-    return std::isfinite(most) ? fmt::format("{} must be from {} to {}{}", what, least, most, most_open ? ", less than that" : "")
-                               : fmt::format("{} must be a number from {} on", what, least);
+    return !std::isfinite(most) ? fmt::format("{} must be a number from {} on", what, least)
+           : most_open          ? fmt::format("{} must be at least {} and less than {}", what, least, most)
+                                : fmt::format("{} must be from {} to {}", what, least, most);
   });
   return value;
 }

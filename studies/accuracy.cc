@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 
@@ -303,10 +302,6 @@ class Study {
 };
 
 }  // namespace
-
-double AccuracyOptions::wall_clock() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 FigureErrors relative_errors(const Metrics& value, const Metrics& reference, const MetricsOptions& options) {
   FigureErrors errors{};

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
 #include "model/closing.h"
 #include "objectives/figures.h"
 #include "studies/cloud.h"
@@ -40,9 +41,6 @@ struct AccuracyOptions {
   std::function<void(std::size_t done, std::size_t of)> on_progress = {};
   const std::atomic<bool>* stop = nullptr;
   std::function<double()> clock = wall_clock;  ///< what all these limits are held against [s]; looked at once in 64 steps
-
-  /// Of this machine [s].
-  static double wall_clock();
 };
 
 /// One setting and what it delivers.

@@ -95,8 +95,7 @@ void DeviceBuilder::describe(SampledDevice& sampled) {
 
 DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in) : nominal_(&nominal), need_pull_in_(need_pull_in) {
   if (!need_pull_in) return;
-  const std::vector<Electrode>& electrodes = nominal.scene.device.electrodes;
-  require(std::any_of(electrodes.begin(), electrodes.end(), [](const Electrode& e) { return e.side != Side::far; }), [&] {
+  require(has_pulling_electrode(nominal.scene.device), [&] {
     return fmt::format("{}: Vdp cannot be measured: there is no electrode that pulls in", nominal.scene.file.name());
   });
   const std::string name = searched_electrode(nominal.scene.device);

@@ -20,14 +20,16 @@ std::vector<std::string> Prepared::drive_names() const {
   return names;
 }
 
-std::vector<Signal> Prepared::signals() const {
-  std::vector<Signal> result;
+std::vector<Waveform> Prepared::in_drive_order(const std::map<std::string, Waveform>& waveforms) const {
+  std::vector<Waveform> result;
   for (const std::string& name : drive_names()) {
-    const auto found = drives.waveforms.find(name);
-    result.push_back(found == drives.waveforms.end() ? Signal() : signal(found->second));
+    const auto found = waveforms.find(name);
+    result.push_back(found == waveforms.end() ? Waveform(Step{.level = 0}) : found->second);
   }
   return result;
 }
+
+std::vector<Signal> Prepared::signals() const { return signals_of(in_drive_order(drives.waveforms)); }
 
 std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
   std::map<std::string, PullInVoltages> units;

@@ -41,6 +41,8 @@ struct Prepared {
 
   /// Names of the drives in the order of Switch::drives().
   [[nodiscard]] std::vector<std::string> drive_names() const;
+  /// One waveform per drive in that order; what has none stays at 0 V.
+  [[nodiscard]] std::vector<Waveform> in_drive_order(const std::map<std::string, Waveform>& waveforms) const;
   /// One signal per drive in that order; what is not driven stays at 0 V.
   [[nodiscard]] std::vector<Signal> signals() const;
   /// The pull-in voltages as units.

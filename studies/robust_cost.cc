@@ -89,7 +89,9 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
     const SampledDevice& device = ensemble_.devices[first + i];
     const DeviceUnits& units = ensemble_.units[first + i];
     const bool own = device.model && (units.volts != 1 || units.time != 1);
-    const std::vector<Signal> signals = own ? signals_of(in_units(waveforms, setting_.given.scene.device, units)) : nominal;
+    std::vector<Signal> in_its_units;
+    if (own) in_its_units = signals_of(in_units(waveforms, setting_.given.scene.device, units));
+    const std::vector<Signal>& signals = own ? in_its_units : nominal;
     const double end = last_breakpoint(signals);
     outcomes[i] = close_device(device, signals, setting_.given.scene.metrics,
                                {.duration = end + wait_ + window_,

@@ -12,7 +12,6 @@
 #include "base/random.h"
 #include "base/require.h"
 #include "optimizers/sobol.h"
-#include "sampling/confidence.h"
 #include "sampling/statistics.h"
 #include "studies/plain_step.h"
 
@@ -334,11 +333,9 @@ Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setti
 }
 
 Yield share_that_fulfils(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition) {
-  const auto good = static_cast<std::size_t>(
-      std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); }));
-  return {.devices = good,
-          .value = static_cast<double>(good) / static_cast<double>(outcomes.size()),
-          .interval = wilson_interval(good, outcomes.size())};
+  const auto good =
+      std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); });
+  return yield_of(static_cast<std::size_t>(good), outcomes.size());
 }
 
 // The winner and the plain step on fresh devices, over the whole window.

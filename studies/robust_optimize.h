@@ -15,7 +15,7 @@
 #include <functional>
 #include <optional>
 
-#include "studies/accuracy.h"
+#include "base/clock.h"
 #include "studies/optimize.h"
 #include "studies/robust_cost.h"
 #include "studies/robustness.h"
@@ -27,9 +27,9 @@ inline constexpr std::uint64_t most_searched = 100'000;  ///< devices of a searc
 
 struct RobustOptions {
   RobustAim aim;
-  std::uint64_t samples = 128;                                  ///< devices that are searched
-  std::uint64_t verdict = 2000;                                 ///< fresh ones
-  std::function<double()> clock = AccuracyOptions::wall_clock;  ///< what a budget of time is held against [s]
+  std::uint64_t samples = 128;                 ///< devices that are searched
+  std::uint64_t verdict = 2000;                ///< fresh ones
+  std::function<double()> clock = wall_clock;  ///< what a budget of time is held against [s]
 };
 
 struct FulfilledCondition {

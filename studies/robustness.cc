@@ -32,12 +32,6 @@ EnsembleFigure figure() {
   return {.key = f.key, .name = f.name, .symbol = f.symbol, .unit = f.unit, .value = of<member>};
 }
 
-Yield yield_of(std::size_t devices, std::size_t all) {
-  return {.devices = devices,
-          .value = static_cast<double>(devices) / static_cast<double>(all),
-          .interval = wilson_interval(devices, all)};
-}
-
 FigureStatistics statistics(const EnsembleFigure& figure, const std::vector<DeviceOutcome>& outcomes) {
   std::vector<double> all, finite;
   for (const DeviceOutcome& o : outcomes) {
@@ -84,12 +78,14 @@ std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& dr
     const std::string broken = violation(signal(waveform), limits->second);
     require(broken.empty(), [&] { return fmt::format("{}: drive '{}': {}", drive.name, name, broken); });
   }
-  std::vector<Waveform> waveforms;
-  for (const std::string& name : names) {
-    const auto found = drive.waveforms.find(name);
-    waveforms.push_back(found == drive.waveforms.end() ? Waveform(Step{.level = 0}) : found->second);
-  }
-  return waveforms;
+  return nominal.in_drive_order(drive.waveforms);
+}
+
+EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
+  return {.duration = nominal.duration,
+          .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
+          .seed = options.seed,
+          .jobs = options.jobs};
 }
 
 // The source of a device whose own units are larger than those of the nominal one has to give more.
@@ -132,6 +128,12 @@ const std::vector<EnsembleFigure>& ensemble_figures() {
   return all;
 }
 
+Yield yield_of(std::size_t devices, std::size_t all) {
+  return {.devices = devices,
+          .value = static_cast<double>(devices) / static_cast<double>(all),
+          .interval = wilson_interval(devices, all)};
+}
+
 const EnsembleFigure& ensemble_figure(std::string_view key) {
   const auto& all = ensemble_figures();
   return *std::find_if(all.begin(), all.end(), [&](const EnsembleFigure& f) { return f.key == key; });
@@ -141,12 +143,10 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
                       const Watch& watch) {
   require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is nothing to land on");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
-  Robustness result{.duration = nominal.duration, .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance)};
-
-  const std::vector<Electrode>& electrodes = nominal.scene.device.electrodes;
-  const bool one_pulls =
-      std::any_of(electrodes.begin(), electrodes.end(), [](const Electrode& e) { return e.side != Side::far; });
-  NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, one_pulls ? Actuator::both : Actuator::pzt)};
+  const EnsembleRun run = run_of(nominal, options);
+  Robustness result{.duration = run.duration, .tolerance = run.tolerance};
+  const Actuator driven = has_pulling_electrode(nominal.scene.device) ? Actuator::both : Actuator::pzt;
+  NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
   plain.waveforms.insert(nominal.drives.waveforms.begin(), nominal.drives.waveforms.end());  // of the drives that do not step
   std::vector<NamedDrive> all;
   std::vector<EnsembleDrive> judged;
@@ -169,7 +169,6 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
     for (const NamedDrive& known : by_knowledge(NamedDrive(all.back()))) add(known);
   }
 
-  const EnsembleRun run{.duration = result.duration, .tolerance = result.tolerance, .seed = options.seed, .jobs = options.jobs};
   std::vector<std::vector<DeviceOutcome>> outcomes = close_all(ensemble, judged, run, watch);
   result.devices = outcomes.front().size();
   result.interrupted = watch.stopped();
@@ -200,13 +199,7 @@ Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, s
   const Ensemble ensemble(nominal, SobolDesign(PointSet::sobol, spread.variables.size(), options.seed, rows));
   const EnsembleDrive judged{.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
                              .calibration = exact};
-  const std::vector<DeviceOutcome> outcomes = close_all(ensemble, {judged},
-                                                        {.duration = nominal.duration,
-                                                         .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
-                                                         .seed = options.seed,
-                                                         .jobs = options.jobs},
-                                                        watch)
-                                                  .front();
+  const std::vector<DeviceOutcome> outcomes = close_all(ensemble, {judged}, run_of(nominal, options), watch).front();
   if (outcomes.size() < ensemble.size()) {
     found.why_none = "interrupted";
     return found;

@@ -49,6 +49,8 @@ struct Yield {
   Interval interval = {};  ///< 95 %, Wilson
 };
 
+[[nodiscard]] Yield yield_of(std::size_t devices, std::size_t all);
+
 struct DriveRobustness {
   std::string name;
   std::map<std::string, Waveform> waveforms;  ///< of the nominal device, in volts

@@ -48,13 +48,9 @@ SceneFile SearchSetting::scene(const std::map<std::string, Waveform>& searched) 
 }
 
 std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform>& searched) const {
-  std::vector<Waveform> all;
-  for (const std::string& name : given.drive_names()) {
-    const std::map<std::string, Waveform>& from = searched.contains(name) ? searched : baseline_scene.drives.waveforms;
-    const auto found = from.find(name);
-    all.push_back(found == from.end() ? Waveform(Step{.level = 0}) : found->second);
-  }
-  return all;
+  std::map<std::string, Waveform> all = searched;
+  all.insert(baseline_scene.drives.waveforms.begin(), baseline_scene.drives.waveforms.end());
+  return given.in_drive_order(all);
 }
 
 bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) const {

@@ -339,6 +339,10 @@ std::string listed_searched_families() {
   return text;
 }
 
+bool has_pulling_electrode(const Device& device) {
+  return std::any_of(device.electrodes.begin(), device.electrodes.end(), [](const Electrode& e) { return e.side != Side::far; });
+}
+
 std::string searched_electrode(const Device& device) {
   require(!device.electrodes.empty(),
           fmt::format("optimize --actuator electrostatic|both needs an electrode, and the scene has none{}",

@@ -74,6 +74,8 @@ class SearchSpace {
   std::vector<DriveSearch> drives_;
 };
 
+/// Whether an electrode pulls towards the contact: one that is not on the far side.
+[[nodiscard]] bool has_pulling_electrode(const Device& device);
 /// The electrode that a search closes the switch with: `main` if there is one, else the first that pulls in. Throws InvalidInput
 /// when there is none.
 [[nodiscard]] std::string searched_electrode(const Device& device);

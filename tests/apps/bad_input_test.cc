@@ -98,7 +98,7 @@ TEST_F(BadInput, Options) {
       {{"optimize", "gold.toml", "--robust", "wrost"},
        "--robust wrost: 'wrost' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst and yield:\"bounce_count == "
        "0\""},
-      {{"optimize", "gold.toml", "--robust", "cvar:2"}, "--robust cvar:2: the level of cvar must be from 0 to 1, less than that"},
+      {{"optimize", "gold.toml", "--robust", "cvar:2"}, "--robust cvar:2: the level of cvar must be at least 0 and less than 1"},
       {{"optimize", "gold.toml", "--robust", "worst", "--constrain", "t_i < 3 V"},
        "--constrain: initial_contact_time in 't_i < 3 V' must be a time [s]"},
       {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vsp"},

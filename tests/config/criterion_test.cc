@@ -88,7 +88,7 @@ TEST(RobustMeasure, HasANameAndALevel) {
 
 TEST(RobustMeasure, IsRefusedWithTheReason) {
   EXPECT_EQ(refused_measure("best").find("'best' is no measure: there are cvar:0.9"), 0U);
-  EXPECT_EQ(refused_measure("cvar:1"), "the level of cvar must be from 0 to 1, less than that");
+  EXPECT_EQ(refused_measure("cvar:1"), "the level of cvar must be at least 0 and less than 1");
   EXPECT_EQ(refused_measure("cvar:nan").find("the level of cvar must be"), 0U);
   EXPECT_EQ(refused_measure("cvar:").find("the level of cvar must be"), 0U);
   EXPECT_EQ(refused_measure("quantile:1.5"), "the level of quantile must be from 0 to 1");
