@@ -7,27 +7,12 @@
 #include <limits>
 
 #include "base/engineering.h"
+#include "integrators/dormand_prince.h"
 
 namespace softland {
 namespace {
 
-constexpr double nodes[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-constexpr double tableau[7][6] = {{},
-                                  {1.0 / 5},
-                                  {3.0 / 40, 9.0 / 40},
-                                  {44.0 / 45, -56.0 / 15, 32.0 / 9},
-                                  {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
-                                  {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
-                                  {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-// Fifth minus fourth order.
-constexpr double difference[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
-
-constexpr float integral = 0.04F, proportional = 0.2F - 0.75F * integral;
-constexpr double safety = 0.9;
-constexpr double least_growth = 0.2, most_growth = 10;
-constexpr double first_growth = 1e4;  // a first step is a guess
-constexpr float least_error = -13;    // what the controller remembers at the least, binary logarithm
-constexpr double not_finite = 0.1;    // shrinks a step whose error is not a number
+using Pair = DormandPrince;
 
 }  // namespace
 
@@ -77,7 +62,7 @@ void Lawson::turn_to_nodes(double h) {
           lane(k_[s].*member, b) = lane(k_[s - 1].*member, b);
         continue;
       }
-      const Turn turned = turn(nodes[s] * phase);
+      const Turn turned = turn(Pair::nodes[s] * phase);
       lane(k_[s].cosine, b) = turned.cosine;
       lane(k_[s].sine, b) = turned.sine;
       lane(k_[s].slack, b) = turned.slack * lane(inverse_, b) * lane(inverse_, b);
@@ -89,7 +74,7 @@ template <std::size_t S>
 void Lawson::evaluate(double t, double h) {
   Stage& stage = k_[S];
   std::array<double, S> factor;
-  for (std::size_t j = 0; j < S; ++j) factor[j] = h * tableau[S][j];
+  for (std::size_t j = 0; j < S; ++j) factor[j] = h * Pair::tableau[S][j];
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     Lane kq = Lane::Zero(), kv = lane(v_, b);
     for (std::size_t j = 1; j < S; ++j) {
@@ -125,8 +110,8 @@ double Lawson::squared_error(double h) const {
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     Lane q = Lane::Zero(), v = Lane::Zero();
     for (std::size_t j = 1; j < stages; ++j) {
-      q += difference[j] * lane(k_[j].q, b);
-      v += difference[j] * lane(k_[j].v, b);
+      q += Pair::difference[j] * lane(k_[j].q, b);
+      v += Pair::difference[j] * lane(k_[j].v, b);
     }
     q *= lane(q_weight_, b);
     v *= lane(v_weight_, b);
@@ -135,7 +120,7 @@ double Lawson::squared_error(double h) const {
   double sum = squares.sum();
   for (std::size_t i = 0; i < rest_; ++i) {
     double estimate = 0;
-    for (std::size_t j = 0; j < stages; ++j) estimate += difference[j] * k_[j].rest[i];
+    for (std::size_t j = 0; j < stages; ++j) estimate += Pair::difference[j] * k_[j].rest[i];
     estimate *= weight_[2 * modes_ + i];
     sum += estimate * estimate;
   }
@@ -149,7 +134,7 @@ double Lawson::stiffness() const {
     const Lane q_weight = lane(q_weight_, b), v_weight = lane(v_weight_, b);
     Lane q = Lane::Zero(), v = Lane::Zero();
     for (std::size_t j = 1; j < last; ++j) {
-      const double weight = tableau[last][j] - tableau[last - 1][j];
+      const double weight = Pair::tableau[last][j] - Pair::tableau[last - 1][j];
       q += weight * lane(k_[j].q, b);
       v += weight * lane(k_[j].v, b);
     }
@@ -162,7 +147,7 @@ double Lawson::stiffness() const {
 }
 
 bool Lawson::step(double t_stop) {
-  double most = first_ ? first_growth : most_growth;
+  double most = first_ ? Pair::first_growth : Pair::most_growth;
   for (std::size_t b = 0; b < omega_.size(); b += lanes) {
     lane(q_, b) = load_lane(y_.data(), b, modes_);
     lane(v_, b) = load_lane(y_.data() + modes_, b, modes_);
@@ -179,31 +164,31 @@ bool Lawson::step(double t_stop) {
     }
     const double end = stops ? t_stop : t_ + h;
     turn_to_nodes(h);
-    evaluate<1>(t_ + nodes[1] * h, h);
-    evaluate<2>(t_ + nodes[2] * h, h);
-    evaluate<3>(t_ + nodes[3] * h, h);
-    evaluate<4>(t_ + nodes[4] * h, h);
+    evaluate<1>(t_ + Pair::nodes[1] * h, h);
+    evaluate<2>(t_ + Pair::nodes[2] * h, h);
+    evaluate<3>(t_ + Pair::nodes[3] * h, h);
+    evaluate<4>(t_ + Pair::nodes[4] * h, h);
     evaluate<5>(end, h);
     evaluate<6>(end, h);
     const double e2 = squared_error(h);
     if (!std::isfinite(e2)) {
-      h_ = not_finite * h;
+      h_ = Pair::not_finite * h;
       most = 1;
       continue;
     }
     const float log_error = std::log2(static_cast<float>(std::clamp(e2, 1e-36, 1e36))) / 2;  // a step size needs no more digits
-    const double growth = safety * static_cast<double>(std::exp2(integral * last_error_ - proportional * log_error));
+    const double growth = Pair::safety * static_cast<double>(std::exp2(Pair::integral * last_error_ - Pair::proportional * log_error));
     if (e2 <= 1) {
       t_ = end;
       y_.swap(trial_);
       rates_.swap(next_rates_);
-      last_error_ = std::max(log_error, least_error);
+      last_error_ = std::max(log_error, Pair::least_error);
       // A step cut short by t_stop says little about the ones after it, which begin with a restart anyway.
-      h_ = h * std::clamp(growth, least_growth, most);
+      h_ = h * std::clamp(growth, Pair::least_growth, most);
       first_ = false;
       return true;
     }
-    h_ = h * std::clamp(growth, least_growth, 0.9);
+    h_ = h * std::clamp(growth, Pair::least_growth, 0.9);
     most = 1;
   }
 }

@@ -81,6 +81,9 @@ class Switch {
   [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& point_positions() const { return positions_; }  ///< [m]
+  [[nodiscard]] const Eigen::ArrayXd& point_weights() const { return weights_; }      ///< of the quadrature [m]
+  /// phi_i(x_p), a row per point and some of no motion behind them [kg^(-1/2)].
+  [[nodiscard]] const Eigen::MatrixXd& point_shapes() const { return shapes_; }
 
   /// Gap below which every law is continued by its tangent and a run counts as having touched the electrode: a hundredth of d0
   /// [m].

@@ -15,11 +15,7 @@ std::vector<Rebound> rebounds(const Trajectory& trajectory) {
   return all;
 }
 
-void MetricsObserver::knot(const TrajectoryPoint& point) {
-  rebounds_.knot(point, [this](const Rebound& rebound) { take(rebound); });
-}
-
-void MetricsObserver::touch(const Touch& touch) {
+void LandingFigures::touch(const Touch& touch) {
   touched_ = true;
   // Not std::max, which would lose a NaN; once NaN it stays.
   if (std::isnan(touch.peak_force) || touch.peak_force > peak_force_) peak_force_ = touch.peak_force;
@@ -27,28 +23,41 @@ void MetricsObserver::touch(const Touch& touch) {
   largest_impact_velocity_ = std::max(largest_impact_velocity_, touch.impact_velocity);
 }
 
-void MetricsObserver::take(const Rebound& rebound) {
+void LandingFigures::rebound(const Rebound& rebound) {
   highest_ = std::max(highest_, rebound.height);
   if (!(rebound.height > options_.significant_rebound)) return;
   ++significant_;
   last_end_ = rebound.end;
 }
 
+void MetricsObserver::knot(const TrajectoryPoint& point) {
+  rebounds_.knot(point, [this](const Rebound& rebound) { figures_.rebound(rebound); });
+}
+
 Metrics MetricsObserver::metrics(const Trajectory& end) {
+  const bool above = rebounds_.under_way().has_value();
+  if (above) figures_.rebound(*rebounds_.under_way());
+  return figures_.metrics(end, {.sound = rebounds_.usable(),
+                                .touched = rebounds_.touched(),
+                                .above = above,
+                                .first_touch = rebounds_.first_touch(),
+                                .impact_velocity = rebounds_.impact_velocity(),
+                                .last_time = rebounds_.last_time()});
+}
+
+Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) const {
   Metrics result;
   result.status = end.status;
   const bool ran_to_the_end = end.status == Status::done || end.status == Status::no_contact || end.status == Status::not_settled;
-  const bool sound = rebounds_.usable(), under_way = rebounds_.under_way().has_value();
-  if (under_way) take(*rebounds_.under_way());
+  const bool sound = course.sound;
   if (ran_to_the_end && !sound) result.status = Status::numerical_failure;
 
-  const bool touched = rebounds_.touched();
-  result.initial_contact_time = rebounds_.first_touch();
-  result.impact_velocity = rebounds_.impact_velocity();
+  result.initial_contact_time = course.first_touch;
+  result.impact_velocity = course.impact_velocity;
   if (!ran_to_the_end || !sound) return result;
 
   result.drive_energy = end.energy.source_work;
-  if (!touched) {
+  if (!course.touched) {
     if (end.status == Status::done) result.status = Status::no_contact;
     return result;
   }
@@ -62,10 +71,10 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
   result.major_bounce_height = highest_;
   result.bounce_count = significant_;
   const double permanent = significant_ > 0 ? last_end_ : result.initial_contact_time;
-  const double rest = rebounds_.last_time() - permanent;
+  const double rest = course.last_time - permanent;
   // A period that nobody knows matters only after a rebound.
   const bool long_enough = rest >= end.in_contact_period || (result.bounce_count == 0 && std::isnan(end.in_contact_period));
-  result.settled = end.status == Status::done && !under_way && long_enough;
+  result.settled = end.status == Status::done && !course.above && long_enough;
   if (!result.settled) {
     if (end.status == Status::done) result.status = Status::not_settled;
     return result;

@@ -36,27 +36,48 @@ struct Metrics {
   double peak_slew = unset;  ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
 };
 
-/// Gathers the figures while a closing runs, and keeps nothing of its course.
-class MetricsObserver final : public ClosingObserver {
+/// Gathers the figures of a landing from its touches and rebounds, whoever found them.
+class LandingFigures {
  public:
-  /// `contact_gap` [m]
-  explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {}) : options_(options), rebounds_(contact_gap) {}
-  void knot(const TrajectoryPoint& point) override;
-  void touch(const Touch& touch) override;
+  explicit LandingFigures(const MetricsOptions& options = {}) : options_(options) {}
+  void touch(const Touch& touch);
+  void rebound(const Rebound& rebound);
+
+  /// The contact point as far as it was followed.
+  struct Course {
+    bool sound = true;  ///< every knot was finite, and in order of time
+    bool touched = false;
+    bool above = false;  ///< a rebound, which has been told, was under way at the end
+    double first_touch = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
+    double last_time = 0;                                                   ///< [s]
+  };
   /// Of the run, once it has ended: see metrics().
-  [[nodiscard]] Metrics metrics(const Trajectory& end);
+  [[nodiscard]] Metrics metrics(const Trajectory& end, const Course& course) const;
   /// Of all touches, which the first may not be [m/s]; NaN where nothing touched.
   [[nodiscard]] double largest_impact_velocity() const { return touched_ ? largest_impact_velocity_ : Metrics::unset; }
 
  private:
-  void take(const Rebound& rebound);
-
   MetricsOptions options_;
-  ReboundFinder rebounds_;
   double highest_ = 0, last_end_ = Metrics::unset;
   int significant_ = 0;
   bool touched_ = false;
   double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0;
+};
+
+/// Gathers the figures while a closing runs, and keeps nothing of its course.
+class MetricsObserver final : public ClosingObserver {
+ public:
+  /// `contact_gap` [m]
+  explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {}) : figures_(options), rebounds_(contact_gap) {}
+  void knot(const TrajectoryPoint& point) override;
+  void touch(const Touch& touch) override { figures_.touch(touch); }
+  /// Of the run, once it has ended: see metrics().
+  [[nodiscard]] Metrics metrics(const Trajectory& end);
+  [[nodiscard]] double largest_impact_velocity() const { return figures_.largest_impact_velocity(); }
+
+ private:
+  LandingFigures figures_;
+  ReboundFinder rebounds_;
 };
 
 /// All rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact gap is

@@ -12,6 +12,7 @@
 
 #include "base/read_file.h"
 #include "base/require.h"
+#include "model/ensemble/fleet.h"
 #include "version.h"
 
 namespace softland {
@@ -85,6 +86,7 @@ const MadeWith& made_with() {
                             .compiler = std::string(compiler),
                             .options = std::string(compiler_options),
                             .instruction_set = std::string(instruction_set),
+                            .vectors = std::string(name_of(vector_instructions, vectors_in_use())),
                             .c_library = fmt::format("glibc {}", gnu_get_libc_version()),
                             .processor = processor()};
   return all;
@@ -93,7 +95,7 @@ const MadeWith& made_with() {
 json made_with_json(const MadeWith& all) {
   return {{"program", word(all.program)},     {"compiler", word(all.compiler)},
           {"options", word(all.options)},     {"instruction_set", word(all.instruction_set)},
-          {"c_library", word(all.c_library)}, {"processor", word(all.processor)}};
+          {"vectors", word(all.vectors)}, {"c_library", word(all.c_library)}, {"processor", word(all.processor)}};
 }
 
 std::string internal::made_with_text(const MadeWith& all) {

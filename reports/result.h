@@ -91,7 +91,7 @@ struct ResultScene {
 
 /// What can change the last digits of a result: see made_with().
 struct MadeWith {
-  std::string program, compiler, options, instruction_set, c_library, processor;
+  std::string program, compiler, options, instruction_set, vectors, c_library, processor;
 };
 
 /// What effects = "auto" left out.

@@ -274,6 +274,7 @@ Result read_result(const json& result) {
                  .compiler = made_with("compiler"),
                  .options = made_with("options"),
                  .instruction_set = made_with("instruction_set"),
+                 .vectors = made_with("vectors"),
                  .c_library = made_with("c_library"),
                  .processor = made_with("processor")};
   r.scene = read_result_scene(at(result, {"scene"}), text(result, {"scene_toml"}));

@@ -20,6 +20,32 @@ namespace {
 
 constexpr std::size_t chunk = 256;  // devices of one task
 
+// The figures of a lane.
+class LaneFigures final : public LandingObserver {
+ public:
+  explicit LaneFigures(const MetricsOptions& options) : figures_(options) {}
+  void touch(const Touch& touch) override {
+    if (!course_.touched) course_.first_touch = touch.begin, course_.impact_velocity = touch.impact_velocity;
+    course_.touched = true;
+    figures_.touch(touch);
+  }
+  void rebound(double begin, double end, double height) override {
+    course_.above = std::isnan(end);
+    figures_.rebound({.begin = begin, .end = end, .height = height});
+  }
+  [[nodiscard]] DeviceOutcome outcome(const Switch& model, double end) {
+    course_.last_time = end;
+    const Trajectory run{.status = Status::done,
+                         .contact_gap = model.device().gap.contact,
+                         .in_contact_period = model.in_contact_period()};
+    return {.metrics = figures_.metrics(run, course_), .largest_impact_velocity = figures_.largest_impact_velocity()};
+  }
+
+ private:
+  LandingFigures figures_;
+  LandingFigures::Course course_;
+};
+
 }  // namespace
 
 Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
@@ -146,6 +172,39 @@ DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal
   return outcome;
 }
 
+std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
+                                         Vectors vectors) {
+  std::vector<DeviceOutcome> outcomes(closings.size());
+  std::vector<FleetClosing> lanes;
+  std::vector<std::size_t> places;
+  std::vector<LaneFigures> figures(closings.size(), LaneFigures(options));
+  for (std::size_t i = 0; i < closings.size(); ++i) {
+    const auto& [device, signals, run] = closings[i];
+    if (vectors == Vectors::none || !device->model) continue;
+    places.push_back(i);
+    lanes.push_back({.model = &*device->model,
+                     .drives = *signals,
+                     .duration = run.duration,
+                     .after_contact = run.after_contact,
+                     .no_end_before = run.no_end_before,
+                     .no_contact_before = run.no_contact_before,
+                     .observer = &figures[i]});
+  }
+  std::vector<bool> done(closings.size(), false);
+  if (!lanes.empty()) {
+    const std::vector<FleetEnd> ends = close_in_lanes(lanes, closings.front().run.tolerance, vectors);
+    for (std::size_t n = 0; n < ends.size(); ++n) {
+      if (!ends[n].followed) continue;
+      done[places[n]] = true;
+      outcomes[places[n]] = figures[places[n]].outcome(*lanes[n].model, ends[n].time);
+    }
+  }
+  for (std::size_t i = 0; i < closings.size(); ++i) {
+    if (!done[i]) outcomes[i] = close_device(*closings[i].device, *closings[i].signals, options, closings[i].run);
+  }
+  return outcomes;
+}
+
 std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, const std::vector<EnsembleDrive>& drives,
                                                   const EnsembleRun& run, const Watch& watch) {
   const Prepared& nominal = ensemble.nominal();
@@ -160,29 +219,50 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
   std::vector<std::vector<DeviceOutcome>> outcomes(drives.size(), std::vector<DeviceOutcome>(ensemble.size()));
   std::mutex telling;
   std::atomic<std::size_t> done = 0;
-  const auto close = [&](DeviceBuilder& builder, std::size_t k) {
-    const SampledDevice device = builder.device(k);
-    DeviceUnits exact;
-    if (meter && device.model) exact = meter->exact(*device.model);
-    for (std::size_t d = 0; d < drives.size() && !watch.stopped(); ++d) {
-      const Calibration& calibration = drives[d].calibration;
-      if (calibration.is_empty() || !device.model) {
-        outcomes[d][k] = close_device(device, nominal_signals[d], nominal.scene.metrics, options);
-      } else if (const DeviceUnits units = DeviceMeter::measured(exact, calibration, run.seed, k); std::isfinite(units.volts)) {
-        outcomes[d][k] = close_device(device, signals_of(in_units(drives[d].waveforms, nominal.scene.device, units)),
-                                      nominal.scene.metrics, options);
-      } else {
-        outcomes[d][k].failure = "its pull-in voltage cannot be measured";
+  const std::size_t all = ensemble.size() * drives.size();
+  const auto tell = [&](std::size_t more) {
+    done += more;
+    const std::scoped_lock lock(telling);
+    watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(all));
+  };
+  // Devices from `first` on under one drive.
+  const auto close = [&](std::size_t d, std::size_t first, std::span<const SampledDevice> devices,
+                         std::span<const DeviceUnits> exact) {
+    std::vector<std::vector<Signal>> own(devices.size());
+    std::vector<DeviceClosing> closings;
+    std::vector<std::size_t> places;
+    const Calibration& calibration = drives[d].calibration;
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      const std::size_t k = first + i;
+      if (!calibration.is_empty() && devices[i].model) {
+        const DeviceUnits units = DeviceMeter::measured(exact[i], calibration, run.seed, k);
+        if (!std::isfinite(units.volts)) {
+          outcomes[d][k].failure = "its pull-in voltage cannot be measured";
+          continue;
+        }
+        own[i] = signals_of(in_units(drives[d].waveforms, nominal.scene.device, units));
       }
+      places.push_back(k);
+      closings.push_back({.device = &devices[i], .signals = own[i].empty() ? &nominal_signals[d] : &own[i], .run = options});
     }
+    std::vector<DeviceOutcome> closed = close_devices(closings, nominal.scene.metrics, run.vectors);
+    for (std::size_t n = 0; n < places.size(); ++n) outcomes[d][places[n]] = std::move(closed[n]);
   };
   const auto task = [&](std::size_t c) {
     DeviceBuilder builder(ensemble);
+    std::vector<SampledDevice> devices;
+    std::vector<DeviceUnits> exact;
     for (std::size_t k = c * chunk; k < std::min<std::size_t>(ensemble.size(), (c + 1) * chunk) && !watch.stopped(); ++k) {
-      close(builder, k);
-      if (++done % 64 != 0) continue;
-      const std::scoped_lock lock(telling);
-      watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(ensemble.size()));
+      devices.push_back(builder.device(k));
+      exact.push_back(meter && devices.back().model ? meter->exact(*devices.back().model) : DeviceUnits{});
+    }
+    constexpr std::size_t together = 128;  // between two looks at `watch`
+    for (std::size_t first = 0; first < devices.size(); first += together) {
+      const std::size_t count = std::min(together, devices.size() - first);
+      for (std::size_t d = 0; d < drives.size() && !watch.stopped(); ++d) {
+        close(d, c * chunk + first, {devices.data() + first, count}, {exact.data() + first, count});
+        tell(count);
+      }
     }
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;

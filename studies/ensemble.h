@@ -11,6 +11,7 @@
 
 #include "base/watch.h"
 #include "model/closing.h"
+#include "model/ensemble/fleet.h"
 #include "objectives/metrics.h"
 #include "sampling/points.h"
 #include "sampling/sobol_indices.h"
@@ -122,11 +123,22 @@ struct EnsembleRun {
   double tolerance = 1e-5;  ///< of the integrator: 95 % quantiles of B_H then move by less than 0.4 %
   std::uint64_t seed = 1;   ///< of the errors of measurements
   int jobs = 1;             ///< threads; does not change the outcomes
+  Vectors vectors = vectors_in_use();
 };
 
 /// The closing of one device; figures are those of the run, however early its options end it.
 [[nodiscard]] DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals,
                                          const MetricsOptions& options, const ClosingOptions& run);
+
+struct DeviceClosing {
+  const SampledDevice* device = nullptr;
+  const std::vector<Signal>* signals = nullptr;
+  ClosingOptions run;
+};
+/// The closings of several devices, in lanes where their laws are written for that (model/ensemble/fleet.h), the others one by
+/// one. All of the first one's tolerance. An outcome does not depend on what else is closed.
+[[nodiscard]] std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
+                                                       Vectors vectors);
 
 /// The closings of all devices under each of these drives: the outcomes of a drive, by device. Asked to stop, they are those of
 /// the first devices.

@@ -63,8 +63,8 @@ BuiltEnsemble build_all(const Ensemble& ensemble, const Calibration& calibration
   return built;
 }
 
-RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble)
-    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)) {
+RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors)
+    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)), vectors_(vectors) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
@@ -83,22 +83,31 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
 
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              int jobs) const {
+  constexpr std::size_t together = 64;  // devices of one task
   const std::vector<Signal> nominal = signals_of(waveforms);
   std::vector<DeviceOutcome> outcomes(last - first);
-  run_tasks(outcomes.size(), jobs, [&](std::size_t i) {
-    const SampledDevice& device = ensemble_.devices[first + i];
-    const DeviceUnits& units = ensemble_.units[first + i];
-    const bool own = device.model && (units.volts != 1 || units.time != 1);
-    std::vector<Signal> in_its_units;
-    if (own) in_its_units = signals_of(in_units(waveforms, setting_.given.scene.device, units));
-    const std::vector<Signal>& signals = own ? in_its_units : nominal;
-    const double end = last_breakpoint(signals);
-    outcomes[i] = close_device(device, signals, setting_.given.scene.metrics,
-                               {.duration = end + wait_ + window_,
-                                .tolerance = EnsembleRun{}.tolerance,
-                                .after_contact = window_,
-                                .no_end_before = end + tail_,
-                                .no_contact_before = end + wait_});
+  run_tasks((outcomes.size() + together - 1) / together, jobs, [&](std::size_t task) {
+    const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);
+    std::vector<std::vector<Signal>> own(end - begin);
+    std::vector<DeviceClosing> closings;
+    for (std::size_t i = begin; i < end; ++i) {
+      const SampledDevice& device = ensemble_.devices[first + i];
+      const DeviceUnits& units = ensemble_.units[first + i];
+      std::vector<Signal>& in_its_units = own[i - begin];
+      if (device.model && (units.volts != 1 || units.time != 1))
+        in_its_units = signals_of(in_units(waveforms, setting_.given.scene.device, units));
+      const std::vector<Signal>& signals = in_its_units.empty() ? nominal : in_its_units;
+      const double over = last_breakpoint(signals);
+      closings.push_back({.device = &device,
+                          .signals = &signals,
+                          .run = {.duration = over + wait_ + window_,
+                                  .tolerance = EnsembleRun{}.tolerance,
+                                  .after_contact = window_,
+                                  .no_end_before = over + tail_,
+                                  .no_contact_before = over + wait_}});
+    }
+    std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
+    std::move(closed.begin(), closed.end(), outcomes.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return outcomes;
 }

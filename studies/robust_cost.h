@@ -49,7 +49,7 @@ struct BuiltEnsemble {
 class RobustCost {
  public:
   /// Keeps references to `setting` and `aim`.
-  RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble);
+  RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors = vectors_in_use());
 
   [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
   /// The closings of devices [first, last) under their own drives; `waveforms` are those of the nominal device, one per drive.
@@ -63,6 +63,7 @@ class RobustCost {
   const SearchSetting& setting_;
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
+  Vectors vectors_;
   DeviceOutcome step_;           // of the nominal device
   double window_, tail_, wait_;  // after first touch, after the last breakpoint, for a touch [s]
 };

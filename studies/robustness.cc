@@ -85,7 +85,8 @@ EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
   return {.duration = nominal.duration,
           .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
           .seed = options.seed,
-          .jobs = options.jobs};
+          .jobs = options.jobs,
+          .vectors = options.vectors};
 }
 
 // The source of a device whose own units are larger than those of the nominal one has to give more.

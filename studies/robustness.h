@@ -67,6 +67,7 @@ struct RobustnessOptions {
   std::uint64_t seed = 1;
   PointSet points = PointSet::sobol;
   int jobs = 1;  ///< threads; does not change the result
+  Vectors vectors = vectors_in_use();
   /// A last drive that is calibrated is judged with nothing known of the devices as well, with each measurement alone, and with
   /// all of them without error.
   bool worth_of_measuring = false;

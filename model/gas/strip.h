@@ -23,6 +23,12 @@ struct StripSqueezeFilmOf {
   S load(S gap, S velocity) const {
     return S(-mu_a3) * velocity / (gap * gap * gap);
   }
+  /// The same of h^(-1/4) [m^(-1/4)], where that is known.
+  template <class S>
+  [[gnu::always_inline]] S load_by_root(S root, S velocity) const {
+    const S square = root * root, inverse = square * square;
+    return S(-mu_a3) * velocity * (inverse * inverse * inverse);
+  }
 };
 using StripSqueezeFilm = StripSqueezeFilmOf<double>;
 

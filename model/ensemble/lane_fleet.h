@@ -1,0 +1,718 @@
+// The closings of fleet.h for lanes of a given width: included once for every set of vector instructions.
+//
+// The lanes are std::experimental::simd, and the laws of a closing are those that one closing has too, over lanes of parameters.
+// Everything here depends on the type of the lanes or lies in their class, so that its code has names of its own.
+//
+// Width matters: with two registers to a lane GCC spills and is several times slower; so does a law that is not inlined, which
+// keeps the sums over points in memory.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <experimental/simd>
+#include <limits>
+#include <type_traits>
+
+#include "integrators/dormand_prince.h"
+#include "model/contact/asperity_uniform.h"
+#include "model/ensemble/lane_closing.h"
+#include "model/forces/electrostatic.h"
+#include "model/gas/strip.h"
+
+namespace softland::fleet {
+
+template <class V, template <class> class FringingOf, bool has_film>
+class Lanes {
+  using M = typename V::mask_type;
+  static constexpr int width = static_cast<int>(V::size());
+  static constexpr int modes = most_modes;
+  static constexpr int pieces = 3;  // of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+  using Force = ElectrostaticForce<FringingOf<V>>;
+  using Film = StripSqueezeFilmOf<V>;
+  using Contact = UniformAsperityContactOf<V>;
+  using Pair = DormandPrince;
+  /// The field's law is written in powers of h^(-1/4), which a film beside it need not find again.
+  static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
+
+ public:
+  Lanes(const LaneLayout& layout, LaneClosing* closings, std::size_t count)
+      : layout_(layout), closings_(closings), count_(count) {}
+
+  void run() {
+    for (int l = 0; l < width; ++l) fill(l);
+    while (busy_ > 0) round();
+  }
+
+ private:
+  // What a lane is about.
+  struct Lane {
+    LaneClosing* closing = nullptr;  // null: idle
+    int piece[most_drives] = {};
+    bool starting = false;      // spends a round to find its accelerations
+    bool to_event = false;      // its target is a crossing of the plane
+    int corrections = 0;        // of that target
+    double target = 0;          // the next time to stop at [s]
+    double stop = 0;            // the next breakpoint, or the end of the window [s]
+    double until = 0;           // ends with the first step beyond [s]
+    double last_step = 0;       // that no stop cut short [s]
+    double longest = 0;         // that resolves the drives [s]
+    double most_growth = 0;
+    float last_error = 0;       // binary logarithm
+    bool touched = false, touching = false;
+    double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
+    double extreme = 0;                     // deepest or highest since the last event [m]
+    long rounds = 0;
+  };
+
+  // --- the equations -----------------------------------------------------------------------------------------------------------
+
+  void set_drives(V time) {
+    for (int k = 0; k < layout_.electrodes + (layout_.piezo ? 1 : 0); ++k) {
+      volts_[k] = value_[k] + slope_[k] * (time - begin_[k]);
+      if (!swings_[k]) continue;
+      for (int l = 0; l < width; ++l) {
+        if (amplitude_[k][l] == 0 && amplitude_slope_[k][l] == 0) continue;
+        const double t = time[l], envelope = amplitude_[k][l] + amplitude_slope_[k][l] * (t - begin_[k][l]);
+        volts_[k][l] = volts_[k][l] + envelope * std::sin(frequency_[k][l] * t + phase_[k][l]);
+      }
+    }
+  }
+
+  // Modal accelerations; `least`: the smallest gap.
+  [[gnu::always_inline]] void rates(const V* __restrict q, const V* __restrict v, V* __restrict a, V& least) {
+    V sum[modes];
+    for (int i = 0; i < modes; ++i) sum[i] = -(square_[i] * q[i]) - friction_[i] * v[i];
+    if (layout_.piezo) {
+      for (int i = 0; i < modes; ++i) sum[i] += volts_[layout_.electrodes] * piezo_[i];
+    }
+    V smallest = open_;
+    const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
+      gap = open_ - shape_[p][0] * q[0];
+      velocity = shape_[p][0] * v[0];
+      for (int i = 1; i < modes; ++i) gap -= shape_[p][i] * q[i], velocity += shape_[p][i] * v[i];
+      smallest = min(smallest, gap);
+      gap = max(gap, floor_);
+    };
+    const auto project = [&](int p, V load) __attribute__((always_inline)) {
+      load *= weight_[p];
+      for (int i = 0; i < modes; ++i) sum[i] += load * shape_[p][i];
+    };
+    const Film film = film_;
+    const Force force = force_;
+    for (int s = 0; s < layout_.segments; ++s) {
+      const Segment segment = layout_.segment[s];
+      if (segment.electrode < 0) {
+        if constexpr (has_film) {
+          for (int p = segment.begin; p < segment.end; ++p) {
+            V gap, velocity;
+            field(p, gap, velocity);
+            project(p, film.load(gap, velocity));
+          }
+        } else {
+          for (int p = segment.begin; p < segment.end; ++p) {
+            V gap, velocity;
+            field(p, gap, velocity);
+          }
+        }
+        continue;
+      }
+      const V drive = volts_[segment.electrode] * volts_[segment.electrode];
+      for (int p = segment.begin; p < segment.end; ++p) {
+        V gap, velocity;
+        field(p, gap, velocity);
+        V load = drive * force.load(gap, velocity);
+        if constexpr (has_film && has_root) {
+          load += film.load_by_root(inverse_fourth_root(gap), velocity);
+        } else if constexpr (has_film) {
+          load += film.load(gap, velocity);
+        }
+        project(p, load);
+      }
+    }
+    least = smallest;
+    if (any_of(touching_)) {
+      V d = -plane_;
+      for (int i = 0; i < modes; ++i) d += at_contact_[i] * q[i];
+      V push = contact_.force(d);
+      where(!touching_, push) = V(0);
+      for (int i = 0; i < modes; ++i) sum[i] -= push * at_contact_[i];
+    }
+    for (int i = 0; i < modes; ++i) a[i] = sum[i];
+  }
+
+  // --- a step ------------------------------------------------------------------------------------------------------------------
+
+  struct Turn {
+    V cosine, sine, slack;
+  };
+  [[gnu::always_inline]] static Turn turn(V phase) {
+    constexpr int degree = 18;
+    struct Factors {
+      double of[degree + 2];
+    };
+    constexpr Factors factors = [] {
+      Factors f{};
+      f.of[0] = f.of[1] = 1;
+      for (int k = 2; k < degree + 2; ++k) f.of[k] = -f.of[k - 2] / (k * (k - 1));
+      return f;
+    }();
+    const V x = phase * 0.5, x2 = x * x;
+    V cosine = factors.of[degree], over_x = factors.of[degree + 1];
+    for (int k = degree - 2; k >= 0; k -= 2) cosine = cosine * x2 + factors.of[k], over_x = over_x * x2 + factors.of[k + 1];
+    const V sine = x * over_x, slack = 2.0 * sine * sine;
+    return {1.0 - slack, 2.0 * sine * cosine, slack};
+  }
+  [[gnu::always_inline]] static Turn add(const Turn& a, const Turn& b) {
+    const V slack = a.slack + b.slack - a.slack * b.slack + a.sine * b.sine;
+    return {1.0 - slack, a.sine * b.cosine + a.cosine * b.sine, slack};
+  }
+
+  template <int S>
+  [[gnu::always_inline]] void stage(V h, V time, const Turn* at) {
+    for (int i = 0; i < modes; ++i) {
+      V kq = 0, kv = 0;
+      for (int j = 1; j < S; ++j) {
+        if (Pair::tableau[S][j] == 0) continue;
+        kq += Pair::tableau[S][j] * slope_q_[j][i];
+        kv += Pair::tableau[S][j] * slope_v_[j][i];
+      }
+      kq *= h;
+      kv = kv * h + v_[i];
+      const V by_speed = at[i].sine * inverse_[i];
+      trial_q_[i] = (q_[i] + a_[i] * (at[i].slack * inverse_[i] * inverse_[i]) + kq * at[i].cosine) + kv * by_speed;
+      trial_v_[i] = (a_[i] * by_speed - kq * (at[i].sine * omega_[i])) + kv * at[i].cosine;
+    }
+    set_drives(time);
+    rates(trial_q_, trial_v_, trial_a_, smallest_);
+    for (int i = 0; i < modes; ++i) {
+      const V excess = square_[i] * (trial_q_[i] - q_[i]) - a_[i] + trial_a_[i];
+      slope_q_[S][i] = excess * (at[i].sine * -inverse_[i]);
+      slope_v_[S][i] = excess * at[i].cosine;
+    }
+  }
+
+  // One attempt of every lane.
+  void round() {
+    const V wanted = min(h_, max_step_);
+    const V h = min(wanted, limit_);
+    Turn node[5][modes];
+    for (int i = 0; i < modes; ++i) {
+      const V phase = h * omega_[i];
+      node[0][i] = turn(Pair::nodes[1] * phase);
+      node[1][i] = turn(Pair::nodes[2] * phase);
+      const Turn twice = add(node[0][i], node[0][i]);
+      node[2][i] = add(twice, twice);
+      node[3][i] = turn(Pair::nodes[4] * phase);
+      node[4][i] = add(node[2][i], node[0][i]);
+    }
+    V end = t_ + h;
+    where(h >= limit_, end) = target_;
+    stage<1>(h, t_ + Pair::nodes[1] * h, node[0]);
+    stage<2>(h, t_ + Pair::nodes[2] * h, node[1]);
+    stage<3>(h, t_ + Pair::nodes[3] * h, node[2]);
+    stage<4>(h, t_ + Pair::nodes[4] * h, node[3]);
+    stage<5>(h, end, node[4]);
+    stage<6>(h, end, node[4]);
+    V squares = 0;
+    for (int i = 0; i < modes; ++i) {
+      V q = 0, v = 0;
+      for (int j = 2; j < 7; ++j) q += Pair::difference[j] * slope_q_[j][i], v += Pair::difference[j] * slope_v_[j][i];
+      q *= q_weight_[i], v *= v_weight_[i];
+      squares += q * q + v * v;
+    }
+    const V error = h * h * squares * per_unknown_;
+    V position = 0, speed = 0, acceleration = 0;
+    for (int i = 0; i < modes; ++i) {
+      position += at_contact_[i] * trial_q_[i], speed += at_contact_[i] * trial_v_[i];
+      acceleration += at_contact_[i] * trial_a_[i];
+    }
+    knot_p_[0] = position_, knot_s_[0] = speed_, knot_c_[0] = acceleration_;
+    knot_p_[pieces] = position, knot_s_[pieces] = speed, knot_c_[pieces] = acceleration;
+    follow(h);
+    settle(h, end, error);
+  }
+
+  // --- the contact point within a step -------------------------------------------------------------------------------------------
+
+  // Knots of the contact point between the ends of the step, as integrators/modal_motion.h; lanes whose point may pass the plane,
+  // or turns.
+  [[gnu::always_inline]] void follow(V h) {
+    constexpr double share = 1.0 / pieces;
+    V p[pieces + 1], s[pieces + 1], c[pieces + 1];
+    for (int k = 1; k <= pieces; ++k) p[k] = position_, s[k] = 0, c[k] = 0;
+    for (int i = 0; i < modes; ++i) {
+      const V pull = at_contact_[i] * a_[i] * inverse_[i] * inverse_[i], push = at_contact_[i] * v_[i] * inverse_[i];
+      const Turn piece = turn(omega_[i] * (h * share));
+      Turn turned = piece;
+      for (int k = 1;; ++k) {
+        p[k] += pull * turned.slack + push * turned.sine;
+        s[k] += omega_[i] * (pull * turned.sine + push * turned.cosine);
+        c[k] += square_[i] * (pull * turned.cosine - push * turned.sine);
+        if (k == pieces) break;
+        turned = add(turned, piece);
+      }
+    }
+    const V off_p = knot_p_[pieces] - p[pieces], off_s = h * (knot_s_[pieces] - s[pieces]);
+    const V off_c = h * h * (knot_c_[pieces] - c[pieces]);
+    const V f0 = 10.0 * off_p - 4.0 * off_s + 0.5 * off_c, f1 = -15.0 * off_p + 7.0 * off_s - off_c;
+    const V f2 = 6.0 * off_p - 3.0 * off_s + 0.5 * off_c;
+    const V per = 1.0 / max(h, V(std::numeric_limits<double>::min()));
+    for (int k = 1; k < pieces; ++k) {
+      const double x = k * share;
+      knot_p_[k] = p[k] + x * x * x * (f0 + x * (f1 + x * f2));
+      knot_s_[k] = s[k] + per * (x * x * (3.0 * f0 + x * (4.0 * f1 + x * 5.0 * f2)));
+      knot_c_[k] = c[k] + per * per * (x * (6.0 * f0 + x * (12.0 * f1 + x * 20.0 * f2)));
+    }
+    // A curve stays among the control points of its Bernstein form.
+    M suspect(false), turns(false);
+    const V g = h * share;
+    for (int k = 0; k < pieces; ++k) {
+      const V b0 = knot_p_[k], b5 = knot_p_[k + 1], s0 = g * knot_s_[k], s1 = g * knot_s_[k + 1];
+      const V c0 = g * g * knot_c_[k], c1 = g * g * knot_c_[k + 1];
+      const V b1 = b0 + 0.2 * s0, b2 = b0 + 0.4 * s0 + 0.05 * c0, b4 = b5 - 0.2 * s1, b3 = b5 - 0.4 * s1 + 0.05 * c1;
+      const V most = max(max(max(b0, b1), max(b2, b3)), max(b4, b5));
+      const V least = min(min(min(b0, b1), min(b2, b3)), min(b4, b5));
+      suspect = suspect || (!touching_ && most > plane_) || (touching_ && least < plane_);
+      turns = turns || (knot_s_[k] * knot_s_[k + 1] < V(0));
+    }
+    suspect_ = suspect;
+    turns_ = turns;
+  }
+
+  // The quintic of one lane in one piece, over its share of the piece.
+  struct Curve {
+    double c[6];
+    [[nodiscard]] double position(double s) const {
+      return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
+    }
+    [[nodiscard]] double speed(double s) const {
+      return c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5])));
+    }
+    [[nodiscard]] double bend(double s) const { return 2 * c[2] + s * (6 * c[3] + s * (12 * c[4] + s * 20 * c[5])); }
+
+    // Newton's method kept inside the bracket.
+    template <class F, class D>
+    [[gnu::always_inline]] static double zero(F f, D slope, double low, double high) {
+      const bool rising = f(high) > 0;
+      double s = (low + high) / 2;
+      for (int i = 0; i < 60; ++i) {
+        const double value = f(s);
+        ((value > 0) == rising ? high : low) = s;
+        double next = s - value / slope(s);
+        if (!(next > low && next < high)) next = (low + high) / 2;
+        const double moved = next - s;
+        s = next;
+        if (moved < 1e-14 && moved > -1e-14) break;
+      }
+      return s;
+    }
+    [[nodiscard]] double turn() const {
+      return zero([this](double s) { return speed(s); }, [this](double s) { return bend(s); }, 0, 1);
+    }
+    [[nodiscard]] double meets(double level, double low, double high) const {
+      return zero([&](double s) { return position(s) - level; }, [this](double s) { return speed(s); }, low, high);
+    }
+  };
+
+  [[nodiscard]] Curve curve(int k, int l, double length) const {
+    const double h = length / pieces;
+    const double p0 = knot_p_[k][l], p1 = knot_p_[k + 1][l], d = p1 - p0;
+    const double v0 = knot_s_[k][l] * h, v1 = knot_s_[k + 1][l] * h;
+    const double a0 = knot_c_[k][l] * h * h, a1 = knot_c_[k + 1][l] * h * h;
+    return {{p0, v0, a0 / 2, 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1, -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1,
+             6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1)}};
+  }
+
+  // Share of the step at which a lane leaves its side of the plane; above 1 where it does not.
+  [[nodiscard]] double crossing(int l, double length) const {
+    const double side = lane_[l].touching ? 1 : -1, level = plane_[l];
+    bool inside = side * (position_[l] - level) > 0;
+    for (int k = 0; k < pieces; ++k) {
+      const double p1 = knot_p_[k + 1][l], v0 = knot_s_[k][l], v1 = knot_s_[k + 1][l];
+      const bool ends_inside = side * (p1 - level) >= 0;
+      if (side * v0 < 0 && side * v1 > 0 && inside) {  // dips
+        const Curve c = curve(k, l, length);
+        const double turn = c.turn();
+        if (side * (c.position(turn) - level) < 0) return (k + c.meets(level, 0, turn)) / pieces;
+      } else if (!ends_inside) {
+        const Curve c = curve(k, l, length);
+        if (inside) return (k + c.meets(level, 0, 1)) / pieces;
+        if (side * v0 > 0 && side * v1 < 0) {  // begins on the plane, goes in and comes back
+          const double turn = c.turn();
+          if (side * (c.position(turn) - level) > 0) return (k + c.meets(level, turn, 1)) / pieces;
+        }
+        return (k + 1.0) / pieces;
+      }
+      inside = inside || ends_inside;
+    }
+    return 2;
+  }
+
+  // The deepest, or highest, place of a lane in the step.
+  void deepen(int l, double length) {
+    Lane& lane = lane_[l];
+    const double side = lane.touching ? 1 : -1;
+    for (int k = 0; k < pieces; ++k) {
+      if (!(side * knot_s_[k][l] > 0 && side * knot_s_[k + 1][l] < 0)) continue;
+      const Curve c = curve(k, l, length);
+      const double far = side * (c.position(c.turn()) - plane_[l]);
+      if (far > lane.extreme) lane.extreme = far;
+    }
+  }
+
+  // --- what follows from a step --------------------------------------------------------------------------------------------------
+
+  // Binary logarithm and power to the digits that a step size needs.
+  [[gnu::always_inline]] static float half_log2(double x) {
+    const float clamped = static_cast<float>(x < 1e-36 ? 1e-36 : x > 1e36 ? 1e36 : x);
+    std::int32_t bits;
+    std::memcpy(&bits, &clamped, sizeof bits);
+    const float m = static_cast<float>(bits & 0x7FFFFF) * 0x1p-23F;
+    return 0.5F * (static_cast<float>((bits >> 23) - 127) + m * (1.4227F + m * (-0.5894F + 0.1667F * m)));
+  }
+  [[gnu::always_inline]] static float exp2(float x) {
+    const float z = x < -60.0F ? -60.0F : x > 60.0F ? 60.0F : x;
+    const float n = static_cast<float>(static_cast<std::int32_t>(z + 1000.5F) - 1000), r = z - n;
+    const std::int32_t power = (static_cast<std::int32_t>(n) + 127) << 23;
+    float two_n;
+    std::memcpy(&two_n, &power, sizeof two_n);
+    return two_n * (1 + r * (0.69315F + r * (0.24023F + r * (0.05550F + r * 0.00962F))));
+  }
+
+  [[gnu::always_inline]] void settle(V h, V end, V error) {
+    M taken(false);
+    for (int l = 0; l < width; ++l) taken[l] = consider(l, h[l], error[l]);
+    if (none_of(taken)) return;
+    where(taken, t_) = end;
+    for (int i = 0; i < modes; ++i) {
+      where(taken, q_[i]) = trial_q_[i];
+      where(taken, v_[i]) = trial_v_[i];
+      where(taken, a_[i]) = trial_a_[i];
+    }
+    where(taken, position_) = knot_p_[pieces];
+    where(taken, speed_) = knot_s_[pieces];
+    where(taken, acceleration_) = knot_c_[pieces];
+    for (int l = 0; l < width; ++l) {
+      if (taken[l]) go_on(l, h[l]);
+    }
+  }
+
+  // Whether a lane takes its step; where not, what it tries next.
+  [[gnu::always_inline]] bool consider(int l, double h, double error) {
+    Lane& lane = lane_[l];
+    if (lane.closing == nullptr) return false;
+    constexpr long most_rounds = 100'000;
+    if (++lane.rounds > most_rounds) return give_up(l);
+    if (lane.starting) {
+      for (int i = 0; i < modes; ++i) a_[i][l] = double(trial_a_[i][l]);
+      acceleration_[l] = double(knot_c_[pieces][l]);
+      lane.starting = false;
+      h_[l] = lane.last_step < lane.longest ? lane.last_step : lane.longest;
+      aim(l, lane.stop);
+      return false;
+    }
+    if (!(error < infinite)) {  // not a number, or close to none
+      h_[l] = Pair::not_finite * h;
+      lane.most_growth = 1;
+      return t_[l] + h_[l] > t_[l] ? false : give_up(l);
+    }
+    lane_error_[l] = half_log2(error);
+    if (error > 1) {
+      h_[l] = h * clamped(Pair::safety * double(exp2(Pair::integral * lane.last_error - Pair::proportional * lane_error_[l])),
+                          Pair::least_growth, 0.9);
+      lane.most_growth = 1;
+      return t_[l] + h_[l] > t_[l] ? false : give_up(l);
+    }
+    if (lane.to_event) return h < limit_[l] || arrives(l, h);
+    if (suspect_[l]) {
+      const double at = crossing(l, h);
+      if (at <= 1) {
+        lane.to_event = true;
+        lane.corrections = 0;
+        if (h < limit_[l]) lane.last_step = h;
+        h_[l] = at * h;
+        aim(l, t_[l] + at * h);
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Whether a step that was to end on the plane does: moves its end there where that is near, else the target.
+  [[gnu::always_inline]] bool arrives(int l, double h) {
+    constexpr double short_of_a_radian = 1e-3;
+    constexpr int most_corrections = 8;
+    Lane& lane = lane_[l];
+    const double off = plane_[l] - knot_p_[pieces][l], speed = knot_s_[pieces][l];
+    double later = off / speed;
+    const double turned = later * fastest_[l];
+    if (turned < short_of_a_radian && turned > -short_of_a_radian) {
+      if (later < -h) later = -h;
+      for (int i = 0; i < modes; ++i) {
+        const double v = trial_v_[i][l], a = trial_a_[i][l];
+        trial_q_[i][l] = trial_q_[i][l] + later * (v + later / 2 * a);
+        trial_v_[i][l] = v + later * a;
+        trial_a_[i][l] = a - later * square_[i][l] * v;  // what forces change in it is less
+      }
+      moved_[l] = later;
+      return true;
+    }
+    const double depth = off < 0 ? -off : off;
+    if (lane.corrections == most_corrections || depth <= lane.closing->numbers->negligible_depth) return true;
+    ++lane.corrections;
+    const double target = lane.target + later;
+    if (!(target > t_[l])) return true;
+    if (target > lane.stop) {
+      aim(l, lane.stop);
+    } else {
+      aim(l, target);
+    }
+    return false;
+  }
+
+  // After a step that was taken.
+  [[gnu::always_inline]] void go_on(int l, double h) {
+    Lane& lane = lane_[l];
+    if (smallest_[l] < floor_[l]) {
+      give_up(l);
+      return;
+    }
+    if (lane.touched && turns_[l]) deepen(l, h);
+    const float error = lane_error_[l];
+    const double growth =
+        Pair::safety * double(exp2(Pair::integral * lane.last_error - Pair::proportional * error));
+    h_[l] = h * clamped(growth, Pair::least_growth, lane.most_growth);
+    lane.last_error = error > Pair::least_error ? error : Pair::least_error;
+    lane.most_growth = Pair::most_growth;
+    const bool arrived = h >= limit_[l];
+    if (!arrived && !lane.to_event) lane.last_step = h;
+    if (arrived && lane.to_event) {
+      t_[l] = double(t_[l]) + moved_[l];
+      moved_[l] = 0;
+      position_[l] = double(plane_[l]);
+      pass(l);
+    } else if (!arrived) {
+      limit_[l] = lane.target - t_[l];
+    }
+    if (t_[l] >= lane.until) {
+      finish(l, true);
+    } else if (arrived && t_[l] >= lane.stop) {
+      if (t_[l] >= lane.closing->duration) {
+        finish(l, true);
+      } else {
+        enter_stretch(l);
+      }
+    }
+  }
+
+  // At a crossing of the plane.
+  void pass(int l) {
+    Lane& lane = lane_[l];
+    const double t = t_[l], speed = speed_[l];
+    if (!lane.touching) {
+      if (lane.touched) {
+        tell_rebound(lane, t);
+      } else {
+        const double over = t + lane.closing->after_contact;
+        lane.touched = true;
+        lane.until = over > lane.closing->no_end_before ? over : lane.closing->no_end_before;
+      }
+      lane.begin = t;
+      lane.speed = speed < 0 ? -speed : speed;
+    } else {
+      lane.closing->observer->touch(lane.begin, t, lane.speed, lane.extreme);
+      lane.left = t;
+    }
+    lane.extreme = 0;
+    lane.touching = !lane.touching;
+    lane.to_event = false;
+    touching_[l] = lane.touching;
+    weigh(l);
+    begin_anew(lane);
+    h_[l] = lane.last_step < lane.longest ? lane.last_step : lane.longest;
+    aim(l, lane.stop);
+  }
+
+  void tell_rebound(const Lane& lane, double end) {
+    constexpr double on_the_plane = 1e-12;  // of the contact gap, as ReboundFinder
+    if (lane.extreme > on_the_plane * lane.closing->numbers->plane)
+      lane.closing->observer->rebound(lane.left, end, lane.extreme);
+  }
+
+  void begin_anew(Lane& lane) {
+    lane.last_error = 0;
+    lane.most_growth = Pair::first_growth;
+  }
+
+  void aim(int l, double target) {
+    lane_[l].target = target;
+    target_[l] = target;
+    limit_[l] = target - t_[l];
+  }
+
+  // The drives go on to the pieces that hold from here on.
+  void enter_stretch(int l) {
+    Lane& lane = lane_[l];
+    const LaneClosing& c = *lane.closing;
+    const double t = t_[l];
+    lane.stop = c.duration;
+    lane.longest = infinite;
+    for (int k = 0; k < layout_.electrodes + (layout_.piezo ? 1 : 0); ++k) {
+      while (lane.piece[k] + 1 < c.piece_count[k] && c.pieces[k][lane.piece[k] + 1].begin <= t) ++lane.piece[k];
+      const SignalPieceOf<double>& piece = c.pieces[k][lane.piece[k]];
+      begin_[k][l] = piece.begin, value_[k][l] = piece.value, slope_[k][l] = piece.slope;
+      amplitude_[k][l] = piece.amplitude, amplitude_slope_[k][l] = piece.amplitude_slope;
+      frequency_[k][l] = piece.angular_frequency, phase_[k][l] = piece.phase;
+      if (piece.amplitude != 0 || piece.amplitude_slope != 0) swings_[k] = true;
+      const double longest = c.longest_step[k][lane.piece[k]];
+      if (longest < lane.longest) lane.longest = longest;
+      if (lane.piece[k] + 1 < c.piece_count[k]) {
+        const double next = c.pieces[k][lane.piece[k] + 1].begin;
+        if (next < lane.stop) lane.stop = next;
+      }
+    }
+    max_step_[l] = lane.longest < most_turn_[l] ? lane.longest : most_turn_[l];
+    lane.starting = true;
+    begin_anew(lane);
+    h_[l] = 0;
+    aim(l, t);
+  }
+
+  void weigh(int l) {
+    const LaneSwitch& s = *lane_[l].closing->numbers;
+    for (int i = 0; i < modes; ++i) {
+      q_weight_[i][l] = i < s.modes ? 1 / (lane_[l].touching ? s.touching[i] : s.flying[i]) : 0;
+      v_weight_[i][l] = i < s.modes ? 1 / s.speed[i] : 0;
+    }
+  }
+
+  void finish(int l, bool followed) {
+    Lane& lane = lane_[l];
+    const double side = lane.touching ? 1 : -1, far = side * (position_[l] - plane_[l]);
+    if (far > lane.extreme) lane.extreme = far;
+    if (followed && lane.touched) {
+      if (lane.touching) {
+        lane.closing->observer->touch(lane.begin, nothing, lane.speed, lane.extreme);
+      } else {
+        tell_rebound(lane, nothing);
+      }
+    }
+    lane.closing->followed = followed;
+    lane.closing->end = t_[l];
+    lane.closing = nullptr;
+    --busy_;
+    fill(l);
+  }
+
+  bool give_up(int l) {
+    finish(l, false);
+    return false;
+  }
+
+  // Gives a lane the next closing.
+  void fill(int l) {
+    Lane& lane = lane_[l];
+    const bool idle = next_ == count_;
+    LaneClosing* const closing = closings_ + (idle ? count_ - 1 : next_++);
+    const LaneSwitch& s = *closing->numbers;
+    lane = Lane{};
+    lane.closing = closing;
+    if (!idle) ++busy_;
+    for (int p = 0; p < layout_.points; ++p) {
+      weight_[p][l] = s.weight[p];
+      for (int i = 0; i < modes; ++i) shape_[p][i][l] = s.shape[p][i];
+    }
+    open_[l] = s.open, plane_[l] = s.plane, floor_[l] = s.floor;
+    lane_width_[l] = s.width, thickness_[l] = s.thickness, viscosity_[l] = s.viscosity;
+    strength_[l] = s.strength, height_[l] = s.height;
+    double fastest = 0;
+    for (int i = 0; i < modes; ++i) {
+      if (i < s.modes && s.omega[i] > fastest) fastest = s.omega[i];
+      omega_[i][l] = s.omega[i], inverse_[i][l] = 1 / s.omega[i], square_[i][l] = s.omega[i] * s.omega[i];
+      at_contact_[i][l] = s.at_contact[i], piezo_[i][l] = s.piezo[i], friction_[i][l] = s.friction[i];
+      q_[i][l] = v_[i][l] = a_[i][l] = 0;
+    }
+    set_laws();
+    per_unknown_[l] = 1.0 / (2 * s.modes);
+    fastest_[l] = fastest;
+    most_turn_[l] = 2 / fastest;
+    touching_[l] = false;
+    weigh(l);
+    t_[l] = position_[l] = speed_[l] = acceleration_[l] = 0;
+    moved_[l] = 0;
+    lane.until = closing->no_contact_before;
+    lane.last_step = 0.01 / fastest;
+    enter_stretch(l);
+    if (idle) lane.closing = nullptr;
+  }
+
+  // The parameters of the laws follow those of the switches.
+  void set_laws() {
+    if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
+      force_ = Force{{.width = lane_width_, .thickness = thickness_}};
+    } else {
+      force_ = Force{{.width = lane_width_}};
+    }
+    film_ = Film{.viscosity = viscosity_, .width = lane_width_};
+    contact_ = Contact{.strength = strength_, .height = height_};
+  }
+
+  [[gnu::always_inline]] static double clamped(double x, double low, double high) {
+    return x < low ? low : x > high ? high : x;
+  }
+
+  const LaneLayout layout_;
+  LaneClosing* closings_;
+  std::size_t count_, next_ = 0;
+  int busy_ = 0;
+  Lane lane_[width];
+
+  // Of the switches.
+  V shape_[most_points][modes], weight_[most_points];
+  V omega_[modes], inverse_[modes], square_[modes], at_contact_[modes], piezo_[modes], friction_[modes];
+  V q_weight_[modes], v_weight_[modes], per_unknown_, fastest_, most_turn_;
+  V open_, plane_, floor_, lane_width_, thickness_, viscosity_, strength_, height_;
+  Force force_;
+  Film film_;
+  Contact contact_;
+  // Of the drives.
+  V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
+  V amplitude_[most_drives], amplitude_slope_[most_drives], frequency_[most_drives], phase_[most_drives];
+  bool swings_[most_drives] = {};  // in any lane, ever
+  // Of the motion.
+  V q_[modes], v_[modes], a_[modes], trial_q_[modes], trial_v_[modes], trial_a_[modes];
+  V slope_q_[7][modes], slope_v_[7][modes];
+  V t_, h_, max_step_, limit_, target_, position_, speed_, acceleration_, smallest_;
+  V knot_p_[pieces + 1], knot_s_[pieces + 1], knot_c_[pieces + 1];
+  M touching_{false}, suspect_{false}, turns_{false};
+  float lane_error_[width] = {};
+  double moved_[width] = {};
+};
+
+template <class V, template <class> class FringingOf>
+void run_with(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
+  if (layout.film) {
+    Lanes<V, FringingOf, true>(layout, closings, count).run();
+  } else {
+    Lanes<V, FringingOf, false>(layout, closings, count).run();
+  }
+}
+
+template <class V>
+void run_in(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
+  switch (layout.fringing) {
+    case LaneFringing::none:
+      return run_with<V, NoFringingOf>(layout, closings, count);
+    case LaneFringing::linear:
+      return run_with<V, LinearFringingOf>(layout, closings, count);
+    case LaneFringing::meijs_fokkema:
+      return run_with<V, MeijsFokkemaFringingOf>(layout, closings, count);
+  }
+}
+
+}  // namespace softland::fleet
