@@ -1,5 +1,5 @@
-// Closings per second and core of devices that differ, one at a time and in lanes, sampling and building included, and how far the
-// figures of both are apart.
+// Closings per second and core of devices that differ, one at a time and in lanes, sampling and building included, and how far
+// the figures of both are apart.
 //   bench_fleet [SCENE [DEVICES]]     (default: mem-gold.toml 2000)
 #include <fmt/format.h>
 
@@ -40,7 +40,8 @@ int main(int argc, char** argv) {
   const std::uint64_t devices = argc > 2 ? std::stoul(argv[2]) : 2000;
   const Prepared nominal = prepare(SceneFile::load(scene));
   const std::vector<Signal> signals = nominal.signals();
-  const double window = std::max(0.6 * 2 * M_PI / nominal.model.angular_frequencies()[0], 2.5 * nominal.model.in_contact_period());
+  const double window =
+      std::max(0.6 * 2 * M_PI / nominal.model.angular_frequencies()[0], 2.5 * nominal.model.in_contact_period());
   const Ensemble ensemble(nominal, devices);
   fmt::print("why not: '{}'\n", why_not_in_lanes(nominal.model));
 
@@ -91,10 +92,12 @@ int main(int argc, char** argv) {
     const auto at = [](const std::vector<double>& v, double p) { return v.empty() ? NAN : sample_quantile(v, p); };
     double sum = 0;
     for (const Landed& l : landed) sum += l.speed + l.highest * 1e6;
-    fmt::print("{}: {:.1f} us ({:.2f} x), not followed {}, other count {}; off (median, 95 %, largest):\n  t_i {:.1e} {:.1e} {:.1e}  v {:.1e} {:.1e} {:.1e}  B_H {:.1e} "
-               "{:.1e} {:.1e}  force {:.1e} {:.1e}  print {:.17g}\n",
-               row_of(vector_instructions, vectors).name, 1e6 * lanes / double(devices), one / lanes, lost, other, at(off_t, .5),
-               at(off_t, .95), at(off_t, 1), at(off_v, .5), at(off_v, .95), at(off_v, 1), at(off_b, .5), at(off_b, .95), at(off_b, 1),
-               at(off_f, .5), at(off_f, .95), sum);
+    fmt::print(
+        "{}: {:.1f} us ({:.2f} x), not followed {}, other count {}; off (median, 95 %, largest):\n  t_i {:.1e} {:.1e} {:.1e}  v "
+        "{:.1e} {:.1e} {:.1e}  B_H {:.1e} "
+        "{:.1e} {:.1e}  force {:.1e} {:.1e}  print {:.17g}\n",
+        row_of(vector_instructions, vectors).name, 1e6 * lanes / double(devices), one / lanes, lost, other, at(off_t, .5),
+        at(off_t, .95), at(off_t, 1), at(off_v, .5), at(off_v, .95), at(off_v, 1), at(off_b, .5), at(off_b, .95), at(off_b, 1),
+        at(off_f, .5), at(off_f, .95), sum);
   }
 }

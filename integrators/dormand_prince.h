@@ -1,5 +1,5 @@
-// The pair 5(4) of Dormand & Prince 1980, RK5(4)7M, and the control of its steps: proportional-integral (Gustafsson 1991) with the
-// exponents of Hairer & Wanner 1996, IV.2.
+// The pair 5(4) of Dormand & Prince 1980, RK5(4)7M, and the control of its steps: proportional-integral (Gustafsson 1991) with
+// the exponents of Hairer & Wanner 1996, IV.2.
 #pragma once
 
 namespace softland {
@@ -14,8 +14,7 @@ struct DormandPrince {
                                            {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
                                            {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
   /// Fifth minus fourth order.
-  static constexpr double difference[7] = {71.0 / 57600,      0,           -71.0 / 16695, 71.0 / 1920,
-                                           -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+  static constexpr double difference[7] = {71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
   static constexpr float integral = 0.04F, proportional = 0.2F - 0.75F * integral;
   static constexpr double safety = 0.9;

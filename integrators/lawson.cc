@@ -177,7 +177,8 @@ bool Lawson::step(double t_stop) {
       continue;
     }
     const float log_error = std::log2(static_cast<float>(std::clamp(e2, 1e-36, 1e36))) / 2;  // a step size needs no more digits
-    const double growth = Pair::safety * static_cast<double>(std::exp2(Pair::integral * last_error_ - Pair::proportional * log_error));
+    const double growth =
+        Pair::safety * static_cast<double>(std::exp2(Pair::integral * last_error_ - Pair::proportional * log_error));
     if (e2 <= 1) {
       t_ = end;
       y_.swap(trial_);

@@ -93,14 +93,21 @@ const MadeWith& made_with() {
 }
 
 json made_with_json(const MadeWith& all) {
-  return {{"program", word(all.program)},     {"compiler", word(all.compiler)},
-          {"options", word(all.options)},     {"instruction_set", word(all.instruction_set)},
-          {"vectors", word(all.vectors)}, {"c_library", word(all.c_library)}, {"processor", word(all.processor)}};
+  return {{"program", word(all.program)},    {"compiler", word(all.compiler)},
+          {"options", word(all.options)},    {"instruction_set", word(all.instruction_set)},
+          {"vectors", word(all.vectors)},    {"c_library", word(all.c_library)},
+          {"processor", word(all.processor)}};
 }
 
 std::string internal::made_with_text(const MadeWith& all) {
-  std::vector<std::string> words{all.compiler,  all.options,   all.instruction_set,
-                                 all.c_library, all.processor, all.program.empty() ? "" : "program " + all.program.substr(0, 12)};
+  const bool in_lanes = !all.vectors.empty() && all.vectors != name_of(vector_instructions, Vectors::none);
+  std::vector<std::string> words{all.compiler,
+                                 all.options,
+                                 all.instruction_set,
+                                 in_lanes ? fmt::format("ensembles by {}", all.vectors) : "",
+                                 all.c_library,
+                                 all.processor,
+                                 all.program.empty() ? "" : "program " + all.program.substr(0, 12)};
   std::erase(words, "");
   return fmt::format("{}", fmt::join(words, ", "));
 }

@@ -35,9 +35,8 @@ class LaneFigures final : public LandingObserver {
   }
   [[nodiscard]] DeviceOutcome outcome(const Switch& model, double end) {
     course_.last_time = end;
-    const Trajectory run{.status = Status::done,
-                         .contact_gap = model.device().gap.contact,
-                         .in_contact_period = model.in_contact_period()};
+    const Trajectory run{
+        .status = Status::done, .contact_gap = model.device().gap.contact, .in_contact_period = model.in_contact_period()};
     return {.metrics = figures_.metrics(run, course_), .largest_impact_velocity = figures_.largest_impact_velocity()};
   }
 

@@ -40,7 +40,8 @@ class Ensemble {
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
   /// Whether a key may vary that other members of a scene follow, so that each is read anew.
   [[nodiscard]] bool reads_anew() const { return reads_anew_; }
-  /// The scene of that device alone, in volts and without [spread]: what `simulate` runs to the same figures.
+  /// The scene of that device alone, in volts and without [spread]: what `simulate` runs to the same figures, but for
+  /// what the tolerance leaves open where ensembles are closed in lanes (model/ensemble/fleet.h).
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
 
  private:

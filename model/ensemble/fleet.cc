@@ -126,8 +126,8 @@ bool has(Vectors vectors) {
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
   if (vectors == Vectors::avx2) return avx2;
   if (vectors == Vectors::avx512) {
-    return avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
+    return avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
   }
 #endif
   return vectors == Vectors::none;
@@ -143,7 +143,8 @@ Vectors vectors_in_use() {
   }
   for (const VectorsRow& row : vector_instructions) {
     if (row.name != asked) continue;
-    require(has(row.value), [&] { return fmt::format("{} = {}: this processor, or this build, does not have them", variable, asked); });
+    require(has(row.value),
+            [&] { return fmt::format("{} = {}: this processor, or this build, does not have them", variable, asked); });
     return row.value;
   }
   throw InvalidInput(fmt::format("{} = {}: must be none, avx2 or avx512", variable, asked));
@@ -158,8 +159,8 @@ std::string why_not_in_lanes(const Switch& model) {
   if (device.structure.kind == StructureKind::clamped_clamped && device.structure.stretching) return "mid-plane stretching";
   if (!model.has_contact() || model.has_pad_contact() || !std::holds_alternative<UniformAsperityContact>(model.contact()))
     return "a contact other than undamped asperity-uniform at the contact point";
-  if (model.gas() && (model.film_states() > 0 || !std::isnan(device.gas->far_gap) ||
-                      !std::holds_alternative<StripSqueezeFilm>(*model.gas())))
+  if (model.gas() &&
+      (model.film_states() > 0 || !std::isnan(device.gas->far_gap) || !std::holds_alternative<StripSqueezeFilm>(*model.gas())))
     return "a gas film other than strip on the near side";
   for (const Electrode& e : device.electrodes) {
     if (e.side != Side::near) return "an electrode on the far side";

@@ -53,16 +53,16 @@ class Lanes {
   struct Lane {
     LaneClosing* closing = nullptr;  // null: idle
     int piece[most_drives] = {};
-    bool starting = false;      // spends a round to find its accelerations
-    bool to_event = false;      // its target is a crossing of the plane
-    int corrections = 0;        // of that target
-    double target = 0;          // the next time to stop at [s]
-    double stop = 0;            // the next breakpoint, or the end of the window [s]
-    double until = 0;           // ends with the first step beyond [s]
-    double last_step = 0;       // that no stop cut short [s]
-    double longest = 0;         // that resolves the drives [s]
+    bool starting = false;  // spends a round to find its accelerations
+    bool to_event = false;  // its target is a crossing of the plane
+    int corrections = 0;    // of that target
+    double target = 0;      // the next time to stop at [s]
+    double stop = 0;        // the next breakpoint, or the end of the window [s]
+    double until = 0;       // ends with the first step beyond [s]
+    double last_step = 0;   // that no stop cut short [s]
+    double longest = 0;     // that resolves the drives [s]
     double most_growth = 0;
-    float last_error = 0;       // binary logarithm
+    float last_error = 0;  // binary logarithm
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
@@ -237,7 +237,8 @@ class Lanes {
     settle(h, end, error);
   }
 
-  // --- the contact point within a step -------------------------------------------------------------------------------------------
+  // --- the contact point within a step
+  // -------------------------------------------------------------------------------------------
 
   // Knots of the contact point between the ends of the step, as integrators/modal_motion.h; lanes whose point may pass the plane,
   // or turns.
@@ -287,12 +288,8 @@ class Lanes {
   // The quintic of one lane in one piece, over its share of the piece.
   struct Curve {
     double c[6];
-    [[nodiscard]] double position(double s) const {
-      return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5]))));
-    }
-    [[nodiscard]] double speed(double s) const {
-      return c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5])));
-    }
+    [[nodiscard]] double position(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * (c[4] + s * c[5])))); }
+    [[nodiscard]] double speed(double s) const { return c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5]))); }
     [[nodiscard]] double bend(double s) const { return 2 * c[2] + s * (6 * c[3] + s * (12 * c[4] + s * 20 * c[5])); }
 
     // Newton's method kept inside the bracket.
@@ -365,7 +362,8 @@ class Lanes {
     }
   }
 
-  // --- what follows from a step --------------------------------------------------------------------------------------------------
+  // --- what follows from a step
+  // --------------------------------------------------------------------------------------------------
 
   // Binary logarithm and power to the digits that a step size needs.
   [[gnu::always_inline]] static float half_log2(double x) {
@@ -484,8 +482,7 @@ class Lanes {
     }
     if (lane.touched && turns_[l]) deepen(l, h);
     const float error = lane_error_[l];
-    const double growth =
-        Pair::safety * double(exp2(Pair::integral * lane.last_error - Pair::proportional * error));
+    const double growth = Pair::safety * double(exp2(Pair::integral * lane.last_error - Pair::proportional * error));
     h_[l] = h * clamped(growth, Pair::least_growth, lane.most_growth);
     lane.last_error = error > Pair::least_error ? error : Pair::least_error;
     lane.most_growth = Pair::most_growth;
@@ -540,8 +537,7 @@ class Lanes {
 
   void tell_rebound(const Lane& lane, double end) {
     constexpr double on_the_plane = 1e-12;  // of the contact gap, as ReboundFinder
-    if (lane.extreme > on_the_plane * lane.closing->numbers->plane)
-      lane.closing->observer->rebound(lane.left, end, lane.extreme);
+    if (lane.extreme > on_the_plane * lane.closing->numbers->plane) lane.closing->observer->rebound(lane.left, end, lane.extreme);
   }
 
   void begin_anew(Lane& lane) {
@@ -662,9 +658,7 @@ class Lanes {
     contact_ = Contact{.strength = strength_, .height = height_};
   }
 
-  [[gnu::always_inline]] static double clamped(double x, double low, double high) {
-    return x < low ? low : x > high ? high : x;
-  }
+  [[gnu::always_inline]] static double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
   const LaneLayout layout_;
   LaneClosing* closings_;

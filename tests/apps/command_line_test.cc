@@ -337,7 +337,8 @@ TEST(Results, SayWhatTheyWereMadeWith) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--set", "simulate.duration=20 us", "--json", "-", "--out", "made"});
   const json made = json::parse(o.out)["made_with"];
-  EXPECT_EQ(keys(made), (std::set<std::string>{"program", "compiler", "options", "instruction_set", "c_library", "processor"}));
+  EXPECT_EQ(keys(made),
+            (std::set<std::string>{"program", "compiler", "options", "instruction_set", "vectors", "c_library", "processor"}));
   const std::string program = made["program"];
   ASSERT_EQ(program.size(), 40U);
   std::string bytes;

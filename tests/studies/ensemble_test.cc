@@ -166,7 +166,7 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
 TEST(Robustness, SaysWhatEachMeasurementIsWorth) {
   const Prepared nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=30 us"}));
   const Calibration errors{.pull_in_error = 0.01, .frequency_error = 0.01};
-  RobustnessOptions options{.samples = 24, .jobs = 2, .worth_of_measuring = true};
+  RobustnessOptions options{.samples = 24, .jobs = 2, .vectors = Vectors::none, .worth_of_measuring = true};
   const Robustness found =
       robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = errors}}, options);
   ASSERT_EQ(found.drives.size(), 2U);
@@ -235,7 +235,7 @@ TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
 
 TEST(Robustness, GivesTheSceneOfEveryDevice) {
   const Prepared nominal = prepare(gold_at_17_volts());
-  const RobustnessOptions options{.samples = 16};
+  const RobustnessOptions options{.samples = 16, .vectors = Vectors::none};  // one at a time, as `simulate` closes it
   const Robustness found = robustness(nominal, {}, options);
   for (const std::size_t k : {found.drives[0].worst[0], std::size_t{3}}) {
     const Prepared alone = prepare(SceneFile::parse(scene_of_device(nominal, found.drives[0], k, options).text(), "worst.toml"));

@@ -1,0 +1,183 @@
+// Closings in lanes of vector registers against the same closings one at a time.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "model/ensemble/fleet.h"
+#include "sampling/statistics.h"
+#include "scenes.h"
+#include "studies/ensemble.h"
+#include "waveforms/waveform.h"
+
+namespace softland::lanes_test {
+namespace {
+
+std::vector<Vectors> vectors_here() {
+  std::vector<Vectors> all;
+  for (const Vectors vectors : {Vectors::avx2, Vectors::avx512})
+    if (has(vectors)) all.push_back(vectors);
+  return all;
+}
+
+struct Fleet {
+  Prepared nominal;
+  std::vector<SampledDevice> devices;
+
+  Fleet(const SceneFile& file, std::uint64_t count) : nominal(prepare(file)) {
+    const Ensemble ensemble(nominal, count);
+    DeviceBuilder builder(ensemble);
+    for (std::uint64_t k = 0; k < count; ++k) devices.push_back(builder.device(k));
+  }
+
+  [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Signal>& signals, Vectors vectors, double tolerance) const {
+    std::vector<DeviceClosing> closings;
+    for (const SampledDevice& device : devices)
+      closings.push_back({.device = &device, .signals = &signals, .run = {.duration = nominal.duration, .tolerance = tolerance}});
+    return close_devices(closings, nominal.scene.metrics, vectors);
+  }
+};
+
+// Every digit of what is made of an outcome.
+std::string digits(const DeviceOutcome& o) {
+  const Metrics& m = o.metrics;
+  return fmt::format("{} {} {} {} {} {} {} {} {} {}", to_string(m.status), m.initial_contact_time, m.permanent_contact_time,
+                     m.bounce_count, m.major_bounce_height, m.impact_velocity, m.peak_contact_force, m.impact_energy,
+                     o.largest_impact_velocity, o.failure);
+}
+std::vector<std::string> digits(const std::vector<DeviceOutcome>& all) {
+  std::vector<std::string> lines;
+  for (const DeviceOutcome& o : all) lines.push_back(digits(o));
+  return lines;
+}
+
+double off(double value, double expected) { return std::abs(value - expected) / std::abs(expected); }
+
+// What both paths may differ by: the tolerance, and in what follows the first touches what bouncing makes of it.
+void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<DeviceOutcome>& one_by_one) {
+  ASSERT_EQ(lanes.size(), one_by_one.size());
+  std::vector<double> heights, forces, energies;
+  std::size_t closed = 0, other_counts = 0;
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    SCOPED_TRACE(fmt::format("device {}", k));
+    const DeviceOutcome &a = lanes[k], &b = one_by_one[k];
+    ASSERT_EQ(a.closed(), b.closed()) << a.failure << b.failure;
+    if (!b.closed()) {
+      EXPECT_EQ(digits(a), digits(b));
+      continue;
+    }
+    ++closed;
+    EXPECT_LT(off(a.metrics.initial_contact_time, b.metrics.initial_contact_time), 1e-6);
+    EXPECT_LT(off(a.metrics.impact_velocity, b.metrics.impact_velocity), 1e-5);
+    if (b.metrics.major_bounce_height > 0) heights.push_back(off(a.metrics.major_bounce_height, b.metrics.major_bounce_height));
+    forces.push_back(off(a.metrics.peak_contact_force, b.metrics.peak_contact_force));
+    energies.push_back(off(a.metrics.impact_energy, b.metrics.impact_energy));
+    other_counts += a.metrics.bounce_count != b.metrics.bounce_count;
+  }
+  EXPECT_GT(closed, lanes.size() / 2);
+  if (!heights.empty()) {
+    EXPECT_LT(sample_quantile(heights, 0.9), 1e-4);
+  }
+  EXPECT_LT(sample_quantile(forces, 0.9), 1e-3);
+  EXPECT_LT(sample_quantile(energies, 0.9), 3e-2);
+  EXPECT_LE(other_counts, lanes.size() / 10);
+}
+
+struct Case {
+  std::string name;
+  SceneFile file;
+};
+
+std::vector<Case> cases() {
+  const std::string pulse =
+      "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"17 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
+  std::vector<Case> all;
+  all.push_back({"step", gold_at_17_volts()});
+  all.push_back({"pulse", gold_at_17_volts({pulse})});
+  all.push_back({"ramp without gas",
+                 without(gold_at_17_volts({"waveform.main={family=\"step\", level=\"17 V\", rise_time=\"60 us\"}"}), "gas")});
+  all.push_back({"linear fringing, modal damping",
+                 gold_at_17_volts({"electrode.main.fringing=\"linear\"", "structure.damping_ratio=0.02"})});
+  all.push_back({"no fringing, two modes", gold_at_17_volts({"electrode.main.fringing=\"none\"", "structure.modes=2"})});
+  all.push_back(
+      {"dither", gold_at_17_volts({"waveform.main={family=\"harmonic\", base=\"17 V\", amplitude=\"3 V\", frequency=\"90 kHz\", "
+                                   "start=\"5 us\", end=\"70 us\", fade=\"3 us\"}"})});
+  all.push_back({"piezo", gold_pzt({"simulate.duration=60 us"})});  // later it is chaotic
+  return all;
+}
+
+TEST(Lanes, CloseAsOneAtATimeDoes) {
+  for (const auto& [name, file] : cases()) {
+    SCOPED_TRACE(name);
+    const Fleet fleet(file, 40);
+    ASSERT_EQ(why_not_in_lanes(fleet.nominal.model), "");
+    const std::vector<Signal> signals = fleet.nominal.signals();
+    const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-6);
+    for (const Vectors vectors : vectors_here()) expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one);
+  }
+}
+
+TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
+  for (const auto& [name, file] : cases()) {
+    SCOPED_TRACE(name);
+    Fleet fleet(file, 37);
+    const std::vector<Signal> signals = fleet.nominal.signals();
+    std::vector<std::vector<std::string>> all;
+    for (const Vectors vectors : vectors_here()) {
+      const std::vector<std::string> together = digits(fleet.close(signals, vectors, 1e-5));
+      Fleet alone = fleet;
+      alone.devices = {fleet.devices[11]};
+      EXPECT_EQ(digits(alone.close(signals, vectors, 1e-5))[0], together[11]);
+      Fleet reversed = fleet;
+      std::reverse(reversed.devices.begin(), reversed.devices.end());
+      std::vector<std::string> back = digits(reversed.close(signals, vectors, 1e-5));
+      std::reverse(back.begin(), back.end());
+      EXPECT_EQ(back, together);
+      all.push_back(together);
+    }
+    if (all.size() == 2) {
+      EXPECT_EQ(all[0], all[1]) << "AVX2 and AVX-512";
+    }
+  }
+}
+
+// What lanes cannot follow, one at a time does: other laws, other points, devices that no switch is, and those in trouble.
+TEST(Lanes, LeaveTheRestToOneAtATime) {
+  for (const char* file : {"nem-tin.toml", "two-electrodes.toml", "nem-casimir.toml"}) {
+    SCOPED_TRACE(file);
+    const Fleet fleet(scene(file), 4);
+    EXPECT_NE(why_not_in_lanes(fleet.nominal.model), "");
+    const std::vector<Signal> signals = fleet.nominal.signals();
+    for (const Vectors vectors : vectors_here())
+      EXPECT_EQ(digits(fleet.close(signals, vectors, 1e-5)), digits(fleet.close(signals, Vectors::none, 1e-5)));
+  }
+  // Volts that press the beam onto the electrode, and a device that is none.
+  Fleet pressed(gold_at_17_volts(), 6);
+  pressed.devices[2] = {.values = {}, .model = {}, .refusal = "none"};
+  const std::vector<Signal> signals{Signal::constant(400)};
+  const std::vector<DeviceOutcome> one_by_one = pressed.close(signals, Vectors::none, 1e-5);
+  EXPECT_NE(one_by_one[0].failure.find("of the electrode"), std::string::npos) << one_by_one[0].failure;
+  EXPECT_EQ(one_by_one[2].failure, "none");
+  for (const Vectors vectors : vectors_here()) EXPECT_EQ(digits(pressed.close(signals, vectors, 1e-5)), digits(one_by_one));
+}
+
+TEST(Lanes, AreChosenByTheProcessorOrTheUser) {
+  ASSERT_EQ(unsetenv("SOFTLAND_VECTORS"), 0);
+  EXPECT_EQ(vectors_in_use(), vectors_here().empty() ? Vectors::none : vectors_here().back());
+  const auto asked_for = [](const char* name) {
+    setenv("SOFTLAND_VECTORS", name, 1);
+    const Vectors vectors = vectors_in_use();
+    unsetenv("SOFTLAND_VECTORS");
+    return vectors;
+  };
+  EXPECT_EQ(asked_for("none"), Vectors::none);
+  for (const Vectors vectors : vectors_here())
+    EXPECT_EQ(asked_for(std::string(name_of(vector_instructions, vectors)).c_str()), vectors);
+  EXPECT_EQ(refusal([&] { asked_for("sse9"); }), "SOFTLAND_VECTORS = sse9: must be none, avx2 or avx512");
+  unsetenv("SOFTLAND_VECTORS");
+}
+
+}  // namespace
+}  // namespace softland::lanes_test
