@@ -13,6 +13,7 @@
 #include "reports/escape.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
+#include "reports/other_ways_report.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
@@ -208,7 +209,7 @@ std::string knowledge_text(const Robustness& found) {
 }  // namespace
 
 json robustness_json(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
@@ -244,6 +245,7 @@ json robustness_json(const RobustnessReport& report) {
           {"drives", std::move(drives)},
           {"by_knowledge", std::move(by_knowledge)},
           {"sensitivity", sensitivity_json(sensitivity)},
+          {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal.scene.spread) : json(nullptr)},
           {"warnings", nominal.scene.warnings},
           {"scene", scene.json()},
           {"scene_toml", scene.text()},
@@ -253,7 +255,7 @@ json robustness_json(const RobustnessReport& report) {
 }
 
 std::string robustness_text(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().calibration;
@@ -286,6 +288,7 @@ std::string robustness_text(const RobustnessReport& report) {
     }
   }
   text += knowledge_text(found) + sensitivity_text(sensitivity);
+  if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal.scene.spread);
   text += "\n" +
           wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. A device "
                               "that does not close counts as the worst.",
@@ -297,7 +300,7 @@ std::string robustness_text(const RobustnessReport& report) {
 }
 
 std::string robustness_csv(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
   // Names may hold commas and quotes.
@@ -559,7 +562,7 @@ std::string keys_of(const Robustness& found) {
       const double q = quantile_95(d, key).value;
       return std::isfinite(q) ? quantity(q, f.unit) : std::string("not closed");
     };
-    keys += internal::key_html(label_html(f) + ", 95 %", value(own), before(value(step)));
+    keys += internal::key_html(label_html(f) + ", 95\u00a0%", value(own), before(value(step)));
   }
   return keys;
 }
@@ -567,7 +570,7 @@ std::string keys_of(const Robustness& found) {
 }  // namespace
 
 std::string robustness_html(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   const internal::Picture drawn = picture_of(report);
   std::string charts;
   for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
@@ -592,6 +595,7 @@ std::string robustness_html(const RobustnessReport& report) {
                          .keys = keys_of(found),
                          .body = section("charts", "How the devices differ", about + charts) + knowledge_table(found) +
                                  section("figures", "Figures", statistics_table(found)) + sensitivity_table(sensitivity) +
+                                 (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal.scene.spread) : "") +
                                  worst_table(report) + internal::reproduce(result) + internal::scene(result),
                          .style = internal::chart_style(),
                          .scripts = internal::chart_scripts(drawn)});

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reports/result_maker.h"
+#include "studies/other_ways.h"
 #include "studies/robustness.h"
 
 namespace softland {
@@ -19,6 +21,7 @@ struct RobustnessReport {
   std::string command;  ///< the command line
   Sensitivity sensitivity = {};
   std::vector<DeviceCourse> courses = {};
+  std::optional<OtherWays> other_ways = {};  ///< of the last drive as well
   bool interrupted = found.interrupted;  ///< in the study, or in what was to be known beside it
 };
 
@@ -30,7 +33,7 @@ struct RobustnessReport {
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// A self-contained page, as html_report(): statistics, cumulative distributions, the closings of typical devices, what
-/// measuring is worth, where the spread comes from, the worst devices, failures.
+/// measuring is worth, where the spread comes from, the other ways, the worst devices, failures.
 [[nodiscard]] std::string robustness_html(const RobustnessReport& report);
 
 }  // namespace softland

@@ -42,9 +42,14 @@ Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t se
 Ensemble::Ensemble(const Prepared& nominal, const SobolDesign& design)
     : Ensemble(nominal, design.evaluations(), [design](std::uint64_t k, std::span<double> u) { design.point(k, u); }) {}
 
+std::vector<double> Ensemble::point(std::uint64_t k) const {
+  std::vector<double> u(nominal_->scene.spread.variables.size());
+  point_(k, u);
+  return u;
+}
+
 std::vector<double> Ensemble::values(std::uint64_t k) const {
-  std::vector<double> values(nominal_->scene.spread.variables.size());
-  point_(k, values);
+  std::vector<double> values = point(k);
   nominal_->scene.spread.to_values(values);
   return values;
 }
@@ -146,40 +151,48 @@ DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal
   return outcome;
 }
 
+DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+                           const std::atomic<bool>* stop)
+    : nominal_(&nominal),
+      drives_(&drives),
+      options_{.duration = run.duration, .tolerance = run.tolerance, .stop = stop},
+      seed_(run.seed) {
+  const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
+  if (any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); }))
+    meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
+  for (const EnsembleDrive& drive : drives) nominal_signals_.push_back(signals_of(drive.waveforms));
+}
+
+std::vector<DeviceOutcome> DeviceCloser::operator()(const SampledDevice& device, std::uint64_t k) const {
+  std::vector<DeviceOutcome> outcomes(drives_->size());
+  DeviceUnits exact;
+  if (meter_ && device.model) exact = meter_->exact(*device.model);
+  const auto stopped = [&] { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); };
+  for (std::size_t d = 0; d < outcomes.size() && !stopped(); ++d) {
+    const EnsembleDrive& drive = (*drives_)[d];
+    if (drive.calibration.is_empty() || !device.model) {
+      outcomes[d] = close_device(device, nominal_signals_[d], nominal_->scene.metrics, options_);
+    } else if (const DeviceUnits units = DeviceMeter::measured(exact, drive.calibration, seed_, k); std::isfinite(units.volts)) {
+      outcomes[d] = close_device(device, signals_of(in_units(drive.waveforms, nominal_->scene.device, units)),
+                                 nominal_->scene.metrics, options_);
+    } else {
+      outcomes[d].failure = "its pull-in voltage cannot be measured";
+    }
+  }
+  return outcomes;
+}
+
 std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, const std::vector<EnsembleDrive>& drives,
                                                   const EnsembleRun& run, const Watch& watch) {
-  const Prepared& nominal = ensemble.nominal();
-  const ClosingOptions options{.duration = run.duration, .tolerance = run.tolerance, .stop = watch.stop};
-  const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
-  const bool calibrated = any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); });
-  std::optional<DeviceMeter> meter;
-  if (calibrated) meter.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
-  std::vector<std::vector<Signal>> nominal_signals;
-  for (const EnsembleDrive& drive : drives) nominal_signals.push_back(signals_of(drive.waveforms));
-
+  const DeviceCloser closer(ensemble.nominal(), drives, run, watch.stop);
   std::vector<std::vector<DeviceOutcome>> outcomes(drives.size(), std::vector<DeviceOutcome>(ensemble.size()));
   std::mutex telling;
   std::atomic<std::size_t> done = 0;
-  const auto close = [&](DeviceBuilder& builder, std::size_t k) {
-    const SampledDevice device = builder.device(k);
-    DeviceUnits exact;
-    if (meter && device.model) exact = meter->exact(*device.model);
-    for (std::size_t d = 0; d < drives.size() && !watch.stopped(); ++d) {
-      const Calibration& calibration = drives[d].calibration;
-      if (calibration.is_empty() || !device.model) {
-        outcomes[d][k] = close_device(device, nominal_signals[d], nominal.scene.metrics, options);
-      } else if (const DeviceUnits units = DeviceMeter::measured(exact, calibration, run.seed, k); std::isfinite(units.volts)) {
-        outcomes[d][k] = close_device(device, signals_of(in_units(drives[d].waveforms, nominal.scene.device, units)),
-                                      nominal.scene.metrics, options);
-      } else {
-        outcomes[d][k].failure = "its pull-in voltage cannot be measured";
-      }
-    }
-  };
   const auto task = [&](std::size_t c) {
     DeviceBuilder builder(ensemble);
     for (std::size_t k = c * chunk; k < std::min<std::size_t>(ensemble.size(), (c + 1) * chunk) && !watch.stopped(); ++k) {
-      close(builder, k);
+      std::vector<DeviceOutcome> of_device = closer(builder.device(k), k);
+      for (std::size_t d = 0; d < drives.size(); ++d) outcomes[d][k] = std::move(of_device[d]);
       if (++done % 64 != 0) continue;
       const std::scoped_lock lock(telling);
       watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(ensemble.size()));

@@ -1,6 +1,7 @@
 // Devices as they come from manufacturing: the switches of a scene's [spread], each a function of its number.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -35,6 +36,8 @@ class Ensemble {
 
   [[nodiscard]] const Prepared& nominal() const { return *nominal_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// Where device k is in the open unit cube: a coordinate for each varying quantity, before any correlation.
+  [[nodiscard]] std::vector<double> point(std::uint64_t k) const;
   /// Of the varying quantities of device k.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
   /// Whether a key may vary that other members of a scene follow, so that each is read anew.
@@ -127,6 +130,24 @@ struct EnsembleRun {
 /// The closing of one device; figures are those of the run, however early its options end it.
 [[nodiscard]] DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals,
                                          const MetricsOptions& options, const ClosingOptions& run);
+
+/// Closes devices under drives, in the units of each device where they are calibrated.
+class DeviceCloser {
+ public:
+  /// Keeps references to `nominal` and `drives`. Throws what DeviceMeter throws.
+  DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+               const std::atomic<bool>* stop = nullptr);
+  /// The outcomes of device k by drive; asked to stop, those that were not begun are unset.
+  [[nodiscard]] std::vector<DeviceOutcome> operator()(const SampledDevice& device, std::uint64_t k) const;
+
+ private:
+  const Prepared* nominal_;
+  const std::vector<EnsembleDrive>* drives_;
+  ClosingOptions options_;
+  std::uint64_t seed_;
+  std::optional<DeviceMeter> meter_;
+  std::vector<std::vector<Signal>> nominal_signals_;  // of every drive
+};
 
 /// The closings of all devices under each of these drives: the outcomes of a drive, by device. Asked to stop, they are those of
 /// the first devices.
