@@ -17,6 +17,7 @@
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
+#include "sampling/statistics.h"
 #include "version.h"
 #include "waveforms/export.h"
 
@@ -405,6 +406,55 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
+// How many devices have which value, in bins that all drives share, as far as the cumulative curves are shown: two kinds of
+// closings are two heaps.
+internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
+                                internal::CurveTables& tables) {
+  const EnsembleFigure& f = ensemble_figure(key);
+  const std::vector<DriveRobustness>& drives = report.found.drives;
+  internal::Chart chart = cumulative;
+  chart.id = "count" + cumulative.id.substr(cumulative.id.find('-'));
+  chart.title = fmt::format("{}: histogram", f.name);
+  chart.height = 150;
+  chart.y_home.reset();
+  chart.x_whole = chart.x_home;
+  chart.series.clear();
+  std::vector<std::vector<double>> values(drives.size());
+  std::vector<double> all;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    for (const DeviceOutcome& o : drives[i].outcomes) {
+      if (const double value = f.value(o); value <= chart.x_home[1]) values[i].push_back(value);
+    }
+    all.insert(all.end(), values[i].begin(), values[i].end());
+  }
+  if (all.empty()) return chart;
+  constexpr std::size_t most_bins = 80;
+  const Histogram bins = histogram(all, most_bins);
+  const double width = (bins.high - bins.low) / static_cast<double>(bins.counts.size());
+  if (!(width > 0)) return chart;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    std::vector<std::size_t> counts(bins.counts.size(), 0);
+    for (const double value : values[i])
+      ++counts[std::min(counts.size() - 1, static_cast<std::size_t>((value - bins.low) / width))];
+    const std::string name = fmt::format("{}-{}", chart.id, i);
+    internal::CurveTable& table = tables[name];
+    const auto point = [&](std::size_t edge, double share) {
+      table["x"].push_back(bins.low + static_cast<double>(edge) * width);
+      table["y"].push_back(share);
+    };
+    point(0, 0);
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      const double share = 100 * static_cast<double>(counts[k]) / static_cast<double>(drives[i].outcomes.size());
+      point(k, share);
+      point(k + 1, share);
+    }
+    point(counts.size(), 0);
+    chart.series.push_back({.table = name, .column = "y", .label = drives[i].name, .role = role_of(i, drives.size())});
+  }
+  chart.caption = fmt::format("Share of the devices in each interval of {}.", quantity(width, f.unit));
+  return chart;
+}
+
 internal::Chart course_chart(const RobustnessReport& report, internal::CurveTables& tables) {
   internal::Chart chart{
       .id = "courses",
@@ -440,7 +490,11 @@ internal::Chart course_chart(const RobustnessReport& report, internal::CurveTabl
 
 internal::Picture picture_of(const RobustnessReport& report) {
   internal::Picture drawn;
-  for (const std::string_view key : drawn_figures) drawn.charts.push_back(distribution_chart(report, key, drawn.tables));
+  for (const std::string_view key : drawn_figures) {
+    drawn.charts.push_back(distribution_chart(report, key, drawn.tables));
+    if (!drawn.charts.back().series.empty())
+      drawn.charts.push_back(histogram_chart(report, key, internal::Chart(drawn.charts.back()), drawn.tables));
+  }
   std::erase_if(drawn.charts, [](const internal::Chart& chart) { return chart.series.empty(); });
   if (!report.courses.empty()) drawn.charts.push_back(course_chart(report, drawn.tables));
   return drawn;

@@ -1,6 +1,7 @@
 // What the user reads of devices that differ, made here of outcomes that are easy to count.
 #include "reports/robustness_report.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -134,6 +135,50 @@ TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
   EXPECT_THAT(page, HasSubstr("data-chart=\"share-v-max\""));
   EXPECT_THAT(page, HasSubstr("data-chart=\"courses\""));
   EXPECT_LT(page.size(), 1'000'000U);
+}
+
+// The heights of the bins, read from what the page's script draws: pairs of equal values, one pair per bin.
+std::vector<double> bins_of(const std::string& page, const std::string& table) {
+  const std::string mark = "id=\"data\">";
+  const std::size_t begin = page.find(mark) + mark.size();
+  const nlohmann::json y = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin))["tables"][table]["y"];
+  double sum = 0;
+  std::vector<double> knots;
+  for (const auto& step : y["steps"]) knots.push_back((sum += step.get<double>()) * y["unit"].get<double>());
+  std::vector<double> bins;
+  for (std::size_t k = 1; k + 1 < knots.size(); k += 2) {
+    EXPECT_EQ(knots[k], knots[k + 1]);
+    bins.push_back(knots[k]);
+  }
+  EXPECT_EQ(knots.front(), 0);
+  EXPECT_EQ(knots.back(), 0);
+  return bins;
+}
+
+TEST(RobustnessReport, HasHistogramsOfAllDevicesInView) {
+  const std::string page = robustness_html(study().report());
+  double in_view = 0;
+  for (const DriveRobustness& d : study().found.drives) {
+    std::vector<double> heights;
+    for (const DeviceOutcome& o : d.outcomes) heights.push_back(o.metrics.major_bounce_height);
+    std::sort(heights.begin(), heights.end());
+    in_view = std::max(in_view, heights[64 * 99 / 100]);
+  }
+  std::size_t bins = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<double> heights = bins_of(page, "count-B-H-" + std::to_string(i));
+    double all = 0;
+    for (const double height : heights) all += height;
+    double expected = 0;
+    for (const DeviceOutcome& o : study().found.drives[i].outcomes)
+      expected += o.metrics.major_bounce_height <= in_view ? 100.0 / 64 : 0;
+    constexpr double stored_to = 1e-4;
+    EXPECT_NEAR(all, expected, stored_to) << i;
+    EXPECT_GT(heights.size(), 3U);
+    EXPECT_TRUE(i == 0 || heights.size() == bins) << "all drives share the bins";
+    bins = heights.size();
+  }
+  for (const char* id : {"count-v-max", "count-t-i"}) EXPECT_THAT(page, HasSubstr(fmt::format("data-chart=\"{}\"", id)));
 }
 
 TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose) {
