@@ -206,10 +206,11 @@ int run(int argc, char** argv) {
   option(robustness, "--points", robust.points, "NAME", "how they are chosen: " + first_is_default(listed(point_sets)));
   option(robustness, "--calibrate", robust.calibration, "LIST",
          "measured on every device before it is driven, as for optimize; the report says what each measurement is worth");
-  robustness->add_flag("--other-ways", robust.other_ways,
-                       fmt::format("beside the sample, for the last drive: worst and best device of a box that holds 95 % of the "
-                                   "devices, by search, and polynomial chaos with its error; {} closings more",
-                                   2 * explained_figures.size() * OtherWaysOptions{}.closings_per_search));
+  robustness->add_flag(
+      "--other-ways", robust.other_ways,
+      fmt::format("beside the sample, for the last drive: the worst and the best device of a box, by search, and "
+                  "polynomial chaos; {} closings more",
+                  2 * explained_figures.size() * OtherWaysOptions{}.closings_per_search));
   optional(robustness, "--seed", robust.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
   optional(robustness, "--jobs", robust.jobs, "N", "threads (default: one per core); the result does not depend on them");
   option(robustness, "--out", common.out, "FOLDER",

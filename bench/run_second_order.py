@@ -329,7 +329,7 @@ def main():
     (folder / "second-order.md").write_text(document(samples, pull_in), encoding="utf-8")
     first, second = (p for p, _ in by_influence(samples, LEVELS[0], "t_i", SPREADS[1])[:2])
     (folder / "second-order.svg").write_text(picture(
-        samples, [f"{first.capitalize()} and {second} decide when and how a step closes the gold cantilever"],
+        samples, [f"{first.capitalize()} and {second} decide when a step closes the gold cantilever"],
         [f"Each parameter alone, normal, with standard deviations of {', '.join(map(percent, SPREADS))} (small to large dots); {DEVICES} devices each.",
          "Where the dots of a row differ, the figure is not linear in the parameter, and its variance depends on the spread."]),
         encoding="utf-8")
