@@ -323,7 +323,7 @@ TEST(RobustSearch, RefusesToMeasureAPullInVoltageThatThereIsNot) {
 TEST(Robustness, LeavesTheWorstDevicesOfTheBox) {
   const Workplace here;
   const Outcome o = here.run({"robustness", "gold.toml", "--set", "waveform.main.level=17.77 V", "--set",
-                              "simulate.duration=40 us", "--samples", "24", "--quiet", "--other-ways", "--out", "out"});
+                              "simulate.duration=60 us", "--samples", "24", "--quiet", "--other-ways", "--out", "out"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_NE(o.out.find("Other ways, under plain step"), std::string::npos) << o.out;
   EXPECT_NE(o.out.find("box-*.toml"), std::string::npos) << o.out;
