@@ -99,8 +99,12 @@ std::string chaos_words(const OtherWays& ways, Symbol symbol) {
   }
   std::string words = fmt::format("Polynomial chaos is made of the first {} devices of the sample, without a further closing.",
                                   ways.chaos.front().taught + ways.left_out);
-  if (ways.left_out > 0) words += fmt::format(" {} of them do not close, and it knows nothing of such.", ways.left_out);
-  if (!good.empty()) words += fmt::format(" It predicts {}.", joined(good));
+  if (ways.left_out > 0) {
+    words +=
+        fmt::format(" {} of them do not close; mean, deviation and quantile of chaos go on to such devices as if they closed.",
+                    ways.left_out);
+  }
+  if (!good.empty()) words += fmt::format(" It predicts {}{}.", joined(good), ways.left_out > 0 ? " of those that close" : "");
   if (!bad.empty()) {
     words += fmt::format(
         " It fails for {}: where a small change of a quantity adds or takes away a touch, a figure jumps, and no sum of "

@@ -105,8 +105,8 @@ TEST(RobustnessReport, SaysWhereChaosFails) {
   report.other_ways = ways;
   std::string text = robustness_text(report);
   std::replace(text.begin(), text.end(), '\n', ' ');
-  EXPECT_THAT(text, HasSubstr("3 of them do not close"));
-  EXPECT_THAT(text, HasSubstr("It predicts t_i. It fails for v_max (60.0 % of the variance): "));
+  EXPECT_THAT(text, HasSubstr("3 of them do not close; mean, deviation and quantile of chaos go on"));
+  EXPECT_THAT(text, HasSubstr("It predicts t_i of those that close. It fails for v_max (60.0 % of the variance): "));
   EXPECT_THAT(text, HasSubstr("It says nothing of B_H"));
   EXPECT_THAT(text, HasSubstr("not closed"));
   const std::string page = robustness_html(report);
