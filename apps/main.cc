@@ -1,4 +1,6 @@
 // The command line: what is asked, and nothing else.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -14,6 +16,7 @@
 #include "base/require.h"
 #include "optimizers/problem.h"
 #include "sampling/points.h"
+#include "studies/other_ways.h"
 #include "studies/search_space.h"
 #include "version.h"
 
@@ -203,6 +206,11 @@ int run(int argc, char** argv) {
   option(robustness, "--points", robust.points, "NAME", "how they are chosen: " + first_is_default(listed(point_sets)));
   option(robustness, "--calibrate", robust.calibration, "LIST",
          "measured on every device before it is driven, as for optimize; the report says what each measurement is worth");
+  robustness->add_flag(
+      "--other-ways", robust.other_ways,
+      fmt::format("beside the sample, for the last drive: the worst and the best device of a box, by search, and "
+                  "polynomial chaos; {} closings more",
+                  2 * explained_figures.size() * OtherWaysOptions{}.closings_per_search));
   optional(robustness, "--seed", robust.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
   optional(robustness, "--jobs", robust.jobs, "N", "threads (default: one per core); the result does not depend on them");
   option(robustness, "--out", common.out, "FOLDER",
@@ -211,6 +219,7 @@ int run(int argc, char** argv) {
       "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one,\n"
       "or, where it is calibrated, the same waveform in its own units.\n"
       "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"
+      "  softland robustness scenes/mem-gold.toml --other-ways --out box\n"
       "  softland robustness scenes/mem-gold.toml softland-out --out robust");
 
   CLI::App* fresh = add_verb("new", "print a commented scene to start from");

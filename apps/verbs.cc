@@ -460,8 +460,9 @@ void calibrate(SceneFile& file, const std::string& list) {
 
 constexpr std::array<const char*, 3> robustness_files{"robustness.html", "robustness.json", "devices.csv"};
 
-// What is known of the last drive beside its figures; nothing where the work was interrupted.
-void add_details(RobustnessReport& report, const Watch& watch) {
+// What is known of the last drive beside its figures, `other_ways_too` at the cost of further searches; nothing where the work
+// was interrupted.
+void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch) {
   if (report.found.interrupted || report.found.devices == 0) return;
   constexpr std::uint64_t devices_per_row = 4, most_rows = 1024;
   const DriveRobustness& last = report.found.drives.back();
@@ -469,8 +470,12 @@ void add_details(RobustnessReport& report, const Watch& watch) {
       sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
                   report.options, watch);
   report.courses = device_courses(report.nominal, last, report.found, report.options);
+  if (other_ways_too) report.other_ways = other_ways(report.nominal, last, report.options, {}, watch);
   report.interrupted = watch.stopped();
 }
+
+// The scene of the worst device of the box.
+std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", ensemble_figure(key).symbol); }
 
 void write_robustness(ResultFolder& folder, const RobustnessReport& report) {
   folder.write("robustness.html", robustness_html(report));
@@ -605,7 +610,7 @@ int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
                                     .found = *result.verdict,
                                     .options = {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs},
                                     .command = c.command});
-    add_details(*report, {.stop = c.stop, .progress = options.on_preparation});
+    add_details(*report, false, {.stop = c.stop, .progress = options.on_preparation});
     if (report->interrupted) result.found.search.termination = Termination::interrupted;
   }
   searching.close();
@@ -675,11 +680,12 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   std::vector<std::string> files(robustness_files.begin(), robustness_files.end());
   constexpr std::size_t most_worst = 3;
   for (std::size_t i = 1; i <= most_worst; ++i) files.push_back(fmt::format("worst-{}.toml", i));
+  for (const std::string_view key : explained_figures) files.push_back(box_file(key));
   std::optional<ResultFolder> folder = claim_places(c, files);
 
   const Robustness found = robustness(nominal, drives, options, work->watch());
   RobustnessReport report{.nominal = nominal, .found = found, .options = options, .command = c.command};
-  add_details(report, work->watch());
+  add_details(report, request.other_ways, work->watch());
   const json j = robustness_json(report);
   std::string text = robustness_text(report);
   work.reset();
@@ -688,9 +694,16 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
     const DriveRobustness& last = found.drives.back();
     for (std::size_t i = 0; i < most_worst && i < last.worst.size(); ++i)
       folder->write(fmt::format("worst-{}.toml", i + 1), scene_of_device(nominal, last, last.worst[i], options).text());
-    text += left_in(folder->destination(report.interrupted),
-                    {"robustness.html", "robustness.json", "devices.csv",
-                     "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"});
+    std::vector<std::string> left{"robustness.html", "robustness.json", "devices.csv",
+                                  "worst-*.toml (the worst devices of the last drive, for `softland simulate`)"};
+    if (report.other_ways && !report.other_ways->ranges.empty()) {
+      for (const FigureRange& range : report.other_ways->ranges) {
+        if (!range.most.values.empty())
+          folder->write(box_file(range.key), scene_of_device(nominal, last, range.most, options).text());
+      }
+      left.emplace_back("box-*.toml (those of the box)");
+    }
+    text += left_in(folder->destination(report.interrupted), left);
     folder->publish(report.interrupted);
   }
   print_json_or(c, j, text);

@@ -38,6 +38,7 @@ struct RobustnessRequest {
   std::vector<std::string> results;  ///< whose drives are judged as well
   std::string points = "sobol";
   std::string calibration;             ///< what is measured on every device; empty: what the scene says
+  bool other_ways = false;             ///< ranges over a box, and polynomial chaos, beside the sample
   std::optional<std::string> samples;  ///< default: 2000
   std::optional<std::string> seed;     ///< default: 1
   std::optional<std::string> jobs;     ///< default: one per core

@@ -14,6 +14,8 @@ import re
 import subprocess
 import sys
 
+from tables import revision
+
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 FEW, MANY = 1000, 3000
 # In volts: nothing then has to find a pull-in voltage, which takes minutes under callgrind and is not counted.
@@ -85,13 +87,12 @@ def main():
     if len(sys.argv) not in (2, 3):
         sys.exit("usage: count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs] > results/instructions.md")
     program, before = sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else None
-    revision = subprocess.run(["git", "-C", SCENES, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
     print(f"""# Instructions of one right-hand side
 
 Contact closed, every drive at its peak. Counted by callgrind as the difference of {MANY} and {FEW} calls of `bench_rhs`.
 Percentages are against the scene as shipped; in the last column against the count of today.
 
-- made by `bench/count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs]`, {datetime.date.today().isoformat()}, revision {revision or 'unknown'}
+- made by `bench/count_instructions.py BUILD/bench/bench_rhs [BEFORE/bench/bench_rhs]`, {datetime.date.today().isoformat()}, revision {revision()}
 - machine: {platform.machine()}, {platform.system()} {platform.release()}; the counts depend on compiler and instruction set only
 """)
     print("| scene | change | instructions |" + (" before the effects existed |" if before else ""))

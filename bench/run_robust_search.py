@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 
-from tables import machine, prefixed
+from tables import machine, prefixed, revision
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 GOLD = ["mem-gold.toml", "--robust", "cvar:0.9"]
@@ -58,15 +58,13 @@ def row(name, drive, *more):
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     chosen = sys.argv[2:] or list(SEARCHES)
-    version = subprocess.run(["git", "-C", SCENES, "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
-                             check=True).stdout.strip()
     print(f"""# Searches over devices that differ
 
 `softland optimize ... --robust ...` on the shipped scenes with their own `[spread]` (2 % of thickness, 2 % of both gaps by one factor,
 3 % of the modulus, one standard deviation, normal; see the scenes for the others), each winner judged on 2000 devices that no search has seen, over the scene's whole
 window. 95 % of the devices are below the given values; in brackets 95 % confidence. v is the largest impact speed of all touches.
 
-- made by `bench/run_robust_search.py BUILD/apps/softland > results/robust-search.md`, {datetime.date.today()}, revision {version}
+- made by `bench/run_robust_search.py BUILD/apps/softland > results/robust-search.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}
 
 | search | v | B_H | t_i | without a rebound | cost on fresh devices (searched) | closings | time |

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-from tables import machine, prefixed
+from tables import machine, prefixed, revision
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 TASKS = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "pzt"), ("mem-gold-pzt.toml", "both"),
@@ -36,8 +36,6 @@ def quantiles(drive, key, unit):
 
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
-    version = subprocess.run(["git", "-C", SCENES, "rev-parse", "--short", "HEAD"], capture_output=True, text=True,
-                             check=True).stdout.strip()
     print(f"""# Winners on devices that differ
 
 `softland optimize SCENE --actuator ... --seed N`, then `softland robustness SCENE WINNER ... --samples {DEVICES}`: the same devices
@@ -45,7 +43,7 @@ for all, drawn from the scene's `[spread]` (2 % of thickness, 2 % of both gaps b
 the stiffness and 2 % of the mass instead; one standard deviation, normal), with the volts that the search found for the nominal
 device. Median / 95 % quantile; v is the largest impact speed of all touches.
 
-- made by `bench/run_robustness.py BUILD/apps/softland > results/robustness.md`, {datetime.date.today()}, revision {version}
+- made by `bench/run_robustness.py BUILD/apps/softland > results/robustness.md`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}
 
 A waveform in fixed volts that lands the drawing without a rebound does so on few devices. A dash: as many devices do not close, or

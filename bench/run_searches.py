@@ -8,13 +8,13 @@ Needs NumPy and SciPy. Takes about five minutes on two cores.
 """
 import datetime
 import json
-import os
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
 import time
+
+from tables import machine, revision
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCENES = HERE.parent / "scenes"
@@ -69,26 +69,18 @@ HEAD = """| scene | seed | evaluations | time [s] | step: t_p [us] | N_B | B_H [
 |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"""
 
 
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()
-
-
 def main():
     if len(sys.argv) != 2:
         sys.exit("usage: run_searches.py BUILD/apps/softland > results/searches.md")
     program = sys.argv[1]
-    revision = subprocess.run(["git", "-C", HERE, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
     print(f"""# Searches over seeds and variants
 
 `softland optimize SCENE --target bounce --actuator ... --waveform pulse --seed N [--set VARIANT]` with the default budgets. A significant
 rebound is one above 1 nm; "found" is what the search reports, "peer" what `bench/peers/closing_scipy.py` (SciPy's LSODA at rtol 1e-9, its
 own equations and modes, window 600 us) says of the exported `best.csv`.
 
-- made by `bench/run_searches.py BUILD/apps/softland > results/searches.md`, {datetime.date.today().isoformat()}, revision {revision or 'unknown'}
-- machine: {processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}
+- made by `bench/run_searches.py BUILD/apps/softland > results/searches.md`, {datetime.date.today().isoformat()}, revision {revision()}
+- machine: {machine()}
 """)
     for title, scene, actuator, variants in (("Electrostatic pulse, scenes/mem-gold.toml", "mem-gold.toml", "electrostatic", VARIANTS),
                                              ("PZT pulse within +-1 V, scenes/mem-gold-pzt.toml", "mem-gold-pzt.toml", "pzt", VARIANTS)):

@@ -9,13 +9,13 @@ With --keep the searches are kept in a file and not run again. Takes about ten m
 import argparse
 import datetime
 import json
-import os
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
 import time
+
+from tables import machine, revision
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCENES = HERE.parent / "scenes"
@@ -60,13 +60,6 @@ def beaten(mine, other):
     return other[0] < mine[0] or (other[0] == mine[0] and other[1] < (1 - TOLERATED) * mine[1])
 
 
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()
-
-
 def cell(value, scale):
     return "-" if value is None else f"{value * scale:.4g}"
 
@@ -80,14 +73,13 @@ def main():
     parser.add_argument("--keep", type=pathlib.Path)
     given = parser.parse_args()
     targets = given.targets.split(",")
-    revision = subprocess.run(["git", "-C", HERE, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
     print(f"""# Every target against every other
 
 `softland optimize SCENE --target T --actuator A --seed N --optimizer {given.optimizer}` with the default budgets. The last column names the other targets whose winner,
 on the same scene with the same seed, is better in this target's own figure by more than {TOLERATED:.0%}, or has no significant rebound where this one has.
 
-- made by `bench/run_targets.py BUILD/apps/softland > results/targets.md`, {datetime.date.today().isoformat()}, revision {revision or 'unknown'}
-- machine: {processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}
+- made by `bench/run_targets.py BUILD/apps/softland > results/targets.md`, {datetime.date.today().isoformat()}, revision {revision()}
+- machine: {machine()}
 """)
     kept = json.loads(given.keep.read_text()) if given.keep and given.keep.exists() else {}
     for seed in range(1, given.seeds + 1):

@@ -1,14 +1,16 @@
 """What the scripts that write tables for results/ share."""
 import os
+import pathlib
 import platform
+import subprocess
 
 
-def prefixed(value, unit):
+def prefixed(value, unit, digits=3):
     if value is None:
         return "-"
     for factor, prefix in ((1, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"), (1e-12, "p")):
         if abs(value) >= factor:
-            return f"{value / factor:.3g} {prefix}{unit}"
+            return f"{value / factor:.{digits}g} {prefix}{unit}"
     return f"0 {unit}"
 
 
@@ -16,3 +18,9 @@ def machine():
     with open("/proc/cpuinfo", encoding="utf-8") as info:
         names = [line.split(":", 1)[1].strip() for line in info if line.startswith("model name")]
     return f"{names[0] if names else platform.machine()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}"
+
+
+def revision():
+    """Of the sources that a table is made from, with a mark where they were changed since."""
+    return subprocess.run(["git", "-C", pathlib.Path(__file__).parent, "describe", "--always", "--dirty"], capture_output=True, text=True,
+                          check=True).stdout.strip()

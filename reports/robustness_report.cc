@@ -13,9 +13,11 @@
 #include "reports/escape.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
+#include "reports/other_ways_report.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
+#include "sampling/statistics.h"
 #include "version.h"
 #include "waveforms/export.h"
 
@@ -208,7 +210,7 @@ std::string knowledge_text(const Robustness& found) {
 }  // namespace
 
 json robustness_json(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
@@ -244,6 +246,7 @@ json robustness_json(const RobustnessReport& report) {
           {"drives", std::move(drives)},
           {"by_knowledge", std::move(by_knowledge)},
           {"sensitivity", sensitivity_json(sensitivity)},
+          {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal.scene.spread) : json(nullptr)},
           {"warnings", nominal.scene.warnings},
           {"scene", scene.json()},
           {"scene_toml", scene.text()},
@@ -253,7 +256,7 @@ json robustness_json(const RobustnessReport& report) {
 }
 
 std::string robustness_text(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().calibration;
@@ -286,6 +289,7 @@ std::string robustness_text(const RobustnessReport& report) {
     }
   }
   text += knowledge_text(found) + sensitivity_text(sensitivity);
+  if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal.scene.spread);
   text += "\n" +
           wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. A device "
                               "that does not close counts as the worst.",
@@ -297,7 +301,7 @@ std::string robustness_text(const RobustnessReport& report) {
 }
 
 std::string robustness_csv(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
   // Names may hold commas and quotes.
@@ -402,6 +406,55 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   return chart;
 }
 
+// How many devices have which value, in bins that all drives share, as far as the cumulative curves are shown: two kinds of
+// closings are two heaps.
+internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
+                                internal::CurveTables& tables) {
+  const EnsembleFigure& f = ensemble_figure(key);
+  const std::vector<DriveRobustness>& drives = report.found.drives;
+  internal::Chart chart = cumulative;
+  chart.id = "count" + cumulative.id.substr(cumulative.id.find('-'));
+  chart.title = fmt::format("{}: histogram", f.name);
+  chart.height = 150;
+  chart.y_home.reset();
+  chart.x_whole = chart.x_home;
+  chart.series.clear();
+  std::vector<std::vector<double>> values(drives.size());
+  std::vector<double> all;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    for (const DeviceOutcome& o : drives[i].outcomes) {
+      if (const double value = f.value(o); value <= chart.x_home[1]) values[i].push_back(value);
+    }
+    all.insert(all.end(), values[i].begin(), values[i].end());
+  }
+  if (all.empty()) return chart;
+  constexpr std::size_t most_bins = 80;
+  const Histogram bins = histogram(all, most_bins);
+  const double width = (bins.high - bins.low) / static_cast<double>(bins.counts.size());
+  if (!(width > 0)) return chart;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    std::vector<std::size_t> counts(bins.counts.size(), 0);
+    for (const double value : values[i])
+      ++counts[std::min(counts.size() - 1, static_cast<std::size_t>((value - bins.low) / width))];
+    const std::string name = fmt::format("{}-{}", chart.id, i);
+    internal::CurveTable& table = tables[name];
+    const auto point = [&](std::size_t edge, double share) {
+      table["x"].push_back(bins.low + static_cast<double>(edge) * width);
+      table["y"].push_back(share);
+    };
+    point(0, 0);
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      const double share = 100 * static_cast<double>(counts[k]) / static_cast<double>(drives[i].outcomes.size());
+      point(k, share);
+      point(k + 1, share);
+    }
+    point(counts.size(), 0);
+    chart.series.push_back({.table = name, .column = "y", .label = drives[i].name, .role = role_of(i, drives.size())});
+  }
+  chart.caption = fmt::format("Share of the devices in each interval of {}.", quantity(width, f.unit));
+  return chart;
+}
+
 internal::Chart course_chart(const RobustnessReport& report, internal::CurveTables& tables) {
   internal::Chart chart{
       .id = "courses",
@@ -437,7 +490,11 @@ internal::Chart course_chart(const RobustnessReport& report, internal::CurveTabl
 
 internal::Picture picture_of(const RobustnessReport& report) {
   internal::Picture drawn;
-  for (const std::string_view key : drawn_figures) drawn.charts.push_back(distribution_chart(report, key, drawn.tables));
+  for (const std::string_view key : drawn_figures) {
+    drawn.charts.push_back(distribution_chart(report, key, drawn.tables));
+    if (!drawn.charts.back().series.empty())
+      drawn.charts.push_back(histogram_chart(report, key, internal::Chart(drawn.charts.back()), drawn.tables));
+  }
   std::erase_if(drawn.charts, [](const internal::Chart& chart) { return chart.series.empty(); });
   if (!report.courses.empty()) drawn.charts.push_back(course_chart(report, drawn.tables));
   return drawn;
@@ -559,7 +616,7 @@ std::string keys_of(const Robustness& found) {
       const double q = quantile_95(d, key).value;
       return std::isfinite(q) ? quantity(q, f.unit) : std::string("not closed");
     };
-    keys += internal::key_html(label_html(f) + ", 95 %", value(own), before(value(step)));
+    keys += internal::key_html(label_html(f) + ", 95\u00a0%", value(own), before(value(step)));
   }
   return keys;
 }
@@ -567,7 +624,7 @@ std::string keys_of(const Robustness& found) {
 }  // namespace
 
 std::string robustness_html(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   const internal::Picture drawn = picture_of(report);
   std::string charts;
   for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
@@ -592,6 +649,7 @@ std::string robustness_html(const RobustnessReport& report) {
                          .keys = keys_of(found),
                          .body = section("charts", "How the devices differ", about + charts) + knowledge_table(found) +
                                  section("figures", "Figures", statistics_table(found)) + sensitivity_table(sensitivity) +
+                                 (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal.scene.spread) : "") +
                                  worst_table(report) + internal::reproduce(result) + internal::scene(result),
                          .style = internal::chart_style(),
                          .scripts = internal::chart_scripts(drawn)});

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "reports/result_maker.h"
+#include "studies/other_ways.h"
 #include "studies/robustness.h"
 
 namespace softland {
@@ -19,7 +21,8 @@ struct RobustnessReport {
   std::string command;  ///< the command line
   Sensitivity sensitivity = {};
   std::vector<DeviceCourse> courses = {};
-  bool interrupted = found.interrupted;  ///< in the study, or in what was to be known beside it
+  std::optional<OtherWays> other_ways = {};  ///< of the last drive as well
+  bool interrupted = found.interrupted;      ///< in the study, or in what was to be known beside it
 };
 
 [[nodiscard]] nlohmann::json robustness_json(const RobustnessReport& report);
@@ -29,8 +32,8 @@ struct RobustnessReport {
 /// figure that a device does not have is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
-/// A self-contained page, as html_report(): statistics, cumulative distributions, the closings of typical devices, what
-/// measuring is worth, where the spread comes from, the worst devices, failures.
+/// A self-contained page, as html_report(): statistics, cumulative distributions and histograms, the closings of typical devices,
+/// what measuring is worth, where the spread comes from, the other ways, the worst devices, failures.
 [[nodiscard]] std::string robustness_html(const RobustnessReport& report);
 
 }  // namespace softland

@@ -18,7 +18,7 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t chunk = 256;  // devices of one task
+constexpr std::size_t chunk = 128;  // devices of one task: many to a lane, few between two looks at a Watch
 
 // The figures of a lane.
 class LaneFigures final : public LandingObserver {
@@ -67,9 +67,14 @@ Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::uint64_t se
 Ensemble::Ensemble(const Prepared& nominal, const SobolDesign& design)
     : Ensemble(nominal, design.evaluations(), [design](std::uint64_t k, std::span<double> u) { design.point(k, u); }) {}
 
+std::vector<double> Ensemble::point(std::uint64_t k) const {
+  std::vector<double> u(nominal_->scene.spread.variables.size());
+  point_(k, u);
+  return u;
+}
+
 std::vector<double> Ensemble::values(std::uint64_t k) const {
-  std::vector<double> values(nominal_->scene.spread.variables.size());
-  point_(k, values);
+  std::vector<double> values = point(k);
   nominal_->scene.spread.to_values(values);
   return values;
 }
@@ -204,65 +209,70 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
   return outcomes;
 }
 
-std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, const std::vector<EnsembleDrive>& drives,
-                                                  const EnsembleRun& run, const Watch& watch) {
-  const Prepared& nominal = ensemble.nominal();
-  const ClosingOptions options{.duration = run.duration, .tolerance = run.tolerance, .stop = watch.stop};
+DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+                           const std::atomic<bool>* stop)
+    : nominal_(&nominal),
+      drives_(&drives),
+      options_{.duration = run.duration, .tolerance = run.tolerance, .stop = stop},
+      seed_(run.seed),
+      vectors_(run.vectors) {
   const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
-  const bool calibrated = any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); });
-  std::optional<DeviceMeter> meter;
-  if (calibrated) meter.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
-  std::vector<std::vector<Signal>> nominal_signals;
-  for (const EnsembleDrive& drive : drives) nominal_signals.push_back(signals_of(drive.waveforms));
+  if (any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); }))
+    meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
+  for (const EnsembleDrive& drive : drives) nominal_signals_.push_back(signals_of(drive.waveforms));
+}
 
-  std::vector<std::vector<DeviceOutcome>> outcomes(drives.size(), std::vector<DeviceOutcome>(ensemble.size()));
-  std::mutex telling;
-  std::atomic<std::size_t> done = 0;
-  const std::size_t all = ensemble.size() * drives.size();
-  const auto tell = [&](std::size_t more) {
-    done += more;
-    const std::scoped_lock lock(telling);
-    watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(all));
-  };
-  // Devices from `first` on under one drive.
-  const auto close = [&](std::size_t d, std::size_t first, std::span<const SampledDevice> devices,
-                         std::span<const DeviceUnits> exact) {
+std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const SampledDevice> devices,
+                                                                 std::uint64_t first) const {
+  std::vector<DeviceUnits> exact(devices.size());
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (meter_ && devices[i].model) exact[i] = meter_->exact(*devices[i].model);
+  }
+  std::vector<std::vector<DeviceOutcome>> outcomes(drives_->size(), std::vector<DeviceOutcome>(devices.size()));
+  const auto stopped = [&] { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); };
+  for (std::size_t d = 0; d < outcomes.size() && !stopped(); ++d) {
+    const EnsembleDrive& drive = (*drives_)[d];
     std::vector<std::vector<Signal>> own(devices.size());
     std::vector<DeviceClosing> closings;
     std::vector<std::size_t> places;
-    const Calibration& calibration = drives[d].calibration;
     for (std::size_t i = 0; i < devices.size(); ++i) {
-      const std::size_t k = first + i;
-      if (!calibration.is_empty() && devices[i].model) {
-        const DeviceUnits units = DeviceMeter::measured(exact[i], calibration, run.seed, k);
+      const std::vector<Signal>* signals = &nominal_signals_[d];
+      if (!drive.calibration.is_empty() && devices[i].model) {
+        const DeviceUnits units = DeviceMeter::measured(exact[i], drive.calibration, seed_, first + i);
         if (!std::isfinite(units.volts)) {
-          outcomes[d][k].failure = "its pull-in voltage cannot be measured";
+          outcomes[d][i].failure = "its pull-in voltage cannot be measured";
           continue;
         }
-        own[i] = signals_of(in_units(drives[d].waveforms, nominal.scene.device, units));
+        own[i] = signals_of(in_units(drive.waveforms, nominal_->scene.device, units));
+        signals = &own[i];
       }
-      places.push_back(k);
-      closings.push_back({.device = &devices[i], .signals = own[i].empty() ? &nominal_signals[d] : &own[i], .run = options});
+      places.push_back(i);
+      closings.push_back({.device = &devices[i], .signals = signals, .run = options_});
     }
-    std::vector<DeviceOutcome> closed = close_devices(closings, nominal.scene.metrics, run.vectors);
+    std::vector<DeviceOutcome> closed = close_devices(closings, nominal_->scene.metrics, vectors_);
     for (std::size_t n = 0; n < places.size(); ++n) outcomes[d][places[n]] = std::move(closed[n]);
-  };
+  }
+  return outcomes;
+}
+
+std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, const std::vector<EnsembleDrive>& drives,
+                                                  const EnsembleRun& run, const Watch& watch) {
+  const DeviceCloser closer(ensemble.nominal(), drives, run, watch.stop);
+  std::vector<std::vector<DeviceOutcome>> outcomes(drives.size(), std::vector<DeviceOutcome>(ensemble.size()));
+  std::mutex telling;
+  std::atomic<std::size_t> done = 0;
   const auto task = [&](std::size_t c) {
     DeviceBuilder builder(ensemble);
+    const std::size_t first = c * chunk;
     std::vector<SampledDevice> devices;
-    std::vector<DeviceUnits> exact;
-    for (std::size_t k = c * chunk; k < std::min<std::size_t>(ensemble.size(), (c + 1) * chunk) && !watch.stopped(); ++k) {
+    for (std::size_t k = first; k < std::min<std::size_t>(ensemble.size(), first + chunk); ++k)
       devices.push_back(builder.device(k));
-      exact.push_back(meter && devices.back().model ? meter->exact(*devices.back().model) : DeviceUnits{});
-    }
-    constexpr std::size_t together = 128;  // between two looks at `watch`
-    for (std::size_t first = 0; first < devices.size(); first += together) {
-      const std::size_t count = std::min(together, devices.size() - first);
-      for (std::size_t d = 0; d < drives.size() && !watch.stopped(); ++d) {
-        close(d, c * chunk + first, {devices.data() + first, count}, {exact.data() + first, count});
-        tell(count);
-      }
-    }
+    std::vector<std::vector<DeviceOutcome>> closed = closer(devices, first);
+    for (std::size_t d = 0; d < drives.size(); ++d)
+      std::move(closed[d].begin(), closed[d].end(), outcomes[d].begin() + static_cast<std::ptrdiff_t>(first));
+    done += devices.size();
+    const std::scoped_lock lock(telling);
+    watch.tell("devices of the spread", static_cast<double>(done) / static_cast<double>(ensemble.size()));
   };
   const std::size_t chunks = (ensemble.size() + chunk - 1) / chunk;
   std::size_t complete = std::min<std::size_t>(ensemble.size(), chunk * run_tasks(chunks, run.jobs, task, watch.stop));

@@ -1,6 +1,7 @@
 // Devices as they come from manufacturing: the switches of a scene's [spread], each a function of its number.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -36,6 +37,8 @@ class Ensemble {
 
   [[nodiscard]] const Prepared& nominal() const { return *nominal_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// Where device k is in the open unit cube: a coordinate for each varying quantity, before any correlation.
+  [[nodiscard]] std::vector<double> point(std::uint64_t k) const;
   /// Of the varying quantities of device k.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
   /// Whether a key may vary that other members of a scene follow, so that each is read anew.
@@ -140,6 +143,26 @@ struct DeviceClosing {
 /// one. All of the first one's tolerance. An outcome does not depend on what else is closed.
 [[nodiscard]] std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
                                                        Vectors vectors);
+
+/// Closes devices under drives, in the units of each device where they are calibrated.
+class DeviceCloser {
+ public:
+  /// Keeps references to `nominal` and `drives`. Throws what DeviceMeter throws.
+  DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
+               const std::atomic<bool>* stop = nullptr);
+  /// The outcomes of devices `first`, first + 1, ..., by drive; asked to stop, those that were not begun are unset.
+  [[nodiscard]] std::vector<std::vector<DeviceOutcome>> operator()(std::span<const SampledDevice> devices,
+                                                                   std::uint64_t first) const;
+
+ private:
+  const Prepared* nominal_;
+  const std::vector<EnsembleDrive>* drives_;
+  ClosingOptions options_;
+  std::uint64_t seed_;
+  Vectors vectors_;
+  std::optional<DeviceMeter> meter_;
+  std::vector<std::vector<Signal>> nominal_signals_;  // of every drive
+};
 
 /// The closings of all devices under each of these drives: the outcomes of a drive, by device. Asked to stop, they are those of
 /// the first devices.

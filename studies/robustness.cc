@@ -81,14 +81,6 @@ std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& dr
   return nominal.in_drive_order(drive.waveforms);
 }
 
-EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
-  return {.duration = nominal.duration,
-          .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
-          .seed = options.seed,
-          .jobs = options.jobs,
-          .vectors = options.vectors};
-}
-
 // The source of a device whose own units are larger than those of the nominal one has to give more.
 void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
   if (violation(signal, limits).empty()) return;
@@ -144,7 +136,7 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
                       const Watch& watch) {
   require(nominal.model.has_contact(), "robustness needs a [contact] section: without contact there is nothing to land on");
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
-  const EnsembleRun run = run_of(nominal, options);
+  const EnsembleRun run = internal::run_of(nominal, options);
   Robustness result{.duration = run.duration, .tolerance = run.tolerance};
   const Actuator driven = has_pulling_electrode(nominal.scene.device) ? Actuator::both : Actuator::pzt;
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
@@ -193,19 +185,14 @@ Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, s
   if (spread.copula) found.why_none = "what varies is correlated: shares of the variance cannot be told apart";
   if (spread.variables.size() < 2) found.why_none = "only one quantity varies: all is due to it";
   if (!found.why_none.empty()) return found;
-  Calibration exact = drive.calibration;
-  for (std::optional<double>* error : {&exact.pull_in_error, &exact.frequency_error}) {
-    if (*error) *error = 0;
-  }
   const Ensemble ensemble(nominal, SobolDesign(PointSet::sobol, spread.variables.size(), options.seed, rows));
-  const EnsembleDrive judged{.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
-                             .calibration = exact};
-  const std::vector<DeviceOutcome> outcomes = close_all(ensemble, {judged}, run_of(nominal, options), watch).front();
+  const std::vector<DeviceOutcome> outcomes =
+      close_all(ensemble, {internal::exactly_measured(nominal, drive)}, internal::run_of(nominal, options), watch).front();
   if (outcomes.size() < ensemble.size()) {
     found.why_none = "interrupted";
     return found;
   }
-  for (const std::string_view key : {"initial_contact_time_s", "largest_impact_velocity_m_s", "major_bounce_height_m"}) {
+  for (const std::string_view key : explained_figures) {
     std::vector<double> figures;
     for (const DeviceOutcome& o : outcomes) figures.push_back(ensemble_figure(key).value(o));
     found.figures.push_back({.key = key, .estimate = sobol_indices(spread.variables.size(), figures)});
@@ -242,14 +229,38 @@ std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRob
 SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
                           const RobustnessOptions& options) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
-  const std::vector<double> values = ensemble.values(device);
+  return internal::scene_of_values(ensemble, drive, ensemble.values(device), options.seed, device);
+}
+
+namespace internal {
+
+EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
+  return {.duration = nominal.duration,
+          .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
+          .seed = options.seed,
+          .jobs = options.jobs,
+          .vectors = options.vectors};
+}
+
+EnsembleDrive exactly_measured(const Prepared& nominal, const DriveRobustness& drive) {
+  EnsembleDrive exact{.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
+                      .calibration = drive.calibration};
+  for (std::optional<double>* error : {&exact.calibration.pull_in_error, &exact.calibration.frequency_error}) {
+    if (*error) *error = 0;
+  }
+  return exact;
+}
+
+SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,
+                          std::uint64_t seed, std::size_t device) {
+  const Prepared& nominal = ensemble.nominal();
   SceneFile file = ensemble.scene(values);
   std::vector<Waveform> own = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms});
   if (!drive.calibration.is_empty()) {
     const SampledDevice sampled = DeviceBuilder(ensemble).device(values);
     if (sampled.model) {
       const DeviceMeter meter(nominal, drive.calibration.pull_in_error.has_value());
-      const DeviceUnits units = DeviceMeter::measured(meter.exact(*sampled.model), drive.calibration, options.seed, device);
+      const DeviceUnits units = DeviceMeter::measured(meter.exact(*sampled.model), drive.calibration, seed, device);
       if (std::isfinite(units.volts)) own = in_units(own, nominal.scene.device, units);
     }
     file.erase("calibration");  // has been used
@@ -264,4 +275,5 @@ SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive,
   return file;
 }
 
+}  // namespace internal
 }  // namespace softland

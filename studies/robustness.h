@@ -82,6 +82,11 @@ struct Robustness {
   double tolerance = 0;  ///< of the integrator
 };
 
+/// Keys of the figures whose spread is explained: sensitivity(), other_ways().
+inline constexpr std::array explained_figures{std::string_view("initial_contact_time_s"),
+                                              std::string_view("largest_impact_velocity_m_s"),
+                                              std::string_view("major_bounce_height_m")};
+
 /// How a figure depends on what varies.
 struct FigureSensitivity {
   std::string_view key;  ///< of ensemble_figures()
@@ -89,7 +94,7 @@ struct FigureSensitivity {
 };
 struct Sensitivity {
   std::vector<std::string> variables;      ///< of the spread
-  std::vector<FigureSensitivity> figures;  ///< first contact, largest impact speed, highest rebound
+  std::vector<FigureSensitivity> figures;  ///< explained_figures
   std::string why_none;                    ///< empty where there are indices
 };
 
@@ -126,4 +131,16 @@ struct NamedDrive {
 [[nodiscard]] SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 
+namespace internal {
+
+/// Shared by what looks closer at a drive of a Robustness.
+[[nodiscard]] EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options);
+/// The drive, where measurements have no errors.
+[[nodiscard]] EnsembleDrive exactly_measured(const Prepared& nominal, const DriveRobustness& drive);
+/// The scene of the device with these values of the varying quantities; `device` is the number that the errors of its
+/// measurements belong to.
+[[nodiscard]] SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,
+                                        std::uint64_t seed, std::size_t device);
+
+}  // namespace internal
 }  // namespace softland

@@ -26,7 +26,7 @@ namespace softland::fleet {
 template <class V, template <class> class FringingOf, bool has_film>
 class Lanes {
   using M = typename V::mask_type;
-  static constexpr int width = static_cast<int>(V::size());
+  static constexpr std::size_t width = V::size();
   static constexpr int modes = most_modes;
   static constexpr int pieces = 3;  // of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on
   static constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -44,7 +44,7 @@ class Lanes {
       : layout_(layout), closings_(closings), count_(count) {}
 
   void run() {
-    for (int l = 0; l < width; ++l) fill(l);
+    for (std::size_t l = 0; l < width; ++l) fill(l);
     while (busy_ > 0) round();
   }
 
@@ -75,7 +75,7 @@ class Lanes {
     for (int k = 0; k < layout_.electrodes + (layout_.piezo ? 1 : 0); ++k) {
       volts_[k] = value_[k] + slope_[k] * (time - begin_[k]);
       if (!swings_[k]) continue;
-      for (int l = 0; l < width; ++l) {
+      for (std::size_t l = 0; l < width; ++l) {
         if (amplitude_[k][l] == 0 && amplitude_slope_[k][l] == 0) continue;
         const double t = time[l], envelope = amplitude_[k][l] + amplitude_slope_[k][l] * (t - begin_[k][l]);
         volts_[k][l] = volts_[k][l] + envelope * std::sin(frequency_[k][l] * t + phase_[k][l]);
@@ -316,7 +316,7 @@ class Lanes {
     }
   };
 
-  [[nodiscard]] Curve curve(int k, int l, double length) const {
+  [[nodiscard]] Curve curve(int k, std::size_t l, double length) const {
     const double h = length / pieces;
     const double p0 = knot_p_[k][l], p1 = knot_p_[k + 1][l], d = p1 - p0;
     const double v0 = knot_s_[k][l] * h, v1 = knot_s_[k + 1][l] * h;
@@ -326,7 +326,7 @@ class Lanes {
   }
 
   // Share of the step at which a lane leaves its side of the plane; above 1 where it does not.
-  [[nodiscard]] double crossing(int l, double length) const {
+  [[nodiscard]] double crossing(std::size_t l, double length) const {
     const double side = lane_[l].touching ? 1 : -1, level = plane_[l];
     bool inside = side * (position_[l] - level) > 0;
     for (int k = 0; k < pieces; ++k) {
@@ -351,7 +351,7 @@ class Lanes {
   }
 
   // The deepest, or highest, place of a lane in the step.
-  void deepen(int l, double length) {
+  void deepen(std::size_t l, double length) {
     Lane& lane = lane_[l];
     const double side = lane.touching ? 1 : -1;
     for (int k = 0; k < pieces; ++k) {
@@ -384,7 +384,7 @@ class Lanes {
 
   [[gnu::always_inline]] void settle(V h, V end, V error) {
     M taken(false);
-    for (int l = 0; l < width; ++l) taken[l] = consider(l, h[l], error[l]);
+    for (std::size_t l = 0; l < width; ++l) taken[l] = consider(l, h[l], error[l]);
     if (none_of(taken)) return;
     where(taken, t_) = end;
     for (int i = 0; i < modes; ++i) {
@@ -395,13 +395,13 @@ class Lanes {
     where(taken, position_) = knot_p_[pieces];
     where(taken, speed_) = knot_s_[pieces];
     where(taken, acceleration_) = knot_c_[pieces];
-    for (int l = 0; l < width; ++l) {
+    for (std::size_t l = 0; l < width; ++l) {
       if (taken[l]) go_on(l, h[l]);
     }
   }
 
   // Whether a lane takes its step; where not, what it tries next.
-  [[gnu::always_inline]] bool consider(int l, double h, double error) {
+  [[gnu::always_inline]] bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
     constexpr long most_rounds = 100'000;
@@ -442,7 +442,7 @@ class Lanes {
   }
 
   // Whether a step that was to end on the plane does: moves its end there where that is near, else the target.
-  [[gnu::always_inline]] bool arrives(int l, double h) {
+  [[gnu::always_inline]] bool arrives(std::size_t l, double h) {
     constexpr double short_of_a_radian = 1e-3;
     constexpr int most_corrections = 8;
     Lane& lane = lane_[l];
@@ -474,7 +474,7 @@ class Lanes {
   }
 
   // After a step that was taken.
-  [[gnu::always_inline]] void go_on(int l, double h) {
+  [[gnu::always_inline]] void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < floor_[l]) {
       give_up(l);
@@ -508,7 +508,7 @@ class Lanes {
   }
 
   // At a crossing of the plane.
-  void pass(int l) {
+  void pass(std::size_t l) {
     Lane& lane = lane_[l];
     const double t = t_[l], speed = speed_[l];
     if (!lane.touching) {
@@ -545,14 +545,14 @@ class Lanes {
     lane.most_growth = Pair::first_growth;
   }
 
-  void aim(int l, double target) {
+  void aim(std::size_t l, double target) {
     lane_[l].target = target;
     target_[l] = target;
     limit_[l] = target - t_[l];
   }
 
   // The drives go on to the pieces that hold from here on.
-  void enter_stretch(int l) {
+  void enter_stretch(std::size_t l) {
     Lane& lane = lane_[l];
     const LaneClosing& c = *lane.closing;
     const double t = t_[l];
@@ -579,7 +579,7 @@ class Lanes {
     aim(l, t);
   }
 
-  void weigh(int l) {
+  void weigh(std::size_t l) {
     const LaneSwitch& s = *lane_[l].closing->numbers;
     for (int i = 0; i < modes; ++i) {
       q_weight_[i][l] = i < s.modes ? 1 / (lane_[l].touching ? s.touching[i] : s.flying[i]) : 0;
@@ -587,7 +587,7 @@ class Lanes {
     }
   }
 
-  void finish(int l, bool followed) {
+  void finish(std::size_t l, bool followed) {
     Lane& lane = lane_[l];
     const double side = lane.touching ? 1 : -1, far = side * (position_[l] - plane_[l]);
     if (far > lane.extreme) lane.extreme = far;
@@ -605,13 +605,13 @@ class Lanes {
     fill(l);
   }
 
-  bool give_up(int l) {
+  bool give_up(std::size_t l) {
     finish(l, false);
     return false;
   }
 
   // Gives a lane the next closing.
-  void fill(int l) {
+  void fill(std::size_t l) {
     Lane& lane = lane_[l];
     const bool idle = next_ == count_;
     LaneClosing* const closing = closings_ + (idle ? count_ - 1 : next_++);

@@ -320,5 +320,23 @@ TEST(RobustSearch, RefusesToMeasureAPullInVoltageThatThereIsNot) {
   EXPECT_EQ(here.run({"robustness", "casimir.toml", "--samples", "4", "--quiet", "--calibrate", "frequency"}).status, 0);
 }
 
+TEST(Robustness, LeavesTheWorstDevicesOfTheBox) {
+  const Workplace here;
+  const Outcome o = here.run({"robustness", "gold.toml", "--set", "waveform.main.level=17.77 V", "--set",
+                              "simulate.duration=60 us", "--samples", "24", "--quiet", "--other-ways", "--out", "out"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("Other ways, under plain step"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("box-*.toml"), std::string::npos) << o.out;
+  const json box = json::parse(read(here.path() / "out/robustness.json"))["other_ways"]["box"];
+  EXPECT_LE(box["closings"], 1800) << "as --help says";
+  const Outcome latest = here.run({"simulate", "out/box-t_i.toml", "--quiet", "--json", "-"});
+  ASSERT_EQ(latest.status, 0) << latest.err;
+  constexpr double integrated_with = 1e-4;  // by another tolerance
+  const double first_contact = box["figures"]["initial_contact_time_s"]["most"]["value"];
+  EXPECT_NEAR(json::parse(latest.out)["metrics"]["initial_contact_time_s"].get<double>(), first_contact,
+              integrated_with * first_contact);
+  for (const char* name : {"box-v_max.toml", "box-B_H.toml"}) EXPECT_GT(fs::file_size(here.path() / "out" / name), 0U) << name;
+}
+
 }  // namespace
 }  // namespace softland

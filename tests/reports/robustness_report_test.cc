@@ -1,10 +1,14 @@
 // What the user reads of devices that differ, made here of outcomes that are easy to count.
 #include "reports/robustness_report.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -22,6 +26,7 @@ struct Study {
   Robustness found;
   Sensitivity sensitivity;
   std::vector<DeviceCourse> courses;
+  std::optional<OtherWays> other_ways;
 
   [[nodiscard]] RobustnessReport report() const {
     return {.nominal = nominal,
@@ -29,7 +34,8 @@ struct Study {
             .options = options,
             .command = "softland robustness 'a & b.toml'",
             .sensitivity = sensitivity,
-            .courses = courses};
+            .courses = courses,
+            .other_ways = other_ways};
   }
 };
 
@@ -47,6 +53,7 @@ const Study& study() {
                          s.options);
     s.sensitivity = sensitivity(s.nominal, s.found.drives.back(), 32, s.options);
     s.courses = device_courses(s.nominal, s.found.drives.back(), s.found, s.options);
+    s.other_ways = other_ways(s.nominal, s.found.drives.back(), s.options, {.closings_per_search = 10, .most_taught = 40});
     return s;
   }();
   return made;
@@ -57,11 +64,14 @@ TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth) {
   for (const char* words :
        {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step", "<slow>, \"mine\"",
         "Known of every device", "\nnothing ", "\nVdp and frequency ", "\nVdp ± 1.0 %, frequency exactly ",
-        "Share of the variance, alone / in all", "\nstructure.thickness "})
+        "Share of the variance, alone / in all", "\nstructure.thickness ", "Other ways, under <slow>, \"mine\"",
+        "\nWorst in the box: found by search ", "\nWorst B_H: gaps × ", "± 2.39 standard deviations"})
     EXPECT_THAT(text, HasSubstr(words));
   RobustnessReport bare = study().report();
   bare.sensitivity = {};
+  bare.other_ways = {};
   EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Share of the variance")));
+  EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Other ways")));
 }
 
 TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound) {
@@ -75,6 +85,33 @@ TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound) {
   const auto& index = study().sensitivity.figures[1].estimate.indices->total[0];
   EXPECT_EQ(j["sensitivity"]["figures"]["largest_impact_velocity_m_s"]["variables"]["gaps"]["total"]["value"], index.value);
   for (const DriveRobustness& d : study().found.drives) EXPECT_EQ(d.outcomes.size(), 64U);
+  const OtherWays& ways = study().other_ways.value();
+  const nlohmann::json& box = j["other_ways"]["box"];
+  EXPECT_EQ(box["closings"], ways.closings);
+  EXPECT_EQ(box["figures"]["major_bounce_height_m"]["most"]["value"], ways.ranges[2].most.figure);
+  EXPECT_EQ(box["figures"]["initial_contact_time_s"]["least"]["values"]["gaps"], ways.ranges[0].least.values[0]);
+  EXPECT_EQ(j["other_ways"]["polynomial_chaos"]["largest_impact_velocity_m_s"]["q2_other_devices"], ways.chaos[1].q2_unseen);
+}
+
+TEST(RobustnessReport, SaysWhereChaosFails) {
+  RobustnessReport report = study().report();
+  OtherWays ways = study().other_ways.value();
+  ways.left_out = 3;
+  ways.chaos[0].q2_unseen = 0.95;
+  ways.chaos[1].q2 = 0.99;  // the other devices know better
+  ways.chaos[1].q2_unseen = 0.4;
+  ways.chaos[2].q2 = ways.chaos[2].q2_unseen = Metrics::unset;
+  ways.ranges[2].most.figure = std::numeric_limits<double>::infinity();
+  report.other_ways = ways;
+  std::string text = robustness_text(report);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  EXPECT_THAT(text, HasSubstr("3 of them do not close; mean, deviation and quantile of chaos go on"));
+  EXPECT_THAT(text, HasSubstr("It predicts t_i of those that close. It fails for v_max (60.0 % of the variance): "));
+  EXPECT_THAT(text, HasSubstr("It says nothing of B_H"));
+  EXPECT_THAT(text, HasSubstr("not closed"));
+  const std::string page = robustness_html(report);
+  EXPECT_THAT(page, HasSubstr("It fails for v<sub>max</sub> (60.0"));
+  EXPECT_TRUE(robustness_json(report)["other_ways"]["box"]["figures"]["major_bounce_height_m"]["most"]["value"].is_null());
 }
 
 TEST(RobustnessReport, AsCsvHasALinePerDevice) {
@@ -90,7 +127,7 @@ TEST(RobustnessReport, AsCsvHasALinePerDevice) {
 
 TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
   const std::string page = robustness_html(study().report());
-  for (const char* id : {"charts", "knowledge", "figures", "sensitivity", "worst", "reproduce", "scene"})
+  for (const char* id : {"charts", "knowledge", "figures", "sensitivity", "ways", "worst", "reproduce", "scene"})
     EXPECT_THAT(page, HasSubstr(std::string("<section id=\"") + id + "\">")) << id;
   EXPECT_THAT(page, Not(HasSubstr("<slow>")));
   EXPECT_THAT(page, HasSubstr("&lt;slow&gt;, &quot;mine&quot;"));
@@ -98,6 +135,50 @@ TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
   EXPECT_THAT(page, HasSubstr("data-chart=\"share-v-max\""));
   EXPECT_THAT(page, HasSubstr("data-chart=\"courses\""));
   EXPECT_LT(page.size(), 1'000'000U);
+}
+
+// The heights of the bins, read from what the page's script draws: pairs of equal values, one pair per bin.
+std::vector<double> bins_of(const std::string& page, const std::string& table) {
+  const std::string mark = "id=\"data\">";
+  const std::size_t begin = page.find(mark) + mark.size();
+  const nlohmann::json y = nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin))["tables"][table]["y"];
+  double sum = 0;
+  std::vector<double> knots;
+  for (const auto& step : y["steps"]) knots.push_back((sum += step.get<double>()) * y["unit"].get<double>());
+  std::vector<double> bins;
+  for (std::size_t k = 1; k + 1 < knots.size(); k += 2) {
+    EXPECT_EQ(knots[k], knots[k + 1]);
+    bins.push_back(knots[k]);
+  }
+  EXPECT_EQ(knots.front(), 0);
+  EXPECT_EQ(knots.back(), 0);
+  return bins;
+}
+
+TEST(RobustnessReport, HasHistogramsOfAllDevicesInView) {
+  const std::string page = robustness_html(study().report());
+  double in_view = 0;
+  for (const DriveRobustness& d : study().found.drives) {
+    std::vector<double> heights;
+    for (const DeviceOutcome& o : d.outcomes) heights.push_back(o.metrics.major_bounce_height);
+    std::sort(heights.begin(), heights.end());
+    in_view = std::max(in_view, heights[64 * 99 / 100]);
+  }
+  std::size_t bins = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::vector<double> heights = bins_of(page, "count-B-H-" + std::to_string(i));
+    double all = 0;
+    for (const double height : heights) all += height;
+    double expected = 0;
+    for (const DeviceOutcome& o : study().found.drives[i].outcomes)
+      expected += o.metrics.major_bounce_height <= in_view ? 100.0 / 64 : 0;
+    constexpr double stored_to = 1e-4;
+    EXPECT_NEAR(all, expected, stored_to) << i;
+    EXPECT_GT(heights.size(), 3U);
+    EXPECT_TRUE(i == 0 || heights.size() == bins) << "all drives share the bins";
+    bins = heights.size();
+  }
+  for (const char* id : {"count-v-max", "count-t-i"}) EXPECT_THAT(page, HasSubstr(fmt::format("data-chart=\"{}\"", id)));
 }
 
 TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose) {
