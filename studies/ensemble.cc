@@ -179,28 +179,28 @@ DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal
 std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings, const MetricsOptions& options,
                                          Vectors vectors) {
   std::vector<DeviceOutcome> outcomes(closings.size());
-  std::vector<FleetClosing> lanes;
+  std::vector<FleetClosing> in_lanes;
   std::vector<std::size_t> places;
   std::vector<LaneFigures> figures(closings.size(), LaneFigures(options));
   for (std::size_t i = 0; i < closings.size(); ++i) {
     const auto& [device, signals, run] = closings[i];
     if (vectors == Vectors::none || !device->model) continue;
     places.push_back(i);
-    lanes.push_back({.model = &*device->model,
-                     .drives = *signals,
-                     .duration = run.duration,
-                     .after_contact = run.after_contact,
-                     .no_end_before = run.no_end_before,
-                     .no_contact_before = run.no_contact_before,
-                     .observer = &figures[i]});
+    in_lanes.push_back({.model = &*device->model,
+                        .drives = *signals,
+                        .duration = run.duration,
+                        .after_contact = run.after_contact,
+                        .no_end_before = run.no_end_before,
+                        .no_contact_before = run.no_contact_before,
+                        .observer = &figures[i]});
   }
   std::vector<bool> done(closings.size(), false);
-  if (!lanes.empty()) {
-    const std::vector<FleetEnd> ends = close_in_lanes(lanes, closings.front().run.tolerance, vectors);
+  if (!in_lanes.empty()) {
+    const std::vector<FleetEnd> ends = close_in_lanes(in_lanes, closings.front().run.tolerance, vectors);
     for (std::size_t n = 0; n < ends.size(); ++n) {
       if (!ends[n].followed) continue;
       done[places[n]] = true;
-      outcomes[places[n]] = figures[places[n]].outcome(*lanes[n].model, ends[n].time);
+      outcomes[places[n]] = figures[places[n]].outcome(*in_lanes[n].model, ends[n].time);
     }
   }
   for (std::size_t i = 0; i < closings.size(); ++i) {

@@ -218,7 +218,8 @@ TEST(DeviceCourses, AreThoseOfTheQuantilesOfTheHighestRebound) {
     int lower = 0;
     for (const DeviceOutcome& o : outcomes) lower += o.metrics.major_bounce_height < height;
     EXPECT_NEAR(lower, course.probability * 64, 1.5);
-    EXPECT_EQ(metrics(course.trajectory, study().nominal.scene.metrics).major_bounce_height, height) << "the same closing";
+    EXPECT_NEAR(metrics(course.trajectory, study().nominal.scene.metrics).major_bounce_height, height, 1e-4 * height)
+        << "the same closing, but alone";
   }
 }
 
