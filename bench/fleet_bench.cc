@@ -1,6 +1,6 @@
 // Closings per second and core of devices that differ, one at a time and in lanes, sampling and building included, and how far
 // the figures of both are apart.
-//   bench_fleet [SCENE [DEVICES]]     (default: mem-gold.toml 2000)
+//   bench_fleet [SCENE [DEVICES [ACCURACY]]]     (default: mem-gold.toml 2000 1e-4)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,12 +38,14 @@ struct Landed final : LandingObserver {
 int main(int argc, char** argv) {
   const std::string scene = argc > 1 ? argv[1] : std::string(SOFTLAND_SCENES) + "/mem-gold.toml";
   const std::uint64_t devices = argc > 2 ? std::stoul(argv[2]) : 2000;
-  const Prepared nominal = prepare(SceneFile::load(scene));
+  SceneFile file = SceneFile::load(scene);
+  file.set(fmt::format("simulate.accuracy={}", argc > 3 ? argv[3] : "1e-4"));
+  const Prepared nominal = prepare(file);
   const std::vector<Signal> signals = nominal.signals();
   const double window =
       std::max(0.6 * 2 * M_PI / nominal.model.angular_frequencies()[0], 2.5 * nominal.model.in_contact_period());
   const Ensemble ensemble(nominal, devices);
-  fmt::print("why not: '{}'\n", why_not_in_lanes(nominal.model));
+  if (const std::string why = why_not_in_lanes(nominal.model); !why.empty()) fmt::print("not in lanes: {}\n", why);
 
   double begin = seconds();
   std::vector<SampledDevice> all;

@@ -29,6 +29,7 @@ class Lanes {
   static constexpr std::size_t width = V::size();
   static constexpr int modes = most_modes;
   static constexpr int pieces = 3;  // of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on
+  static constexpr double most_rounds = 100'000;
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -53,20 +54,12 @@ class Lanes {
   struct Lane {
     LaneClosing* closing = nullptr;  // null: idle
     int piece[most_drives] = {};
-    bool starting = false;  // spends a round to find its accelerations
-    bool to_event = false;  // its target is a crossing of the plane
-    int corrections = 0;    // of that target
-    double target = 0;      // the next time to stop at [s]
-    double stop = 0;        // the next breakpoint, or the end of the window [s]
-    double until = 0;       // ends with the first step beyond [s]
-    double last_step = 0;   // that no stop cut short [s]
-    double longest = 0;     // that resolves the drives [s]
-    double most_growth = 0;
-    float last_error = 0;  // binary logarithm
+    int corrections = 0;  // of a target on the plane
+    double stop = 0;      // the next breakpoint, or the end of the window [s]
+    double longest = 0;   // that resolves the drives [s]
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
-    long rounds = 0;
   };
 
   // --- the equations -----------------------------------------------------------------------------------------------------------
@@ -365,27 +358,42 @@ class Lanes {
   // --- what follows from a step
   // --------------------------------------------------------------------------------------------------
 
-  // Binary logarithm and power to the digits that a step size needs.
-  [[gnu::always_inline]] static float half_log2(double x) {
-    const float clamped = static_cast<float>(x < 1e-36 ? 1e-36 : x > 1e36 ? 1e36 : x);
-    std::int32_t bits;
-    std::memcpy(&bits, &clamped, sizeof bits);
-    const float m = static_cast<float>(bits & 0x7FFFFF) * 0x1p-23F;
-    return 0.5F * (static_cast<float>((bits >> 23) - 127) + m * (1.4227F + m * (-0.5894F + 0.1667F * m)));
-  }
-  [[gnu::always_inline]] static float exp2(float x) {
-    const float z = x < -60.0F ? -60.0F : x > 60.0F ? 60.0F : x;
-    const float n = static_cast<float>(static_cast<std::int32_t>(z + 1000.5F) - 1000), r = z - n;
-    const std::int32_t power = (static_cast<std::int32_t>(n) + 127) << 23;
-    float two_n;
-    std::memcpy(&two_n, &power, sizeof two_n);
-    return two_n * (1 + r * (0.69315F + r * (0.24023F + r * (0.05550F + r * 0.00962F))));
+  // Binary logarithms and powers to the digits that a step size needs. Loops without branches: the compiler makes them vectors.
+  [[gnu::always_inline]] void control(V error) {
+    double squared[width];
+    error.copy_to(squared, std::experimental::element_aligned);
+    double growth[width];
+    for (std::size_t l = 0; l < width; ++l) {
+      const double above = squared[l] < 1e-36 ? 1e-36 : squared[l];
+      const auto x = static_cast<float>(above > 1e36 ? 1e36 : above);
+      std::int32_t bits;
+      std::memcpy(&bits, &x, sizeof bits);
+      const float m = static_cast<float>(bits & 0x7FFFFF) * 0x1p-23F;
+      const float log_error = 0.5F * (static_cast<float>((bits >> 23) - 127) + m * (1.4227F + m * (-0.5894F + 0.1667F * m)));
+      const float exponent = Pair::integral * last_error_[l] - Pair::proportional * log_error;
+      const float low = exponent < -60.0F ? -60.0F : exponent, z = low > 60.0F ? 60.0F : low;
+      const float n = static_cast<float>(static_cast<std::int32_t>(z + 1000.5F) - 1000), r = z - n;
+      const std::int32_t power = (static_cast<std::int32_t>(n) + 127) << 23;
+      float two_n;
+      std::memcpy(&two_n, &power, sizeof two_n);
+      const float two_z = two_n * (1 + r * (0.69315F + r * (0.24023F + r * (0.05550F + r * 0.00962F))));
+      log_error_[l] = log_error > Pair::least_error ? log_error : Pair::least_error;
+      growth[l] = Pair::safety * static_cast<double>(two_z);
+    }
+    growth_.copy_from(growth, std::experimental::element_aligned);
   }
 
   [[gnu::always_inline]] void settle(V h, V end, V error) {
-    M taken(false);
-    for (std::size_t l = 0; l < width; ++l) taken[l] = consider(l, h[l], error[l]);
-    if (none_of(taken)) return;
+    control(error);
+    rounds_ += V(1);
+    // Most lanes just go on; what is more than that is done lane by lane.
+    const M plain =
+        error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= floor_ && rounds_ < V(most_rounds);
+    M taken = plain;
+    if (!all_of(plain)) {
+      for (std::size_t l = 0; l < width; ++l)
+        if (!plain[l]) taken[l] = consider(l, h[l], error[l]);
+    }
     where(taken, t_) = end;
     for (int i = 0; i < modes; ++i) {
       where(taken, q_[i]) = trial_q_[i];
@@ -395,44 +403,45 @@ class Lanes {
     where(taken, position_) = knot_p_[pieces];
     where(taken, speed_) = knot_s_[pieces];
     where(taken, acceleration_) = knot_c_[pieces];
-    for (std::size_t l = 0; l < width; ++l) {
-      if (taken[l]) go_on(l, h[l]);
+    if (any_of(taken && turns_ && touched_)) {
+      for (std::size_t l = 0; l < width; ++l)
+        if (taken[l] && turns_[l] && touched_[l]) deepen(l, h[l]);
     }
+    where(taken, h_) = h * min(max(growth_, V(Pair::least_growth)), most_growth_);
+    where(taken, most_growth_) = V(Pair::most_growth);
+    where(taken && h < limit_ && !to_event_, last_step_) = h;
+    where(plain, limit_) = target_ - t_;
+    for (std::size_t l = 0; l < width; ++l) last_error_[l] = taken[l] ? log_error_[l] : last_error_[l];
+    if (all_of(plain)) return;
+    for (std::size_t l = 0; l < width; ++l)
+      if (taken[l] && !plain[l]) go_on(l, h[l]);
   }
 
   // Whether a lane takes its step; where not, what it tries next.
-  [[gnu::always_inline]] bool consider(std::size_t l, double h, double error) {
+  bool consider(std::size_t l, double h, double error) {
     Lane& lane = lane_[l];
     if (lane.closing == nullptr) return false;
-    constexpr long most_rounds = 100'000;
-    if (++lane.rounds > most_rounds) return give_up(l);
-    if (lane.starting) {
+    if (rounds_[l] >= most_rounds) return give_up(l);
+    if (starting_[l]) {
       for (int i = 0; i < modes; ++i) a_[i][l] = double(trial_a_[i][l]);
       acceleration_[l] = double(knot_c_[pieces][l]);
-      lane.starting = false;
-      h_[l] = lane.last_step < lane.longest ? lane.last_step : lane.longest;
+      starting_[l] = special_[l] = false;
+      set_step(l);
       aim(l, lane.stop);
       return false;
     }
-    if (!(error < infinite)) {  // not a number, or close to none
-      h_[l] = Pair::not_finite * h;
-      lane.most_growth = 1;
+    if (!(error <= 1)) {
+      h_[l] = h * (error < infinite ? clamped(growth_[l], Pair::least_growth, 0.9) : Pair::not_finite);
+      most_growth_[l] = 1;
       return t_[l] + h_[l] > t_[l] ? false : give_up(l);
     }
-    lane_error_[l] = half_log2(error);
-    if (error > 1) {
-      h_[l] = h * clamped(Pair::safety * double(exp2(Pair::integral * lane.last_error - Pair::proportional * lane_error_[l])),
-                          Pair::least_growth, 0.9);
-      lane.most_growth = 1;
-      return t_[l] + h_[l] > t_[l] ? false : give_up(l);
-    }
-    if (lane.to_event) return h < limit_[l] || arrives(l, h);
+    if (to_event_[l]) return h < limit_[l] || arrives(l, h);
     if (suspect_[l]) {
       const double at = crossing(l, h);
       if (at <= 1) {
-        lane.to_event = true;
+        to_event_[l] = special_[l] = true;
         lane.corrections = 0;
-        if (h < limit_[l]) lane.last_step = h;
+        if (h < limit_[l]) last_step_[l] = h;
         h_[l] = at * h;
         aim(l, t_[l] + at * h);
         return false;
@@ -463,7 +472,7 @@ class Lanes {
     const double depth = off < 0 ? -off : off;
     if (lane.corrections == most_corrections || depth <= lane.closing->numbers->negligible_depth) return true;
     ++lane.corrections;
-    const double target = lane.target + later;
+    const double target = target_[l] + later;
     if (!(target > t_[l])) return true;
     if (target > lane.stop) {
       aim(l, lane.stop);
@@ -473,30 +482,23 @@ class Lanes {
     return false;
   }
 
-  // After a step that was taken.
-  [[gnu::always_inline]] void go_on(std::size_t l, double h) {
+  // After a step that was taken and is more than that.
+  void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
     if (smallest_[l] < floor_[l]) {
       give_up(l);
       return;
     }
-    if (lane.touched && turns_[l]) deepen(l, h);
-    const float error = lane_error_[l];
-    const double growth = Pair::safety * double(exp2(Pair::integral * lane.last_error - Pair::proportional * error));
-    h_[l] = h * clamped(growth, Pair::least_growth, lane.most_growth);
-    lane.last_error = error > Pair::least_error ? error : Pair::least_error;
-    lane.most_growth = Pair::most_growth;
     const bool arrived = h >= limit_[l];
-    if (!arrived && !lane.to_event) lane.last_step = h;
-    if (arrived && lane.to_event) {
+    if (!arrived) {
+      limit_[l] = target_[l] - t_[l];
+    } else if (to_event_[l]) {
       t_[l] = double(t_[l]) + moved_[l];
       moved_[l] = 0;
       position_[l] = double(plane_[l]);
       pass(l);
-    } else if (!arrived) {
-      limit_[l] = lane.target - t_[l];
     }
-    if (t_[l] >= lane.until) {
+    if (t_[l] >= until_[l]) {
       finish(l, true);
     } else if (arrived && t_[l] >= lane.stop) {
       if (t_[l] >= lane.closing->duration) {
@@ -517,7 +519,8 @@ class Lanes {
       } else {
         const double over = t + lane.closing->after_contact;
         lane.touched = true;
-        lane.until = over > lane.closing->no_end_before ? over : lane.closing->no_end_before;
+        touched_[l] = true;
+        until_[l] = over > lane.closing->no_end_before ? over : lane.closing->no_end_before;
       }
       lane.begin = t;
       lane.speed = speed < 0 ? -speed : speed;
@@ -527,11 +530,11 @@ class Lanes {
     }
     lane.extreme = 0;
     lane.touching = !lane.touching;
-    lane.to_event = false;
+    to_event_[l] = special_[l] = false;
     touching_[l] = lane.touching;
     weigh(l);
-    begin_anew(lane);
-    h_[l] = lane.last_step < lane.longest ? lane.last_step : lane.longest;
+    begin_anew(l);
+    set_step(l);
     aim(l, lane.stop);
   }
 
@@ -540,13 +543,16 @@ class Lanes {
     if (lane.extreme > on_the_plane * lane.closing->numbers->plane) lane.closing->observer->rebound(lane.left, end, lane.extreme);
   }
 
-  void begin_anew(Lane& lane) {
-    lane.last_error = 0;
-    lane.most_growth = Pair::first_growth;
+  void begin_anew(std::size_t l) {
+    last_error_[l] = 0;
+    most_growth_[l] = Pair::first_growth;
+  }
+  void set_step(std::size_t l) {
+    const double last = last_step_[l], longest = lane_[l].longest;
+    h_[l] = last < longest ? last : longest;
   }
 
   void aim(std::size_t l, double target) {
-    lane_[l].target = target;
     target_[l] = target;
     limit_[l] = target - t_[l];
   }
@@ -573,8 +579,8 @@ class Lanes {
       }
     }
     max_step_[l] = lane.longest < most_turn_[l] ? lane.longest : most_turn_[l];
-    lane.starting = true;
-    begin_anew(lane);
+    starting_[l] = special_[l] = true;
+    begin_anew(l);
     h_[l] = 0;
     aim(l, t);
   }
@@ -637,14 +643,15 @@ class Lanes {
     per_unknown_[l] = 1.0 / (2 * s.modes);
     fastest_[l] = fastest;
     most_turn_[l] = 2 / fastest;
-    touching_[l] = false;
+    touching_[l] = touched_[l] = to_event_[l] = false;
     weigh(l);
+    rounds_[l] = 0;
     t_[l] = position_[l] = speed_[l] = acceleration_[l] = 0;
     moved_[l] = 0;
-    lane.until = closing->no_contact_before;
-    lane.last_step = 0.01 / fastest;
+    until_[l] = closing->no_contact_before;
+    last_step_[l] = 0.01 / fastest;
     enter_stretch(l);
-    if (idle) lane.closing = nullptr;
+    if (idle) lane.closing = nullptr;  // and stays special
   }
 
   // The parameters of the laws follow those of the switches.
@@ -683,8 +690,14 @@ class Lanes {
   V slope_q_[7][modes], slope_v_[7][modes];
   V t_, h_, max_step_, limit_, target_, position_, speed_, acceleration_, smallest_;
   V knot_p_[pieces + 1], knot_s_[pieces + 1], knot_c_[pieces + 1];
-  M touching_{false}, suspect_{false}, turns_{false};
-  float lane_error_[width] = {};
+  M touching_{false}, touched_{false}, suspect_{false}, turns_{false};
+  M starting_{false};  // spends a round to find its accelerations
+  M to_event_{false};  // its target is a crossing of the plane
+  M special_{false};   // either of both, or idle
+  V until_;            // ends with the first step beyond [s]
+  V last_step_;        // that no stop cut short [s]
+  V growth_, most_growth_, rounds_;
+  float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms
   double moved_[width] = {};
 };
 
