@@ -30,7 +30,7 @@ Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<vo
   });
   reads_anew_ = nominal.scene.device.structure.kind == StructureKind::plate;  // its length follows its area and width
   for (const SpreadVariable& variable : nominal.scene.spread.variables) {
-    for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || !key.member;
+    for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || (!key.member && !key.drive);
   }
 }
 
@@ -54,8 +54,9 @@ SceneFile Ensemble::scene(const std::vector<double>& values) const {
   file.erase("spread");
   const DeviceSpread& spread = nominal_->scene.spread;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    for (const VariedKey& key : spread.variables[i].keys)
-      file.assign(key.path, DeviceSpread::value(spread.variables[i], key, values[i]));
+    for (const VariedKey& key : spread.variables[i].keys) {
+      if (!key.drive) file.assign(key.path, DeviceSpread::value(spread.variables[i], key, values[i]));
+    }
   }
   return file;
 }
@@ -85,7 +86,9 @@ void DeviceBuilder::describe(SampledDevice& sampled) {
   if (!ensemble_->reads_anew()) {
     for (std::size_t i = 0; i < sampled.values.size(); ++i) {
       const SpreadVariable& variable = nominal.scene.spread.variables[i];
-      for (const VariedKey& key : variable.keys) key.member(scratch_) = DeviceSpread::value(variable, key, sampled.values[i]);
+      for (const VariedKey& key : variable.keys) {
+        if (!key.drive) key.member(scratch_) = DeviceSpread::value(variable, key, sampled.values[i]);
+      }
     }
     sampled.model.emplace(scratch_.device, nominal.quadrature, &nominal.model);
     return;
@@ -128,13 +131,6 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
   return units;
 }
 
-std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device, const DeviceUnits& units) {
-  std::vector<Waveform> own = waveforms;
-  for (std::size_t k = 0; k < own.size(); ++k)
-    own[k] = scaled(std::move(own[k]), k < device.electrodes.size() ? units.volts : 1, units.time);
-  return own;
-}
-
 DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
                            const ClosingOptions& run) {
   if (!device.model) return {.metrics = {}, .failure = device.refusal};
@@ -154,6 +150,7 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
   const bool calibrated = any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); });
   std::optional<DeviceMeter> meter;
   if (calibrated) meter.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
+  const DeviceDrives own(nominal);
   std::vector<std::vector<Signal>> nominal_signals;
   for (const EnsembleDrive& drive : drives) nominal_signals.push_back(signals_of(drive.waveforms));
 
@@ -165,14 +162,14 @@ std::vector<std::vector<DeviceOutcome>> close_all(const Ensemble& ensemble, cons
     DeviceUnits exact;
     if (meter && device.model) exact = meter->exact(*device.model);
     for (std::size_t d = 0; d < drives.size() && !watch.stopped(); ++d) {
-      const Calibration& calibration = drives[d].calibration;
-      if (calibration.is_empty() || !device.model) {
-        outcomes[d][k] = close_device(device, nominal_signals[d], nominal.scene.metrics, options);
-      } else if (const DeviceUnits units = DeviceMeter::measured(exact, calibration, run.seed, k); std::isfinite(units.volts)) {
-        outcomes[d][k] = close_device(device, signals_of(in_units(drives[d].waveforms, nominal.scene.device, units)),
-                                      nominal.scene.metrics, options);
-      } else {
+      const DeviceUnits units = DeviceMeter::measured(exact, drives[d].calibration, run.seed, k);
+      if (!std::isfinite(units.volts)) {
         outcomes[d][k].failure = "its pull-in voltage cannot be measured";
+      } else if (device.model && own.differ(units)) {
+        outcomes[d][k] =
+            close_device(device, own.signals(drives[d].waveforms, units, device.values), nominal.scene.metrics, options);
+      } else {
+        outcomes[d][k] = close_device(device, nominal_signals[d], nominal.scene.metrics, options);
       }
     }
   };

@@ -64,7 +64,7 @@ BuiltEnsemble build_all(const Ensemble& ensemble, const Calibration& calibration
 }
 
 RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble)
-    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)) {
+    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)), drives_(setting.given) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
@@ -88,10 +88,9 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
   run_tasks(outcomes.size(), jobs, [&](std::size_t i) {
     const SampledDevice& device = ensemble_.devices[first + i];
     const DeviceUnits& units = ensemble_.units[first + i];
-    const bool own = device.model && (units.volts != 1 || units.time != 1);
-    std::vector<Signal> in_its_units;
-    if (own) in_its_units = signals_of(in_units(waveforms, setting_.given.scene.device, units));
-    const std::vector<Signal>& signals = own ? in_its_units : nominal;
+    std::vector<Signal> own;
+    if (device.model && drives_.differ(units)) own = drives_.signals(waveforms, units, device.values);
+    const std::vector<Signal>& signals = own.empty() ? nominal : own;
     const double end = last_breakpoint(signals);
     outcomes[i] = close_device(device, signals, setting_.given.scene.metrics,
                                {.duration = end + wait_ + window_,

@@ -44,6 +44,14 @@ TEST(SourceErrors, OfNothingLeaveTheBits) {
   }
 }
 
+TEST(SourceErrors, OfNothingLeaveTheBitsOfRampsThatEndInAJump) {
+  for (int i = 1; i <= 300; ++i) {
+    const double jump = i * 1e-7 / 3;
+    const Signal given = signal(Table{.time = {0, jump, jump, 2e-4}, .voltage = {i / 7.0, i / 3.0, 1, 0.3 * i}});
+    EXPECT_EQ(with_errors(given, {}).pieces(), given.pieces()) << i;
+  }
+}
+
 TEST(SourceErrors, ADelayIsATableOfLaterRows) {
   constexpr double delay = 50e-9;
   Table late = rows(signal(throw_and_catch));
@@ -85,6 +93,7 @@ TEST(SourceErrors, AJumpARampAndACornerAreEdges) {
   EXPECT_EQ(edge_count(signal(throw_and_catch)), 3U);
   EXPECT_EQ(edge_count(signal(corners)), 4U);
   EXPECT_EQ(edge_count(signal(Pulse{.levels = {0, 5}, .times = {10e-6}})), 1U) << "0 V at t = 0 is no edge";
+  EXPECT_EQ(with_errors(signal(Pulse{.levels = {0, 5}, .times = {10e-6}}), {.delay = 1e-6}).pieces().size(), 2U);
   EXPECT_EQ(edge_count(Signal()), 0U);
   EXPECT_EQ(edge_count(signal(dither)), 3U) << "the base, and both fades as a whole";
   EXPECT_EQ(first_edge(Signal(), {.delay = -1}), std::numeric_limits<double>::infinity());
@@ -103,6 +112,8 @@ TEST(SourceErrors, EveryEdgeMovesByATimeOfItsOwn) {
     EXPECT_EQ(moved.pieces()[i].value, expected.pieces()[i].value) << i;
     EXPECT_NEAR(moved.pieces()[i].slope, expected.pieces()[i].slope, 1e-9 * 2e7) << i;
   }
+  EXPECT_DOUBLE_EQ(first_edge(given, {.delay = -3e-6, .edges = {1e-6}}), -2e-6);
+  EXPECT_DOUBLE_EQ(with_errors(given, {.delay = 3e-6, .edges = {-1e-6}}).pieces()[1].begin, 2e-6) << "a delay beside it";
   // Corners move alone, and their voltages with them.
   const Signal bent = with_errors(signal(corners), {.edges = {0, 1e-6, -1e-6}});
   EXPECT_NEAR(bent.voltage(11e-6), 10, 1e-9);
@@ -146,6 +157,12 @@ TEST(SourceErrors, ACarrierKeepsItsPhaseWhereItsEndsMove) {
   };
   EXPECT_NEAR(envelope(moved, 22e-6), 0.5, 1e-9);
   EXPECT_NEAR(envelope(moved, 77e-6), 0.5, 1e-9);
+  // Where fades meet, their corner is an edge, and both go on to meet there.
+  Harmonic tent = dither;
+  tent.fade = 40e-6;
+  const Signal leaning = with_errors(signal(tent), {.edges = {0, 0, 4e-6}});
+  EXPECT_NEAR(envelope(leaning, 32e-6), 0.5, 1e-9);
+  EXPECT_NEAR(envelope(leaning, 72e-6), 0.5, 1e-9);
 }
 
 TEST(SourceErrors, AreFinite) {
