@@ -27,6 +27,7 @@ enum class Stream : std::uint64_t {
   folds = 10,        ///< which figures a cross-validation holds back together
   measurement = 11,  ///< errors of what is measured on a device
   fresh = 12,        ///< seeds of devices that a search has not seen
+  jitter = 13,       ///< times by which the edges of a drive are late
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.
@@ -50,7 +51,12 @@ enum class Stream : std::uint64_t {
   return to_unit_interval(random_bits(seed, stream, counter));
 }
 
-/// From the standard normal distribution: its quantile at one of 2^52 equidistant probabilities, so that the size is at most 8.2.
+/// Uniform in (0, 1), as the quantiles of distributions need it: the middle of one of 2^52 intervals.
+[[nodiscard]] constexpr double random_probability(std::uint64_t seed, Stream stream, std::uint64_t counter) {
+  return (static_cast<double>(random_bits(seed, stream, counter) >> 12) + 0.5) * 0x1p-52;
+}
+
+/// From the standard normal distribution: its quantile at a random probability, so that the size is at most 8.2.
 [[nodiscard]] double random_normal(std::uint64_t seed, Stream stream, std::uint64_t counter);
 
 }  // namespace softland

@@ -32,14 +32,10 @@ std::vector<std::string_view> drive_names(const Device& device) {
 
 /// Every [section.NAME] must name a drive of the device.
 void check_names(const SceneFile::Impl& file, const std::string& section, const Device& device) {
-  const std::vector<std::string_view> known = drive_names(device);
   for (const std::string& name : file.names_in(section)) {
     const std::string path = join_path(section, name);
     if (name == dispersion_drive && section == "driver") file.fail_section(path, "a force factor has no driver limits");
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    if (name == piezo_drive) file.fail_section(path, "there is no [piezo] layer to drive");
-    if (name == dispersion_drive) file.fail_section(path, "there is no [dispersion] force to drive");
-    file.fail_section(path, "no such electrode" + hint(name, known));
+    if (const std::string why = why_no_drive(device, name); !why.empty()) file.fail_section(path, why);
   }
 }
 
@@ -259,6 +255,14 @@ Waveform raised(Waveform waveform, double by) {
       },
       waveform);
   return waveform;
+}
+
+std::string why_no_drive(const Device& device, const std::string& name) {
+  const std::vector<std::string_view> known = drive_names(device);
+  if (std::find(known.begin(), known.end(), name) != known.end()) return {};
+  if (name == piezo_drive) return "there is no [piezo] layer to drive";
+  if (name == dispersion_drive) return "there is no [dispersion] force to drive";
+  return "no such electrode" + hint(name, known);
 }
 
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode) {

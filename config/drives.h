@@ -25,6 +25,9 @@ inline constexpr std::string_view file_key = "file";            ///< of the rows
 /// The waveform with every level raised by `by`.
 [[nodiscard]] Waveform raised(Waveform waveform, double by);
 
+/// Why the device has no drive of this name, with a hint; empty where it has.
+[[nodiscard]] std::string why_no_drive(const Device& device, const std::string& name);
+
 /// Throws InvalidInput for an electrode name that cannot name a drive.
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode);
 

@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <set>
 #include <utility>
 #include <variant>
 
 #include "base/csv.h"
+#include "base/random.h"
 #include "base/read_file.h"
 #include "base/require.h"
+#include "config/drives.h"
 #include "config/section_reader.h"
 #include "config/spread_reader.h"
 
@@ -19,7 +22,19 @@ namespace softland {
 
 void DeviceSpread::to_values(std::span<double> u) const {
   if (copula) copula->correlate(u);
-  for (std::size_t i = 0; i < variables.size(); ++i) u[i] = variables[i].distribution.quantile(u[i]);
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    if (!variables[i].is_drawn_per_edge) u[i] = variables[i].distribution.quantile(u[i]);
+  }
+}
+
+bool DeviceSpread::varies_drives() const {
+  return std::any_of(variables.begin(), variables.end(), [](const SpreadVariable& variable) {
+    return std::any_of(variable.keys.begin(), variable.keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
+  });
+}
+
+double DeviceSpread::jitter(const SpreadVariable& variable, double x, std::uint64_t edge) {
+  return variable.distribution.quantile(random_probability(std::bit_cast<std::uint64_t>(x), Stream::jitter, edge));
 }
 
 namespace internal {
@@ -31,6 +46,47 @@ struct FoundKey {
   std::vector<Dimension> dimensions;
 };
 
+std::function<std::string(double)> refusal_outside(const Range& range, const std::string& unit) {
+  return [range, unit](double value) { return range.contains(value) ? std::string() : range.rule(unit); };
+}
+
+struct DriveErrorRow {
+  DriveError value;
+  std::string_view name;
+  double nominal;  // [SI unit]
+  Dimension dimension;
+};
+constexpr std::array drive_errors{
+    DriveErrorRow{DriveError::gain, "gain", 1, dimension::none},
+    DriveErrorRow{DriveError::offset, "offset", 0, dimension::voltage},
+    DriveErrorRow{DriveError::delay, "delay", 0, dimension::time},
+    DriveErrorRow{DriveError::jitter, "jitter", 0, dimension::time},
+};
+static_assert(is_complete<drive_errors>());
+
+/// The error of a drive that an entry of [spread] names. Throws InvalidInput unless it has this error.
+FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, const SectionReader& in,
+                          const std::vector<std::string>& parts) {
+  const std::string name = fmt::format("{}", fmt::join(parts, "."));
+  const auto fail = [&](const std::string& why) {
+    file.fail_section(in.path(), fmt::format("'{}' is not an error of a drive, such as driver.main.gain{}", name, why));
+  };
+  if (parts.size() != 3) fail("");
+  if (parts[1] == dispersion_drive) fail(": a force factor has no source");
+  if (const std::string why = why_no_drive(device, parts[1]); !why.empty()) fail(": " + why);
+  const auto* error = find_named(drive_errors, parts[2]);
+  if (error == nullptr) fail(hint(parts[2], names_of(drive_errors)));
+  const bool is_factor = error->value == DriveError::gain;
+  const Range range = Key{.range = is_factor ? Range{.least = 0, .least_open = true} : Range{}}.range_of(error->dimension);
+  return {.varied = {.path = name,
+                     .unit = unit_symbol(error->dimension),
+                     .nominal = error->nominal,
+                     .member = {},
+                     .drive = VariedDrive{.name = parts[1], .error = error->value},
+                     .refusal = refusal_outside(range, unit_symbol(error->dimension))},
+          .dimensions = {error->dimension}};
+}
+
 /// The key that an entry of [spread] names. Throws InvalidInput unless it is a number that is in force in this scene.
 FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader& in, const std::string& name) {
   std::vector<std::string> parts;
@@ -39,6 +95,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
   } catch (const InvalidInput& error) {
     file.fail_section(in.path(), error.what());
   }
+  if (parts.front() == "driver") return find_drive_error(file, scene.device, in, parts);
   std::vector<std::string_view> candidates;
   const std::string entry_name = parts.size() > 1 ? parts[1] : std::string();
   const Section* section = find_section(parts.front(), entry_name);
@@ -52,9 +109,13 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) {
       const Key& key = *of_key.find(parts.back());
       const Quantity given = of_key.quantities(key.name).front();
-      FoundKey found{
-          .varied = {.path = name, .unit = unit_symbol(given.dimension), .nominal = given.value, .member = {}, .refusal = {}},
-          .dimensions = {given.dimension}};
+      FoundKey found{.varied = {.path = name,
+                                .unit = unit_symbol(given.dimension),
+                                .nominal = given.value,
+                                .member = {},
+                                .drive = {},
+                                .refusal = {}},
+                     .dimensions = {given.dimension}};
       if (key.bound.number != nullptr) {
         std::size_t entry = 0;
         if (section->name == "electrode") {
@@ -63,9 +124,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
         }
         found.varied.member = [number = key.bound.number, entry](Scene& s) -> double& { return number(s, entry); };
       }
-      found.varied.refusal = [range = key.range_of(given.dimension), unit = found.varied.unit](double value) {
-        return range.contains(value) ? std::string() : range.rule(unit);
-      };
+      found.varied.refusal = refusal_outside(key.range_of(given.dimension), found.varied.unit);
       return found;
     }
   }
@@ -86,7 +145,12 @@ class Scale {
     }
     if (in.is_given("unit")) check("unit", unit().dimension);
     if (is_factor_) return;
-    in_.require(keys_.size() == 1, blamed_, "several keys vary by one factor: give a percentage");
+    in_.require(ratio_.empty() || nominal() != 0, ratio_, "is a ratio to a value that is 0");
+    const auto& first = keys_.front().varied.drive;
+    const bool are_one_error = first && std::all_of(keys_.begin(), keys_.end(), [&](const FoundKey& key) {
+                                 return key.varied.drive && key.varied.drive->error == first->error;
+                               });
+    in_.require(keys_.size() == 1 || are_one_error, blamed_, "several keys vary by one factor: give a percentage");
   }
 
   [[nodiscard]] bool is_factor() const { return is_factor_; }
@@ -112,7 +176,10 @@ class Scale {
  private:
   // A plain number is a ratio, whatever the key; anything else must be of its dimension.
   void check(std::string_view key, const Dimension& given) {
-    if (given == dimension::none) return;
+    if (given == dimension::none) {
+      ratio_ = key;
+      return;
+    }
     const std::vector<Dimension>& allowed = keys_.front().dimensions;
     in_.require(std::find(allowed.begin(), allowed.end(), given) != allowed.end(), key,
                 fmt::format("expected {}, got {}", describe(allowed.front()), describe(given)));
@@ -123,7 +190,7 @@ class Scale {
   const SectionReader& in_;
   const std::vector<FoundKey>& keys_;
   bool is_factor_ = true;
-  std::string_view blamed_;
+  std::string_view blamed_, ratio_;
 };
 
 /// The values of an empirical distribution that stand in a file, in its unit.
@@ -195,8 +262,17 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
   const Scale scale(in, keys);
   SpreadVariable variable{.name = name, .keys = {}, .is_factor = scale.is_factor(), .distribution = Distribution(Normal{1, 1})};
   for (FoundKey& key : keys) {
-    if (scale.is_factor() && key.varied.nominal == 0)
-      in.fail(fmt::format("{} is 0 in this scene, and stays 0 by any factor", key.varied.path));
+    const VariedKey& varied = key.varied;
+    if (scale.is_factor() && varied.nominal == 0) {
+      in.fail(varied.drive ? fmt::format("{} is nominally 0, and stays 0 by any factor: give it a distribution in {}",
+                                         varied.path, varied.unit)
+                           : fmt::format("{} is 0 in this scene, and stays 0 by any factor", varied.path));
+    }
+    if (varied.drive && varied.drive->error == DriveError::jitter) {
+      // Its value is no time, but what the times of the edges are drawn from.
+      variable.is_drawn_per_edge = true;
+      key.varied.refusal = [](double) { return std::string(); };
+    }
     variable.keys.push_back(std::move(key.varied));
   }
   try {
@@ -238,6 +314,8 @@ void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
       const auto found = std::find(names.begin(), names.end(), name);
       require_that(found != names.end(), fmt::format("'{}' does not vary{}", name, hint(name, known)));
       at[i] = found - names.begin();
+      require_that(!spread.variables[static_cast<std::size_t>(at[i])].is_drawn_per_edge,
+                   fmt::format("'{}' is drawn anew for every edge: there is no correlation with it", name));
     }
     require_that(at[0] != at[1], fmt::format("'{}' is correlated with itself", names[static_cast<std::size_t>(at[0])]));
     require_that(spread.correlation(at[0], at[1]) == 0,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -18,14 +19,29 @@ namespace softland {
 
 struct Scene;
 
+/// An error of the source of a drive.
+enum class DriveError {
+  gain,    ///< factor of its volts, nominally 1
+  offset,  ///< [V] from t = 0 on
+  delay,   ///< [s] of the whole waveform
+  jitter,  ///< [s] of every edge on its own
+};
+
+struct VariedDrive {
+  std::string name;
+  DriveError error;
+};
+
 /// A number of a scene that varies from device to device.
 struct VariedKey {
-  std::string path;    ///< "structure.thickness"
+  std::string path;    ///< "structure.thickness", "driver.main.gain"
   std::string unit;    ///< SI unit
   double nominal = 0;  ///< the scene's value
   /// The member of a scene with the same sections. Null where the key sets no member by itself: then the scene has to be read
   /// anew with this value.
   std::function<double&(Scene&)> member;
+  /// Of an error of a drive, which is no key of the scene and has no member.
+  std::optional<VariedDrive> drive;
   /// Why a device cannot have this value; empty where it can.
   std::function<std::string(double)> refusal;
 };
@@ -36,6 +52,9 @@ struct SpreadVariable {
   std::vector<VariedKey> keys;
   bool is_factor = true;  ///< it multiplies the scene's values; else it is the value of its one key
   Distribution distribution;
+  /// Of jitter: the distribution is that of every edge of every device. What a device has is a number in (0, 1), from which the
+  /// generator draws for its edges.
+  bool is_drawn_per_edge = false;
 };
 
 struct DeviceSpread {
@@ -44,12 +63,17 @@ struct DeviceSpread {
   std::optional<GaussianCopula> copula;   ///< none where all are independent
 
   [[nodiscard]] bool empty() const { return variables.empty(); }
-  /// Turns a point of the open unit cube into values of the variables [SI unit, or factor], in place.
+  /// Whether there are errors of drives among what varies.
+  [[nodiscard]] bool varies_drives() const;
+  /// Turns a point of the open unit cube into values of the variables [SI unit, factor, or for jitter a number in (0, 1)], in
+  /// place.
   void to_values(std::span<double> u) const;
   /// The value of a key where its variable has the value `x` [SI unit].
   [[nodiscard]] static double value(const SpreadVariable& variable, const VariedKey& key, double x) {
     return variable.is_factor ? key.nominal * x : x;
   }
+  /// The time by which an edge is late [s], where the value of its variable is `x`; edges are numbered over all drives.
+  [[nodiscard]] static double jitter(const SpreadVariable& variable, double x, std::uint64_t edge);
 };
 
 namespace internal {

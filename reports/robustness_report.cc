@@ -55,9 +55,14 @@ json figures_json(const DeviceOutcome& outcome) {
   return all;
 }
 
+// Of the varying quantities of device k.
+std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
+  return DeviceDrives(ensemble.nominal()).shown(ensemble.values(k));
+}
+
 json device_json(const Ensemble& ensemble, const DriveRobustness& drive, std::size_t k) {
   json values = json::object();
-  const std::vector<double> of_device = ensemble.values(k);
+  const std::vector<double> of_device = shown_values(ensemble, k);
   const std::vector<SpreadVariable>& variables = ensemble.nominal().scene.spread.variables;
   for (std::size_t i = 0; i < variables.size(); ++i) values[variables[i].name] = of_device[i];
   json one{{"device", k},
@@ -123,6 +128,10 @@ std::string spread_words(const DeviceSpread& spread) {
                          name_of(distribution_kinds, v.distribution.kind()));
   }
   return words;
+}
+
+std::string_view error_words(const DeviceSpread& spread) {
+  return spread.varies_drives() ? " The sources of the drives err as the spread says." : "";
 }
 
 // "Vdp ± 1 %, frequency ± 0.5 %"
@@ -260,12 +269,13 @@ std::string robustness_text(const RobustnessReport& report) {
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().calibration;
-  text += wrapped(fmt::format("{} devices of the spread: {}. {}", found.devices, spread_words(nominal.scene.spread),
+  text += wrapped(fmt::format("{} devices of the spread: {}. {}{}", found.devices, spread_words(nominal.scene.spread),
                               calibration.is_empty()
                                   ? "All have the volts that were designed for the nominal device."
                                   : "The plain step has the volts of the nominal device, every other drive the units of each "
                                     "device, known of it: " +
-                                        calibration_words(calibration) + ".")) +
+                                        calibration_words(calibration) + ".",
+                              error_words(nominal.scene.spread))) +
           "\n\n";
   if (found.devices == 0) return text;
   constexpr std::size_t label = 34;
@@ -318,7 +328,7 @@ std::string robustness_csv(const RobustnessReport& report) {
   text += "\n";
   for (std::size_t k = 0; k < found.devices; ++k) {
     text += std::to_string(k);
-    for (const double value : ensemble.values(k)) text += fmt::format(",{}", value);
+    for (const double value : shown_values(ensemble, k)) text += fmt::format(",{}", value);
     for (const DriveRobustness& d : found.drives) {
       const DeviceOutcome& o = d.outcomes[k];
       text += fmt::format(",{}", o.failure.empty() ? std::string(to_string(o.metrics.status)) : cell(o.failure));
@@ -575,7 +585,7 @@ std::string worst_table(const RobustnessReport& report) {
   std::vector<TableRow> rows;
   for (const std::size_t k : last.worst) {
     TableRow& row = rows.emplace_back(TableRow{fmt::format("{}", k)});
-    const std::vector<double> values = ensemble.values(k);
+    const std::vector<double> values = shown_values(ensemble, k);
     for (std::size_t i = 0; i < values.size(); ++i)
       row.emplace_back(variables[i].is_factor ? fmt::format("× {:.4f}", values[i])
                                               : quantity(values[i], variables[i].keys.front().unit, 5));
@@ -635,12 +645,13 @@ std::string robustness_html(const RobustnessReport& report) {
   const auto [main, rest] = headline_of(found);
   const Calibration& calibration = found.drives.back().calibration;
   std::string about = fmt::format(
-      "<p>{} devices of the spread ({} points): {}. {}</p>\n", found.devices, name_of(point_sets, options.points),
+      "<p>{} devices of the spread ({} points): {}. {}{}</p>\n", found.devices, name_of(point_sets, options.points),
       escaped(spread_words(nominal.scene.spread)),
       calibration.is_empty() ? "All have the volts that were designed for the nominal device."
                              : "The plain step has the volts of the nominal device; every other drive is in the units of each "
                                "device, known of it: " +
-                                   calibration_words(calibration) + ".");
+                                   calibration_words(calibration) + ".",
+      error_words(nominal.scene.spread));
   if (found.interrupted) about += "<p>Interrupted: these are not all devices.</p>\n";
   return internal::page({.title = nominal.scene.title,
                          .origin = "robustness",

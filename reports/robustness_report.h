@@ -28,8 +28,8 @@ struct RobustnessReport {
 [[nodiscard]] nlohmann::json robustness_json(const RobustnessReport& report);
 [[nodiscard]] std::string robustness_text(const RobustnessReport& report);
 
-/// A line per device: its number, the varying quantities [SI unit, or factor], and for every drive its status and figures; a
-/// figure that a device does not have is empty.
+/// A line per device: its number, the varying quantities [SI unit, or factor; of jitter the time drawn for the first edge], and
+/// for every drive its status and figures; a figure that a device does not have is empty.
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// A self-contained page, as html_report(): statistics, cumulative distributions and histograms, the closings of typical devices,

@@ -55,7 +55,7 @@ Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<vo
   });
   reads_anew_ = nominal.scene.device.structure.kind == StructureKind::plate;  // its length follows its area and width
   for (const SpreadVariable& variable : nominal.scene.spread.variables) {
-    for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || !key.member;
+    for (const VariedKey& key : variable.keys) reads_anew_ = reads_anew_ || (!key.member && !key.drive);
   }
 }
 
@@ -84,8 +84,9 @@ SceneFile Ensemble::scene(const std::vector<double>& values) const {
   file.erase("spread");
   const DeviceSpread& spread = nominal_->scene.spread;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    for (const VariedKey& key : spread.variables[i].keys)
-      file.assign(key.path, DeviceSpread::value(spread.variables[i], key, values[i]));
+    for (const VariedKey& key : spread.variables[i].keys) {
+      if (!key.drive) file.assign(key.path, DeviceSpread::value(spread.variables[i], key, values[i]));
+    }
   }
   return file;
 }
@@ -115,7 +116,9 @@ void DeviceBuilder::describe(SampledDevice& sampled) {
   if (!ensemble_->reads_anew()) {
     for (std::size_t i = 0; i < sampled.values.size(); ++i) {
       const SpreadVariable& variable = nominal.scene.spread.variables[i];
-      for (const VariedKey& key : variable.keys) key.member(scratch_) = DeviceSpread::value(variable, key, sampled.values[i]);
+      for (const VariedKey& key : variable.keys) {
+        if (!key.drive) key.member(scratch_) = DeviceSpread::value(variable, key, sampled.values[i]);
+      }
     }
     sampled.model.emplace(scratch_.device, nominal.quadrature, &nominal.model);
     return;
@@ -156,13 +159,6 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
   if (calibration.pull_in_error) units.volts = exact.volts * reading(*calibration.pull_in_error, 0);
   if (calibration.frequency_error) units.time = exact.time / reading(*calibration.frequency_error, 1);
   return units;
-}
-
-std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device, const DeviceUnits& units) {
-  std::vector<Waveform> own = waveforms;
-  for (std::size_t k = 0; k < own.size(); ++k)
-    own[k] = scaled(std::move(own[k]), k < device.electrodes.size() ? units.volts : 1, units.time);
-  return own;
 }
 
 DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
@@ -215,7 +211,8 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
       drives_(&drives),
       options_{.duration = run.duration, .tolerance = run.tolerance, .stop = stop},
       seed_(run.seed),
-      vectors_(run.vectors) {
+      vectors_(run.vectors),
+      device_drives_(nominal) {
   const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
   if (any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); }))
     meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
@@ -237,13 +234,13 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < devices.size(); ++i) {
       const std::vector<Signal>* signals = &nominal_signals_[d];
-      if (!drive.calibration.is_empty() && devices[i].model) {
-        const DeviceUnits units = DeviceMeter::measured(exact[i], drive.calibration, seed_, first + i);
-        if (!std::isfinite(units.volts)) {
-          outcomes[d][i].failure = "its pull-in voltage cannot be measured";
-          continue;
-        }
-        own[i] = signals_of(in_units(drive.waveforms, nominal_->scene.device, units));
+      const DeviceUnits units = DeviceMeter::measured(exact[i], drive.calibration, seed_, first + i);
+      if (!std::isfinite(units.volts)) {
+        outcomes[d][i].failure = "its pull-in voltage cannot be measured";
+        continue;
+      }
+      if (devices[i].model && device_drives_.differ(units)) {
+        own[i] = device_drives_.signals(drive.waveforms, units, devices[i].values);
         signals = &own[i];
       }
       places.push_back(i);

@@ -16,13 +16,14 @@
 #include "objectives/metrics.h"
 #include "sampling/points.h"
 #include "sampling/sobol_indices.h"
+#include "studies/device_drives.h"
 #include "studies/prepared.h"
 
 namespace softland {
 
 /// One device of an ensemble.
 struct SampledDevice {
-  std::vector<double> values;   ///< of the varying quantities, in the order of the spread [SI unit, or factor]
+  std::vector<double> values;   ///< of the varying quantities, in the order of the spread, as DeviceSpread::to_values
   std::optional<Switch> model;  ///< none where no such device can be described
   std::string refusal;          ///< why
 };
@@ -83,11 +84,6 @@ struct DeviceOutcome {
   [[nodiscard]] bool closed() const { return failure.empty() && std::isfinite(metrics.major_bounce_height); }
 };
 
-/// What is known of a device, over what holds for the nominal one: factors of the voltages and of the times of its drives.
-struct DeviceUnits {
-  double volts = 1, time = 1;
-};
-
 /// Measures devices against the nominal one, with the errors of a calibration.
 class DeviceMeter {
  public:
@@ -113,14 +109,11 @@ class DeviceMeter {
 };
 
 /// The drives that every device gets: the waveforms of the nominal device, or, where devices are calibrated, those in the units
-/// of each one. The voltages of a piezo do not follow the pull-in voltage, nor does the factor of a dispersion force.
+/// of each one; with the errors of its sources where these vary.
 struct EnsembleDrive {
   std::vector<Waveform> waveforms;  ///< in the order of Switch::drives() [V]
   Calibration calibration = {};
 };
-/// Of one device.
-[[nodiscard]] std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device,
-                                             const DeviceUnits& units);
 
 struct EnsembleRun {
   double duration = 0;      ///< window [s]
@@ -160,6 +153,7 @@ class DeviceCloser {
   ClosingOptions options_;
   std::uint64_t seed_;
   Vectors vectors_;
+  DeviceDrives device_drives_;
   std::optional<DeviceMeter> meter_;
   std::vector<std::vector<Signal>> nominal_signals_;  // of every drive
 };

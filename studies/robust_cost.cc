@@ -64,7 +64,7 @@ BuiltEnsemble build_all(const Ensemble& ensemble, const Calibration& calibration
 }
 
 RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors)
-    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)), vectors_(vectors) {
+    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)), drives_(setting.given), vectors_(vectors) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
@@ -93,10 +93,9 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
     for (std::size_t i = begin; i < end; ++i) {
       const SampledDevice& device = ensemble_.devices[first + i];
       const DeviceUnits& units = ensemble_.units[first + i];
-      std::vector<Signal>& in_its_units = own[i - begin];
-      if (device.model && (units.volts != 1 || units.time != 1))
-        in_its_units = signals_of(in_units(waveforms, setting_.given.scene.device, units));
-      const std::vector<Signal>& signals = in_its_units.empty() ? nominal : in_its_units;
+      std::vector<Signal>& of_device = own[i - begin];
+      if (device.model && drives_.differ(units)) of_device = drives_.signals(waveforms, units, device.values);
+      const std::vector<Signal>& signals = of_device.empty() ? nominal : of_device;
       const double over = last_breakpoint(signals);
       closings.push_back({.device = &device,
                           .signals = &signals,

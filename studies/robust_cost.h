@@ -63,6 +63,7 @@ class RobustCost {
   const SearchSetting& setting_;
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
+  DeviceDrives drives_;
   Vectors vectors_;
   DeviceOutcome step_;           // of the nominal device
   double window_, tail_, wait_;  // after first touch, after the last breakpoint, for a touch [s]

@@ -81,12 +81,17 @@ std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& dr
   return nominal.in_drive_order(drive.waveforms);
 }
 
-// The source of a device whose own units are larger than those of the nominal one has to give more.
+// The source of a device whose own units or errors are larger than those of the nominal one has to give more.
 void allow(SceneFile& file, const std::string& driver, const Signal& signal, const DriverLimits& limits) {
   if (violation(signal, limits).empty()) return;
   if (signal.maximum() > limits.max_voltage) file.assign(driver + ".max_voltage", signal.maximum());
   if (signal.minimum() < limits.min_voltage) file.assign(driver + ".min_voltage", signal.minimum());
-  if (signal.peak_slew() > limits.max_slew) file.assign(driver + ".max_slew", signal.peak_slew());
+  if (!(signal.peak_slew() > limits.max_slew)) return;
+  if (std::isfinite(signal.peak_slew())) {
+    file.assign(driver + ".max_slew", signal.peak_slew());
+  } else {
+    file.erase(driver + ".max_slew");  // an offset is there at once
+  }
 }
 
 // The same drive for every knowledge that one can have of a device, from nothing to all that can be measured, without errors.
@@ -255,19 +260,22 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
                           std::uint64_t seed, std::size_t device) {
   const Prepared& nominal = ensemble.nominal();
   SceneFile file = ensemble.scene(values);
-  std::vector<Waveform> own = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms});
+  DeviceUnits units;
   if (!drive.calibration.is_empty()) {
     const SampledDevice sampled = DeviceBuilder(ensemble).device(values);
     if (sampled.model) {
       const DeviceMeter meter(nominal, drive.calibration.pull_in_error.has_value());
-      const DeviceUnits units = DeviceMeter::measured(meter.exact(*sampled.model), drive.calibration, seed, device);
-      if (std::isfinite(units.volts)) own = in_units(own, nominal.scene.device, units);
+      units = DeviceMeter::measured(meter.exact(*sampled.model), drive.calibration, seed, device);
+      if (!std::isfinite(units.volts)) units = {};
     }
     file.erase("calibration");  // has been used
   }
+  const DeviceDrives drives(nominal);
+  const std::vector<Waveform> own =
+      drives.waveforms(waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}), units, values);
   const std::vector<std::string> names = nominal.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (!drive.waveforms.contains(names[k])) continue;
+    if (!drive.waveforms.contains(names[k]) && !drives.has_errors(k)) continue;
     file.set_waveform(names[k], own[k]);
     if (const auto limits = nominal.drives.limits.find(names[k]); limits != nominal.drives.limits.end())
       allow(file, "driver." + names[k], signal(own[k]), limits->second);

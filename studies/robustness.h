@@ -126,8 +126,8 @@ struct NamedDrive {
 [[nodiscard]] std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRobustness& drive,
                                                        const Robustness& found, const RobustnessOptions& options);
 
-/// The scene of a device of that ensemble under one of its drives: what `simulate` runs to the same closing, as
-/// Ensemble::scene().
+/// The scene of a device of that ensemble under one of its drives, with the errors of its sources written out: what `simulate`
+/// runs to the same closing, as Ensemble::scene(), but for a sine whose times or volts are off (DeviceDrives::waveforms).
 [[nodiscard]] SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive, std::size_t device,
                                         const RobustnessOptions& options);
 

@@ -283,6 +283,30 @@ TEST(RobustSearch, LeavesWhatRobustnessFindsAgain) {
   EXPECT_NE(o.out.find("Searched over 16 devices"), std::string::npos) << o.out;
 }
 
+TEST(RobustSearch, DrivesDevicesBySourcesThatErr) {
+  const Workplace here;
+  std::string scene = edited(shipped("mem-gold.toml"), "accuracy = 1e-6", "tolerance = 1e-5");  // that of robustness
+  scene +=
+      "\"driver.main.gain\" = { distribution = \"normal\", cov = \"0.5 %\" }\n"
+      "\"driver.main.offset\" = { distribution = \"uniform\", half_width = \"20 mV\" }\n"
+      "\"driver.main.jitter\" = { distribution = \"normal\", standard_deviation = \"50 ns\" }\n";
+  write(here.path() / "gold.toml", scene);
+  ASSERT_EQ(search(here, "out", {"--robust", "cvar:0.9", "--samples", "8"}, "700").status, 0);
+  const Outcome o = here.run({"robustness", "out/best.toml", "--samples", "40", "--quiet", "--out", "devices"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("driver.main.jitter ± 50 ns (normal)"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("The sources of the drives err as the spread says."), std::string::npos) << o.out;
+  const std::string header = lines(read(here.path() / "devices/devices.csv")).front();
+  EXPECT_EQ(header.find("device,driver.main.gain,driver.main.jitter,driver.main.offset,gaps,"), 0U) << header;
+  // The worst device is a scene of its own, whose closing is the same to the bit.
+  const json worst = json::parse(read(here.path() / "devices/robustness.json"))["drives"].back()["worst"][0];
+  const Outcome again = here.run({"simulate", "devices/worst-1.toml", "--quiet", "--json", "-"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  const json own = json::parse(again.out)["metrics"];
+  for (const char* key : {"initial_contact_time_s", "impact_velocity_m_s", "major_bounce_height_m", "bounce_count"})
+    EXPECT_EQ(own[key], worst["figures"][key]) << key;
+}
+
 TEST(RobustSearch, KeepsItsBestWhenInterrupted) {
   const Workplace here;
   std::vector<std::string> more = over_devices;

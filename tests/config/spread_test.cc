@@ -172,6 +172,64 @@ correlation = [["structure.thickness", "gaps", 0.3], ["gaps", "piezo.d31", -0.2]
   }
 }
 
+TEST(Spread, OfADrivesErrors) {
+  const DeviceSpread spread = spread_of(R"(
+"driver.main.offset" = { distribution = "uniform", half_width = "20 mV" }
+amplifier = { keys = ["driver.main.gain", "driver.piezo.gain"], distribution = "normal", cov = "0.5 %" }
+trigger = { keys = ["driver.main.delay", "driver.piezo.delay"], distribution = "normal", standard_deviation = "20 ns" }
+"driver.piezo.jitter" = { distribution = "normal", standard_deviation = "50 ns", truncate_low = "-100 ns" }
+"structure.thickness" = { distribution = "normal", cov = "2 %" }
+correlation = [["amplifier", "trigger", 0.5]]
+)");
+  EXPECT_TRUE(spread.varies_drives());
+  ASSERT_EQ(spread.variables.size(), 5U);  // by name
+  const SpreadVariable &gain = spread.variables[0], &offset = spread.variables[1], &jitter = spread.variables[2],
+                       &delay = spread.variables[4];
+  EXPECT_TRUE(gain.is_factor);
+  EXPECT_EQ(gain.distribution.mean(), 1);
+  EXPECT_NEAR(gain.distribution.standard_deviation(), 0.005, rounding);
+  ASSERT_EQ(gain.keys.size(), 2U);
+  EXPECT_EQ(gain.keys[1].path, "driver.piezo.gain");
+  EXPECT_EQ(gain.keys[1].drive->name, "piezo");
+  EXPECT_EQ(gain.keys[1].drive->error, DriveError::gain);
+  EXPECT_EQ(DeviceSpread::value(gain, gain.keys[1], 1.01), 1.01);
+  EXPECT_NE(gain.keys[0].refusal(-0.1), "");
+  EXPECT_FALSE(offset.is_factor);
+  EXPECT_NEAR(offset.distribution.support().low, -0.02, rounding);
+  EXPECT_EQ(offset.keys[0].unit, "V");
+  EXPECT_EQ(offset.keys[0].refusal(-0.1), "") << "an offset may be negative";
+  // Of one error several drives have the same value.
+  ASSERT_EQ(delay.keys.size(), 2U);
+  EXPECT_EQ(DeviceSpread::value(delay, delay.keys[0], 3e-8), 3e-8);
+  EXPECT_EQ(DeviceSpread::value(delay, delay.keys[1], 3e-8), 3e-8);
+  EXPECT_TRUE(jitter.is_drawn_per_edge);
+  EXPECT_FALSE(gain.is_drawn_per_edge);
+  EXPECT_FALSE(spread_of(R"("structure.thickness" = { distribution = "normal", cov = "2 %" })").varies_drives());
+}
+
+TEST(Spread, DrawsJitterForEveryEdgeOfEveryDevice) {
+  const SpreadVariable jitter =
+      spread_of(R"("driver.main.jitter" = { distribution = "normal", standard_deviation = "50 ns" })").variables.at(0);
+  DeviceSpread spread;
+  spread.variables.push_back(jitter);
+  constexpr int devices = 4000;
+  double squares = 0, of_edges = 0, of_devices = 0;
+  for (int k = 0; k < devices; ++k) {
+    std::vector<double> u{(k + 0.5) / devices}, next{(k + 1.5) / devices};
+    spread.to_values(u);
+    EXPECT_EQ(u[0], (k + 0.5) / devices) << "stays what the times are drawn from";
+    const double first = DeviceSpread::jitter(jitter, u[0], 0);
+    squares += first * first;
+    of_edges += first * DeviceSpread::jitter(jitter, u[0], 1);
+    of_devices += first * DeviceSpread::jitter(jitter, next[0], 0);
+    EXPECT_EQ(first, DeviceSpread::jitter(jitter, u[0], 0)) << "a function of device and edge";
+  }
+  constexpr double variance = 50e-9 * 50e-9, sigmas = 4;
+  EXPECT_NEAR(squares / devices, variance, sigmas * variance * std::sqrt(2.0 / devices));
+  EXPECT_NEAR(of_edges / devices, 0, sigmas * variance / std::sqrt(devices)) << "edges are independent";
+  EXPECT_NEAR(of_devices / devices, 0, sigmas * variance / std::sqrt(devices)) << "and so are devices";
+}
+
 struct Bad {
   std::string lines, rule;
 };
@@ -194,6 +252,29 @@ TEST(Spread, RefusesWhatMakesNoSense) {
       {R"("structure.thickness" = { distribution = "normal", cov = "2 %", truncate_low = "130 %" })", "truncate_low"},
       {R"("structure.thickness" = { distribution = "empirical", values = ["4 um"] })", "values"},
       {R"("structure.thickness" = { distribution = "lognormal", standard_deviation = "1 GPa" })", "expected a length [m]"},
+      {R"("driver.mian.gain" = { distribution = "normal", cov = "1 %" })",
+       "'driver.mian.gain' is not an error of a drive, such as driver.main.gain: no such electrode (did you mean 'main'?)"},
+      {R"("driver.dispersion.gain" = { distribution = "normal", cov = "1 %" })", ": a force factor has no source"},
+      {R"("driver.main.gian" = { distribution = "normal", cov = "1 %" })",
+       "'driver.main.gian' is not an error of a drive, such as driver.main.gain (did you mean 'gain'?)"},
+      {R"("driver.main.max_voltage" = { distribution = "normal", cov = "1 %" })", "(known: gain, offset, delay, jitter)"},
+      {R"("driver.gain" = { distribution = "normal", cov = "1 %" })", "'driver.gain' is not an error of a drive"},
+      {R"(driver = { distribution = "normal", cov = "1 %" })", "'driver' is not an error of a drive"},
+      {R"("driver.main.gain.now" = { distribution = "normal", cov = "1 %" })",
+       "'driver.main.gain.now' is not an error of a drive"},
+      {R"("driver.main.offset" = { distribution = "normal", cov = "1 %" })",
+       "driver.main.offset is nominally 0, and stays 0 by any factor: give it a distribution in V"},
+      {R"("driver.main.offset" = { distribution = "normal", standard_deviation = "5 ns" })",
+       R"(spread."driver.main.offset".standard_deviation = "5 ns": expected a voltage [V], got a time [s])"},
+      {R"("driver.main.gain" = { distribution = "normal", standard_deviation = "5 mV" })",
+       "expected a plain number, got a voltage [V]"},
+      {R"("driver.main.delay" = { distribution = "normal", standard_deviation = "5 ns", truncate_high = "200 %" })",
+       "is a ratio to a value that is 0"},
+      {R"(times = { keys = ["driver.main.delay", "driver.main.jitter"], distribution = "normal", standard_deviation = "5 ns" })",
+       "several keys vary by one factor: give a percentage"},
+      {thickness + "\n\"driver.main.jitter\" = { distribution = \"normal\", standard_deviation = \"5 ns\" }\n" +
+           "correlation = [[\"structure.thickness\", \"driver.main.jitter\", 0.3]]",
+       "'driver.main.jitter' is drawn anew for every edge: there is no correlation with it"},
       {thickness + "\ncorrelation = 3", "expected a list such as"},
       {thickness + "\ncorrelation = [[\"structure.thickness\", \"gaps\"]]", "expected a list such as"},
       {thickness + "\ncorrelation = [[\"structure.thickness\", \"gaps\", 0.3]]", "'gaps' does not vary"},

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -123,6 +124,30 @@ TEST(RobustnessReport, AsCsvHasALinePerDevice) {
   int lines = 0;
   while (std::getline(in, line)) ++lines;
   EXPECT_EQ(lines, 64);
+}
+
+TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge) {
+  SceneFile file = study().nominal.scene.file;
+  file.set(R"(spread={"driver.main.jitter"={distribution="uniform", half_width="50 ns"}})");
+  Study jittered{.nominal = prepare(file), .options = {.samples = 64}, .found = {}};
+  jittered.found = robustness(jittered.nominal, {}, jittered.options);
+  EXPECT_THAT(robustness_text(jittered.report()), HasSubstr("The sources of the drives err as the spread says."));
+  EXPECT_THAT(robustness_text(study().report()), Not(HasSubstr("The sources of the drives")));
+  std::istringstream in(robustness_csv(jittered.report()));
+  std::string line;
+  std::getline(in, line);
+  std::set<double> times;
+  while (std::getline(in, line)) times.insert(std::stod(line.substr(line.find(',') + 1)));
+  EXPECT_EQ(times.size(), 64U);
+  for (const double time : times) EXPECT_LT(std::abs(time), 50e-9);
+  EXPECT_GT(*times.rbegin() - *times.begin(), 70e-9);
+  // A plain step that is late by it is late by it.
+  const std::size_t k = jittered.found.drives[0].worst[0];
+  const double shown = robustness_json(jittered.report())["drives"][0]["worst"][0]["values"]["driver.main.jitter"];
+  EXPECT_TRUE(times.contains(shown));
+  const SceneFile own = scene_of_device(jittered.nominal, jittered.found.drives[0], k, jittered.options);
+  const Signal drive = prepare(own).signals().front();
+  EXPECT_EQ(drive.pieces().back().begin, std::max(0.0, shown));
 }
 
 TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {

@@ -1,0 +1,61 @@
+// The drives of one device: the waveforms of the nominal one in its own units, with the errors of its sources (waveforms/
+// source_errors.h). All drives of a device have one clock, which begins at the first edge of any of them where that is early.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/prepared.h"
+#include "waveforms/source_errors.h"
+
+namespace softland {
+
+/// What is known of a device, over what holds for the nominal one: factors of the voltages and of the times of its drives.
+struct DeviceUnits {
+  double volts = 1, time = 1;
+};
+
+/// The waveforms, in the order of Switch::drives(), in the units of one device. The voltages of a piezo do not follow the pull-in
+/// voltage, nor does the factor of a dispersion force.
+[[nodiscard]] std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device,
+                                             const DeviceUnits& units);
+
+class DeviceDrives {
+ public:
+  /// Keeps a reference to `nominal`, whose [spread] says which errors there are.
+  explicit DeviceDrives(const Prepared& nominal);
+
+  /// Whether a device of these units has other drives than the nominal one.
+  [[nodiscard]] bool differ(const DeviceUnits& units) const { return has_errors_ || units.volts != 1 || units.time != 1; }
+  /// What a device gets, whose varying quantities have these values; `nominal` are the waveforms of the nominal device, in the
+  /// order of Switch::drives() [V].
+  [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                                            const std::vector<double>& values) const;
+  /// The same as waveforms: of the given family where only units and gain differ, else a table, which is exact but for a sine,
+  /// which its lines follow within 1e-4 of the peak up to the end of the window.
+  [[nodiscard]] std::vector<Waveform> waveforms(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                                                const std::vector<double>& values) const;
+  /// Whether that drive, in the order of Switch::drives(), has errors of its own.
+  [[nodiscard]] bool has_errors(std::size_t drive) const { return !sources_[drive].empty(); }
+  /// The values of the varying quantities for people: of jitter, the time that is drawn for the first edge [s].
+  [[nodiscard]] std::vector<double> shown(std::vector<double> values) const;
+
+ private:
+  /// A variable of the spread that is an error of a drive.
+  struct Source {
+    std::size_t variable;
+    DriveError error;
+  };
+  struct Driven;
+
+  [[nodiscard]] Driven driven(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                              const std::vector<double>& values) const;
+
+  const Prepared* nominal_;
+  std::vector<std::vector<Source>> sources_;  // of each drive
+  bool has_errors_ = false;
+};
+
+}  // namespace softland

@@ -1,0 +1,93 @@
+#include "waveforms/source_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double most_of_gap = 0.49;  // by which an edge may move towards its neighbour
+
+/// Breakpoints that move together.
+struct Edge {
+  std::size_t first, last;
+};
+
+/// Whether nothing but a carrier moves.
+bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0; }
+
+std::vector<Edge> edges_of(const std::vector<SignalPiece>& pieces) {
+  const bool begins_at_rest = is_level(pieces[0]) && pieces[0].value == 0 && !pieces[0].oscillates();
+  std::vector<Edge> edges;
+  for (std::size_t i = begins_at_rest ? 1 : 0; i < pieces.size(); ++i) {
+    const bool is_ramp_between_levels = !is_level(pieces[i]) && is_level(pieces[i + 1]) && (i == 0 || is_level(pieces[i - 1]));
+    edges.push_back({.first = i, .last = is_ramp_between_levels ? i + 1 : i});
+    i = edges.back().last;
+  }
+  return edges;
+}
+
+/// When the pieces begin [s]; that of a first piece that is no edge means nothing.
+std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::vector<Edge>& edges, const SourceErrors& errors) {
+  std::vector<double> all;
+  for (const SignalPiece& piece : pieces) all.push_back(piece.begin + errors.delay);
+  for (std::size_t j = 0; j < std::min(edges.size(), errors.edges.size()); ++j) {
+    const double before = j == 0 ? infinite : pieces[edges[j].first].begin - pieces[edges[j - 1].last].begin;
+    const double after = j + 1 == edges.size() ? infinite : pieces[edges[j + 1].first].begin - pieces[edges[j].last].begin;
+    const double late = std::clamp(errors.edges[j], -most_of_gap * before, most_of_gap * after);
+    for (std::size_t i = edges[j].first; i <= edges[j].last; ++i) all[i] = pieces[i].begin + late + errors.delay;
+  }
+  return all;
+}
+
+/// The piece between other times, with the straight line and the envelope from and to the same values, and the carrier late by
+/// `late`.
+SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end, double offset, double late) {
+  const SignalPiece& piece = signal.pieces()[i];
+  SignalPiece own = piece;
+  own.begin = begin;
+  own.value += offset;
+  if (piece.oscillates()) own.phase -= piece.angular_frequency * late;
+  if (is_level(piece)) return own;
+  const double old_end = signal.pieces()[i + 1].begin, old_duration = old_end - piece.begin, duration = end - begin;
+  const double last = piece.oscillates() ? piece.value + piece.slope * old_duration : signal.voltage_before(old_end);
+  own.slope = (last + offset - own.value) / duration;
+  own.amplitude_slope *= old_duration / duration;
+  return own;
+}
+
+}  // namespace
+
+std::size_t edge_count(const Signal& signal) { return edges_of(signal.pieces()).size(); }
+
+double first_edge(const Signal& signal, const SourceErrors& errors) {
+  const std::vector<Edge> edges = edges_of(signal.pieces());
+  return edges.empty() ? infinite : begins(signal.pieces(), edges, errors)[edges.front().first];
+}
+
+Signal with_errors(const Signal& signal, const SourceErrors& errors, double origin) {
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  require(is_finite(errors.offset) && is_finite(errors.delay) && is_finite(origin) &&
+              std::all_of(errors.edges.begin(), errors.edges.end(), is_finite),
+          "the errors of a source must be finite");
+  const std::vector<SignalPiece>& pieces = signal.pieces();
+  const std::vector<Edge> edges = edges_of(pieces);
+  std::vector<double> begin = begins(pieces, edges, errors);
+  for (double& time : begin) time = std::max(0.0, time - origin);
+  if (edges.empty() || edges.front().first > 0) begin[0] = 0;
+
+  std::vector<SignalPiece> all;
+  if (begin[0] > 0) all.push_back({.value = errors.offset});
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double end = i + 1 < pieces.size() ? begin[i + 1] : infinite;
+    // Late by much more than it lasts, a piece may have lost its duration to rounding.
+    if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
+  }
+  return Signal(std::move(all));
+}
+
+}  // namespace softland
