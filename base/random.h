@@ -27,6 +27,7 @@ enum class Stream : std::uint64_t {
   folds = 10,        ///< which figures a cross-validation holds back together
   measurement = 11,  ///< errors of what is measured on a device
   fresh = 12,        ///< seeds of devices that a search has not seen
+  classes = 13,      ///< the devices that classes are made of, and where their search begins
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.
