@@ -171,7 +171,8 @@ int run(int argc, char** argv) {
       ->allow_extra_args(false);
   option(optimize, "--calibrate", request.calibration, "LIST",
          "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
-         "errors, \"Vdp:1 %,frequency:0.5 %\"; none: not even what [calibration] says");
+         "errors, \"Vdp:1 %,frequency:0.5 %\"; \"Vdp,frequency in 8 classes\": sorted by it, one waveform for each class; none: "
+         "not even what [calibration] says");
   optional(optimize, "--samples", request.samples, "N", "devices that a robust search looks at (default: 128)");
   option(optimize, "--optimizer", request.optimizer, "NAME", "auto (default), or another of the names below");
   optional(optimize, "--budget", request.budget, "N|TIME",
@@ -222,6 +223,27 @@ int run(int argc, char** argv) {
       "  softland robustness scenes/mem-gold.toml --other-ways --out box\n"
       "  softland robustness scenes/mem-gold.toml softland-out --out robust");
 
+  CalibrateRequest measured;
+  CLI::App* calibrate = add_verb("calibrate", "which measurable figures of a device pin its waveform best");
+  positional(calibrate, "SCENE", common.scene, "scene file with [spread], folder that --out named, or result.json")->required();
+  calibrate->add_option("--set", common.set, "change one key: --set spread.gaps.cov=\"1 %\"; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  calibrate->add_flag("--quiet", common.quiet, "no progress and no notes on standard error");
+  with_json(calibrate);
+  optional(calibrate, "--samples", measured.samples, "N", "devices (default: 256)");
+  option(calibrate, "--steps", measured.steps, "LIST",
+         "steps whose closing times are measured, in multiples of the nominal Vdp (default: 1.1,1.25,1.5)");
+  option(calibrate, "--error", measured.errors, "LIST",
+         "of the measurements, one standard deviation: \"Vdp:1 %,frequency:0.5 %\"; there are Vdp, Vsp, release, frequency and "
+         "time (default: exact)");
+  optional(calibrate, "--seed", measured.seed, "N", "whole number from 0 on (default 1): same seed, same devices");
+  optional(calibrate, "--jobs", measured.jobs, "N", "threads (default: one per core); the result does not depend on them");
+  calibrate->footer(
+      "The scene's drive is the recipe: a landing, not the plain step. Every device is closed with the recipe's voltages and\n"
+      "times multiplied by factors told from what is measured: from each figure, and from every pair.\n"
+      "Example:\n  softland calibrate softland-out --error \"Vdp:0.2 %,frequency:0.1 %\"");
+
   CLI::App* fresh = add_verb("new", "print a commented scene to start from");
   positional(fresh, "KIND", kind,
              "cantilever (default), cantilever-pzt, clamped-clamped, plate, two-electrodes, nem-cantilever or nem-casimir");
@@ -262,7 +284,9 @@ int run(int argc, char** argv) {
     const auto chosen = app.get_subcommands();
     if (chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
       throw InvalidInput(
-          "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, robustness, new, export or report "
+          "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, robustness, calibrate, new, export "
+          "or "
+          "report "
           "(see softland --help)");
     }
     throw InvalidInput(std::string(error.what()) + " (see softland " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
@@ -278,6 +302,7 @@ int run(int argc, char** argv) {
     if (*effects) return effects_verb(common);
     if (*accuracy) return accuracy_verb(common);
     if (*optimize) return optimize_verb(common, request);
+    if (*calibrate) return calibrate_verb(common, measured);
     if (*fresh) return new_verb(kind);
     if (*exporting) return export_verb(common, exported);
     return report_verb(common, result);

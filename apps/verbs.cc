@@ -27,6 +27,7 @@
 #include "model/constants.h"
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
+#include "reports/measurement_report.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
 #include "reports/result_reader.h"
@@ -440,22 +441,35 @@ int accuracy_verb(const Common& c) {
 
 namespace {
 
-// "Vdp,frequency:0.5 %": puts it in the place of what the scene says.
-void calibrate(SceneFile& file, const std::string& list) {
-  if (list.empty()) return;
-  file.erase("calibration");
-  if (list == "none") return;
+// "a,b,c"
+std::vector<std::string> parts_of(const std::string& list) {
+  std::vector<std::string> parts;
   for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
     end = list.find(',', begin);
-    const std::string one = list.substr(begin, end - begin);
+    parts.push_back(list.substr(begin, end - begin));
+  }
+  return parts;
+}
+
+// "Vdp,frequency:0.5 %", and " in 8 classes" where devices are sorted: puts it in the place of what the scene says.
+void calibrate(SceneFile& file, const std::string& given) {
+  if (given.empty()) return;
+  file.erase("calibration");
+  if (given == "none") return;
+  constexpr std::string_view before = " in ", after = " classes";
+  const std::size_t in = given.ends_with(after) ? given.rfind(before) : std::string::npos;
+  for (const std::string& one : parts_of(given.substr(0, in))) {
     const std::size_t colon = one.find(':');
     const std::string name = one.substr(0, colon), error = colon == std::string::npos ? "0 %" : one.substr(colon + 1);
     require(name == measured_pull_in || name == measured_frequency, [&] {
-      return fmt::format("--calibrate {}: '{}' is no measurement; there are {} and {}, with an error such as {}:1 %", shown(list),
-                         name, measured_pull_in, measured_frequency, measured_pull_in);
+      return fmt::format("--calibrate {}: '{}' is no measurement; there are {} and {}, with an error such as {}:1 %",
+                         shown(given), name, measured_pull_in, measured_frequency, measured_pull_in);
     });
     file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));
   }
+  if (in == std::string::npos) return;
+  const std::size_t number = in + before.size();
+  file.set("calibration.classes=" + given.substr(number, given.size() - after.size() - number));
 }
 
 constexpr std::array<const char*, 3> robustness_files{"robustness.html", "robustness.json", "devices.csv"};
@@ -710,6 +724,74 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   return report.interrupted ? exit_interrupted : exit_done;
 }
 
+namespace {
+
+// "Vdp:1 %,time:0.5 %"
+void read_errors(const std::string& list, MeasurementOptions& options) {
+  const std::array<std::pair<std::string_view, double*>, 5> errors{{{"Vdp", &options.pull_in_error},
+                                                                    {"Vsp", &options.static_pull_in_error},
+                                                                    {"release", &options.release_error},
+                                                                    {"frequency", &options.frequency_error},
+                                                                    {"time", &options.time_error}}};
+  for (const std::string& one : parts_of(list)) {
+    const std::size_t colon = one.find(':');
+    const auto row = std::find_if(errors.begin(), errors.end(), [&](const auto& e) { return e.first == one.substr(0, colon); });
+    constexpr double most = 0.5;
+    Quantity q{.value = -1, .dimension = dimension::none};
+    try {
+      if (row != errors.end() && colon != std::string::npos) q = parse_quantity(one.substr(colon + 1));
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("--error {}: {}", one, error.what()));
+    }
+    require(q.dimension == dimension::none && q.value >= 0 && q.value <= most, [&] {
+      return fmt::format(
+          "--error {}: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\"",
+          shown(list));
+    });
+    *row->second = q.value;
+  }
+}
+
+// "1.1,1.25"
+std::vector<double> read_steps(const std::string& list) {
+  std::vector<double> steps;
+  for (const std::string& one : parts_of(list)) {
+    constexpr double most = 10;
+    double value = 0;
+    const auto [end, error] = std::from_chars(one.data(), one.data() + one.size(), value);
+    require(error == std::errc() && end == one.data() + one.size() && value >= 1 && value <= most &&
+                (steps.empty() || value > steps.back()),
+            [&] {
+              return fmt::format("--steps {}: must be rising multiples of Vdp from 1 to {:g}, such as 1.1,1.25,1.5", shown(list),
+                                 most);
+            });
+    steps.push_back(value);
+  }
+  constexpr std::size_t most_steps = 8;
+  require(steps.size() <= most_steps, [&] { return fmt::format("--steps {}: at most {} of them", list, most_steps); });
+  return steps;
+}
+
+}  // namespace
+
+int calibrate_verb(const Common& c, const CalibrateRequest& request) {
+  MeasurementOptions options{.jobs = job_count(request.jobs)};
+  if (request.samples) options.samples = whole_number<std::uint64_t>("--samples", *request.samples, fewest_measured);
+  require(options.samples <= most_measured,
+          [&] { return fmt::format("--samples {}: must be at most {}", options.samples, most_measured); });
+  if (request.seed) options.seed = whole_number<std::uint64_t>("--seed", *request.seed, 0);
+  if (!request.errors.empty()) read_errors(request.errors, options);
+  if (!request.steps.empty()) options.steps = read_steps(request.steps);
+  SceneFile file = scene_of_result(c.scene);
+  for (const std::string& assignment : c.set) file.set(assignment);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  static_cast<void>(claim_places(c, {}));
+  const MeasurementStudy study = study_measurements(file, options, work->watch());
+  work.reset();
+  print_json_or(c, measurements_json(study, options, c.command), measurements_text(study, options));
+  return study.interrupted ? exit_interrupted : exit_done;
+}
+
 int new_verb(const std::string& kind) {
   const std::map<std::string, std::string> scenes{
       {"cantilever", "mem-gold.toml"},           {"cantilever-pzt", "mem-gold-pzt.toml"},
@@ -750,18 +832,25 @@ int export_verb(const Common& c, const ExportRequest& request) {
   const std::optional<double> pull_in = measured("--device-vdp", request.device_pull_in, dimension::voltage),
                               frequency = measured("--device-frequency", request.device_frequency, dimension::frequency);
   const bool is_own = pull_in || frequency;
-  const Prepared p = prepare_and_choose(file, is_own, WatchedWork(c.quiet, c.stop).watch());
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared p = prepare_and_choose(file, is_own, work->watch());
   std::map<std::string, Signal> signals = named_signals(p);
   if (is_own) {
     const DeviceMeter meter(p, pull_in.has_value());
-    const DeviceUnits units{.volts = pull_in ? *pull_in / meter.pull_in() : 1,
-                            .time = frequency ? meter.frequency() / *frequency : 1};
+    const Calibration& calibration = p.scene.calibration;
+    require(!calibration.classes || (pull_in.has_value() == calibration.pull_in_error.has_value() &&
+                                     frequency.has_value() == calibration.frequency_error.has_value()),
+            "--device-vdp, --device-frequency: the scene sorts devices into classes: give what [calibration] measures");
+    const KnownUnits known = known_units(p, std::array{calibration}, job_count({}), work->watch()).front();
+    const DeviceUnits units =
+        known.of({.volts = pull_in ? *pull_in / meter.pull_in() : 1, .time = frequency ? meter.frequency() / *frequency : 1});
     const std::vector<std::string> names = p.drive_names();
     const std::vector<Waveform> waveforms = in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units);
     for (std::size_t k = 0; k < names.size(); ++k) {
       if (names[k] != dispersion_drive) signals[names[k]] = signal(waveforms[k]);
     }
   }
+  work.reset();
   print(request.format == "csv" ? csv(signals, p.duration) : spice_pwl(signals, p.duration));
   return exit_done;
 }

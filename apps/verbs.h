@@ -44,6 +44,14 @@ struct RobustnessRequest {
   std::optional<std::string> jobs;     ///< default: one per core
 };
 
+struct CalibrateRequest {
+  std::string errors;                  ///< of measurements; empty: none err
+  std::string steps;                   ///< whose closing times are measured; empty: the default ones
+  std::optional<std::string> samples;  ///< default: 256
+  std::optional<std::string> seed;     ///< default: 1
+  std::optional<std::string> jobs;     ///< default: one per core
+};
+
 struct ExportRequest {
   std::string result, format = "csv";
   std::optional<std::string> device_pull_in, device_frequency;  ///< measured on the device that gets the waveform
@@ -58,6 +66,7 @@ int effects_verb(const Common& common);
 int accuracy_verb(const Common& common);
 int optimize_verb(const Common& given, const OptimizeRequest& request);
 int robustness_verb(const Common& common, const RobustnessRequest& request);
+int calibrate_verb(const Common& common, const CalibrateRequest& request);
 int new_verb(const std::string& kind);
 int export_verb(const Common& common, const ExportRequest& request);
 int report_verb(const Common& given, const std::string& result);

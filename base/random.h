@@ -28,6 +28,7 @@ enum class Stream : std::uint64_t {
   measurement = 11,  ///< errors of what is measured on a device
   fresh = 12,        ///< seeds of devices that a search has not seen
   jitter = 13,       ///< times by which the edges of a drive are late
+  classes = 14,      ///< the devices that classes are made of, and where their search begins
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

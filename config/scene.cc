@@ -73,6 +73,15 @@ Calibration read_calibration(const SceneFile::Impl& file) {
     (name == measured_pull_in ? calibration.pull_in_error : calibration.frequency_error) =
         SectionReader(file, "calibration", name).number("error");
   }
+  if (const toml::node* classes = file.find({"calibration", std::string(internal::classes_key)})) {
+    const std::string path = internal::join_path("calibration", internal::classes_key);
+    const auto number = classes->is_integer() ? classes->as_integer()->get() : 0;
+    if (number < 2 || number > most_classes) file.fail(path, fmt::format("must be a whole number from 2 to {}", most_classes));
+    if (calibration.is_empty())
+      file.fail(path, fmt::format("nothing to sort devices by: add [calibration.{}] or [calibration.{}]", measured_pull_in,
+                                  measured_frequency));
+    calibration.classes = static_cast<int>(number);
+  }
   return calibration;
 }
 
@@ -151,6 +160,8 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
       for (const std::string& entry : impl.names_in(name)) {
         named.insert(entry, SectionReader(impl, name, entry).with_defaults());
       }
+      if (const toml::node* key = section.beside.empty() ? nullptr : impl.find({name, std::string(section.beside)}))
+        key->visit([&](const auto& node) { named.insert(section.beside, node); });
       if (!named.empty()) root.insert(name, std::move(named));
     }
   }

@@ -89,12 +89,18 @@ struct SimulateOptions {
 /// f_1), and the scene's own waveform is that of the nominal device.
 struct Calibration {
   /// Of the measurement, relative, one standard deviation; none: it is not measured.
-  std::optional<double> pull_in_error, frequency_error;
+  std::optional<double> pull_in_error = {}, frequency_error = {};
+  /// Into which devices are sorted by what is measured, each with one waveform; none: every device has its own.
+  std::optional<int> classes = {};
 
   [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error; }
 };
 /// Names of the measurements in a scene.
 inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency";
+inline constexpr int most_classes = 256;
+namespace internal {
+inline constexpr std::string_view classes_key = "classes";
+}
 
 struct Scene {
   std::string title;

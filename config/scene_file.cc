@@ -371,7 +371,10 @@ std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) c
   const std::string_view beside = internal::find_section(section)->beside;
   for (const auto& [key, value] : *node->as_table()) {
     if (!beside.empty() && key.str() == beside) continue;
-    if (!value.is_table()) fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]", section));
+    if (!value.is_table()) {
+      const std::string nearest = beside.empty() ? "" : internal::hint(key.str(), {beside});
+      fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]{}", section, nearest));
+    }
     names.emplace_back(key.str());
   }
   return names;

@@ -10,7 +10,8 @@
 
 namespace softland {
 
-/// Of this program on this machine, and the vector instructions that ensembles are closed with (model/ensemble/fleet.h); empty for what the machine does not tell.
+/// Of this program on this machine, and the vector instructions that ensembles are closed with (model/ensemble/fleet.h); empty
+/// for what the machine does not tell.
 [[nodiscard]] const MadeWith& made_with();
 /// {"program": ..., "compiler": ...}; null for what is not known.
 [[nodiscard]] nlohmann::json made_with_json(const MadeWith& all = made_with());

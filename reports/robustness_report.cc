@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "reports/escape.h"
+#include "reports/estimates.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/other_ways_report.h"
@@ -24,16 +25,14 @@
 namespace softland {
 namespace {
 
+using internal::interval_json;
 using internal::json_number;
 using internal::percent;
+using internal::quantile_text;
 using internal::quantity;
+using internal::yield_json;
+using internal::yield_text;
 using nlohmann::json;
-
-json interval_json(const Interval& interval) { return {json_number(interval.low), json_number(interval.high)}; }
-
-json yield_json(const Yield& yield) {
-  return {{"devices", yield.devices}, {"share", json_number(yield.value)}, {"interval", interval_json(yield.interval)}};
-}
 
 json statistics_json(const FigureStatistics& s) {
   json quantiles = json::array();
@@ -101,22 +100,6 @@ json spread_json(const DeviceSpread& spread) {
   return all;
 }
 
-// "3.4 % (2.7 to 4.3)"
-std::string yield_text(const Yield& y) {
-  return fmt::format("{} ({} to {})", percent(y.value), internal::plain_number(100 * y.interval.low),
-                     internal::plain_number(100 * y.interval.high));
-}
-
-// "26.9 mm/s (26.6 to 27.1)"
-std::string quantile_text(const EstimatedQuantile& q, std::string_view unit) {
-  if (std::isinf(q.value)) return "not closed";
-  const double factor = unit.empty() ? 1 : internal::prefix_for(q.value).factor;
-  const auto bound = [&](double value) {
-    return std::isfinite(value) ? internal::plain_number(value / factor) : std::string("?");
-  };
-  return fmt::format("{} ({} to {})", quantity(q.value, unit), bound(q.interval.low), bound(q.interval.high));
-}
-
 std::string spread_words(const DeviceSpread& spread) {
   std::string words;
   for (const SpreadVariable& v : spread.variables) {
@@ -143,8 +126,10 @@ std::string calibration_words(const Calibration& c) {
   };
   add(measured_pull_in, c.pull_in_error);
   add(measured_frequency, c.frequency_error);
-  return words;
+  return c.classes ? fmt::format("{}, {} classes", words, *c.classes) : words;
 }
+
+bool is_erring(const Calibration& c) { return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0; }
 
 const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key) {
   return drive.figures[static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data())].quantiles[2];
@@ -152,7 +137,16 @@ const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_v
 
 json calibration_json(const Calibration& c) {
   const auto error = [](const std::optional<double>& of) { return of ? json(*of) : json(nullptr); };
-  return {{"Vdp_error", error(c.pull_in_error)}, {"frequency_error", error(c.frequency_error)}};
+  return {{"Vdp_error", error(c.pull_in_error)},
+          {"frequency_error", error(c.frequency_error)},
+          {"classes", c.classes ? json(*c.classes) : json(nullptr)}};
+}
+
+json classes_json(const std::vector<KnownUnits::Class>& classes) {
+  json all = json::array();
+  for (const KnownUnits::Class& c : classes)
+    all.push_back({{"volts_factor", c.centre.volts}, {"time_factor", c.centre.time}, {"share", c.share}});
+  return all;
 }
 
 json index_json(const SobolIndex& index) {
@@ -203,16 +197,18 @@ std::string sensitivity_text(const Sensitivity& sensitivity) {
 // What each measurement is worth: the last drive with more and more known of the devices.
 std::string knowledge_text(const Robustness& found) {
   if (found.by_knowledge.empty() || found.devices == 0) return {};
-  std::string text = fmt::format("\n{:<34}{:>24}{:>26}{:>26}\n", "Known of every device", "without a rebound",
-                                 "v_max, 95 % below", "B_H, 95 % below");
+  const Calibration& c = found.drives.back().known.calibration();
+  const std::string own = calibration_words(c);
+  const std::size_t width = std::max<std::size_t>(34, internal::columns_of(own) + 2);
+  std::string text = "\n" + internal::left_aligned("Known of every device", width) +
+                     fmt::format("{:>24}{:>26}{:>26}\n", "without a rebound", "v_max, 95 % below", "B_H, 95 % below");
   const auto row = [&](const std::string& name, const DriveRobustness& d) {
-    text += internal::left_aligned(name, 34) + internal::right_aligned(yield_text(d.bounce_free), 24) +
+    text += internal::left_aligned(name, width) + internal::right_aligned(yield_text(d.bounce_free), 24) +
             internal::right_aligned(quantile_text(quantile_95(d, "largest_impact_velocity_m_s"), "m/s"), 26) +
             internal::right_aligned(quantile_text(quantile_95(d, "major_bounce_height_m"), "m"), 26) + "\n";
   };
   for (const DriveRobustness& d : found.by_knowledge) row(d.name, d);
-  const Calibration& c = found.drives.back().calibration;
-  if (c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0) row(calibration_words(c), found.drives.back());
+  if (is_erring(c)) row(own, found.drives.back());
   return text;
 }
 
@@ -232,7 +228,8 @@ json robustness_json(const RobustnessReport& report) {
     }
     for (const auto& [why, count] : reasons) failures[why] = count;
     return json{{"name", d.name},
-                {"calibration", calibration_json(d.calibration)},
+                {"calibration", calibration_json(d.known.calibration())},
+                {"classes", classes_json(d.known.classes())},
                 {"waveforms", waveforms_json(d, found.duration)},
                 {"closing", yield_json(d.closing)},
                 {"bounce_free", yield_json(d.bounce_free)},
@@ -268,7 +265,7 @@ std::string robustness_text(const RobustnessReport& report) {
   const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
-  const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().calibration;
+  const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
   text += wrapped(fmt::format("{} devices of the spread: {}. {}{}", found.devices, spread_words(nominal.scene.spread),
                               calibration.is_empty()
                                   ? "All have the volts that were designed for the nominal device."
@@ -538,8 +535,8 @@ std::string knowledge_table(const Robustness& found) {
                     quantile_text(quantile_95(d, "major_bounce_height_m"), "m")});
   };
   for (const DriveRobustness& d : found.by_knowledge) add(escaped(d.name), d);
-  const Calibration& c = found.drives.back().calibration;
-  if (c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0) add(calibration_words(c), found.drives.back());
+  const Calibration& c = found.drives.back().known.calibration();
+  if (is_erring(c)) add(calibration_words(c), found.drives.back());
   return section("knowledge", "What measuring a device is worth",
                  table_html({"Known of every device", "Without a rebound", "Largest impact speed, 95 % below",
                              "Highest rebound, 95 % below"},
@@ -643,7 +640,7 @@ std::string robustness_html(const RobustnessReport& report) {
   result.tolerance = found.tolerance;
   result.scene.text = resolved(nominal.scene, nominal.voltage_units()).text();
   const auto [main, rest] = headline_of(found);
-  const Calibration& calibration = found.drives.back().calibration;
+  const Calibration& calibration = found.drives.back().known.calibration();
   std::string about = fmt::format(
       "<p>{} devices of the spread ({} points): {}. {}{}</p>\n", found.devices, name_of(point_sets, options.points),
       escaped(spread_words(nominal.scene.spread)),

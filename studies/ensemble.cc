@@ -45,6 +45,13 @@ class LaneFigures final : public LandingObserver {
   LandingFigures::Course course_;
 };
 
+// Devices that classes are made of.
+constexpr std::uint64_t reference_seed = random_bits(0, Stream::classes, 0);
+std::size_t reference_size(const Calibration& calibration) {
+  constexpr std::size_t fewest = 512, of_a_class = 8;
+  return calibration.classes ? std::max(fewest, of_a_class * static_cast<std::size_t>(*calibration.classes)) : 0;
+}
+
 }  // namespace
 
 Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
@@ -161,6 +168,88 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
   return units;
 }
 
+namespace {
+
+// Without error.
+std::vector<DeviceUnits> reference_units(const Prepared& nominal, bool need_pull_in, std::size_t size, int jobs,
+                                         const Watch& watch) {
+  const DeviceMeter meter(nominal, need_pull_in);
+  const Ensemble ensemble(nominal, size, reference_seed);
+  std::vector<DeviceUnits> units(ensemble.size());
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  constexpr std::size_t together = 16;
+  const std::size_t chunks = (size + together - 1) / together;
+  const auto task = [&](std::size_t c) {
+    DeviceBuilder builder(ensemble);
+    for (std::size_t k = c * together; k < std::min(size, (c + 1) * together) && !watch.stopped(); ++k) {
+      const SampledDevice device = builder.device(k);
+      units[k] = device.model ? meter.exact(*device.model) : DeviceUnits{.volts = Metrics::unset, .time = Metrics::unset};
+    }
+    const std::scoped_lock lock(telling);
+    watch.tell("devices that classes are made of", static_cast<double>(++done) / static_cast<double>(chunks));
+  };
+  run_tasks(chunks, jobs, task, watch.stop);
+  watch.throw_if_stopped();
+  return units;
+}
+
+// Relative errors of volts and time count alike.
+PlanePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time)}; }
+DeviceUnits units_at(const PlanePoint& point) { return {.volts = std::exp(point[0]), .time = std::exp(point[1])}; }
+
+}  // namespace
+
+KnownUnits::KnownUnits(const Calibration& calibration, std::span<const DeviceUnits> reference) : calibration_(calibration) {
+  if (!calibration.classes) return;
+  std::vector<PlanePoint> points;
+  for (std::size_t k = 0; k < std::min(reference.size(), reference_size(calibration)); ++k) {
+    const PlanePoint point = logarithms(DeviceMeter::measured(reference[k], calibration, reference_seed, k));
+    if (std::isfinite(point[0]) && std::isfinite(point[1])) points.push_back(point);
+  }
+  require(!points.empty(), "no device of the spread can be measured: there is nothing to sort into classes");
+  classes_ = classes_of(points, static_cast<std::size_t>(*calibration.classes), reference_seed);
+}
+
+DeviceUnits KnownUnits::of(const DeviceUnits& exact, std::uint64_t seed, std::uint64_t k) const {
+  return of(DeviceMeter::measured(exact, calibration_, seed, k));
+}
+
+DeviceUnits KnownUnits::of(const DeviceUnits& measured) const {
+  if (classes_.centres.empty() || !std::isfinite(measured.volts)) return measured;
+  return units_at(classes_.centres[classes_.nearest(logarithms(measured))]);
+}
+
+std::vector<KnownUnits::Class> KnownUnits::classes() const {
+  std::vector<Class> all;
+  for (std::size_t i = 0; i < classes_.centres.size(); ++i)
+    all.push_back({.centre = units_at(classes_.centres[i]), .share = classes_.shares[i]});
+  return all;
+}
+
+KnownUnits KnownUnits::without_errors() const {
+  KnownUnits exact = *this;
+  for (std::optional<double>* error : {&exact.calibration_.pull_in_error, &exact.calibration_.frequency_error}) {
+    if (*error) *error = 0;
+  }
+  return exact;
+}
+
+std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Calibration> calibrations, int jobs,
+                                    const Watch& watch) {
+  std::size_t size = 0;
+  bool need_pull_in = false;
+  for (const Calibration& one : calibrations) {
+    size = std::max(size, reference_size(one));
+    need_pull_in = need_pull_in || (one.classes && one.pull_in_error);
+  }
+  std::vector<DeviceUnits> reference;
+  if (size > 0) reference = reference_units(nominal, need_pull_in, size, jobs, watch);
+  std::vector<KnownUnits> known;
+  for (const Calibration& one : calibrations) known.emplace_back(one, reference);
+  return known;
+}
+
 DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
                            const ClosingOptions& run) {
   if (!device.model) return {.metrics = {}, .failure = device.refusal};
@@ -214,8 +303,8 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
       vectors_(run.vectors),
       device_drives_(nominal) {
   const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
-  if (any([](const EnsembleDrive& d) { return !d.calibration.is_empty(); }))
-    meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.calibration.pull_in_error.has_value(); }));
+  if (any([](const EnsembleDrive& d) { return !d.known.calibration().is_empty(); }))
+    meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.known.calibration().pull_in_error.has_value(); }));
   for (const EnsembleDrive& drive : drives) nominal_signals_.push_back(signals_of(drive.waveforms));
 }
 
@@ -234,7 +323,7 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < devices.size(); ++i) {
       const std::vector<Signal>* signals = &nominal_signals_[d];
-      const DeviceUnits units = DeviceMeter::measured(exact[i], drive.calibration, seed_, first + i);
+      const DeviceUnits units = devices[i].model ? drive.known.of(exact[i], seed_, first + i) : DeviceUnits{};
       if (!std::isfinite(units.volts)) {
         outcomes[d][i].failure = "its pull-in voltage cannot be measured";
         continue;

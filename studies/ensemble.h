@@ -14,6 +14,7 @@
 #include "model/closing.h"
 #include "model/ensemble/fleet.h"
 #include "objectives/metrics.h"
+#include "sampling/classes.h"
 #include "sampling/points.h"
 #include "sampling/sobol_indices.h"
 #include "studies/device_drives.h"
@@ -93,9 +94,11 @@ class DeviceMeter {
   /// Of the nominal device [V], [Hz].
   [[nodiscard]] double pull_in() const { return pull_in_; }
   [[nodiscard]] double frequency() const;
+  /// The number of the electrode among the drives.
+  [[nodiscard]] std::size_t electrode() const { return electrode_; }
   /// Without error. A device whose pull-in voltage cannot be found has NaN volts.
   [[nodiscard]] DeviceUnits exact(const Switch& model) const;
-  /// What a calibration of device k knows; the errors are functions of seed and k.
+  /// What is measured of device k, whatever class it belongs to; the errors are functions of seed and k.
   [[nodiscard]] static DeviceUnits measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed,
                                             std::uint64_t k);
 
@@ -108,11 +111,42 @@ class DeviceMeter {
   double pull_in_ = Metrics::unset;
 };
 
+/// What a calibration knows of devices: their units as they are measured, or, where devices are sorted into classes by what is
+/// measured, those of the centre of their class.
+class KnownUnits {
+ public:
+  /// Classes are made of `reference`, devices that stand for all of the spread, without error: known_units() has them. Throws
+  /// InvalidInput where there are none to sort.
+  KnownUnits(const Calibration& calibration = {}, std::span<const DeviceUnits> reference = {});
+  [[nodiscard]] const Calibration& calibration() const { return calibration_; }
+  /// The same with measurements that do not err, in the same classes.
+  [[nodiscard]] KnownUnits without_errors() const;
+  /// Of device k, whose units are `exact`; the errors are functions of seed and k.
+  [[nodiscard]] DeviceUnits of(const DeviceUnits& exact, std::uint64_t seed, std::uint64_t k) const;
+  /// Of a device that was measured.
+  [[nodiscard]] DeviceUnits of(const DeviceUnits& measured) const;
+
+  struct Class {
+    DeviceUnits centre;
+    double share = 0;  ///< of the devices of the spread
+  };
+  /// By the voltage of their centre; none where every device has its own units.
+  [[nodiscard]] std::vector<Class> classes() const;
+
+ private:
+  Calibration calibration_;
+  Classes classes_;  // of the logarithms of volts and time
+};
+/// For each of these calibrations, their classes made of devices of the spread that depend on nothing but the spread: a device
+/// belongs to the same class in every study. Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Calibration> calibrations, int jobs,
+                                                  const Watch& watch = {});
+
 /// The drives that every device gets: the waveforms of the nominal device, or, where devices are calibrated, those in the units
 /// of each one; with the errors of its sources where these vary.
 struct EnsembleDrive {
   std::vector<Waveform> waveforms;  ///< in the order of Switch::drives() [V]
-  Calibration calibration = {};
+  KnownUnits known = {};
 };
 
 struct EnsembleRun {

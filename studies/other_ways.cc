@@ -214,7 +214,7 @@ SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive,
                           const RobustnessOptions& options) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   DriveRobustness exact{.name = drive.name, .waveforms = drive.waveforms};
-  exact.calibration = internal::exactly_measured(nominal, drive).calibration;
+  exact.known = internal::exactly_measured(nominal, drive).known;
   return internal::scene_of_values(ensemble, exact, device.values, options.seed, 0);
 }
 

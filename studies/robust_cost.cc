@@ -13,7 +13,7 @@
 namespace softland {
 namespace {
 
-constexpr double worst_score = 3;
+constexpr double worst_score = RobustCost::not_closed;
 constexpr double weight_of_time = 0.02, weight_of_scores = 0.1, weight_of_violation = 10;
 constexpr double most_violation = 10;
 
@@ -40,19 +40,18 @@ std::vector<FigureName> conditioned_figures() {
 
 bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
 
-BuiltEnsemble build_all(const Ensemble& ensemble, const Calibration& calibration, std::uint64_t seed, int jobs,
-                        const Watch& watch) {
+BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
   BuiltEnsemble built{.devices = std::vector<SampledDevice>(ensemble.size()), .units = std::vector<DeviceUnits>(ensemble.size())};
   std::optional<DeviceMeter> meter;
-  if (!calibration.is_empty()) meter.emplace(ensemble.nominal(), calibration.pull_in_error.has_value());
+  if (!known.calibration().is_empty()) meter.emplace(ensemble.nominal(), known.calibration().pull_in_error.has_value());
   const auto task = [&](std::size_t chunk) {
     DeviceBuilder builder(ensemble);
     for (std::size_t k = chunk * together; k < std::min<std::size_t>(ensemble.size(), (chunk + 1) * together); ++k) {
       if (watch.stopped()) return;
       SampledDevice& device = built.devices[k] = builder.device(k);
       if (!meter || !device.model) continue;
-      built.units[k] = DeviceMeter::measured(meter->exact(*device.model), calibration, seed, k);
+      built.units[k] = known.of(meter->exact(*device.model), seed, k);
       if (std::isfinite(built.units[k].volts)) continue;
       device.refusal = "its pull-in voltage cannot be measured";
       device.model.reset();
@@ -96,19 +95,27 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
       std::vector<Signal>& of_device = own[i - begin];
       if (device.model && drives_.differ(units)) of_device = drives_.signals(waveforms, units, device.values);
       const std::vector<Signal>& signals = of_device.empty() ? nominal : of_device;
-      const double over = last_breakpoint(signals);
-      closings.push_back({.device = &device,
-                          .signals = &signals,
-                          .run = {.duration = over + wait_ + window_,
-                                  .tolerance = EnsembleRun{}.tolerance,
-                                  .after_contact = window_,
-                                  .no_end_before = over + tail_,
-                                  .no_contact_before = over + wait_}});
+      closings.push_back({.device = &device, .signals = &signals, .run = run(signals)});
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
     std::move(closed.begin(), closed.end(), outcomes.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return outcomes;
+}
+
+DeviceOutcome RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
+  const SampledDevice& device = ensemble_.devices[k];
+  const std::vector<Signal> signals = drives_.signals(waveforms, units, device.values);
+  return close_device(device, signals, setting_.given.scene.metrics, run(signals));
+}
+
+ClosingOptions RobustCost::run(const std::vector<Signal>& signals) const {
+  const double end = last_breakpoint(signals);
+  return {.duration = end + wait_ + window_,
+          .tolerance = EnsembleRun{}.tolerance,
+          .after_contact = window_,
+          .no_end_before = end + tail_,
+          .no_contact_before = end + wait_};
 }
 
 double RobustCost::score(const DeviceOutcome& outcome) const {

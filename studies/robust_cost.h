@@ -43,7 +43,7 @@ struct BuiltEnsemble {
   std::vector<DeviceUnits> units;  ///< of a device's own drive, over that of the nominal one
 };
 /// Throws Interrupted where `watch` asks to stop.
-[[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const Calibration& calibration, std::uint64_t seed, int jobs,
+[[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs,
                                       const Watch& watch = {});
 
 class RobustCost {
@@ -57,8 +57,16 @@ class RobustCost {
                                                  int jobs) const;
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const;
 
- private:
+  /// s_k of a device that does not close.
+  static constexpr double not_closed = 3;
+  [[nodiscard]] const SampledDevice& device(std::size_t k) const { return ensemble_.devices[k]; }
+  /// The closing of device k in these units instead of those it was built with.
+  [[nodiscard]] DeviceOutcome close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const;
+  /// s_k
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
+
+ private:
+  [[nodiscard]] ClosingOptions run(const std::vector<Signal>& signals) const;
 
   const SearchSetting& setting_;
   const RobustAim& aim_;

@@ -310,10 +310,10 @@ class RobustSearch {
 namespace {
 
 // The devices of a search, of the comparison of what it finds, of nothing else: which ones they are depends on the seed.
-BuiltEnsemble own_devices(const SearchSetting& setting, const OptimizeOptions& options, std::uint64_t count, std::uint64_t which,
-                          const Watch& watch) {
+BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, const OptimizeOptions& options,
+                          std::uint64_t count, std::uint64_t which, const Watch& watch) {
   const std::uint64_t seed = fresh_seed(options.seed, which);
-  return build_all(Ensemble(setting.given, count, seed), setting.given.scene.calibration, seed, options.jobs, watch);
+  return build_all(Ensemble(setting.given, count, seed), known, seed, options.jobs, watch);
 }
 
 // The best of the candidates on devices that none of them was made for.
@@ -364,7 +364,8 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
 RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust) {
   const Watch watch{.stop = options.stop, .progress = options.on_preparation};
   const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
-  const RobustCost cost(setting, robust.aim, own_devices(setting, options, robust.samples, 0, watch));
+  const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
+  const RobustCost cost(setting, robust.aim, own_devices(setting, known, options, robust.samples, 0, watch));
   RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline}};
   OptimizeResult& out = result.found;
   out.variables = setting.space.variables();
@@ -385,9 +386,9 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   Candidate winner = candidates.front();
   try {
     if (out.search.termination != Termination::interrupted)
-      winner =
-          compared(std::move(candidates), setting,
-                   RobustCost(setting, robust.aim, own_devices(setting, options, selection_devices, 1, watch)), options.jobs);
+      winner = compared(std::move(candidates), setting,
+                        RobustCost(setting, robust.aim, own_devices(setting, known, options, selection_devices, 1, watch)),
+                        options.jobs);
   } catch (const Interrupted&) {
     out.search.termination = Termination::interrupted;
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "base/require.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_worst = 10;
+constexpr std::array worth_of_classes{4, 8, 16};
 
 double or_worst(const DeviceOutcome& o, double value) { return o.closed() && std::isfinite(value) ? value : infinite; }
 
@@ -44,9 +46,7 @@ FigureStatistics statistics(const EnsembleFigure& figure, const std::vector<Devi
     s.standard_deviation = sample_standard_deviation(finite);
     s.skewness = sample_skewness(finite);
   }
-  for (std::size_t i = 0; i < robustness_quantiles.size(); ++i)
-    s.quantiles[i] = {.value = sample_quantile(all, robustness_quantiles[i]),
-                      .interval = quantile_interval(all, robustness_quantiles[i])};
+  for (std::size_t i = 0; i < robustness_quantiles.size(); ++i) s.quantiles[i] = estimated_quantile(all, robustness_quantiles[i]);
   return s;
 }
 
@@ -56,8 +56,7 @@ void summarise(DriveRobustness& drive) {
   for (const EnsembleFigure& f : ensemble_figures()) drive.figures.push_back(statistics(f, all));
   const auto count = [&](auto&& holds) { return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), holds)); };
   drive.closing = yield_of(count([](const DeviceOutcome& o) { return o.closed(); }), all.size());
-  drive.bounce_free = yield_of(
-      count([](const DeviceOutcome& o) { return o.closed() && o.metrics.settled && o.metrics.bounce_count == 0; }), all.size());
+  drive.bounce_free = yield_of(count(is_bounce_free), all.size());
   drive.worst.resize(all.size());
   std::iota(drive.worst.begin(), drive.worst.end(), std::size_t{0});
   const auto height = [&](std::size_t k) { return of<&Metrics::major_bounce_height>(all[k]); };
@@ -94,16 +93,32 @@ void allow(SceneFile& file, const std::string& driver, const Signal& signal, con
   }
 }
 
-// The same drive for every knowledge that one can have of a device, from nothing to all that can be measured, without errors.
+// The same drive for every knowledge that one can have of a device, without errors: from nothing to all that can be measured,
+// first as the class of the device, then as its own units.
 std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
-  const auto with = [&](const char* name, const Calibration& calibration) {
-    return NamedDrive{.name = name, .waveforms = drive.waveforms, .calibration = calibration};
+  std::vector<NamedDrive> all;
+  const auto add = [&](const std::string& name, const Calibration& calibration) {
+    all.push_back({.name = name, .waveforms = drive.waveforms, .calibration = calibration});
   };
-  std::vector<NamedDrive> all{with("nothing", {})};
+  add("nothing", {});
   const Calibration& c = drive.calibration;
-  if (c.pull_in_error) all.push_back(with("Vdp", {.pull_in_error = 0, .frequency_error = {}}));
-  if (c.frequency_error) all.push_back(with("frequency", {.pull_in_error = {}, .frequency_error = 0}));
-  if (c.pull_in_error && c.frequency_error) all.push_back(with("Vdp and frequency", {.pull_in_error = 0, .frequency_error = 0}));
+  const bool has_both = c.pull_in_error && c.frequency_error;
+  if (has_both) {
+    add("Vdp", {.pull_in_error = 0});
+    add("frequency", {.frequency_error = 0});
+  }
+  Calibration exact;
+  if (c.pull_in_error) exact.pull_in_error = 0;
+  if (c.frequency_error) exact.frequency_error = 0;
+  const std::string name = has_both ? "Vdp and frequency" : c.pull_in_error ? "Vdp" : "frequency";
+  std::set<int> counts(worth_of_classes.begin(), worth_of_classes.end());
+  if (c.classes) counts.insert(*c.classes);
+  for (const int count : counts) {
+    Calibration sorted = exact;
+    sorted.classes = count;
+    add(fmt::format("{}, {} classes", name, count), sorted);
+  }
+  add(name, exact);
   return all;
 }
 
@@ -126,6 +141,12 @@ const std::vector<EnsembleFigure>& ensemble_figures() {
   return all;
 }
 
+EstimatedQuantile estimated_quantile(const std::vector<double>& sample, double probability) {
+  return {.value = sample_quantile(sample, probability), .interval = quantile_interval(sample, probability)};
+}
+
+bool is_bounce_free(const DeviceOutcome& o) { return o.closed() && o.metrics.settled && o.metrics.bounce_count == 0; }
+
 Yield yield_of(std::size_t devices, std::size_t all) {
   return {.devices = devices,
           .value = static_cast<double>(devices) / static_cast<double>(all),
@@ -147,26 +168,26 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   NamedDrive plain{.name = "plain step", .waveforms = plain_step(nominal, driven)};
   plain.waveforms.insert(nominal.drives.waveforms.begin(), nominal.drives.waveforms.end());  // of the drives that do not step
   std::vector<NamedDrive> all;
-  std::vector<EnsembleDrive> judged;
-  const auto add = [&](const NamedDrive& drive) {
-    judged.push_back({.waveforms = waveforms_of(nominal, drive), .calibration = drive.calibration});
-    all.push_back(drive);
-  };
   const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
     const std::vector<Signal> own = signals_of(waveforms_of(nominal, drive));
-    return drive.calibration.is_empty() && std::any_of(judged.begin(), judged.end(), [&](const EnsembleDrive& other) {
-             return other.calibration.is_empty() && same_drives(own, signals_of(other.waveforms));
+    return drive.calibration.is_empty() && std::any_of(all.begin(), all.end(), [&](const NamedDrive& other) {
+             return other.calibration.is_empty() && same_drives(own, signals_of(waveforms_of(nominal, other)));
            });
   };
-  add(plain);
+  all.push_back(plain);
   for (const NamedDrive& drive : drives) {
-    if (!is_judged(drive)) add(drive);
+    if (!is_judged(drive)) all.push_back(drive);
   }
   const std::size_t shown = all.size();
   if (options.worth_of_measuring && !all.back().calibration.is_empty()) {
-    for (const NamedDrive& known : by_knowledge(NamedDrive(all.back()))) add(known);
+    for (NamedDrive& known : by_knowledge(NamedDrive(all.back()))) all.push_back(std::move(known));
   }
 
+  std::vector<Calibration> calibrations;
+  for (const NamedDrive& drive : all) calibrations.push_back(drive.calibration);
+  const std::vector<KnownUnits> known = known_units(nominal, calibrations, options.jobs, watch);
+  std::vector<EnsembleDrive> judged;
+  for (std::size_t i = 0; i < all.size(); ++i) judged.push_back({.waveforms = waveforms_of(nominal, all[i]), .known = known[i]});
   std::vector<std::vector<DeviceOutcome>> outcomes = close_all(ensemble, judged, run, watch);
   result.devices = outcomes.front().size();
   result.interrupted = watch.stopped();
@@ -174,7 +195,7 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   for (std::size_t i = 0; i < all.size(); ++i) {
     DriveRobustness drive{.name = std::move(all[i].name),
                           .waveforms = std::move(all[i].waveforms),
-                          .calibration = all[i].calibration,
+                          .known = known[i],
                           .outcomes = std::move(outcomes[i])};
     summarise(drive);
     (i < shown ? result.drives : result.by_knowledge).push_back(std::move(drive));
@@ -248,12 +269,8 @@ EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
 }
 
 EnsembleDrive exactly_measured(const Prepared& nominal, const DriveRobustness& drive) {
-  EnsembleDrive exact{.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
-                      .calibration = drive.calibration};
-  for (std::optional<double>* error : {&exact.calibration.pull_in_error, &exact.calibration.frequency_error}) {
-    if (*error) *error = 0;
-  }
-  return exact;
+  return {.waveforms = waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}),
+          .known = drive.known.without_errors()};
 }
 
 SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive, const std::vector<double>& values,
@@ -261,11 +278,11 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
   const Prepared& nominal = ensemble.nominal();
   SceneFile file = ensemble.scene(values);
   DeviceUnits units;
-  if (!drive.calibration.is_empty()) {
+  if (const Calibration& calibration = drive.known.calibration(); !calibration.is_empty()) {
     const SampledDevice sampled = DeviceBuilder(ensemble).device(values);
     if (sampled.model) {
-      const DeviceMeter meter(nominal, drive.calibration.pull_in_error.has_value());
-      units = DeviceMeter::measured(meter.exact(*sampled.model), drive.calibration, seed, device);
+      const DeviceMeter meter(nominal, calibration.pull_in_error.has_value());
+      units = drive.known.of(meter.exact(*sampled.model), seed, device);
       if (!std::isfinite(units.volts)) units = {};
     }
     file.erase("calibration");  // has been used

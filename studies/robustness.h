@@ -36,6 +36,9 @@ struct EstimatedQuantile {
   Interval interval = {};  ///< 95 %, from order statistics; a side is infinite where there are too few devices
 };
 
+/// Of a sample in which a device that does not close counts as +infinity.
+[[nodiscard]] EstimatedQuantile estimated_quantile(const std::vector<double>& sample, double probability);
+
 struct FigureStatistics {
   double mean = Metrics::unset, standard_deviation = Metrics::unset, skewness = Metrics::unset;  ///< of the devices that have it
   std::size_t devices = 0;                                                                       ///< that have it
@@ -49,12 +52,14 @@ struct Yield {
   Interval interval = {};  ///< 95 %, Wilson
 };
 
+/// Whether a device closes, and settles without a significant rebound.
+[[nodiscard]] bool is_bounce_free(const DeviceOutcome& outcome);
 [[nodiscard]] Yield yield_of(std::size_t devices, std::size_t all);
 
 struct DriveRobustness {
   std::string name;
   std::map<std::string, Waveform> waveforms;  ///< of the nominal device, in volts
-  Calibration calibration = {};               ///< where every device has them in its own units
+  KnownUnits known = {};                      ///< of the devices, whose units they are in
   std::vector<DeviceOutcome> outcomes;        ///< by device
   std::vector<FigureStatistics> figures;      ///< as ensemble_figures()
   Yield closing;                              ///< the contact is reached, and the run could be followed
@@ -69,7 +74,7 @@ struct RobustnessOptions {
   int jobs = 1;  ///< threads; does not change the result
   Vectors vectors = vectors_in_use();
   /// A last drive that is calibrated is judged with nothing known of the devices as well, with each measurement alone, and with
-  /// all of them without error.
+  /// all of them without error, sorted into classes and each device in its own units.
   bool worth_of_measuring = false;
 };
 

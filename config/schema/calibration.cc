@@ -1,3 +1,4 @@
+#include "config/scene.h"
 #include "config/schema/sections.h"
 
 namespace softland::internal {
@@ -5,6 +6,7 @@ namespace softland::internal {
 Section calibration_section() {
   return {.name = "calibration",
           .is_named = true,
+          .beside = classes_key,
           .keys = {number("error", {dimension::none}, {.least = 0, .most = 0.5}, "of the measurement, one standard deviation")
                        .by_default("'0 %'")},
           .about = "what is measured on every device before it is driven: NAME is Vdp or frequency"};

@@ -54,8 +54,8 @@ class BadInput : public ::testing::Test {
 
 TEST_F(BadInput, Verbs) {
   const std::string missing =
-      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, robustness, new, export or report "
-      "(see softland --help)";
+      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, robustness, calibrate, new, export or "
+      "report (see softland --help)";
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "there is no verb 'frobnicate' (see softland --help)"},
@@ -112,6 +112,23 @@ TEST_F(BadInput, Options) {
       {{"export", "gold.toml", "--device-frequency", "0 Hz"},
        "--device-frequency 0 Hz: must be a frequency [Hz] above 0, such as \"30 kHz\""},
       {{"robustness", "gold.toml", "--calibrate", "Vdp:99 %"}, "--set calibration.Vdp.error=\"99 %\": must be in [0, 0.5]"},
+      {{"robustness", "gold.toml", "--calibrate", "Vdp in 1 classes"},
+       "--set calibration.classes=1: must be a whole number from 2 to 256"},
+      {{"robustness", "gold.toml", "--calibrate", "Vdp in many classes"},
+       "--set calibration.classes=many: must be a whole number from 2 to 256"},
+      {{"calibrate", "gold.toml", "--samples", "9"}, "--samples 9: must be a whole number from 16 on"},
+      {{"calibrate", "gold.toml", "--error", "Vdp"},
+       "--error Vdp: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},
+      {{"calibrate", "gold.toml", "--error", "Vdp:1 %,mass:1 %"},
+       "--error 'Vdp:1 %,mass:1 %': must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 "
+       "%\""},
+      {{"calibrate", "gold.toml", "--error", "time:1 s"},
+       "--error time:1 s: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},
+      {{"calibrate", "gold.toml", "--steps", "1.2,1.1"},
+       "--steps 1.2,1.1: must be rising multiples of Vdp from 1 to 10, such as 1.1,1.25,1.5"},
+      {{"calibrate", "gold.toml", "--quiet"},
+       "gold.toml: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what softland "
+       "optimize has found"},
       {{"robustness", "gold.toml", "--samples", "0"}, "--samples 0: must be a whole number from 1 on"},
       {{"robustness", "gold.toml", "--samples", "3000000000"}, "--samples 3000000000: must be at most 2147483648"},
       {{"robustness", "gold.toml", "--points", "grid"}, "--points grid: must be sobol, latin_hypercube or monte_carlo"},
@@ -122,6 +139,7 @@ TEST_F(BadInput, Options) {
 
 TEST_F(BadInput, SceneFiles) {
   expect_refused({
+      {{"calibrate"}, "SCENE is required (see softland calibrate --help)"},
       {{"simulate"}, "SCENE is required (see softland simulate --help)"},
       {{"accuracy"}, "SCENE is required (see softland accuracy --help)"},
       {{"accuracy", "none.toml"}, "none.toml: cannot be read: No such file or directory"},

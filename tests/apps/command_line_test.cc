@@ -19,8 +19,8 @@ using testing::Not;
 
 TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
   const Workplace here;
-  for (const char* verb : {"", "simulate", "pull-in", "modes", "check", "effects", "accuracy", "optimize", "robustness", "new",
-                           "export", "report"}) {
+  for (const char* verb : {"", "simulate", "pull-in", "modes", "check", "effects", "accuracy", "optimize", "robustness",
+                           "calibrate", "new", "export", "report"}) {
     std::vector<std::string> words;
     if (*verb != '\0') words.emplace_back(verb);
     words.emplace_back("--help");

@@ -44,6 +44,9 @@ std::map<std::string, Call> calls() {
   const std::vector<std::string> short_window{"--set", "simulate.duration=60 us"},
       long_window{"--set", "simulate.duration=100 ms"};
   const std::vector<std::string> many{"--set", "structure.modes=20", "--set", "gas.model=reynolds"};
+  const std::vector<std::string> pulse{"--set",
+                                       "waveform.main={family=\"pulse\", levels=[\"20 V\", \"0 V\", \"17 V\"], times=[\"20 us\", "
+                                       "\"32 us\"]}"};
   const std::vector<std::string> gold{"gold.toml"}, json_file{"--json", "out.json"};
   return {
       {"simulate", {gold + in_volts + short_window, gold + in_volts + many + long_window + json_file}},
@@ -58,6 +61,9 @@ std::map<std::string, Call> calls() {
       {"robustness",
        {gold + in_volts + short_window + std::vector<std::string>{"--samples", "10"},
         gold + in_volts + json_file + std::vector<std::string>{"--samples", "1000000"}}},
+      {"calibrate",
+       {gold + in_volts + pulse + std::vector<std::string>{"--samples", "16", "--steps", "1.5"},
+        gold + in_volts + pulse + json_file + std::vector<std::string>{"--samples", "100000"}}},
       {"new", {{"plate"}, {}}},
       {"export", {{"volts.toml"}, {"slow.toml"}}},
       {"report", {{"run"}, {}}},
@@ -314,7 +320,7 @@ TEST_F(Faults, WhatIsNoRegularFileOrTooLargeIsReadByNoVerb) {
       more.front() = name;
       const Outcome o = here->run(words(verb, more));
       EXPECT_EQ(o.status, bad_input) << verb << " " << name;
-      if ((verb == "report" || verb == "export" || verb == "robustness") && name == "folder.toml")
+      if ((verb == "report" || verb == "export" || verb == "robustness" || verb == "calibrate") && name == "folder.toml")
         continue;  // a folder of results: without any
       EXPECT_EQ(o.err, "softland: " + name + ": " + message + "\n") << verb;
     }
@@ -328,7 +334,7 @@ TEST_F(Faults, WhatIsNoRegularFileOrTooLargeIsReadByNoVerb) {
   // The text of results is read like this too.
   fs::create_directory(here->path() / "zero");
   fs::create_symlink("/dev/zero", here->path() / "zero/result.json");
-  for (const char* verb : {"report", "export", "robustness"})
+  for (const char* verb : {"report", "export", "robustness", "calibrate"})
     EXPECT_EQ(here->run({verb, "zero"}).err, "softland: zero/result.json: is a device, it must be a regular file\n");
 }
 

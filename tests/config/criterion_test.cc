@@ -115,12 +115,27 @@ TEST(Calibration, SaysWhatIsMeasured) {
   EXPECT_NE(refusal([] { return calibrated({"calibration.Vdp.error=\"60 %\""}); }).find("must be in [0, "), std::string::npos);
 }
 
+TEST(Calibration, MaySortDevicesIntoClasses) {
+  const auto refused = [](std::initializer_list<const char*> sets) { return refusal([&] { return calibrated(sets); }); };
+  EXPECT_FALSE(calibrated({"calibration={Vdp={}}"}).calibration.classes);
+  EXPECT_EQ(calibrated({"calibration={Vdp={}, classes=8}"}).calibration.classes, 8);
+  EXPECT_EQ(refused({"calibration.Vdp.error=0", "calibration.classes=1"}),
+            "--set calibration.classes=1: must be a whole number from 2 to 256");
+  EXPECT_EQ(refused({"calibration.Vdp.error=0", "calibration.classes=2.5"}),
+            "--set calibration.classes=2.5: must be a whole number from 2 to 256");
+  EXPECT_EQ(refused({"calibration.classes=4"}),
+            "--set calibration.classes=4: nothing to sort devices by: add [calibration.Vdp] or [calibration.frequency]");
+  EXPECT_EQ(refused({"calibration.Vdp.error=0", "calibration.clases=4"}),
+            "--set calibration.clases=4: expected a section [calibration.NAME] (did you mean 'classes'?)");
+}
+
 TEST(Calibration, StandsInTheResolvedScene) {
   const Scene scene =
-      calibrated({"calibration={frequency={}}", "waveform.main.level=\"17 V\"", "driver.main.max_voltage=\"25 V\""});
+      calibrated({"calibration={frequency={}, classes=8}", "waveform.main.level=\"17 V\"", "driver.main.max_voltage=\"25 V\""});
   const Calibration again = read_scene(resolved(scene, {})).calibration;
   EXPECT_EQ(again.frequency_error, 0);
   EXPECT_FALSE(again.pull_in_error);
+  EXPECT_EQ(again.classes, 8);
 }
 
 }  // namespace

@@ -62,11 +62,11 @@ const Study& study() {
 
 TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth) {
   const std::string text = robustness_text(study().report());
-  for (const char* words :
-       {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step", "<slow>, \"mine\"",
-        "Known of every device", "\nnothing ", "\nVdp and frequency ", "\nVdp ± 1.0 %, frequency exactly ",
-        "Share of the variance, alone / in all", "\nstructure.thickness ", "Other ways, under <slow>, \"mine\"",
-        "\nWorst in the box: found by search ", "\nWorst B_H: gaps × ", "± 2.39 standard deviations"})
+  for (const char* words : {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
+                            "<slow>, \"mine\"", "Known of every device", "\nnothing ", "\nVdp and frequency, 8 classes ",
+                            "\nVdp and frequency ", "\nVdp ± 1.0 %, frequency exactly ", "Share of the variance, alone / in all",
+                            "\nstructure.thickness ", "Other ways, under <slow>, \"mine\"",
+                            "\nWorst in the box: found by search ", "\nWorst B_H: gaps × ", "± 2.39 standard deviations"})
     EXPECT_THAT(text, HasSubstr(words));
   RobustnessReport bare = study().report();
   bare.sensitivity = {};
@@ -80,7 +80,11 @@ TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound) {
   EXPECT_EQ(j["kind"], "robustness");
   EXPECT_EQ(j["devices"], 64);
   ASSERT_EQ(j["drives"].size(), 2U);
-  ASSERT_EQ(j["by_knowledge"].size(), 4U);
+  ASSERT_EQ(j["by_knowledge"].size(), 7U);
+  EXPECT_EQ(j["by_knowledge"][4]["calibration"]["classes"], 8);
+  ASSERT_EQ(j["by_knowledge"][4]["classes"].size(), 8U);
+  EXPECT_EQ(j["by_knowledge"][4]["classes"][2]["volts_factor"], study().found.by_knowledge[4].known.classes()[2].centre.volts);
+  EXPECT_TRUE(j["by_knowledge"][6]["calibration"]["classes"].is_null());
   EXPECT_TRUE(j["drives"][0]["calibration"]["Vdp_error"].is_null());
   EXPECT_EQ(j["drives"][1]["calibration"]["Vdp_error"], 0.01);
   const auto& index = study().sensitivity.figures[1].estimate.indices->total[0];

@@ -123,8 +123,9 @@ TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
 }
 
 TEST(DeviceDrives, JitterOnTheirOwnWhereTheyShareAnEntry) {
-  const Prepared nominal = prepare(gold_pzt({"spread={edges={keys=[\"driver.main.jitter\", \"driver.piezo.jitter\"], "
-                                             "distribution=\"uniform\", half_width=\"50 ns\"}}"}));
+  const Prepared nominal =
+      prepare(gold_pzt({"spread={edges={keys=[\"driver.main.jitter\", \"driver.piezo.jitter\"], "
+                        "distribution=\"uniform\", half_width=\"50 ns\"}}"}));
   const std::vector<Signal> own =
       DeviceDrives(nominal).signals({Step{.level = 1}, Step{.level = 1}}, {}, Ensemble(nominal, 1).values(0));
   EXPECT_NE(own[0].pieces().back().begin, own[1].pieces().back().begin);

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "model/closing.h"
 #include "sampling/statistics.h"
@@ -126,7 +128,7 @@ TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
   const Calibration exact{.pull_in_error = 0, .frequency_error = 0};
   const std::vector<Waveform> drive{nominal.drives.waveforms.at("main")};
   const EnsembleRun run{.duration = nominal.duration};
-  const auto outcomes = close_all(ensemble, {{.waveforms = drive}, {.waveforms = drive, .calibration = exact}}, run);
+  const auto outcomes = close_all(ensemble, {{.waveforms = drive}, {.waveforms = drive, .known = exact}}, run);
   const double own = pull_in_by_bisection(nominal.model, 10, 20);
   DeviceBuilder builder(ensemble);
   for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
@@ -163,6 +165,70 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
   EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).volts, exact.volts);
 }
 
+// Devices on a grid of volts and times, far apart.
+std::vector<DeviceUnits> grid() {
+  std::vector<DeviceUnits> units;
+  for (const double volts : {0.9, 1.1}) {
+    for (const double time : {0.8, 1.2}) {
+      for (const double near : {0.999, 1.001}) units.push_back({.volts = volts * near, .time = time * near});
+    }
+  }
+  return units;
+}
+
+TEST(KnownUnits, AreThoseOfTheCentreOfTheClass) {
+  const KnownUnits own({.pull_in_error = 0, .frequency_error = 0});
+  EXPECT_EQ(own.of({.volts = 1.07, .time = 0.93}).volts, 1.07);
+  EXPECT_TRUE(own.classes().empty());
+
+  const KnownUnits sorted({.pull_in_error = 0, .frequency_error = 0, .classes = 4}, grid());
+  ASSERT_EQ(sorted.classes().size(), 4U);
+  for (const KnownUnits::Class& one : sorted.classes()) EXPECT_EQ(one.share, 0.25);
+  constexpr double of_the_mean = 1e-6;  // the centre is a mean of logarithms
+  const DeviceUnits centre = sorted.of({.volts = 1.07, .time = 0.85});
+  EXPECT_NEAR(centre.volts, 1.1, of_the_mean);
+  EXPECT_NEAR(centre.time, 0.8, of_the_mean);
+  EXPECT_TRUE(std::isnan(sorted.of({.volts = Metrics::unset, .time = 1}).volts)) << "not measured, in no class";
+
+  const KnownUnits by_volts({.pull_in_error = 0, .classes = 2}, grid());
+  EXPECT_NEAR(by_volts.of({.volts = 1.07, .time = 0.85}, 1, 0).volts, 1.1, of_the_mean);
+  EXPECT_EQ(by_volts.of({.volts = 1.07, .time = 0.85}, 1, 0).time, 1) << "the frequency is not measured";
+  EXPECT_NE(refusal([] { static_cast<void>(KnownUnits({.pull_in_error = 0, .classes = 2})); }).find("no device"),
+            std::string::npos);
+}
+
+TEST(KnownUnits, SortWhatIsMeasuredWithItsErrors) {
+  const Calibration errors{.pull_in_error = 0.1, .frequency_error = 0.1, .classes = 4};
+  const KnownUnits sorted(errors, grid()), own({.pull_in_error = 0.1, .frequency_error = 0.1});
+  const DeviceUnits exact{.volts = 1, .time = 1};
+  for (std::uint64_t k = 0; k < 20; ++k) EXPECT_EQ(sorted.of(exact, 3, k).volts, sorted.of(own.of(exact, 3, k)).volts) << k;
+}
+
+TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
+  const Prepared nominal = prepare(gold_at_17_volts({"simulate.accuracy=1e-3"}));
+  const DeviceMeter meter(nominal, false);  // a frequency costs no closings
+  const Calibration sorted{.frequency_error = 0, .classes = 3};
+  const KnownUnits known = known_units(nominal, std::array{sorted}, 1).front();
+  EXPECT_EQ(known_units(nominal, std::array{sorted}, 3).front().classes()[1].centre.time, known.classes()[1].centre.time);
+  ASSERT_EQ(known.classes().size(), 3U);
+  const std::vector<Waveform> drive{Step{.level = 17.771, .rise_time = 20e-6}};
+  const EnsembleRun run{.duration = nominal.duration};
+  const std::vector<DeviceOutcome> outcomes =
+      close_all(Ensemble(nominal, 12), {{.waveforms = drive, .known = known}}, run).front();
+  const Ensemble ensemble(nominal, 12);
+  DeviceBuilder builder(ensemble);
+  std::set<double> times;
+  for (std::uint64_t k = 0; k < 12; ++k) {
+    const SampledDevice device = builder.device(k);
+    const DeviceUnits units = known.of(meter.exact(*device.model));
+    times.insert(units.time);
+    const Metrics expected = metrics(simulate_closing(*device.model, std::vector{signal(scaled(drive[0], 1, units.time))},
+                                                      {.duration = run.duration, .tolerance = run.tolerance}));
+    EXPECT_EQ(outcomes[k].metrics.initial_contact_time, expected.initial_contact_time);
+  }
+  EXPECT_EQ(times.size(), 3U) << "three waveforms for all devices";
+}
+
 TEST(Robustness, SaysWhatEachMeasurementIsWorth) {
   const Prepared nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=30 us"}));
   const Calibration errors{.pull_in_error = 0.01, .frequency_error = 0.01};
@@ -170,13 +236,17 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth) {
   const Robustness found =
       robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = errors}}, options);
   ASSERT_EQ(found.drives.size(), 2U);
-  ASSERT_EQ(found.by_knowledge.size(), 4U);
-  EXPECT_TRUE(found.drives[0].calibration.is_empty()) << "the plain step is that of the nominal device";
+  std::vector<std::string> names;
+  for (const DriveRobustness& d : found.by_knowledge) names.push_back(d.name);
+  ASSERT_EQ(names,
+            (std::vector<std::string>{"nothing", "Vdp", "frequency", "Vdp and frequency, 4 classes",
+                                      "Vdp and frequency, 8 classes", "Vdp and frequency, 16 classes", "Vdp and frequency"}));
+  EXPECT_TRUE(found.drives[0].known.calibration().is_empty()) << "the plain step is that of the nominal device";
   const std::vector<DeviceOutcome> fixed =
       robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, options).drives[1].outcomes;
   EXPECT_TRUE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[0].outcomes.begin(), same))
       << "nothing known: fixed volts";
-  for (std::size_t i = 1; i < 4; ++i)
+  for (std::size_t i = 1; i < names.size(); ++i)
     EXPECT_FALSE(std::equal(fixed.begin(), fixed.end(), found.by_knowledge[i].outcomes.begin(), same))
         << found.by_knowledge[i].name;
   // In its own units every device closes nearly alike: at the same time in its own periods.
@@ -188,7 +258,11 @@ TEST(Robustness, SaysWhatEachMeasurementIsWorth) {
       periods.push_back(d.outcomes[k].metrics.initial_contact_time * builder.device(k).model->angular_frequencies()[0]);
     return sample_standard_deviation(periods) / sample_mean(periods);
   };
-  EXPECT_LT(spread_of_first_contact(found.by_knowledge[3]), spread_of_first_contact(found.by_knowledge[0]) / 3);
+  EXPECT_LT(spread_of_first_contact(found.by_knowledge.back()), spread_of_first_contact(found.by_knowledge[0]) / 3);
+  EXPECT_EQ(found.by_knowledge[5].known.classes().size(), 16U);
+  EXPECT_TRUE(found.by_knowledge.back().known.classes().empty());
+  for (std::size_t i = 3; i < 6; ++i)
+    EXPECT_LT(spread_of_first_contact(found.by_knowledge[i + 1]), spread_of_first_contact(found.by_knowledge[i])) << names[i];
   // A device of it is a scene of its own, with its own volts.
   const std::size_t k = 5;
   const Prepared alone = prepare(SceneFile::parse(scene_of_device(nominal, found.drives[1], k, options).text(), "worst.toml"));

@@ -1,0 +1,30 @@
+#include "reports/estimates.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/json_number.h"
+#include "reports/quantity.h"
+
+namespace softland::internal {
+
+nlohmann::json interval_json(const Interval& interval) { return {json_number(interval.low), json_number(interval.high)}; }
+
+nlohmann::json yield_json(const Yield& yield) {
+  return {{"devices", yield.devices}, {"share", json_number(yield.value)}, {"interval", interval_json(yield.interval)}};
+}
+
+std::string yield_text(const Yield& yield) {
+  return fmt::format("{} ({} to {})", percent(yield.value), plain_number(100 * yield.interval.low),
+                     plain_number(100 * yield.interval.high));
+}
+
+std::string quantile_text(const EstimatedQuantile& q, std::string_view unit) {
+  if (std::isinf(q.value)) return "not closed";
+  const double factor = unit.empty() ? 1 : prefix_for(q.value).factor;
+  const auto bound = [&](double value) { return std::isfinite(value) ? plain_number(value / factor) : std::string("?"); };
+  return fmt::format("{} ({} to {})", quantity(q.value, unit), bound(q.interval.low), bound(q.interval.high));
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,19 @@
+// Shares and quantiles of devices with their intervals, as text and as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "studies/robustness.h"
+
+namespace softland::internal {
+
+[[nodiscard]] nlohmann::json interval_json(const Interval& interval);
+[[nodiscard]] nlohmann::json yield_json(const Yield& yield);
+/// "3.4 % (2.7 to 4.3)"
+[[nodiscard]] std::string yield_text(const Yield& yield);
+/// "26.9 mm/s (26.6 to 27.1)"; "not closed" where it is infinite.
+[[nodiscard]] std::string quantile_text(const EstimatedQuantile& quantile, std::string_view unit);
+
+}  // namespace softland::internal

@@ -1,0 +1,154 @@
+#include "reports/measurement_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/estimates.h"
+#include "reports/json_number.h"
+#include "reports/made_with.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
+#include "sampling/statistics.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using internal::interval_json;
+using internal::json_number;
+using internal::left_aligned;
+using internal::percent;
+using internal::quantile_text;
+using internal::quantity;
+using internal::right_aligned;
+using internal::yield_json;
+using internal::yield_text;
+using nlohmann::json;
+
+std::vector<double> known(const MeasurableFigure& figure) {
+  std::vector<double> values;
+  std::copy_if(figure.values.begin(), figure.values.end(), std::back_inserter(values), [](double v) { return std::isfinite(v); });
+  return values;
+}
+
+// Of the devices that have the figure, over its mean.
+double variation(const MeasurableFigure& figure) {
+  const std::vector<double> values = known(figure);
+  return values.size() < 2 ? Metrics::unset : sample_standard_deviation(values) / sample_mean(values);
+}
+
+json quantile_json(const EstimatedQuantile& q) {
+  return {{"value", json_number(q.value)}, {"interval", interval_json(q.interval)}};
+}
+
+constexpr std::size_t name_width = 36, miss_width = 10, yield_width = 23, quantile_width = 27;
+
+std::string row(const Prediction& p) {
+  const auto miss = [](double value) {
+    return std::isfinite(value) ? internal::plain_number(100 * value, 2) + " %" : std::string("—");
+  };
+  std::string text = left_aligned(p.name, name_width) + right_aligned(miss(p.volts_miss), miss_width) +
+                     right_aligned(miss(p.time_miss), miss_width);
+  if (!p.is_judged) return text + right_aligned("—", yield_width) + "\n";
+  return text + right_aligned(yield_text(p.bounce_free), yield_width) +
+         right_aligned(quantile_text(p.impact_speed, "m/s"), quantile_width) +
+         right_aligned(quantile_text(p.rebound_height, "m"), quantile_width) + "\n";
+}
+
+}  // namespace
+
+json measurements_json(const MeasurementStudy& study, const MeasurementOptions& options, const std::string& command) {
+  json figures = json::array();
+  for (const MeasurableFigure& f : study.figures) {
+    figures.push_back({{"name", f.name},
+                       {"unit", f.unit},
+                       {"nominal", json_number(f.nominal)},
+                       {"variation", json_number(variation(f))},
+                       {"error", f.error},
+                       {"devices", known(f).size()}});
+  }
+  const auto rows = [&](const std::vector<Prediction>& predictions) {
+    json all = json::array();
+    for (const Prediction& p : predictions) {
+      json measured = json::array();
+      for (const std::size_t f : p.figures) measured.push_back(study.figures[f].name);
+      json one{{"name", p.name},
+               {"measured", std::move(measured)},
+               {"volts_miss", json_number(p.volts_miss)},
+               {"time_miss", json_number(p.time_miss)},
+               {"volts_unexplained", json_number(p.volts_unexplained)},
+               {"time_unexplained", json_number(p.time_unexplained)}};
+      if (p.is_judged) {
+        one["score_95"] = json_number(p.score);
+        one["bounce_free"] = yield_json(p.bounce_free);
+        one["largest_impact_velocity_95_m_s"] = quantile_json(p.impact_speed);
+        one["major_bounce_height_95_m"] = quantile_json(p.rebound_height);
+      }
+      all.push_back(std::move(one));
+    }
+    return all;
+  };
+  return {{"kind", "calibrate"},
+          {"status", study.interrupted ? "interrupted" : "done"},
+          {"devices", study.devices},
+          {"seed", options.seed},
+          {"figures", std::move(figures)},
+          {"references", rows(study.references)},
+          {"predictions", rows(study.predictions)},
+          {"version", version},
+          {"made_with", made_with_json()},
+          {"command", command}};
+}
+
+std::string measurements_text(const MeasurementStudy& study, const MeasurementOptions& options, std::size_t most) {
+  std::string text;
+  if (study.interrupted) text += "Interrupted: not all is judged.\n\n";
+  text +=
+      wrapped(fmt::format("{} devices of the spread. For each the factors of volts and of time were searched under which the "
+                          "recipe lands it most softly; then they were told from what is measured, by a fit to the other half "
+                          "of the devices, and the devices closed with what was told.",
+                          study.devices)) +
+      "\n\n";
+  text += fmt::format("{:<{}}{:>12}{:>12}{:>12}{:>12}\n", "Figure", name_width, "nominal", "varies by", "error", "devices");
+  for (const MeasurableFigure& f : study.figures) {
+    text += left_aligned(f.name, name_width) + right_aligned(quantity(f.nominal, f.unit), 12) +
+            right_aligned(percent(variation(f)), 12) + right_aligned(f.error > 0 ? percent(f.error) : "exact", 12) +
+            right_aligned(std::to_string(known(f).size()), 12) + "\n";
+  }
+  const std::string head =
+      fmt::format("{:>{}}{:>{}}{:>{}}{:>{}}{:>{}}\n", "volts off", miss_width, "time off", miss_width, "without a rebound",
+                  yield_width, "v_max, 95 % below", quantile_width, "B_H, 95 % below", quantile_width);
+  text += "\n" + left_aligned("Measured, the best first", name_width) + head;
+  // Whether a pair is worth its second figure.
+  const auto is_better_than_its_figures = [&](const Prediction& p) {
+    return std::all_of(p.figures.begin(), p.figures.end(), [&](std::size_t figure) {
+      return std::all_of(study.predictions.begin(), study.predictions.end(), [&](const Prediction& single) {
+        return single.figures != std::vector{figure} || !single.is_judged || p.score < single.score;
+      });
+    });
+  };
+  std::size_t shown = 0, left_out = 0;
+  for (const Prediction& p : study.predictions) {
+    if (shown == most || (p.is_judged && p.figures.size() > 1 && !is_better_than_its_figures(p))) {
+      ++left_out;
+      continue;
+    }
+    text += row(p);
+    ++shown;
+  }
+  text += "\n" + left_aligned("To compare with", name_width) + head;
+  for (const Prediction& p : study.references) text += row(p);
+  const std::string others =
+      left_out > 0 ? fmt::format(" Left out are pairs that do no better than one of their figures: {}.", left_out) : "";
+  return text + "\n" +
+         wrapped(fmt::format("Volts and times are off the best factors by this root mean square. In brackets: 95 % confidence. "
+                             "Ranked by the 95 % "
+                             "quantile of the score of `bounce`, half the largest touch speed and half the highest rebound over "
+                             "those of the plain step. Seed {}.{}",
+                             options.seed, others)) +
+         "\n";
+}
+
+}  // namespace softland

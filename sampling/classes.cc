@@ -1,0 +1,103 @@
+#include "sampling/classes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/random.h"
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t starts = 8;
+constexpr int most_iterations = 200;
+
+double square_distance(const PlanePoint& a, const PlanePoint& b) {
+  const double dx = a[0] - b[0], dy = a[1] - b[1];
+  return dx * dx + dy * dy;
+}
+
+// Fewer than `count` where the points are fewer.
+std::vector<PlanePoint> start_centres(std::span<const PlanePoint> points, std::size_t count, std::uint64_t seed,
+                                      std::size_t start) {
+  std::vector<PlanePoint> centres;
+  std::vector<double> square(points.size(), 1.0);  // the first centre is any of the points
+  while (centres.size() < count) {
+    double sum = 0;
+    for (const double one : square) sum += one;
+    if (!(sum > 0)) break;
+    double left = sum * random_uniform(seed, Stream::classes, (start << 32) + centres.size());
+    std::size_t chosen = points.size();
+    for (std::size_t i = 0; i < points.size() && left >= 0; ++i) {
+      if (square[i] > 0) chosen = i;
+      left -= square[i];
+    }
+    centres.push_back(points[chosen]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double own = square_distance(points[i], centres.back());
+      square[i] = centres.size() == 1 ? own : std::min(square[i], own);
+    }
+  }
+  return centres;
+}
+
+struct Sorted {
+  Classes classes;
+  double square = std::numeric_limits<double>::infinity();  // sum of the distances
+};
+
+// Sorts the points by these centres, and moves each centre to the mean of its points until none changes its class.
+Sorted settle(std::span<const PlanePoint> points, std::vector<PlanePoint> centres) {
+  Sorted sorted{.classes = {.centres = std::move(centres), .shares = {}}};
+  std::vector<std::size_t> own(points.size(), points.size());
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    bool moved = false;
+    sorted.square = 0;
+    std::vector<PlanePoint> sums(sorted.classes.centres.size());
+    std::vector<double> counts(sums.size(), 0.0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t c = sorted.classes.nearest(points[i]);
+      moved = moved || own[i] != c;
+      own[i] = c;
+      sums[c][0] += points[i][0];
+      sums[c][1] += points[i][1];
+      counts[c] += 1;
+      sorted.square += square_distance(points[i], sorted.classes.centres[c]);
+    }
+    sorted.classes.shares = counts;
+    for (double& share : sorted.classes.shares) share /= static_cast<double>(points.size());
+    if (!moved) break;
+    for (std::size_t c = 0; c < sums.size(); ++c) {
+      if (counts[c] > 0) sorted.classes.centres[c] = {sums[c][0] / counts[c], sums[c][1] / counts[c]};
+    }
+  }
+  return sorted;
+}
+
+}  // namespace
+
+std::size_t Classes::nearest(const PlanePoint& point) const {
+  std::size_t best = 0;
+  for (std::size_t c = 1; c < centres.size(); ++c) {
+    if (square_distance(point, centres[c]) < square_distance(point, centres[best])) best = c;
+  }
+  return best;
+}
+
+Classes classes_of(std::span<const PlanePoint> points, std::size_t count, std::uint64_t seed) {
+  require(count > 0, "classes: there must be at least one");
+  require(!points.empty() && std::all_of(points.begin(), points.end(),
+                                         [](const PlanePoint& p) { return std::isfinite(p[0]) && std::isfinite(p[1]); }),
+          "classes: there must be points, all of them finite");
+  Sorted best;
+  for (std::size_t start = 0; start < starts; ++start) {
+    Sorted one = settle(points, start_centres(points, count, seed, start));
+    if (one.square < best.square) best = std::move(one);
+  }
+  std::sort(best.classes.centres.begin(), best.classes.centres.end());
+  return settle(points, std::move(best.classes.centres)).classes;  // shares in the new order
+}
+
+}  // namespace softland

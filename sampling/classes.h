@@ -1,0 +1,37 @@
+// Points of a plane sorted into classes: every point belongs to the class of the nearest centre, and the centres are chosen so
+// that the mean square distance of the points to theirs is small.
+//
+//   minimise  sum_i min_c |x_i - c|^2   over `count` centres c
+//
+// For a measured quantity this is the quantizer of least mean square error. Its classes are narrow where points are many and wide
+// where they are few, but not as wide as those of equal shares, whose outermost ones reach far: between equal shares and equal
+// widths. Found by Lloyd's iteration from several starts, each centre drawn with a probability in proportion to the square
+// distance to those before it; a better local minimum may exist.
+//
+// Sources: S. P. Lloyd, "Least squares quantization in PCM", IEEE Trans. Inf. Theory 28 (1982) 129; J. Max, "Quantizing for
+// minimum distortion", IRE Trans. Inf. Theory 6 (1960) 7; D. Arthur & S. Vassilvitskii, "k-means++", SODA 2007 (starts).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace softland {
+
+using PlanePoint = std::array<double, 2>;
+
+struct Classes {
+  std::vector<PlanePoint> centres;  ///< in ascending order
+  std::vector<double> shares;       ///< of the points, by class
+
+  /// The class of a point: the nearest centre, the first of several.
+  [[nodiscard]] std::size_t nearest(const PlanePoint& point) const;
+};
+
+/// A function of its arguments alone. There are fewer classes than `count` where there are fewer distinct points. Throws
+/// InvalidInput for count 0, and unless there are points, all of them finite.
+[[nodiscard]] Classes classes_of(std::span<const PlanePoint> points, std::size_t count, std::uint64_t seed);
+
+}  // namespace softland

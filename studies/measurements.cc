@@ -1,0 +1,304 @@
+#include "studies/measurements.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "base/executor.h"
+#include "base/random.h"
+#include "base/require.h"
+#include "model/constants.h"
+#include "optimizers/problem.h"
+#include "sampling/confidence.h"
+#include "sampling/statistics.h"
+#include "studies/plain_step.h"
+#include "studies/robust_cost.h"
+
+namespace softland {
+namespace {
+
+constexpr double widest_change = 0.25;  // of the logarithm of a factor
+constexpr double first_step = 0.005;    // of the search, of the logarithm of a factor
+constexpr long closings_of_a_device = 80;
+constexpr double periods_to_close = 5;  // of a step
+constexpr double probability = 0.95;
+
+constexpr double unknown = Metrics::unset;
+
+// Tasks over devices, whose progress is told.
+template <class Task>
+void over_devices(std::size_t devices, int jobs, const char* what, const Watch& watch, const Task& task) {
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  run_tasks(
+      devices, jobs,
+      [&](std::size_t k) {
+        if (watch.stopped()) return;
+        task(k);
+        const std::scoped_lock lock(telling);
+        watch.tell(what, static_cast<double>(++done) / static_cast<double>(devices));
+      },
+      watch.stop);
+}
+
+double closing_time(const Switch& model, const std::vector<double>& volts, double duration) {
+  std::vector<Signal> signals;
+  for (const double one : volts) signals.push_back(Signal::constant(one));
+  const Trajectory end =
+      simulate_closing(model, signals, {.duration = duration, .tolerance = EnsembleRun{}.tolerance, .after_contact = 0});
+  return end.touches.empty() ? unknown : end.touches.front().begin;
+}
+
+// What is measured, and how.
+struct Instrument {
+  std::string name, unit;
+  double error;
+  std::function<double(const Switch&)> read;
+};
+
+std::vector<Instrument> instruments(const Prepared& nominal, const DeviceMeter& meter, const MeasurementOptions& options) {
+  const std::size_t electrode = meter.electrode();
+  std::vector<Instrument> all{
+      {"Vdp", "V", options.pull_in_error, [&meter](const Switch& m) { return meter.exact(m).volts * meter.pull_in(); }},
+      {"Vsp", "V", options.static_pull_in_error, [electrode](const Switch& m) { return static_pull_in(m, electrode).voltage; }},
+      {"release", "V", options.release_error, [electrode](const Switch& m) { return release_voltage(m, electrode); }},
+      {"frequency", "Hz", options.frequency_error, [](const Switch& m) { return m.angular_frequencies()[0] / (2 * pi); }}};
+  const double duration = periods_to_close / meter.frequency();
+  for (const double step : options.steps) {
+    std::vector<double> volts(nominal.model.drives(), 0.0);
+    volts[electrode] = step * meter.pull_in();
+    all.push_back({fmt::format("time at {:g} Vdp", step), "s", options.time_error,
+                   [volts, duration](const Switch& m) { return closing_time(m, volts, duration); }});
+  }
+  return all;
+}
+
+// A figure that no device varies in, or that the nominal one does not have, tells nothing.
+bool tells(const MeasurableFigure& figure) {
+  if (!(figure.nominal > 0)) return false;
+  return std::any_of(figure.values.begin(), figure.values.end(),
+                     [&](double v) { return std::isfinite(v) && std::abs(v / figure.nominal - 1) > 1e-9; });
+}
+
+std::vector<MeasurableFigure> measure(const std::vector<Instrument>& all, const Switch& nominal, const RobustCost& cost, int jobs,
+                                      const Watch& watch) {
+  std::vector<MeasurableFigure> figures;
+  for (const Instrument& one : all) {
+    figures.push_back({.name = one.name,
+                       .unit = one.unit,
+                       .nominal = one.read(nominal),
+                       .error = one.error,
+                       .values = std::vector<double>(cost.devices(), unknown)});
+  }
+  over_devices(cost.devices(), jobs, "figures of the devices", watch, [&](std::size_t k) {
+    const SampledDevice& device = cost.device(k);
+    for (std::size_t f = 0; f < figures.size() && device.model && !watch.stopped(); ++f)
+      figures[f].values[k] = all[f].read(*device.model);
+  });
+  watch.throw_if_stopped();
+  std::erase_if(figures, [](const MeasurableFigure& f) { return !tells(f); });
+  return figures;
+}
+
+// The best factors of a device, searched from its own units.
+DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& recipe, std::size_t k, const DeviceUnits& own) {
+  const auto units_at = [](std::span<const double> x) { return DeviceUnits{.volts = std::exp(x[0]), .time = std::exp(x[1])}; };
+  double least = std::numeric_limits<double>::infinity();
+  const Problem problem{.variables = {{.name = "volts", .lower = -widest_change, .upper = widest_change},
+                                      {.name = "time", .lower = -widest_change, .upper = widest_change}},
+                        .objective =
+                            [&](std::span<const double> x) {
+                              const double score =
+                                  std::min(cost.score(cost.close(recipe, k, units_at(x))), RobustCost::not_closed);
+                              least = std::min(least, score);
+                              return score + x[0] * x[0] + x[1] * x[1];
+                            },
+                        .starts = {{std::log(own.volts), std::log(own.time)}}};
+  const OptimizerResult found = minimize(
+      problem, {.optimizer = "nelder-mead", .max_evaluations = closings_of_a_device, .step = first_step / (2 * widest_change)});
+  if (found.x.empty() || least >= RobustCost::not_closed) return {.volts = unknown, .time = unknown};
+  return units_at(found.x);
+}
+
+// Rows 1, ln x_1 ... of the devices; NaN where a figure is not there.
+Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const std::vector<std::size_t>& used,
+                           std::uint64_t seed) {
+  const auto devices = static_cast<Eigen::Index>(figures.empty() ? 0 : figures.front().values.size());
+  Eigen::MatrixXd x = Eigen::MatrixXd::Ones(devices, static_cast<Eigen::Index>(used.size()) + 1);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const MeasurableFigure& f = figures[used[i]];
+    for (Eigen::Index k = 0; k < devices; ++k) {
+      constexpr std::uint64_t room = 64;  // for figures, in the numbers of a device
+      const double error = f.error * random_normal(seed, Stream::measurement, static_cast<std::uint64_t>(k) * room + used[i]);
+      x(k, static_cast<Eigen::Index>(i) + 1) = std::log(f.values[static_cast<std::size_t>(k)] / f.nominal * (1 + error));
+    }
+  }
+  return x;
+}
+
+// The factors of every device, told by a fit to the half that it is not in.
+std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best) {
+  const Eigen::Index devices = x.rows(), middle = devices / 2;
+  Eigen::MatrixXd told = Eigen::MatrixXd::Constant(devices, 2, unknown);
+  for (const bool first : {true, false}) {
+    const Eigen::Index begin = first ? 0 : middle, end = first ? middle : devices;
+    std::vector<Eigen::Index> fitted;
+    for (Eigen::Index k = 0; k < devices; ++k) {
+      const bool inside = k >= begin && k < end;
+      if (!inside && x.row(k).allFinite() && std::isfinite(best[static_cast<std::size_t>(k)].volts)) fitted.push_back(k);
+    }
+    if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // nothing can be told
+    Eigen::MatrixXd factors(fitted.size(), 2);
+    for (std::size_t i = 0; i < fitted.size(); ++i) {
+      const DeviceUnits& units = best[static_cast<std::size_t>(fitted[i])];
+      factors.row(static_cast<Eigen::Index>(i)) << std::log(units.volts), std::log(units.time);
+    }
+    const Eigen::MatrixXd rows = x(fitted, Eigen::all);
+    const Eigen::MatrixXd slopes = rows.colPivHouseholderQr().solve(factors);
+    told.middleRows(begin, end - begin) = x.middleRows(begin, end - begin) * slopes;
+  }
+  std::vector<DeviceUnits> units;
+  for (Eigen::Index k = 0; k < devices; ++k) units.push_back({.volts = std::exp(told(k, 0)), .time = std::exp(told(k, 1))});
+  return units;
+}
+
+// Root mean square of what is missed, and its square over the variance.
+std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std::vector<DeviceUnits>& best,
+                                 double DeviceUnits::*factor) {
+  std::vector<double> wanted;
+  double square = 0;
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    const double miss = std::log(told[k].*factor / best[k].*factor);
+    if (!std::isfinite(miss)) continue;
+    wanted.push_back(std::log(best[k].*factor));
+    square += miss * miss;
+  }
+  if (wanted.size() < 2) return {unknown, unknown};
+  const double mean_square = square / static_cast<double>(wanted.size()), deviation = sample_standard_deviation(wanted);
+  return {std::sqrt(mean_square), deviation > 0 ? mean_square / (deviation * deviation) : unknown};
+}
+
+// A prediction together with what it tells.
+struct Told {
+  Prediction prediction;
+  std::vector<DeviceUnits> units;
+};
+
+void judge_told(Told& told, const RobustCost& cost, const std::vector<Waveform>& recipe, int jobs, const Watch& watch) {
+  std::vector<DeviceOutcome> outcomes(cost.devices());
+  run_tasks(outcomes.size(), jobs, [&](std::size_t k) {
+    if (watch.stopped()) return;
+    const DeviceUnits& units = told.units[k];
+    if (std::isfinite(units.volts) && std::isfinite(units.time)) {
+      outcomes[k] = cost.close(recipe, k, units);
+    } else {
+      outcomes[k].failure = "its factors cannot be told";
+    }
+  });
+  if (watch.stopped()) return;
+  std::vector<double> scores, speeds, heights;
+  std::size_t free = 0;
+  for (const DeviceOutcome& o : outcomes) {
+    scores.push_back(std::min(cost.score(o), RobustCost::not_closed));
+    speeds.push_back(ensemble_figure("largest_impact_velocity_m_s").value(o));
+    heights.push_back(ensemble_figure("major_bounce_height_m").value(o));
+    free += is_bounce_free(o);
+  }
+  Prediction& p = told.prediction;
+  p.is_judged = true;
+  p.score = sample_quantile(scores, probability);
+  p.bounce_free = yield_of(free, outcomes.size());
+  p.impact_speed = estimated_quantile(speeds, probability);
+  p.rebound_height = estimated_quantile(heights, probability);
+}
+
+}  // namespace
+
+MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOptions& options, const Watch& watch) {
+  require(options.samples >= fewest_measured && options.samples <= most_measured, [&] {
+    return fmt::format("{} devices: there must be from {} to {}", options.samples, fewest_measured, most_measured);
+  });
+  const Device device = read_scene(file).device;
+  require(device.contact.has_value(), "calibrate needs a [contact] section: without contact there is nothing to land on");
+  require(has_pulling_electrode(device), "calibrate needs an electrode that pulls in: its voltage is what devices differ in");
+  const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
+  const Prepared& nominal = setting.given;
+  const std::vector<Waveform> recipe = nominal.in_drive_order(nominal.drives.waveforms);
+  require(!same_drives(signals_of(recipe), setting.baseline_scene.signals()), [&] {
+    return fmt::format(
+        "{}: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what "
+        "softland optimize has found",
+        nominal.scene.file.name());
+  });
+  const DeviceMeter meter(nominal, true);
+  const RobustAim aim;
+  const Ensemble ensemble(nominal, options.samples, options.seed);
+  const RobustCost cost(setting, aim, build_all(ensemble, {}, options.seed, options.jobs, watch));
+
+  MeasurementStudy study{.devices = cost.devices()};
+  study.figures = measure(instruments(nominal, meter, options), nominal.model, cost, options.jobs, watch);
+  const auto number_of = [&](std::string_view name) {
+    const auto found = std::find_if(study.figures.begin(), study.figures.end(), [&](const auto& f) { return f.name == name; });
+    return static_cast<std::size_t>(found - study.figures.begin());
+  };
+
+  study.best.assign(study.devices, {.volts = unknown, .time = unknown});
+  over_devices(study.devices, options.jobs, "best factors of the devices", watch, [&](std::size_t k) {
+    if (!cost.device(k).model) return;
+    DeviceUnits own = meter.exact(*cost.device(k).model);
+    if (!std::isfinite(own.volts)) own.volts = 1;
+    study.best[k] = best_factors(cost, recipe, k, own);
+  });
+  watch.throw_if_stopped();
+
+  std::vector<Told> all;
+  const auto fitted = [&](std::string name, std::vector<std::size_t> figures) {
+    Told told{.prediction = {.name = std::move(name), .figures = std::move(figures)}, .units = {}};
+    told.units = told_factors(regressors(study.figures, told.prediction.figures, options.seed), study.best);
+    std::tie(told.prediction.volts_miss, told.prediction.volts_unexplained) = misses(told.units, study.best, &DeviceUnits::volts);
+    std::tie(told.prediction.time_miss, told.prediction.time_unexplained) = misses(told.units, study.best, &DeviceUnits::time);
+    all.push_back(std::move(told));
+  };
+  const auto given = [&](std::string name, std::vector<DeviceUnits> units) {
+    all.push_back({.prediction = {.name = std::move(name), .figures = {}}, .units = std::move(units)});
+  };
+  const std::size_t count = study.figures.size();
+  given("nothing", std::vector<DeviceUnits>(study.devices));
+  given("the best factors themselves", study.best);
+  std::vector<std::size_t> every(count);
+  std::iota(every.begin(), every.end(), std::size_t{0});
+  fitted("all of them", every);
+  if (const std::size_t v = number_of("Vdp"), f = number_of("frequency"); v < count && f < count) {
+    const Eigen::MatrixXd x = regressors(study.figures, {v, f}, options.seed);
+    std::vector<DeviceUnits> own;
+    for (Eigen::Index k = 0; k < x.rows(); ++k) own.push_back({.volts = std::exp(x(k, 1)), .time = std::exp(-x(k, 2))});
+    given("own units: Vdp, frequency", std::move(own));
+  }
+  const std::size_t references = all.size();
+  for (std::size_t a = 0; a < count; ++a) {
+    fitted(study.figures[a].name, {a});
+    for (std::size_t b = a + 1; b < count; ++b) fitted(study.figures[a].name + " and " + study.figures[b].name, {a, b});
+  }
+  for (std::size_t i = 0; i < all.size() && !watch.stopped(); ++i) {
+    judge_told(all[i], cost, recipe, options.jobs, watch);
+    watch.tell("judging what is told", static_cast<double>(i + 1) / static_cast<double>(all.size()));
+  }
+  study.interrupted = watch.stopped();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    (i < references ? study.references : study.predictions).push_back(std::move(all[i].prediction));
+  std::stable_sort(study.predictions.begin(), study.predictions.end(), [](const Prediction& a, const Prediction& b) {
+    return a.is_judged != b.is_judged ? a.is_judged : a.is_judged && a.score < b.score;
+  });
+  return study;
+}
+
+}  // namespace softland
