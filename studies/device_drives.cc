@@ -36,17 +36,14 @@ std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Dev
   return own;
 }
 
-// The waveforms with all that their families can express, and what is left.
+// The waveforms with units and gain, which every family can express, and what is left.
 struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
   std::vector<Signal> signals;  // of those
   std::vector<SourceErrors> errors;
   double origin = 0;  // of the clock [s]
 
-  [[nodiscard]] bool is_exact(std::size_t k) const { return origin == 0 && errors[k] == SourceErrors{}; }
-  [[nodiscard]] Signal signal(std::size_t k) const {
-    return is_exact(k) ? signals[k] : with_errors(signals[k], errors[k], origin);
-  }
+  [[nodiscard]] Signal signal(std::size_t k) const { return with_errors(signals[k], errors[k], origin); }
 };
 
 DeviceDrives::DeviceDrives(const Prepared& nominal) : nominal_(&nominal) {
@@ -122,7 +119,8 @@ std::vector<Waveform> DeviceDrives::waveforms(const std::vector<Waveform>& nomin
                                               const std::vector<double>& values) const {
   Driven all = driven(nominal, units, values);
   for (std::size_t k = 0; k < all.signals.size(); ++k) {
-    if (!all.is_exact(k)) all.waveforms[k] = as_table(all.signal(k), nominal_->duration);
+    const Signal own = all.signal(k);
+    if (own.pieces() != all.signals[k].pieces()) all.waveforms[k] = as_table(own, nominal_->duration);
   }
   return std::move(all.waveforms);
 }

@@ -33,7 +33,7 @@ class DeviceDrives {
   /// order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
-  /// The same as waveforms: of the given family where only units and gain differ, else a table, which is exact but for a sine,
+  /// The same as waveforms: of the given family where that can express them, else a table, which is exact but for a sine,
   /// which its lines follow within 1e-4 of the peak up to the end of the window.
   [[nodiscard]] std::vector<Waveform> waveforms(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                                 const std::vector<double>& values) const;

@@ -22,8 +22,6 @@ struct SourceErrors {
   double offset = 0;               ///< [V]
   double delay = 0;                ///< of all of f [s]
   std::vector<double> edges = {};  ///< by which each edge is late [s]; those that are missing are in time
-
-  bool operator==(const SourceErrors&) const = default;
 };
 
 /// The number of edges. One at t = 0 counts, unless the signal begins there with a level of 0 V.
