@@ -372,8 +372,8 @@ std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) c
   for (const auto& [key, value] : *node->as_table()) {
     if (!beside.empty() && key.str() == beside) continue;
     if (!value.is_table()) {
-      const std::string nearest = beside.empty() ? "" : internal::hint(key.str(), {beside});
-      fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]{}", section, nearest));
+      const std::string key_beside = beside.empty() ? "" : fmt::format(" or the key '{}'", beside);
+      fail(join_path(section, key.str()), fmt::format("expected a section [{}.NAME]{}", section, key_beside));
     }
     names.emplace_back(key.str());
   }

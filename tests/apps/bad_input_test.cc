@@ -120,7 +120,7 @@ TEST_F(BadInput, Options) {
       {{"calibrate", "gold.toml", "--error", "Vdp"},
        "--error Vdp: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},
       {{"calibrate", "gold.toml", "--error", "Vdp:1 %,mass:1 %"},
-       "--error 'Vdp:1 %,mass:1 %': must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 "
+       "--error Vdp:1 %,mass:1 %: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 "
        "%\""},
       {{"calibrate", "gold.toml", "--error", "time:1 s"},
        "--error time:1 s: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},

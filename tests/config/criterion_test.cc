@@ -126,7 +126,7 @@ TEST(Calibration, MaySortDevicesIntoClasses) {
   EXPECT_EQ(refused({"calibration.classes=4"}),
             "--set calibration.classes=4: nothing to sort devices by: add [calibration.Vdp] or [calibration.frequency]");
   EXPECT_EQ(refused({"calibration.Vdp.error=0", "calibration.clases=4"}),
-            "--set calibration.clases=4: expected a section [calibration.NAME] (did you mean 'classes'?)");
+            "--set calibration.clases=4: expected a section [calibration.NAME] or the key 'classes'");
 }
 
 TEST(Calibration, StandsInTheResolvedScene) {

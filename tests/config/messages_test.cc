@@ -211,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(Spread, BadFile, testing::Values(
     spread_line(R"("structure.kind" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."structure.kind"]: 'structure.kind' is not a key of this scene that holds one number of the device (known: length, width, thickness, youngs_modulus, density, damping_ratio))"),
     spread_line(R"("simulate.accuracy" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."simulate.accuracy"]: 'simulate.accuracy' is not a key of this scene that holds one number of the device)"),
     spread_line(R"("a b c" = { distribution = "normal", cov = "2 %" })", R"(x.toml:15: [spread."a b c"]: not a key path such as structure.length)"),
-    spread_line(R"("structure.thickness" = "2 %")", R"(x.toml:15: spread."structure.thickness" = "2 %": expected a section [spread.NAME])"),
+    spread_line(R"("structure.thickness" = "2 %")", R"(x.toml:15: spread."structure.thickness" = "2 %": expected a section [spread.NAME] or the key 'correlation')"),
     spread_line(R"("structure.thickness" = { distribution = "normal" })", R"(x.toml:15: [spread."structure.thickness"]: missing key 'cov' or 'standard_deviation')"),
     spread_line(R"("structure.thickness" = { distribution = "gaussian", cov = "2 %" })", R"(x.toml:15: spread."structure.thickness".distribution = "gaussian": unknown value (known: normal, lognormal, uniform, triangular, empirical))"),
     spread_line(R"("structure.thickness" = { distribution = "uniform" })", R"(x.toml:15: [spread."structure.thickness"]: missing key 'cov' or 'half_width')"),

@@ -44,7 +44,7 @@ const Study& study() {
   static const Study made = [] {
     SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
     for (const char* set : {"waveform.main.level=17.771 V", "waveform.main.rise_time=20 us", "driver.main.max_voltage=25 V",
-                            "simulate.duration=100 us"})
+                            "simulate.duration=100 us", "structure.modes=2"})
       file.set(set);
     Study s{.nominal = prepare(file), .options = {.samples = 64, .jobs = 2, .worth_of_measuring = true}, .found = {}};
     s.found = robustness(s.nominal,
