@@ -39,8 +39,9 @@ Metrics alone(const SceneFile& file) {
 }
 
 std::vector<DeviceOutcome> closings(const Prepared& nominal, const Ensemble& ensemble, int jobs = 1) {
+  // One at a time, as simulate_closing() does it: to the bit.
   return close_all(ensemble, {{.waveforms = nominal.in_drive_order(nominal.drives.waveforms)}},
-                   {.duration = nominal.duration, .jobs = jobs})[0];
+                   {.duration = nominal.duration, .jobs = jobs, .vectors = Vectors::none})[0];
 }
 
 constexpr double figures_of_bits = 1e-9;  // relative: what another clock does to the figures of one closing
@@ -166,7 +167,7 @@ TEST(DeviceDrives, AreWrittenIntoTheScenesOfDevices) {
                           "angular_frequency=\"180543 rad/s\"}"})}) {
     const Prepared nominal = prepare(file);
     const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = nominal.scene.calibration};
-    const RobustnessOptions options{.samples = 12};
+    const RobustnessOptions options{.samples = 12, .vectors = Vectors::none};
     const Robustness found = robustness(nominal, {drive}, options);
     for (const std::size_t k : {std::size_t{3}, found.drives.back().worst[0]}) {
       const SceneFile own = scene_of_device(nominal, found.drives.back(), k, options);
@@ -210,7 +211,7 @@ TEST(DeviceDrives, AnOffsetIsThereOnADriveThatIsNotDriven) {
   const Prepared nominal =
       prepare(gold_pzt({"waveform.piezo={family=\"step\", level=\"0 V\"}", "simulate.duration=60 us", "simulate.accuracy=1e-4",
                         "spread={\"driver.piezo.offset\"={distribution=\"uniform\", half_width=\"0.3 V\"}}"}));
-  const RobustnessOptions options{.samples = 4};
+  const RobustnessOptions options{.samples = 4, .vectors = Vectors::none};
   NamedDrive electrode_alone{.name = "own", .waveforms = {{"main", nominal.drives.waveforms.at("main")}}};
   const Robustness found = robustness(nominal, {electrode_alone}, options);
   const Ensemble ensemble(nominal, 4);
