@@ -335,6 +335,43 @@ TEST(RobustSearch, OfATinyBudgetStillAnswers) {
   }
 }
 
+const std::vector<std::string> thrown{
+    "--set", "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"17.8 V\"], times=[\"20 us\", \"32 us\"]}", "--set",
+    "structure.modes=2"};
+
+TEST(Calibrate, RanksWhatIsMeasuredWhateverTheNumberOfJobs) {
+  const Workplace here;
+  write(here.path() / "gold.toml", here.run({"new"}).out);
+  const auto run = [&](const char* jobs) {
+    std::vector<std::string> words{"calibrate", "gold.toml", "--samples", "16", "--steps", "1.25", "--error",
+                                   "Vdp:1 %",   "--quiet",   "--json",    "-",  "--jobs",  jobs};
+    words.insert(words.end(), thrown.begin(), thrown.end());
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.status, 0) << o.err;
+    json j = json::parse(o.out, nullptr, false);
+    j.erase("command");
+    return j;
+  };
+  const json one = run("1");
+  EXPECT_EQ(one, run("2"));
+  EXPECT_EQ(one["status"], "done");
+  EXPECT_EQ(one["figures"][0]["error"], 0.01);
+  EXPECT_EQ(one["figures"].back()["name"], "time at 1.25 Vdp");
+  EXPECT_EQ(one["predictions"].size(), 15U) << "five figures and their pairs";
+}
+
+TEST(Export, GivesADeviceTheWaveformOfItsClass) {
+  const Workplace here;
+  write(here.path() / "gold.toml", here.run({"new"}).out + "[calibration]\nclasses = 2\n[calibration.frequency]\n");
+  const auto of = [&](const char* frequency) { return here.run({"export", "gold.toml", "--device-frequency", frequency}).out; };
+  const std::string slow = of("9.9 kHz");
+  EXPECT_FALSE(slow.empty());
+  EXPECT_EQ(slow, of("10 kHz"));
+  const Outcome refused = here.run({"export", "gold.toml", "--device-vdp", "14 V"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("classes: give what [calibration] measures"), std::string::npos) << refused.err;
+}
+
 TEST(RobustSearch, RefusesToMeasureAPullInVoltageThatThereIsNot) {
   const Workplace here;
   write(here.path() / "casimir.toml", here.run({"new", "nem-casimir"}).out);
