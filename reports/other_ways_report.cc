@@ -116,9 +116,15 @@ std::string chaos_words(const OtherWays& ways, Symbol symbol) {
   return words;
 }
 
-json device_of_box_json(const BoxDevice& device, const DeviceSpread& spread) {
+// Of the varying quantities, as robustness_report.h shows them.
+std::vector<double> shown_values_in_box(const BoxDevice& device, const Prepared& nominal) {
+  return device.values.empty() ? device.values : DeviceDrives(nominal).shown(device.values);
+}
+
+json device_of_box_json(const BoxDevice& device, const Prepared& nominal) {
   json values = json::object();
-  for (std::size_t i = 0; i < device.values.size(); ++i) values[spread.variables[i].name] = device.values[i];
+  const std::vector<double> shown = shown_values_in_box(device, nominal);
+  for (std::size_t i = 0; i < shown.size(); ++i) values[nominal.scene.spread.variables[i].name] = shown[i];
   json j{
       {"value", json_number(device.figure)}, {"values", std::move(values)}, {"status", to_string(device.outcome.metrics.status)}};
   if (!device.outcome.failure.empty()) j["failure"] = device.outcome.failure;
@@ -127,11 +133,11 @@ json device_of_box_json(const BoxDevice& device, const DeviceSpread& spread) {
 
 }  // namespace
 
-json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const DeviceSpread& spread) {
+json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal) {
   json ranges = json::object(), chaos = json::object();
   for (const FigureRange& r : ways.ranges) {
-    ranges[std::string(r.key)] = {{"least", device_of_box_json(r.least, spread)},
-                                  {"most", device_of_box_json(r.most, spread)},
+    ranges[std::string(r.key)] = {{"least", device_of_box_json(r.least, nominal)},
+                                  {"most", device_of_box_json(r.most, nominal)},
                                   {"sampled", {json_number(r.of_sample.low), json_number(r.of_sample.high)}}};
   }
   for (const FigureChaos& c : ways.chaos) {
@@ -157,7 +163,7 @@ json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const 
   return j;
 }
 
-std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const DeviceSpread& spread) {
+std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal) {
   if (ways.ranges.empty()) return {};
   constexpr std::size_t label = 47, width = 16;
   std::string text = "\n" + left_aligned("Other ways, under " + drive.name, label);
@@ -170,16 +176,18 @@ std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive,
   }
   for (const FigureRange& r : ways.ranges) {
     std::string values;
-    for (std::size_t i = 0; i < r.most.values.size(); ++i)
-      values +=
-          fmt::format("{}{} {}", i == 0 ? "" : ", ", spread.variables[i].name, value_text(spread.variables[i], r.most.values[i]));
+    const std::vector<double> shown = shown_values_in_box(r.most, nominal);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const SpreadVariable& variable = nominal.scene.spread.variables[i];
+      values += fmt::format("{}{} {}", i == 0 ? "" : ", ", variable.name, value_text(variable, shown[i]));
+    }
     text += wrapped(fmt::format("Worst {}: {}", ensemble_figure(r.key).symbol, values)) + "\n";
   }
   return text + "\n" + wrapped(box_words(ways, drive)) + "\n" +
          wrapped(chaos_words(ways, [](std::string_view symbol) { return std::string(symbol); })) + "\n";
 }
 
-std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const DeviceSpread& spread) {
+std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal) {
   if (ways.ranges.empty()) return {};
   TableRow head{"Under " + escaped(drive.name)}, device_head{"In the box", "Found"};
   for (const FigureRange& r : ways.ranges) head.emplace_back(symbol_html(ensemble_figure(r.key).symbol));
@@ -189,13 +197,14 @@ std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive,
     TableRow& line = rows.emplace_back(TableRow{Cell(escaped(below ? row.name.substr(2) : row.name), below ? "part" : "")});
     for (const std::string& cell : row.cells) line.emplace_back(escaped(cell));
   }
-  for (const SpreadVariable& v : spread.variables) device_head.emplace_back(escaped(v.name));
+  const std::vector<SpreadVariable>& variables = nominal.scene.spread.variables;
+  for (const SpreadVariable& v : variables) device_head.emplace_back(escaped(v.name));
   for (const FigureRange& r : ways.ranges) {
     for (const auto& [name, device] : {std::pair("Worst ", &r.most), std::pair("Best ", &r.least)}) {
       TableRow& line = devices.emplace_back(
           TableRow{name + symbol_html(ensemble_figure(r.key).symbol), escaped(figure_text(device->figure, r.key))});
-      for (std::size_t i = 0; i < device->values.size(); ++i)
-        line.emplace_back(escaped(value_text(spread.variables[i], device->values[i])));
+      const std::vector<double> shown = shown_values_in_box(*device, nominal);
+      for (std::size_t i = 0; i < shown.size(); ++i) line.emplace_back(escaped(value_text(variables[i], shown[i])));
     }
   }
   return section(

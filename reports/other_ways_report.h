@@ -9,10 +9,10 @@
 
 namespace softland::internal {
 
-[[nodiscard]] nlohmann::json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const DeviceSpread& spread);
+[[nodiscard]] nlohmann::json other_ways_json(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal);
 /// For a terminal.
-[[nodiscard]] std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const DeviceSpread& spread);
+[[nodiscard]] std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal);
 /// A section of the page.
-[[nodiscard]] std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const DeviceSpread& spread);
+[[nodiscard]] std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal);
 
 }  // namespace softland::internal

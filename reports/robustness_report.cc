@@ -252,7 +252,7 @@ json robustness_json(const RobustnessReport& report) {
           {"drives", std::move(drives)},
           {"by_knowledge", std::move(by_knowledge)},
           {"sensitivity", sensitivity_json(sensitivity)},
-          {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal.scene.spread) : json(nullptr)},
+          {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal) : json(nullptr)},
           {"warnings", nominal.scene.warnings},
           {"scene", scene.json()},
           {"scene_toml", scene.text()},
@@ -296,7 +296,7 @@ std::string robustness_text(const RobustnessReport& report) {
     }
   }
   text += knowledge_text(found) + sensitivity_text(sensitivity);
-  if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal.scene.spread);
+  if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal);
   text += "\n" +
           wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. A device "
                               "that does not close counts as the worst.",
@@ -657,7 +657,7 @@ std::string robustness_html(const RobustnessReport& report) {
                          .keys = keys_of(found),
                          .body = section("charts", "How the devices differ", about + charts) + knowledge_table(found) +
                                  section("figures", "Figures", statistics_table(found)) + sensitivity_table(sensitivity) +
-                                 (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal.scene.spread) : "") +
+                                 (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal) : "") +
                                  worst_table(report) + internal::reproduce(result) + internal::scene(result),
                          .style = internal::chart_style(),
                          .scripts = internal::chart_scripts(drawn)});

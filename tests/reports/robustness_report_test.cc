@@ -13,6 +13,7 @@
 #include <sstream>
 #include <string>
 
+#include "reports/other_ways_report.h"
 #include "studies/choices.h"
 
 namespace softland::robustness_report_test {
@@ -152,6 +153,13 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge) {
   const SceneFile own = scene_of_device(jittered.nominal, jittered.found.drives[0], k, jittered.options);
   const Signal drive = prepare(own).signals().front();
   EXPECT_EQ(drive.pieces().back().begin, std::max(0.0, shown));
+  // So is what is found in a box, whose numbers are those that the times are drawn by.
+  OtherWays ways;
+  ways.ranges.push_back({.key = "major_bounce_height_m", .most = {.values = {0.75}}});
+  const double in_box = internal::other_ways_json(
+      ways, jittered.found.drives[0],
+      jittered.nominal)["box"]["figures"]["major_bounce_height_m"]["most"]["values"]["driver.main.jitter"];
+  EXPECT_LT(std::abs(in_box), 50e-9);
 }
 
 TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
