@@ -119,6 +119,12 @@ check 'nothing is told when nothing is to be done' err_is ''
 check 'no tool is called when nothing is to be done' [ ! -s "$work/calls" ]
 run "$project/softland" status 4
 check 'the exit status of the program is kept' status_is 4
+sed -i 's/^processor=.*/processor=of another machine/' "$project/build/release/.options"
+run "$project/softland" modes
+check 'what was built for another processor is configured again, and asks it what it can' called 'cmake .*-U SOFTLAND_RUNS_X86_64_V3'
+check 'and built' called 'ninja'
+run "$project/softland" modes
+check 'once' [ ! -s "$work/calls" ]
 ln -s "../a project/softland/softland" link
 run ./link modes
 check 'a link to the launcher works' out_is "in $work/else where: <modes>"
