@@ -212,7 +212,7 @@ TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
   EXPECT_EQ(known_units(nominal, std::array{sorted}, 3).front().classes()[1].centre.time, known.classes()[1].centre.time);
   ASSERT_EQ(known.classes().size(), 3U);
   const std::vector<Waveform> drive{Step{.level = 17.771, .rise_time = 20e-6}};
-  const EnsembleRun run{.duration = nominal.duration};
+  const EnsembleRun run{.duration = nominal.duration, .vectors = Vectors::none};
   const std::vector<DeviceOutcome> outcomes =
       close_all(Ensemble(nominal, 12), {{.waveforms = drive, .known = known}}, run).front();
   const Ensemble ensemble(nominal, 12);
