@@ -296,7 +296,7 @@ TEST(RobustSearch, DrivesDevicesBySourcesThatErr) {
   const Outcome o = here.run({"robustness", "out/best.toml", "--samples", "40", "--quiet", "--out", "devices"});
   unsetenv("SOFTLAND_VECTORS");
   ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_NE(o.out.find("driver.main.jitter ± 50.0 ns (normal)"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("driver.main.jitter ± 50.0\u00a0ns (normal)"), std::string::npos) << o.out;
   EXPECT_NE(o.out.find("The sources of the drives err as the spread says."), std::string::npos) << o.out;
   const std::string header = lines(read(here.path() / "devices/devices.csv")).front();
   EXPECT_EQ(header.find("device,driver.main.gain,driver.main.jitter,driver.main.offset,gaps,"), 0U) << header;
