@@ -18,7 +18,7 @@ namespace {
 
 using boost::math::normal_distribution;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 constexpr double not_closed = std::numeric_limits<double>::lowest();  // of what is minimised, where the largest is sought
 
 /// Points of the box: standard normal numbers, one per varying quantity.
@@ -191,7 +191,7 @@ OtherWays other_ways(const Prepared& nominal, const DriveRobustness& drive, cons
       }
       problem.objective = [&](std::span<const double> z) {
         const double value = sign * box.device(z, figure).figure;
-        return value == -infinite ? not_closed : value;
+        return value == -no_bound ? not_closed : value;
       };
       OptimizerOptions search{
           .max_evaluations = static_cast<long>(effort.closings_per_search), .jobs = options.jobs, .stop = watch.stop};
