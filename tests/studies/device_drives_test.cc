@@ -212,8 +212,10 @@ TEST(DeviceDrives, AnOffsetIsThereOnADriveThatIsNotDriven) {
       prepare(gold_pzt({"waveform.piezo={family=\"step\", level=\"0 V\"}", "simulate.duration=60 us", "simulate.accuracy=1e-4",
                         "spread={\"driver.piezo.offset\"={distribution=\"uniform\", half_width=\"0.3 V\"}}"}));
   const RobustnessOptions options{.samples = 4, .vectors = Vectors::none};
-  NamedDrive electrode_alone{.name = "own", .waveforms = {{"main", nominal.drives.waveforms.at("main")}}};
+  const double level = nominal.signals()[0].hold_level();
+  const NamedDrive electrode_alone{.name = "own", .waveforms = {{"main", Step{.level = level, .rise_time = 1e-6}}}};
   const Robustness found = robustness(nominal, {electrode_alone}, options);
+  ASSERT_EQ(found.drives.back().name, "own");
   const Ensemble ensemble(nominal, 4);
   for (std::size_t k = 0; k < 4; ++k) {
     const Prepared own =
