@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 
+from drawing import BOLD, GRID, INK, PENS, drawing, line, words
 from tables import machine, prefixed, revision
 
 SCENE = pathlib.Path(__file__).resolve().parent.parent / "scenes" / "mem-gold.toml"
@@ -118,22 +119,7 @@ def table(head, rows):
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-# ---- the picture, in the colours of softland's own
-
-INK, MUTED, GRID = "#1b1f24", "#5f6b76", "#e4e7ea"
-PENS = (("#0072b2", ""), ("#d55e00", "7 2.5"), ("#009e73", "2.5 2.5"), ("#cc79a7", "10 3 2 3"))
-
-
-def words(x, y, text, size=12, anchor="start", colour=MUTED, more=""):
-    return f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" text-anchor="{anchor}" fill="{colour}"{more}>{text}</text>'
-
-
-def line(x1, y1, x2, y2, colour=GRID, more=""):
-    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}"{more}/>'
-
-
-BOLD = ' font-weight="600"'
-
+# ---- the picture
 
 def ratios(samples, level, symbol, left, top, width):
     """Deviation of the figure over that of the parameter, both relative, for each spread: where it grows, variances mislead."""
@@ -192,18 +178,7 @@ def picture(samples, headline, explanation):
         out += ratios(samples, level, "t_i", left, 128, column)
         out += ratios(samples, level, "B_H", left, 386, column)
         out += courses(samples, level, left, 644, column)
-    y = 34
-    head = []
-    for text in headline:
-        head.append(words(22, y, text, 17, colour=INK, more=BOLD))
-        y += 23
-    for text in explanation:
-        head.append(words(22, y, text, 13))
-        y += 18
-    return "\n".join([f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="970" viewBox="0 0 {width} 970" role="img" '
-                      "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">",
-                      f"<title>{' '.join(headline)}</title>", f'<rect width="{width}" height="970" fill="#fff"/>', *head, *out,
-                      "</svg>"]) + "\n"
+    return drawing(width, 970, headline, explanation, out)
 
 
 # ---- the table
