@@ -295,7 +295,9 @@ TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs) {
 
 // What is ignored from the start, as under nohup, stays ignored.
 TEST_F(Faults, AnIgnoredSignalStaysIgnored) {
-  const pid_t child = here->start({"-c", "trap '' HUP; exec \"$0\" simulate gold.toml", SOFTLAND_PROGRAM}, "/bin/sh");
+  const pid_t child =
+      here->start({"-c", "trap '' HUP; : > ignoring; exec \"$0\" simulate gold.toml", SOFTLAND_PROGRAM}, "/bin/sh");
+  for (int i = 0; i < 600 && !fs::exists(here->path() / "ignoring"); ++i) std::this_thread::sleep_for(10ms);
   for (int i = 0; i < 20; ++i) {
     std::this_thread::sleep_for(5ms);
     kill(child, SIGHUP);
