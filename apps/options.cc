@@ -56,6 +56,8 @@ void Verb::with_json() {
 
 void Verb::with_out(const std::string& about) { option("--out", common_.out, "FOLDER", about); }
 
+void Verb::with_out_file(const std::string& about) { option("--out", common_.out, "FILE", about); }
+
 void Verb::with_samples(std::optional<std::string>& value, const std::string& about) { optional("--samples", value, "N", about); }
 
 void Verb::with_seed(std::optional<std::string>& value, const std::string& same) {

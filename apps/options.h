@@ -54,6 +54,7 @@ class Verb {
   void with_quiet();
   void with_json();
   void with_out(const std::string& about);
+  void with_out_file(const std::string& about);
   void with_samples(std::optional<std::string>& value, const std::string& about);
   /// `same`: what the same seed gives again.
   void with_seed(std::optional<std::string>& value, const std::string& same);

@@ -44,8 +44,9 @@ class TemporaryFile {
       if (written < 0) return false;
       content.remove_prefix(static_cast<std::size_t>(written));
     }
-    return ::fsync(descriptor_) == 0;
+    return true;
   }
+  [[nodiscard]] bool sync() const { return ::fsync(descriptor_) == 0; }
   /// A new file gets the usual rights; one that replaces another gets the rights of that one.
   [[nodiscard]] bool adopt_rights(const std::filesystem::path& path) const {
     std::error_code missing;
@@ -99,6 +100,11 @@ void check_writable(const std::filesystem::path& path) {
 }
 
 void write_whole(const std::filesystem::path& path, std::string_view content) {
+  write_whole(path, [&](const std::function<void(std::string_view)>& sink) { sink(content); });
+}
+
+void write_whole(const std::filesystem::path& path,
+                 const std::function<void(const std::function<void(std::string_view)>&)>& content) {
   check_writable(path);
   const std::filesystem::path target = behind_links(path);
   const auto written = [&](bool done, const char* what) {
@@ -106,7 +112,8 @@ void write_whole(const std::filesystem::path& path, std::string_view content) {
   };
   TemporaryFile temporary(target);
   require_place(temporary.open(), path, "write in its folder");
-  written(temporary.write(content), "write");
+  content([&](std::string_view piece) { written(temporary.write(piece), "write"); });
+  written(temporary.sync(), "write");
   written(temporary.adopt_rights(target), "set its access rights");
   require_place(temporary.rename_to(target), path, "replace it");
   const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,10 @@ void check_writable(const std::filesystem::path& path);
 /// the file behind it is replaced. Whatever goes wrong, an existing file stays as it was and the temporary one is removed. Throws
 /// as check_writable() does, and OutputLost with path and reason where the content does not get there, as on a full disk.
 void write_whole(const std::filesystem::path& path, std::string_view content);
+
+/// The same for content that comes in pieces: it is written as `content` hands it to its argument.
+void write_whole(const std::filesystem::path& path,
+                 const std::function<void(const std::function<void(std::string_view)>&)>& content);
 
 /// The curve of a run as CSV: header time_s,tip_gap_m,tip_velocity_m_s,contact_force_N (those that exist); one line per row,
 /// shortest text that reads back to the same number, an empty field for what is not finite.

@@ -148,13 +148,14 @@ std::int64_t write_rows(const Database& database, std::int64_t number, Parts& pa
 
 }  // namespace
 
-Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, const StoredOrigin& origin, const Watch& watch) {
+Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, const StoredOrigin& origin,
+                     const MergeOptions& options) {
   require(!paths.empty(), "a merge needs one part at least");
   std::error_code ignored;
   require(!fs::exists(fs::symlink_status(out, ignored)), fmt::format("{}: exists already; it is not replaced", out.string()));
   Parts parts = opened(paths);
   const auto lock = lock_store(out, origin.command);
-  Merged merged{.plan = parts.front()->plan(), .rows = 0, .notes = {}};
+  Merged merged{.plan = parts.front()->plan(), .rows = 0, .written = false, .notes = {}};
   merged.plan.shard = {};
   const UnnamedStore made(out);
   {
@@ -168,10 +169,11 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
       for (const StoredSession& session : sessions_in(part->database())) insert_session(database, number, session);
     }
     const std::int64_t session = insert_session(database, number, origin);
-    merged.rows = write_rows(database, number, parts, merged.plan, session, watch);
+    merged.rows = write_rows(database, number, parts, merged.plan, session, options.watch);
     transaction.commit();
   }
-  made.give_name();
+  merged.written = !options.complete || merged.rows == merged.plan.points;
+  if (merged.written) made.give_name();
   merged.notes = notes_on(parts, merged.plan, merged.rows);
   return merged;
 }

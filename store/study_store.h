@@ -182,16 +182,22 @@ class StudyReader {
   std::unique_ptr<Implementation> implementation_;
 };
 
+struct MergeOptions {
+  bool complete = false;  ///< nothing is written while points are missing
+  Watch watch = {};
+};
+
 /// What a merge has found.
 struct Merged {
   StoredPlan plan;  ///< with the shard 1/1
   std::int64_t rows = 0;
+  bool written = false;
   std::vector<std::string> notes;  ///< points that are missing, parts of several programs or processors
 };
 
 /// Writes one store of the parts of a study to `out`, which must not exist. Throws InvalidInput with the names where parts are of
 /// different plans, or hold a point with different bits.
 [[nodiscard]] Merged merge_studies(const std::vector<std::filesystem::path>& parts, const std::filesystem::path& out,
-                                   const StoredOrigin& origin, const Watch& watch = {});
+                                   const StoredOrigin& origin, const MergeOptions& options = {});
 
 }  // namespace softland

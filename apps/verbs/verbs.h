@@ -16,6 +16,9 @@ void add_accuracy(Verb& verb);
 void add_optimize(Verb& verb);
 void add_robustness(Verb& verb);
 void add_calibrate(Verb& verb);
+void add_table(Verb& verb);
+void add_status(Verb& verb);
+void add_merge(Verb& verb);
 void add_new(Verb& verb);
 void add_export(Verb& verb);
 void add_report(Verb& verb);
@@ -36,6 +39,9 @@ inline constexpr std::array all_verbs{
     VerbRow{"optimize", "search the drive waveform that closes without bounce", add_optimize},
     VerbRow{"robustness", "how drives do on devices that differ as [spread] says", add_robustness},
     VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},
+    VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},
+    VerbRow{"status", "how far studies are, and who writes into their stores", add_status},
+    VerbRow{"merge", "make one store of the parts of a study", add_merge},
     VerbRow{"new", "print a commented scene to start from", add_new},
     VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
     VerbRow{"report", "make report.html and gap.svg of a result.json again", add_report},

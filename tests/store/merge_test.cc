@@ -49,6 +49,17 @@ TEST_F(Merge, TellsWhatIsMissing) {
   EXPECT_THAT(merged.notes, ElementsAre("25 of 100 points are missing", "no part was given of 2/4"));
 }
 
+TEST_F(Merge, ThatIsToBeCompleteWritesNothingBefore) {
+  std::vector<fs::path> parts = parts_of(100, 2);
+  const fs::path last = parts.back();
+  parts.pop_back();
+  EXPECT_FALSE(merge_studies(parts, file, origin(), {.complete = true}).written);
+  EXPECT_FALSE(fs::exists(file));
+  parts.push_back(last);
+  EXPECT_TRUE(merge_studies(parts, file, origin(), {.complete = true}).written);
+  EXPECT_EQ(rows_in(file).size(), 100u);
+}
+
 TEST_F(Merge, OfMergedPartsIsTheSame) {
   const std::vector<fs::path> parts = parts_of(100, 4);
   static_cast<void>(merge_studies({parts[0], parts[1]}, path("a"), origin()));
@@ -106,7 +117,7 @@ TEST_F(Merge, TellsOfSeveralProgramsAndProcessors) {
 TEST_F(Merge, StopsWhenItIsAsked) {
   make_store(path("a"), 100);
   const std::atomic<bool> stop = true;
-  EXPECT_THROW(static_cast<void>(merge_studies({path("a")}, file, origin(), {.stop = &stop})), Interrupted);
+  EXPECT_THROW(static_cast<void>(merge_studies({path("a")}, file, origin(), {.watch = {.stop = &stop}})), Interrupted);
   EXPECT_FALSE(fs::exists(file));
 }
 

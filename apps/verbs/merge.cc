@@ -1,0 +1,62 @@
+// Parts of a study as one store.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/exit_status.h"
+#include "apps/output.h"
+#include "apps/progress.h"
+#include "apps/stores.h"
+#include "apps/streams.h"
+#include "apps/verbs/verbs.h"
+#include "base/printable.h"
+#include "base/require.h"
+#include "reports/quantity.h"
+
+namespace softland::apps {
+namespace {
+
+struct MergeRequest {
+  std::string part;
+  std::vector<std::string> more;
+  bool complete = false;
+};
+
+int merge_verb(const Common& c, const MergeRequest& request) {
+  require(!c.out.empty(), "--out is required: the store that the parts become");
+  std::vector<std::filesystem::path> parts{request.part};
+  parts.insert(parts.end(), request.more.begin(), request.more.end());
+  for (const std::filesystem::path& part : parts) {
+    if (!c.quiet && writer_of(part)) say(fmt::format("{}: is still being written: {}", part.string(), *writer_of(part)));
+  }
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Merged merged = merge_studies(parts, c.out, origin_of(c), {.complete = request.complete, .watch = work->watch()});
+  work.reset();
+  for (const std::string& note : merged.notes) say(note);
+  if (!merged.written) return exit_no_success;
+  print(fmt::format("{} of {} points of {} {} in {}\n", internal::whole(static_cast<double>(merged.rows)),
+                    internal::whole(static_cast<double>(merged.plan.points)), parts.size(), parts.size() == 1 ? "part" : "parts",
+                    printable_line(c.out)));
+  return exit_done;
+}
+
+}  // namespace
+
+void add_merge(Verb& verb) {
+  const auto request = std::make_shared<MergeRequest>();
+  verb.positional("PART", request->part, "store of a part of a study");
+  verb.more("PARTS", request->more, "more of them");
+  verb.with_out_file("store to write; one that exists is not replaced");
+  verb.flag("--complete", request->complete, "write nothing, and end with status 4, while points are missing");
+  verb.with_quiet();
+  verb.footer(
+      "Parts have to be of one plan. A point that several hold must have the same bits in all of them.\n"
+      "Example:\n  softland merge map-parts/*.sqlite --out map.sqlite");
+  verb.runs([request](const Common& common) { return merge_verb(common, *request); });
+}
+
+}  // namespace softland::apps
