@@ -79,7 +79,7 @@ class Plan {
   /// dimension, a grid of more than `most_points`.
   explicit Plan(const PlanRequest& request);
 
-  static constexpr std::uint64_t most_points = 1'000'000'000'000;
+  static constexpr std::uint64_t most_points = 1'000'000'000;
 
   [[nodiscard]] std::uint64_t points() const { return points_; }
   [[nodiscard]] const std::vector<PlanVariable>& variables() const { return variables_; }
