@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "apps/exit_status.h"
 #include "apps/streams.h"
 #include "base/require.h"
 #include "reports/files.h"
@@ -76,6 +77,20 @@ std::string left_in(const fs::path& folder, const std::vector<std::string>& file
 void print_json_or(const Common& c, const json& data, const std::string& text) {
   if (!c.json.empty() && c.json != "-") write_whole(c.json, json_text(data, 2));
   print(c.json == "-" ? json_text(data, 2) : text);
+}
+
+int exit_status_of(Status s) {
+  switch (s) {
+    case Status::interrupted:
+      return exit_interrupted;
+    case Status::numerical_failure:
+      return exit_numerical_failure;
+    case Status::no_contact:
+    case Status::collapsed_at_rest:
+      return exit_no_success;
+    default:
+      return exit_done;
+  }
 }
 
 }  // namespace softland::apps

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/options.h"
 #include "apps/result_folder.h"
-#include "apps/verbs.h"
+#include "model/status.h"
 #include "reports/result.h"
 
 namespace softland::apps {
@@ -33,5 +34,8 @@ void print_result(const Common& common, const Result& result, const std::string&
 
 /// Data as --json asks for, or else `text` on standard output.
 void print_json_or(const Common& common, const nlohmann::json& data, const std::string& text);
+
+/// What a closing that ended so means to who called the program.
+[[nodiscard]] int exit_status_of(Status status);
 
 }  // namespace softland::apps

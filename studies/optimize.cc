@@ -58,6 +58,63 @@ struct Verified {
   }
 };
 
+// Verifies candidates, and keeps the best: none is believed before its run over the whole window, nor preferred where a tighter
+// integrator or a richer beam undoes its landing.
+class Verification {
+ public:
+  Verification(const SearchSetting& setting, const OptimizeOptions& options)
+      : given_(setting.given),
+        baseline_(setting.baseline.metrics),
+        target_(options.target),
+        watch_{.progress = options.on_preparation} {}
+
+  void add(const SceneFile& text, double cost, std::map<std::string, double> parameters) {
+    Prepared scene = read_back(text, "best.toml", given_);
+    Closing closing = simulate(scene, true, watch_);
+    const Metrics& m = closing.metrics;
+    Verified now{.scene = std::move(scene),
+                 .closing = closing,
+                 .checks = {},
+                 .parameters = std::move(parameters),
+                 .cost = cost,
+                 .figure = figure(target_, m),
+                 .belief = met(m)      ? Belief::meets_goal
+                           : m.settled ? Belief::settles
+                                       : Belief::touches};
+    if (target_ == Target::bounce || target_ == Target::rebound)
+      now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
+    if (now.belief == Belief::meets_goal || !best_ || now.better_than(*best_)) now.checks = confirm(now.scene);
+    if (now.belief == Belief::meets_goal &&
+        std::all_of(now.checks.begin(), now.checks.end(), [&](const ConfirmingRun& c) { return met(c.metrics); }))
+      now.belief = Belief::confirmed;
+    if (!best_ || now.better_than(*best_)) best_ = std::move(now);
+  }
+
+  /// Whether no candidate that costs as much or more can be better.
+  [[nodiscard]] bool decided(double cost) const { return best_ && best_->belief == Belief::confirmed && best_->cost <= cost; }
+
+  /// Hands the winner over, where there is one.
+  void move_to(OptimizeResult& result) {
+    if (!best_) return;
+    result.goal_met = best_->belief >= Belief::meets_goal;
+    result.better_than_baseline = figure(target_, best_->closing.metrics) < figure(target_, baseline_);
+    result.best_scene = std::move(best_->scene);
+    result.best = std::move(best_->closing);
+    result.checks = std::move(best_->checks);
+    result.parameters = std::move(best_->parameters);
+    result.best_cost = best_->cost;
+  }
+
+ private:
+  [[nodiscard]] bool met(const Metrics& m) const { return goal_met(target_, m, baseline_); }
+
+  const Prepared& given_;
+  const Metrics& baseline_;
+  Target target_;
+  Watch watch_;
+  std::optional<Verified> best_;
+};
+
 // The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
 // reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
@@ -81,99 +138,98 @@ bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
   return !has_own_cost(target) || figure(target, best) < figure(target, baseline);
 }
 
-OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
-  static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
-  const Watch before{.stop = options.stop, .progress = options.on_preparation}, after{.progress = options.on_preparation};
-  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, before);
-  const Prepared& given = setting.given;
-  OptimizeResult result{.scene = given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
-  result.baseline_cost = setting.baseline_cost;
-  result.variables = setting.space.variables();
+namespace {
 
-  Problem problem{.variables = result.variables, .objective = {}, .starts = setting.space.starts()};
-  std::vector<std::string> variable_names;
-  for (const Variable& v : problem.variables) variable_names.push_back(v.name);
-  const auto named = [&](std::span<const double> x) {
-    std::map<std::string, double> parameters;
-    for (std::size_t k = 0; k < x.size(); ++k) parameters[variable_names[k]] = x[k];
-    return parameters;
-  };
-  if (options.on_start) options.on_start(variable_names);
-  OptimizeProgress progress{.baseline_cost = result.baseline_cost};
+// One search: its objective, and what is told of it while it runs.
+class Search {
+ public:
+  Search(const SearchSetting& setting, const OptimizeOptions& options)
+      : setting_(setting),
+        options_(options),
+        problem_{.variables = setting.space.variables(), .objective = {}, .starts = setting.space.starts()},
+        given_point_(setting.space.parameters(setting.given.drives.waveforms)),
+        progress_{.baseline_cost = setting.baseline_cost} {
+    for (const Variable& v : problem_.variables) names_.push_back(v.name);
+    if (options.on_start) options.on_start(names_);
+  }
 
   // A scene that holds a landing already is refined: its drives are the first candidate, and where the search can describe them
   // it starts there.
-  double given_cost = never_touched;
-  const std::optional<std::vector<double>> given_point = setting.space.parameters(given.drives.waveforms);
-  if (!same_drives(given.signals(), setting.baseline_scene.signals())) {
-    given_cost = setting.price(given.signals()).own;
-    if (given_point) problem.starts.insert(problem.starts.begin(), *given_point);
-    if (given_cost < never_touched) {
-      progress.best_cost = given_cost;
-      if (options.on_improvement)
-        options.on_improvement({.index = given_index, .value = given_cost, .x = given_point.value_or(std::vector<double>{})},
-                               with_waveforms(given, {}));
+  void refine_given() {
+    const std::vector<Signal> drives = setting_.given.signals();
+    if (same_drives(drives, setting_.baseline_scene.signals())) return;
+    given_cost_ = setting_.price(drives).own;
+    if (given_point_) problem_.starts.insert(problem_.starts.begin(), *given_point_);
+    if (!(given_cost_ < never_touched)) return;
+    progress_.best_cost = given_cost_;
+    if (options_.on_improvement)
+      options_.on_improvement({.index = given_index, .value = given_cost_, .x = given_point_.value_or(std::vector<double>{})},
+                              with_waveforms(setting_.given, {}));
+  }
+
+  OptimizerResult run() {
+    TwoStages stages([&](std::span<const double> x) { return setting_.price_at(x); }, [&](const Evaluation& e) { evaluated(e); });
+    return stages.run(std::move(problem_),
+                      {.optimizer = options_.optimizer,
+                       .max_evaluations = options_.max_evaluations,
+                       .max_seconds = options_.max_seconds,
+                       .seed = options_.seed,
+                       .jobs = options_.jobs,
+                       .stop = options_.stop},
+                      has_own_cost(options_.target));
+  }
+
+  // The best of the given drives and of what the search came upon, each verified.
+  Verification verified(const std::vector<Evaluation>& improvements) const {
+    Verification all(setting_, options_);
+    if (given_cost_ < never_touched)
+      all.add(with_waveforms(setting_.given, {}), given_cost_,
+              given_point_ ? named(*given_point_) : std::map<std::string, double>{});
+    for (const Evaluation& e : candidates(improvements)) {
+      all.add(setting_.scene(setting_.space.waveforms(e.x)), e.value, named(e.x));
+      if (all.decided(e.value)) break;
     }
+    return all;
   }
 
-  TwoStages stages([&](std::span<const double> x) { return setting.price_at(x); },
-                   [&](const Evaluation& e) {
-                     ++progress.evaluations;
-                     const bool improves = std::isfinite(e.value) && !(progress.best_cost <= e.value);
-                     if (improves) progress.best_cost = e.value;
-                     if (options.on_evaluation) options.on_evaluation(e, progress);
-                     if (improves && options.on_improvement && e.value < never_touched)
-                       options.on_improvement(e, setting.scene(setting.space.waveforms(e.x)));
-                   });
-  result.search = stages.run(std::move(problem),
-                             {.optimizer = options.optimizer,
-                              .max_evaluations = options.max_evaluations,
-                              .max_seconds = options.max_seconds,
-                              .seed = options.seed,
-                              .jobs = options.jobs,
-                              .stop = options.stop},
-                             has_own_cost(options.target));
+ private:
+  void evaluated(const Evaluation& e) {
+    ++progress_.evaluations;
+    const bool improves = std::isfinite(e.value) && !(progress_.best_cost <= e.value);
+    if (improves) progress_.best_cost = e.value;
+    if (options_.on_evaluation) options_.on_evaluation(e, progress_);
+    if (improves && options_.on_improvement && e.value < never_touched)
+      options_.on_improvement(e, setting_.scene(setting_.space.waveforms(e.x)));
+  }
 
-  // Believe no candidate before it has been verified, nor prefer one whose landing a tighter integrator or a richer beam undoes.
-  std::optional<Verified> winner;
-  const auto verify = [&](const SceneFile& text, double value, std::map<std::string, double> parameters) {
-    Prepared scene = read_back(text, "best.toml", given);
-    Closing closing = simulate(scene, true, after);
-    const auto met = [&](const Metrics& m) { return goal_met(options.target, m, result.baseline.metrics); };
-    const Metrics& m = closing.metrics;
-    Verified now{.scene = std::move(scene),
-                 .closing = closing,
-                 .checks = {},
-                 .parameters = std::move(parameters),
-                 .cost = value,
-                 .figure = figure(options.target, m),
-                 .belief = met(m)      ? Belief::meets_goal
-                           : m.settled ? Belief::settles
-                                       : Belief::touches};
-    if (options.target == Target::bounce || options.target == Target::rebound)
-      now.figure = std::max(now.figure, given.scene.metrics.significant_rebound);
-    if (now.belief == Belief::meets_goal || !winner || now.better_than(*winner)) now.checks = confirm(now.scene);
-    if (now.belief == Belief::meets_goal &&
-        std::all_of(now.checks.begin(), now.checks.end(), [&](const ConfirmingRun& c) { return met(c.metrics); }))
-      now.belief = Belief::confirmed;
-    if (!winner || now.better_than(*winner)) winner = std::move(now);
-  };
-  if (given_cost < never_touched)
-    verify(with_waveforms(given, {}), given_cost, given_point ? named(*given_point) : std::map<std::string, double>{});
-  for (const Evaluation& e : candidates(result.search.improvements)) {
-    verify(setting.scene(setting.space.waveforms(e.x)), e.value, named(e.x));
-    if (winner->belief == Belief::confirmed && winner->cost <= e.value) break;
+  [[nodiscard]] std::map<std::string, double> named(std::span<const double> x) const {
+    std::map<std::string, double> parameters;
+    for (std::size_t k = 0; k < x.size(); ++k) parameters[names_[k]] = x[k];
+    return parameters;
   }
-  if (winner) {
-    const Metrics& m = winner->closing.metrics;
-    result.goal_met = winner->belief >= Belief::meets_goal;
-    result.better_than_baseline = figure(options.target, m) < figure(options.target, result.baseline.metrics);
-    result.best_scene = std::move(winner->scene);
-    result.best = std::move(winner->closing);
-    result.checks = std::move(winner->checks);
-    result.parameters = std::move(winner->parameters);
-    result.best_cost = winner->cost;
-  }
+
+  const SearchSetting& setting_;
+  const OptimizeOptions& options_;
+  Problem problem_;
+  std::vector<std::string> names_;
+  std::optional<std::vector<double>> given_point_;
+  double given_cost_ = never_touched;
+  OptimizeProgress progress_;
+};
+
+}  // namespace
+
+OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
+  static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family,
+                                               {.stop = options.stop, .progress = options.on_preparation});
+  Search search(setting, options);
+  search.refine_given();
+  OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
+  result.baseline_cost = setting.baseline_cost;
+  result.variables = setting.space.variables();
+  result.search = search.run();
+  search.verified(result.search.improvements).move_to(result);
   return result;
 }
 

@@ -1,0 +1,75 @@
+#include "apps/options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "sampling/points.h"
+
+namespace softland::apps {
+
+void Verb::positional(const char* name, std::string& value, const std::string& about, bool required) {
+  option(name, value, "", about);
+  options_.get_option(name)->required(required);
+}
+
+void Verb::more(const char* name, std::vector<std::string>& values, const std::string& about) {
+  options_.add_option(name, values, about)->type_name("");
+}
+
+void Verb::option(const char* name, std::string& value, const char* word, const std::string& about) {
+  options_.add_option(name, value, about)->type_name(word)->check([](const std::string& text) {
+    return text.empty() ? "must not be empty" : "";
+  });
+}
+
+void Verb::optional(const char* name, std::optional<std::string>& value, const char* word, const std::string& about) {
+  options_
+      .add_option_function<std::string>(
+          name, [&value](const std::string& text) { value = text; }, about)
+      ->type_name(word);
+}
+
+void Verb::repeated(const char* name, std::vector<std::string>& values, const char* word, const std::string& about) {
+  options_.add_option(name, values, about)->type_name(word)->allow_extra_args(false);
+}
+
+void Verb::flag(const char* name, bool& value, const std::string& about) { options_.add_flag(name, value, about); }
+
+void Verb::footer(const std::string& text) { options_.footer(text); }
+
+void Verb::with_scene(bool required) {
+  positional("SCENE", common_.scene, "scene file (TOML)", required);
+  with_set("change one key: --set gap.contact=\"1.8 um\"");
+  with_quiet();
+}
+
+void Verb::with_scene_or_result() {
+  positional("SCENE", common_.scene, "scene file with [spread], folder that --out named, or result.json");
+}
+
+void Verb::with_set(const std::string& about) { repeated("--set", common_.set, "KEY=VALUE", about + "; may be repeated"); }
+
+void Verb::with_quiet() { flag("--quiet", common_.quiet, "no progress and no notes on standard error"); }
+
+void Verb::with_json() {
+  option("--json", common_.json, "FILE", "write the result as JSON to this file, or - for standard output");
+}
+
+void Verb::with_out(const std::string& about) { option("--out", common_.out, "FOLDER", about); }
+
+void Verb::with_samples(std::optional<std::string>& value, const std::string& about) { optional("--samples", value, "N", about); }
+
+void Verb::with_seed(std::optional<std::string>& value, const std::string& same) {
+  optional("--seed", value, "N", "whole number from 0 on (default 1): same seed, " + same);
+}
+
+void Verb::with_jobs(std::optional<std::string>& value, const std::string& about) { optional("--jobs", value, "N", about); }
+
+void Verb::with_points(std::string& value) {
+  option("--points", value, "NAME", "how they are chosen: " + first_is_default(listed(point_sets)));
+}
+
+bool Verb::chosen() const { return options_.parsed(); }
+
+std::string first_is_default(std::string names) { return names.insert(names.find(','), " (default)"); }
+
+}  // namespace softland::apps

@@ -1,0 +1,81 @@
+// How a verb says what it may be told: the options of its --help, in their order, and what it then does. What several verbs may
+// be told is worded here once.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace softland::apps {
+
+/// What every verb may be told.
+struct Common {
+  std::string command;           ///< the command line, for provenance
+  std::string scene;             ///< path of the scene file
+  std::vector<std::string> set;  ///< --set key=value, in order
+  std::string json;              ///< file for the JSON, "-" for standard output, empty for none
+  std::string out;               ///< folder for everything, empty for none
+  bool quiet = false;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// A verb on the command line. The values that its options set must live as long as what it runs: keep them in a shared pointer
+/// that the function given to runs() holds.
+class Verb {
+ public:
+  /// `options` is the verb's part of the command line; what every verb may be told goes into `common`.
+  Verb(CLI::App& options, Common& common) : options_(options), common_(common) {}
+
+  void positional(const char* name, std::string& value, const std::string& about, bool required = true);
+  /// Any number of words after the positional ones.
+  void more(const char* name, std::vector<std::string>& values, const std::string& about);
+  /// `word` stands for the value in --help. Empty text is never meant: it comes from an unset shell variable.
+  void option(const char* name, std::string& value, const char* word, const std::string& about);
+  /// An option whose empty text is looked at with the value (apps/values.h).
+  void optional(const char* name, std::optional<std::string>& value, const char* word, const std::string& about);
+  /// An option with one value that may be given several times.
+  void repeated(const char* name, std::vector<std::string>& values, const char* word, const std::string& about);
+  void flag(const char* name, bool& value, const std::string& about);
+  /// Remarks and examples below the options.
+  void footer(const std::string& text);
+
+  /// SCENE, --set and --quiet.
+  void with_scene(bool required = true);
+  /// SCENE, which may be a result that holds one: scene_of_result() in apps/scenes.h.
+  void with_scene_or_result();
+  void with_set(const std::string& about);
+  void with_quiet();
+  void with_json();
+  void with_out(const std::string& about);
+  void with_samples(std::optional<std::string>& value, const std::string& about);
+  /// `same`: what the same seed gives again.
+  void with_seed(std::optional<std::string>& value, const std::string& same);
+  void with_jobs(std::optional<std::string>& value,
+                 const std::string& about = "threads (default: one per core); the result does not depend on them");
+  /// --points, one of `point_sets` (sampling/points.h).
+  void with_points(std::string& value);
+
+  /// What the verb does; the number is the exit status (apps/exit_status.h). What keeps it from its end is an exception: see
+  /// apps/failure.h.
+  void runs(std::function<int(const Common&)> what) { run_ = std::move(what); }
+  /// Whether the command line, once it is read, asks for this verb.
+  [[nodiscard]] bool chosen() const;
+  [[nodiscard]] int run() const { return run_(common_); }
+
+ private:
+  CLI::App& options_;
+  Common& common_;
+  std::function<int(const Common&)> run_;
+};
+
+/// "bounce, count or energy" with the first as the one that is taken when nothing is said.
+[[nodiscard]] std::string first_is_default(std::string names);
+
+}  // namespace softland::apps

@@ -1,0 +1,26 @@
+// Pull-in voltages as `pull-in` and `check` show them.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/watch.h"
+#include "studies/prepared.h"
+
+namespace softland::apps {
+
+inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
+
+/// Pull-in of electrode `k`, without any waveform of the scene: {"status", "pull_in": {"static_V", ...}}.
+[[nodiscard]] nlohmann::json pull_in_of(const Prepared& prepared, std::size_t k, const Watch& watch);
+
+/// Whether what pull_in_of() has found is a switch that closes by itself.
+[[nodiscard]] bool collapsed(const nlohmann::json& found);
+
+[[nodiscard]] std::string volts(const nlohmann::json& value);
+
+/// The dynamic pull-in voltage; a step that damping lets not overshoot needs no less than the static one.
+[[nodiscard]] std::string dynamic_words(const nlohmann::json& pull_in);
+
+}  // namespace softland::apps

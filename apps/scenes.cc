@@ -1,0 +1,97 @@
+#include "apps/scenes.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "apps/values.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "reports/result_reader.h"
+
+namespace softland::apps {
+
+namespace fs = std::filesystem;
+
+SceneFile load_scene(const Common& c) {
+  SceneFile file = SceneFile::load(c.scene);
+  for (const std::string& assignment : c.set) file.set(assignment);
+  return file;
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+nlohmann::json load_result(const fs::path& path) { return parse_result(read_file(path), path.string()); }
+
+SceneFile scene_of_result(const std::string& result) {
+  fs::path path = result;
+  if (is_folder(path)) {
+    const auto here = [&](const char* name) {
+      std::error_code ignored;
+      return fs::exists(fs::path(result) / name, ignored);
+    };
+    require(here("best.toml") || here("result.json"), fmt::format("{}: holds neither best.toml nor result.json", result));
+    path /= here("result.json") ? "result.json" : "best.toml";
+  }
+  if (path.extension() != ".json") return SceneFile::load(path);
+  const nlohmann::json j = load_result(path);
+  require(j.contains("scene_toml") && j["scene_toml"].is_string(),
+          fmt::format("{}: holds no text of the scene; give the result.json in the folder that --out named", path.string()));
+  return SceneFile::parse(j["scene_toml"].get<std::string>(), path.string());
+}
+
+SceneFile load_scene_or_result(const Common& c) {
+  SceneFile file = scene_of_result(c.scene);
+  for (const std::string& assignment : c.set) file.set(assignment);
+  return file;
+}
+
+fs::path shipped_scene(const std::string& name) {
+  std::error_code error;
+  const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& folder : {here / SOFTLAND_INSTALLED_SCENES, fs::path(SOFTLAND_SCENES)}) {
+    if (fs::exists(folder / name, error)) return (folder / name).lexically_normal();
+  }
+  for (fs::path up = here; up.has_relative_path(); up = up.parent_path()) {
+    if (fs::exists(up / "scenes" / name, error)) return up / "scenes" / name;
+  }
+  throw InvalidInput(fmt::format("scenes/{} was not found beside the program; name a scene file", name));
+}
+
+void set_calibration(SceneFile& file, const std::string& given) {
+  if (given.empty()) return;
+  file.erase("calibration");
+  if (given == "none") return;
+  constexpr std::string_view before = " in ", after = " classes";
+  const std::size_t in = given.ends_with(after) ? given.rfind(before) : std::string::npos;
+  for (const std::string& one : parts_of(given.substr(0, in))) {
+    const std::size_t colon = one.find(':');
+    const std::string name = one.substr(0, colon), error = colon == std::string::npos ? "0 %" : one.substr(colon + 1);
+    require(name == measured_pull_in || name == measured_frequency, [&] {
+      return fmt::format("--calibrate {}: '{}' is no measurement; there are {} and {}, with an error such as {}:1 %",
+                         shown(given), name, measured_pull_in, measured_frequency, measured_pull_in);
+    });
+    file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));
+  }
+  if (in == std::string::npos) return;
+  const std::size_t number = in + before.size();
+  file.set("calibration.classes=" + given.substr(number, given.size() - after.size() - number));
+}
+
+std::map<std::string, Signal> named_signals(const Prepared& p) {
+  std::map<std::string, Signal> all;
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> signals = p.signals();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] != dispersion_drive) all.emplace(names[k], signals[k]);
+  }
+  return all;
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,48 @@
+// What was given to an option, as the value it stands for. Each throws InvalidInput that names option, value and rule.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "base/require.h"
+#include "sampling/points.h"
+
+namespace softland::apps {
+
+/// As the shell takes it: an empty value is seen.
+[[nodiscard]] inline std::string shown(const std::string& text) { return text.empty() ? "''" : text; }
+
+template <class Number>
+[[nodiscard]] Number whole_number(const char* option, const std::string& text, Number least) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  require(error != std::errc::result_out_of_range,
+          fmt::format("{} {}: must be a whole number from {} to {}", option, text, least, std::numeric_limits<Number>::max()));
+  require(error == std::errc() && end == text.data() + text.size() && value >= least,
+          fmt::format("{} {}: must be a whole number from {} on", option, shown(text), least));
+  return value;
+}
+
+/// Threads, one per core unless --jobs says how many.
+[[nodiscard]] int job_count(const std::optional<std::string>& option);
+
+/// `samples`, unless --samples says how many, of `least` to `most`.
+[[nodiscard]] std::uint64_t sample_count(const std::optional<std::string>& option, std::uint64_t samples, std::uint64_t least,
+                                         std::uint64_t most);
+
+/// `seed`, unless --seed says which.
+[[nodiscard]] std::uint64_t seed_of(const std::optional<std::string>& option, std::uint64_t seed);
+
+[[nodiscard]] PointSet point_set(const std::string& option);
+
+/// "a,b,c"
+[[nodiscard]] std::vector<std::string> parts_of(const std::string& list);
+
+}  // namespace softland::apps

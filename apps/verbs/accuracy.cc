@@ -1,0 +1,65 @@
+// What accuracy costs in time.
+#include "studies/accuracy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "apps/output.h"
+#include "apps/progress.h"
+#include "apps/scenes.h"
+#include "apps/verbs/verbs.h"
+#include "reports/accuracy_report.h"
+#include "studies/choices.h"
+
+namespace softland::apps {
+namespace {
+
+int accuracy_verb(const Common& c) {
+  const SceneFile file = load_scene(c);
+  const Prepared p = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
+  std::optional<ResultFolder> folder = claim_places(c, {"report.html", "accuracy.svg", "accuracy.json"});
+  Bar bar(c.quiet);
+  AccuracyOptions options{.stop = c.stop};
+  std::size_t done = 0, of = 0;
+  const auto state = [&](double elapsed) {
+    return std::pair(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)),
+                     fmt::format("{} of {} settings, {:.0f} s", done, of, elapsed));
+  };
+  options.on_progress = [&](std::size_t now, std::size_t all) {
+    done = now;
+    of = all;
+    bar.show(state);
+  };
+  const AccuracyStudy study = study_accuracy(p, options);
+  bar.close(state);
+  const nlohmann::json j = accuracy_json(p, study, {.command = c.command});
+  std::string text = accuracy_text(study);
+  if (folder && !study.rows.empty()) {
+    folder->write("report.html", accuracy_html(p, study, {.command = c.command}));
+    folder->write("accuracy.svg", accuracy_svg(p.scene.title, study));
+    folder->write("accuracy.json", json_text(j, 2));
+    const bool interrupted = study.status == Status::interrupted;
+    text += left_in(folder->destination(interrupted), {"report.html", "accuracy.svg", "accuracy.json"});
+    folder->publish(interrupted);
+  }
+  print_json_or(c, j, text);
+  return exit_status_of(study.status);
+}
+
+}  // namespace
+
+void add_accuracy(Verb& verb) {
+  verb.with_scene();
+  verb.with_json();
+  verb.with_out("folder for report.html, accuracy.svg and accuracy.json");
+  verb.footer(
+      "Combinations that take more than 2 s per closing are cut, and listed as such.\n"
+      "Example:\n  softland accuracy scenes/mem-gold.toml --set simulate.duration=\"100 us\" --out accuracy");
+  verb.runs(accuracy_verb);
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,115 @@
+// Derived numbers and warnings of a scene.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/exit_status.h"
+#include "apps/progress.h"
+#include "apps/pull_in_words.h"
+#include "apps/scenes.h"
+#include "apps/streams.h"
+#include "apps/verbs/verbs.h"
+#include "base/printable.h"
+#include "base/shortened.h"
+#include "model/constants.h"
+#include "model/pull_in.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
+#include "studies/choices.h"
+
+namespace softland::apps {
+namespace {
+
+using internal::given_quantity;
+using internal::plain_number;
+using internal::quantity;
+using internal::scientific;
+
+// At which factor the dispersion force closes the switch.
+std::string dispersion_words(const Prepared& p, const Watch& watch) {
+  const std::size_t k = p.scene.device.electrodes.size();
+  const StaticPullIn statically = static_pull_in(p.model, k);
+  const auto factor = [](double value) { return plain_number(1 + value, 4); };
+  const bool known = std::isfinite(statically.voltage);
+  if (!p.model.rest()) {
+    return "no open state: " +
+           (known ? fmt::format("closes by itself from {} of its nominal strength on", factor(statically.voltage))
+                  : std::string("closes by itself"));
+  }
+  const std::string rest =
+      fmt::format("tip at rest {} down; ", quantity(p.model.contact_deflection(p.model.rest()->data()), "m"));
+  if (!known) return rest + "no strength was found at which it closes by itself";
+  const DynamicPullIn dynamically = dynamic_pull_in(p.model, k, statically, watch);
+  const std::string step =
+      std::isfinite(dynamically.voltage) ? fmt::format(" or a step to {} (dynamic)", factor(dynamically.voltage)) : "";
+  return fmt::format("{}closes by itself at {} (static){} of its nominal strength", rest, factor(statically.voltage), step);
+}
+
+int check_verb(const Common& c) {
+  const SceneFile file = load_scene(c);
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Prepared p = prepare_and_choose(file, true, work->watch());
+  const Structure& s = p.scene.device.structure;
+  const std::string title = shortened(printable_line(p.scene.title));
+  std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
+  const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
+  std::vector<std::string> frequencies;
+  for (const double omega : p.model.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
+  add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
+  if (p.model.has_contact()) add("in-contact period", quantity(p.model.in_contact_period(), "s", 4));
+  for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
+    if (!pulls_in(p.scene.device, k)) {
+      add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
+      continue;
+    }
+    const auto found = pull_in_of(p, k, work->watch());
+    const nlohmann::json& v = found["pull_in"];
+    add("electrode " + p.scene.device.electrodes[k].name,
+        (collapsed(found) ? no_open_state : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(v))) +
+            (p.model.has_contact() ? ", release " + volts(v["release_V"]) : ""));
+  }
+  if (p.scene.device.dispersion) {
+    add("dispersion force", dispersion_words(p, work->watch()));
+    add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
+  }
+  if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
+    const Gas& gas = *p.scene.device.gas;
+    const double g = p.scene.device.gap.electrode;
+    const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
+    const double omega = p.model.angular_frequencies()[0];
+    add("squeeze number", fmt::format("{} at the rest gap, {} closed (first mode; the film laws hold below about {})",
+                                      plain_number(squeeze_number(gas, s.width, g, omega)),
+                                      plain_number(squeeze_number(gas, s.width, closed, omega)), plain_number(incompressible)));
+    add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
+                                      plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
+  }
+  for (const auto& [name, signal] : named_signals(p)) {
+    const auto limits = p.drives.limits.find(name);
+    add("drive " + name,
+        fmt::format("hold {}, peak {}, {}", given_quantity(signal.hold_level(), "V"), given_quantity(signal.peak(), "V"),
+                    limits == p.drives.limits.end()
+                        ? "driver without limits"
+                        : fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
+                                      given_quantity(limits->second.max_voltage, "V"))));
+  }
+  if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
+  add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
+  for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
+  work->watch().throw_if_stopped();
+  work.reset();
+  print(text);
+  return exit_done;
+}
+
+}  // namespace
+
+void add_check(Verb& verb) {
+  verb.with_scene();
+  verb.footer("Example:\n  softland check my-switch.toml");
+  verb.runs(check_verb);
+}
+
+}  // namespace softland::apps

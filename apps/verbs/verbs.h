@@ -1,0 +1,44 @@
+// The verbs of the command line, in the order of --help: each is a file here that says what it may be told and does it.
+#pragma once
+
+#include <array>
+
+#include "apps/options.h"
+
+namespace softland::apps {
+
+void add_simulate(Verb& verb);
+void add_pull_in(Verb& verb);
+void add_modes(Verb& verb);
+void add_check(Verb& verb);
+void add_effects(Verb& verb);
+void add_accuracy(Verb& verb);
+void add_optimize(Verb& verb);
+void add_robustness(Verb& verb);
+void add_calibrate(Verb& verb);
+void add_new(Verb& verb);
+void add_export(Verb& verb);
+void add_report(Verb& verb);
+
+struct VerbRow {
+  const char* name;
+  const char* about;
+  void (*add)(Verb& verb);  ///< says what the verb may be told, and what it runs
+};
+
+inline constexpr std::array all_verbs{
+    VerbRow{"simulate", "simulate the closing that a scene describes", add_simulate},
+    VerbRow{"pull-in", "static and dynamic pull-in voltage and release voltage of every electrode", add_pull_in},
+    VerbRow{"modes", "natural frequencies", add_modes},
+    VerbRow{"check", "validate a scene and print derived numbers and warnings", add_check},
+    VerbRow{"effects", "which effects matter in a scene, by how much, and what each costs", add_effects},
+    VerbRow{"accuracy", "what accuracy costs in time: errors of the figures for every integrator and setting", add_accuracy},
+    VerbRow{"optimize", "search the drive waveform that closes without bounce", add_optimize},
+    VerbRow{"robustness", "how drives do on devices that differ as [spread] says", add_robustness},
+    VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},
+    VerbRow{"new", "print a commented scene to start from", add_new},
+    VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
+    VerbRow{"report", "make report.html and gap.svg of a result.json again", add_report},
+};
+
+}  // namespace softland::apps

@@ -1,0 +1,115 @@
+// Table of `softland robustness` for a terminal.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "reports/estimates.h"
+#include "reports/other_ways_report.h"
+#include "reports/quantity.h"
+#include "reports/robustness_report.h"
+#include "reports/robustness_words.h"
+#include "reports/text.h"
+
+namespace softland {
+namespace {
+
+using internal::calibration_words;
+using internal::error_words;
+using internal::is_erring;
+using internal::percent;
+using internal::quantile_95;
+using internal::quantile_text;
+using internal::quantity;
+using internal::spread_words;
+using internal::yield_text;
+
+// Where the spread of the last drive comes from.
+std::string sensitivity_text(const Sensitivity& sensitivity) {
+  if (sensitivity.figures.empty()) return {};
+  std::string text = fmt::format("\n{:<34}", "Share of the variance, alone / in all");
+  for (const FigureSensitivity& f : sensitivity.figures)
+    text += internal::right_aligned(std::string(ensemble_figure(f.key).symbol), 18);
+  text += "\n";
+  for (std::size_t i = 0; i < sensitivity.variables.size(); ++i) {
+    text += internal::left_aligned(sensitivity.variables[i], 37);
+    for (const FigureSensitivity& f : sensitivity.figures) {
+      text += internal::right_aligned(f.estimate.indices ? percent(std::max(0.0, f.estimate.indices->first_order[i].value)) +
+                                                               " / " + percent(f.estimate.indices->total[i].value)
+                                                         : std::string("too many fail"),
+                                      18);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+// What each measurement is worth: the last drive with more and more known of the devices.
+std::string knowledge_text(const Robustness& found) {
+  if (found.by_knowledge.empty() || found.devices == 0) return {};
+  const Calibration& c = found.drives.back().known.calibration();
+  const std::string own = calibration_words(c);
+  const std::size_t width = std::max<std::size_t>(34, internal::columns_of(own) + 2);
+  std::string text = "\n" + internal::left_aligned("Known of every device", width) +
+                     fmt::format("{:>24}{:>26}{:>26}\n", "without a rebound", "v_max, 95 % below", "B_H, 95 % below");
+  const auto row = [&](const std::string& name, const DriveRobustness& d) {
+    text += internal::left_aligned(name, width) + internal::right_aligned(yield_text(d.bounce_free), 24) +
+            internal::right_aligned(quantile_text(quantile_95(d, "largest_impact_velocity_m_s"), "m/s"), 26) +
+            internal::right_aligned(quantile_text(quantile_95(d, "major_bounce_height_m"), "m"), 26) + "\n";
+  };
+  for (const DriveRobustness& d : found.by_knowledge) row(d.name, d);
+  if (is_erring(c)) row(own, found.drives.back());
+  return text;
+}
+
+}  // namespace
+
+std::string robustness_text(const RobustnessReport& report) {
+  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
+  std::string text;
+  if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
+  const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
+  text += wrapped(fmt::format("{} devices of the spread: {}. {}{}", found.devices, spread_words(nominal.scene.spread),
+                              calibration.is_empty()
+                                  ? "All have the volts that were designed for the nominal device."
+                                  : "The plain step has the volts of the nominal device, every other drive the units of each "
+                                    "device, known of it: " +
+                                        calibration_words(calibration) + ".",
+                              error_words(nominal.scene.spread))) +
+          "\n\n";
+  if (found.devices == 0) return text;
+  constexpr std::size_t label = 34;
+  std::size_t width = 27;
+  for (const DriveRobustness& d : found.drives) width = std::max(width, internal::columns_of(d.name) + 2);
+  const auto row = [&](std::string_view name, const auto& cell) {
+    std::string line = internal::left_aligned(std::string(name), label);
+    for (const DriveRobustness& d : found.drives) line += internal::right_aligned(cell(d), width);
+    text += line + "\n";
+  };
+  row("", [](const DriveRobustness& d) { return d.name; });
+  row("devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
+  row("without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
+  for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
+    const EnsembleFigure& f = ensemble_figures()[i];
+    const bool has_symbol = !f.symbol.empty() && f.symbol.find(' ') == std::string_view::npos;
+    text += fmt::format("{}{}{}\n", f.name, has_symbol ? ", " : "", has_symbol ? f.symbol : "");
+    for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
+      row(q == 1 ? "  median" : fmt::format("  {:.0f} % of devices below", 100 * robustness_quantiles[q]),
+          [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
+    }
+  }
+  text += knowledge_text(found) + sensitivity_text(sensitivity);
+  if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal);
+  text += "\n" +
+          wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. A device "
+                              "that does not close counts as the worst.",
+                              options.seed, name_of(point_sets, options.points), quantity(found.duration, "s", 4),
+                              internal::scientific(found.tolerance))) +
+          "\n";
+  for (const std::string& warning : nominal.scene.warnings) text += "\n" + wrapped("warning: " + warning) + "\n";
+  return text;
+}
+
+}  // namespace softland

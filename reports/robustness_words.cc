@@ -1,0 +1,47 @@
+#include "reports/robustness_words.h"
+
+#include <fmt/format.h>
+
+#include "reports/quantity.h"
+
+namespace softland::internal {
+
+std::string spread_words(const DeviceSpread& spread) {
+  std::string words;
+  for (const SpreadVariable& v : spread.variables) {
+    std::string keys;
+    for (const VariedKey& key : v.keys) keys += (keys.empty() ? "" : " and ") + key.path;
+    const double size = v.distribution.standard_deviation();
+    words += fmt::format("{}{} {} ({})", words.empty() ? "" : ", ", keys,
+                         v.is_factor ? "± " + percent(size) : "± " + quantity(size, v.keys.front().unit),
+                         name_of(distribution_kinds, v.distribution.kind()));
+  }
+  return words;
+}
+
+std::string_view error_words(const DeviceSpread& spread) {
+  return spread.varies_drives() ? " The sources of the drives err as the spread says." : "";
+}
+
+std::string calibration_words(const Calibration& c) {
+  std::string words;
+  const auto add = [&](std::string_view name, const std::optional<double>& error) {
+    if (!error) return;
+    words += (words.empty() ? "" : ", ") + std::string(name) + (*error > 0 ? " ± " + percent(*error) : " exactly");
+  };
+  add(measured_pull_in, c.pull_in_error);
+  add(measured_frequency, c.frequency_error);
+  return c.classes ? fmt::format("{}, {} classes", words, *c.classes) : words;
+}
+
+bool is_erring(const Calibration& c) { return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0; }
+
+std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
+  return DeviceDrives(ensemble.nominal()).shown(ensemble.values(k));
+}
+
+const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key) {
+  return drive.figures[static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data())].quantiles[2];
+}
+
+}  // namespace softland::internal

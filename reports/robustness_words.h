@@ -1,0 +1,25 @@
+// Words and numbers that the text, the table of devices, JSON and the page of `softland robustness` share.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/robustness.h"
+
+namespace softland::internal {
+
+/// "structure.thickness ± 2 % (normal), ..."
+[[nodiscard]] std::string spread_words(const DeviceSpread& spread);
+/// A sentence where the sources of the drives err; empty where they do not.
+[[nodiscard]] std::string_view error_words(const DeviceSpread& spread);
+/// "Vdp ± 1 %, frequency ± 0.5 %"
+[[nodiscard]] std::string calibration_words(const Calibration& calibration);
+[[nodiscard]] bool is_erring(const Calibration& calibration);
+
+/// The varying quantities of device k, as they are shown.
+[[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);
+[[nodiscard]] const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key);
+
+}  // namespace softland::internal

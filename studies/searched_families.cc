@@ -1,0 +1,322 @@
+#include "studies/searched_families.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "model/constants.h"
+
+namespace softland {
+namespace {
+
+// Voltage whose static effect on the contact point alone is `lift` away from the contact [m].
+double lifting_voltage(const Prepared& p, double lift) {
+  const Eigen::VectorXd squares = p.model.angular_frequencies().cwiseAbs2();
+  const double per_volt = p.model.contact_shape().dot(p.model.piezo_shape().cwiseQuotient(squares));
+  return -lift / per_volt;
+}
+
+void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
+  const double period = 2 * pi / p.model.angular_frequencies()[0];
+  s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
+                 {"level_2_V", s.limits.min_voltage, s.limits.max_voltage},
+                 {"time_1_s", 0.05 * t0, 1.6 * t0},
+                 {"duration_2_s", 0.05 * t0, 1.6 * t0},
+                 {"edge_s", 0.005 * period, 0.1 * period}};
+  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
+  if (s.drive == piezo_drive) {
+    // Brake late in the flight and let go at touch: lifts of a part of the contact gap.
+    const double gap = p.scene.device.gap.contact;
+    for (const double brake : {0.3, 0.6}) {
+      s.starts.push_back(
+          {inside(lifting_voltage(p, 0.1 * gap)), inside(lifting_voltage(p, brake * gap)), 0.9 * t0, 0.7 * t0, 0.05 * period});
+    }
+  } else if (s.brakes) {
+    // Wait, pull back in the second half of the flight, let go at touch.
+    for (const double brake : {0.5, 0.8})
+      s.starts.push_back({0, inside(brake * s.limits.max_voltage), 0.5 * t0, 0.5 * t0, 0.01 * period});
+  } else {
+    // Throw, coast on less than the hold level, catch.
+    for (const double throwing : {1.0, 1.1}) {
+      s.starts.push_back({inside(throwing * s.hold), inside(0.6 * s.hold), 0.85 * t0, 0.5 * t0, 0.01 * period});
+    }
+  }
+}
+
+void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
+  const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
+  require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
+                                s.drive, engineering(s.hold, "V", 5)));
+  const Eigen::VectorXd& omega = p.model.angular_frequencies();
+  const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
+  const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];
+  s.variables = {{"amplitude_V", 0, room},           {"angular_frequency_rad_s", 0.2 * omega[0], upper},
+                 {"phase_rad", 0, 2 * pi},           {"start_s", 0, t0},
+                 {"duration_s", 0.1 * t0, 2.5 * t0}, {"fade", 0, 0.5}};
+  for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2});
+}
+
+void add_step(DriveSearch& s, const Prepared&, double t0) {
+  s.variables = {{"rise_time_s", 0, 2.5 * t0}};
+  s.starts = {{0.5 * t0}};
+}
+
+// Levels that last for a while each, by edges of one length.
+void add_levels(DriveSearch& s, const std::vector<double>& longest, double longest_edge, double t0, double period) {
+  const auto numbered = [](const char* what, std::size_t k, const char* unit) {
+    return fmt::format("{}_{}{}", what, k + 1, unit);
+  };
+  for (std::size_t k = 0; k < longest.size(); ++k)
+    s.variables.push_back({numbered("level", k, "_V"), s.limits.min_voltage, s.limits.max_voltage});
+  for (std::size_t k = 0; k < longest.size(); ++k)
+    s.variables.push_back({numbered("duration", k, "_s"), 0.05 * t0, longest[k] * t0});
+  s.variables.push_back({"edge_s", 0.005 * period, longest_edge * period});
+}
+
+double first_period(const Prepared& p) { return 2 * pi / p.model.angular_frequencies()[0]; }
+
+void add_catch(DriveSearch& s, const Prepared& p, double t0) {
+  const double period = first_period(p), low = s.limits.min_voltage, high = s.limits.max_voltage;
+  add_levels(s, {1.6, 1.6, 4}, 0.1, t0, period);
+  const auto inside = [&](double v) { return std::clamp(v, low, high); };
+  if (s.drive == piezo_drive) {
+    const double gap = p.scene.device.gap.contact;
+    for (const double brake : {0.3, 0.6})
+      s.starts.push_back({inside(lifting_voltage(p, -0.2 * gap)), inside(lifting_voltage(p, brake * gap)), inside(0), 0.9 * t0,
+                          0.7 * t0, t0, 0.05 * period});
+    s.starts.push_back({inside(0), inside(0), inside(0), t0, t0, t0, 0.05 * period});
+  } else {
+    // Throw, coast, hold fast.
+    s.starts.push_back({high, low, high, 0.8 * t0, 0.5 * t0, 1.7 * t0, 0.01 * period});
+    s.starts.push_back({inside(s.hold), inside(0.6 * s.hold), inside(s.hold), 0.85 * t0, 0.5 * t0, t0, 0.01 * period});
+  }
+}
+
+void add_staircase(DriveSearch& s, const Prepared& p, double t0) {
+  const double period = first_period(p);
+  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
+  add_levels(s, std::vector<double>(s.count, 3), 1, t0, period);
+  const auto climb = [&](double from, double to, double duration, double edge) {
+    std::vector<double> x;
+    for (std::size_t k = 0; k < s.count; ++k)
+      x.push_back(inside(from + (to - from) * static_cast<double>(k) / static_cast<double>(s.count)));
+    x.insert(x.end(), s.count, duration * t0);
+    x.push_back(edge * period);
+    s.starts.push_back(x);
+  };
+  if (s.drive == piezo_drive) {
+    const double gap = p.scene.device.gap.contact;
+    climb(0, 0, 0.5, 0.05);
+    climb(lifting_voltage(p, -0.3 * gap), lifting_voltage(p, 0.3 * gap), 0.5, 0.05);
+  } else {
+    climb(0.7 * s.hold, 0.95 * s.hold, 6.0 / static_cast<double>(s.count), 0.2);
+    climb(0.75 * s.hold, s.hold, 2.0 / static_cast<double>(s.count), 0.05);
+  }
+}
+
+// A broken line: the voltages at its knots, the time of the whole and the parts of it between them.
+void add_knots(DriveSearch& s, const Prepared& p, double t0) {
+  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
+  for (std::size_t k = 0; k < s.count; ++k)
+    s.variables.push_back({fmt::format("level_{}_V", k + 1), s.limits.min_voltage, s.limits.max_voltage});
+  s.variables.push_back({"total_time_s", 0.5 * t0, 10 * t0});
+  for (std::size_t k = 0; k < s.count; ++k) s.variables.push_back({fmt::format("part_{}", k + 1), 0.05, 1});
+  const auto line = [&](const auto& voltage, double total, double last_part) {
+    std::vector<double> x;
+    for (std::size_t k = 0; k < s.count; ++k)
+      x.push_back(inside(voltage(static_cast<double>(k) / static_cast<double>(s.count - 1))));
+    x.push_back(total * t0);
+    x.insert(x.end(), s.count - 1, 1.0);
+    x.push_back(last_part);
+    s.starts.push_back(x);
+  };
+  if (s.drive == piezo_drive) {
+    const double gap = p.scene.device.gap.contact;
+    line([](double) { return 0; }, 1.5, 1);
+    // Pull towards the contact, brake, let go.
+    line([&](double part) { return lifting_voltage(p, (part < 0.5 ? -0.4 : 0.3) * gap); }, 2, 1);
+  } else {
+    line([&](double part) { return (0.7 + 0.2 * part) * s.hold; }, 8, 0.2);                  // a slow ramp
+    line([&](double part) { return (0.75 + 0.2 * part) * s.hold; }, 3, 0.2);                 // a quicker one
+    line([&](double part) { return part < 0.55 ? s.hold : 0.5 * s.hold; }, 1.5, 0.1);        // throw and coast
+    line([&](double part) { return part < 0.75 ? 0.3 * s.hold : 0.6 * s.hold; }, 1.8, 0.1);  // leave it to others
+  }
+}
+
+void add_ramp(DriveSearch& s, const Prepared& p, double t0) {
+  const double period = first_period(p);
+  const auto inside = [&](double v) { return std::clamp(v, s.limits.min_voltage, s.limits.max_voltage); };
+  s.variables = {{"level_1_V", s.limits.min_voltage, s.limits.max_voltage},
+                 {"level_2_V", s.limits.min_voltage, s.limits.max_voltage},
+                 {"duration_s", 0.5 * t0, 10 * t0},
+                 {"edge_s", 0.005 * period, 0.5 * period}};
+  for (const double duration : {8.0, 3.0}) {
+    s.starts.push_back({inside(0.7 * s.hold), inside(0.9 * s.hold), duration * t0, 0.05 * period});
+  }
+}
+
+Waveform step_at(const DriveSearch& s, std::span<const double> x) {
+  return Step{.level = s.hold, .rise_time = std::max(x[0], std::abs(s.hold) / s.limits.max_slew)};
+}
+
+Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations, double edge) {
+  Pulse pulse{.levels = {levels.begin(), levels.end()}, .times = {}, .edge = edge};
+  pulse.levels.push_back(s.hold);
+  double steps = std::abs(levels[0]);
+  for (std::size_t k = 0; k < levels.size(); ++k) steps = std::max(steps, std::abs(pulse.levels[k + 1] - pulse.levels[k]));
+  pulse.edge = std::max(edge, steps / s.limits.max_slew);
+  double time = 0;
+  for (const double duration : durations) pulse.times.push_back(time += std::max(duration, pulse.edge));
+  return pulse;
+}
+
+Waveform pulse_at(const DriveSearch& s, std::span<const double> x) {
+  const std::size_t levels = (x.size() - 1) / 2;
+  return pulse_of(s, x.first(levels), x.subspan(levels, levels), x.back());
+}
+
+Waveform harmonic_at(const DriveSearch& s, std::span<const double> x) {
+  // Under a slew limit the sine waits for the base, and fades for as long as its amplitude needs: the slope of the envelope
+  // adds to that of the sine. Half the duration is the longest fade; what is too steep even then is made smaller.
+  const double slew = s.limits.max_slew;  // infinite where there is no limit
+  const double omega = x[1], duration = x[4], rise = std::abs(s.hold) / slew, start = std::max(x[3], rise);
+  const double needed = x[0] * omega < slew ? x[0] / (slew - x[0] * omega) : std::numeric_limits<double>::infinity();
+  const double fade = std::min(std::max(x[5] * duration, needed), duration / 2);
+  const double steepest = omega + (fade > 0 ? 1 / fade : 0);
+  return Harmonic{.base = s.hold,
+                  .rise_time = rise,
+                  .amplitude = std::min(x[0], slew / steepest),
+                  .angular_frequency = omega,
+                  .phase = x[2],
+                  .start = start,
+                  .end = start + duration,
+                  .fade = fade};
+}
+
+// Straight lines through these voltages, each of a duration that may be 0, as slow as the driver asks for.
+Waveform broken_line(const DriveSearch& s, std::span<const double> voltages, std::span<const double> durations) {
+  Table table{.time = {0}, .voltage = {0}};
+  for (std::size_t k = 0; k < voltages.size(); ++k) {
+    const double rise = std::abs(voltages[k] - table.voltage.back()) / s.limits.max_slew;
+    table.time.push_back(table.time.back() + std::max(durations[k], rise));
+    table.voltage.push_back(voltages[k]);
+  }
+  return table;
+}
+
+Waveform knots_at(const DriveSearch& s, std::span<const double> x) {
+  const std::span<const double> parts = x.subspan(s.count + 1);
+  const double all = std::accumulate(parts.begin(), parts.end(), 0.0);
+  std::vector<double> voltages(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(s.count)), durations{0};
+  voltages.push_back(s.hold);
+  for (const double part : parts) durations.push_back(x[s.count] * part / all);
+  return broken_line(s, voltages, durations);
+}
+
+Waveform ramp_at(const DriveSearch& s, std::span<const double> x) {
+  return broken_line(s, std::array{x[0], x[1], s.hold}, std::array{0.0, x[2], x[3]});
+}
+
+using Parameters = std::optional<std::vector<double>>;
+
+Parameters of_step(const DriveSearch&, const Waveform& waveform) {
+  return std::vector<double>{std::get<Step>(waveform).rise_time};
+}
+
+Parameters of_pulse(const DriveSearch& s, const Waveform& waveform) {
+  const Pulse& pulse = std::get<Pulse>(waveform);
+  if (2 * pulse.times.size() + 1 != s.variables.size()) return std::nullopt;
+  std::vector<double> x(pulse.levels.begin(), pulse.levels.end() - 1);
+  double before = 0;
+  for (const double time : pulse.times) {
+    x.push_back(time - before);
+    before = time;
+  }
+  x.push_back(pulse.edge);
+  return x;
+}
+
+Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
+  const Harmonic& dither = std::get<Harmonic>(waveform);
+  const double duration = dither.end - dither.start;
+  return std::vector<double>{dither.amplitude, dither.angular_frequency, dither.phase, dither.start,
+                             duration,         dither.fade / duration};
+}
+
+// Lines that begin with a jump, as all that are searched without a limit of the slew.
+bool begins_with_jump(const Table& table, std::size_t rows) {
+  return table.time.size() == rows && table.time[1] == 0 && table.voltage[0] == 0;
+}
+
+Parameters of_knots(const DriveSearch& s, const Waveform& waveform) {
+  const Table& table = std::get<Table>(waveform);
+  if (!begins_with_jump(table, s.count + 2)) return std::nullopt;
+  std::vector<double> x(table.voltage.begin() + 1, table.voltage.end() - 1), parts;
+  for (std::size_t k = 2; k < table.time.size(); ++k) parts.push_back(table.time[k] - table.time[k - 1]);
+  const double longest = *std::max_element(parts.begin(), parts.end());
+  x.push_back(table.time.back());
+  for (const double part : parts) x.push_back(part / longest);
+  return x;
+}
+
+Parameters of_ramp(const DriveSearch&, const Waveform& waveform) {
+  const Table& table = std::get<Table>(waveform);
+  if (!begins_with_jump(table, 4)) return std::nullopt;
+  return std::vector<double>{table.voltage[1], table.voltage[2], table.time[2], table.time[3] - table.time[2]};
+}
+
+constexpr auto searched_families = std::to_array<SearchedFamily>(
+    {{FamilyOf<Step>::name, FamilyOf<Step>::name, 0, add_step, step_at, of_step},
+     {FamilyOf<Pulse>::name, FamilyOf<Pulse>::name, 0, add_pulse, pulse_at, of_pulse},
+     {FamilyOf<Harmonic>::name, FamilyOf<Harmonic>::name, 0, add_harmonic, harmonic_at, of_harmonic},
+     {"catch", FamilyOf<Pulse>::name, 0, add_catch, pulse_at, of_pulse},
+     {"ramp", FamilyOf<Table>::name, 0, add_ramp, ramp_at, of_ramp},
+     {"staircase", FamilyOf<Pulse>::name, 4, add_staircase, pulse_at, of_pulse},
+     {"knots", FamilyOf<Table>::name, 6, add_knots, knots_at, of_knots}});
+
+constexpr std::size_t fewest = 2, most = 20;  // levels or knots
+
+}  // namespace
+
+void choose_family(DriveSearch& s, const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string_view name = std::string_view(text).substr(0, colon);
+  const auto* found = std::find_if(searched_families.begin(), searched_families.end(),
+                                   [&](const SearchedFamily& family) { return family.name == name; });
+  require(found != searched_families.end(),
+          [&] { return fmt::format("--waveform {}: must be {}", text, listed_searched_families()); });
+  s.family = found;
+  s.count = found->count;
+  if (colon == std::string::npos) return;
+  const std::string_view number = std::string_view(text).substr(colon + 1);
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), s.count);
+  require(
+      found->count > 0 && error == std::errc() && end == number.data() + number.size() && s.count >= fewest && s.count <= most,
+      [&] {
+        return found->count == 0
+                   ? fmt::format("--waveform {}: {} has no number of levels or knots", text, name)
+                   : fmt::format("--waveform {}: the number after {} must be from {} to {}", text, name, fewest, most);
+      });
+}
+
+std::string listed_searched_families() {
+  std::string text;
+  for (std::size_t i = 0; i < searched_families.size(); ++i) {
+    const SearchedFamily& family = searched_families[i];
+    text += fmt::format("{}{}{}",
+                        i == 0                              ? ""
+                        : i + 1 == searched_families.size() ? " or "
+                                                            : ", ",
+                        family.name, family.count > 0 ? ":N" : "");
+  }
+  return text;
+}
+
+}  // namespace softland
