@@ -1,17 +1,8 @@
 #include "apps/result_folder.h"
 
-#include <fcntl.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <chrono>
-#include <ctime>
 #include <system_error>
 
 #include "base/output_lost.h"
@@ -25,18 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* lock_name = "softland.lock";
-constexpr std::string_view word = "process ";  // that a lock begins with
 constexpr int most_stages = 100;
-
-std::string reason(int error) { return std::generic_category().message(error); }
-
-// Who holds a lock, as it says so itself.
-std::string owner(const std::string& command) {
-  std::array<char, 256> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
-  return fmt::format("{}{} on {} since {:%Y-%m-%d %H:%M:%S} UTC: {}", word, ::getpid(), host.data(),
-                     fmt::gmtime(std::time(nullptr)), command);
-}
 
 fs::path created(const std::string& folder) {
   std::error_code error;
@@ -47,50 +27,11 @@ fs::path created(const std::string& folder) {
 
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder, const std::string& place, const std::string& command) : file_(folder / lock_name) {
-  for (;;) {
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    require(descriptor_ >= 0, fmt::format("{}: the folder cannot be written to: {}", place, reason(errno)));
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      const int error = errno;
-      const bool held = error == EWOULDBLOCK;
-      std::array<char, 4096> text{};
-      const ssize_t length = held ? ::pread(descriptor_, text.data(), text.size(), 0) : 0;
-      ::close(descriptor_);
-      const std::string who = length > 0 ? std::string(text.data(), static_cast<std::size_t>(length)) : "unknown";
-      throw InvalidInput(held ? fmt::format("{}: another run works in this folder ({})", place, who)
-                              : fmt::format("{}: the folder cannot be locked: {}", place, reason(error)));
-    }
-    // Whoever held it may have removed the file between our opening and locking it.
-    if (held()) break;
-    ::close(descriptor_);
-  }
-  // A file of that name that no run has made is somebody else's.
-  std::array<char, word.size()> begin{};
-  const ssize_t there = ::pread(descriptor_, begin.data(), begin.size(), 0);
-  if (there != 0 && (there < 0 || std::string_view(begin.data(), static_cast<std::size_t>(there)) != word)) {
-    ::close(descriptor_);
-    throw InvalidInput(fmt::format("{}: {} is no lock of softland; move it or name another folder", place, file_.string()));
-  }
-  const std::string text = owner(command);
-  const bool written = ::ftruncate(descriptor_, 0) == 0 && ::pwrite(descriptor_, text.data(), text.size(), 0) >= 0;
-  static_cast<void>(written);  // on a full disk the lock holds without its words
-}
-
-FolderLock::~FolderLock() {
-  if (held()) ::unlink(file_.c_str());
-  ::close(descriptor_);
-}
-
-bool FolderLock::held() const {
-  struct stat ours {
-  }, there{};
-  return ::fstat(descriptor_, &ours) == 0 && ::stat(file_.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
-         ours.st_dev == there.st_dev;
-}
-
 ResultFolder::ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files)
-    : folder_(created(folder)), files_(files), lock_(std::make_unique<FolderLock>(folder_, "--out " + folder, command)) {
+    : folder_(created(folder)),
+      files_(files),
+      lock_(std::make_unique<LockFile>(folder_ / lock_name,
+                                       LockedPlace{"--out " + folder, "folder", "another run works in this folder"}, command)) {
   for (const std::string& name : files_) {
     std::error_code ignored;
     require(!fs::is_directory(folder_ / name, ignored),

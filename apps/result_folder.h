@@ -8,24 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/lock_file.h"
+
 namespace softland::apps {
-
-/// Keeps other runs out of a folder while it lives: flock on a file in it that says who holds it. A process that died holds
-/// nothing.
-class FolderLock {
- public:
-  /// Throws InvalidInput, beginning with `place` ("--out run1"), where the folder cannot be written to or another run holds it.
-  FolderLock(const std::filesystem::path& folder, const std::string& place, const std::string& command);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  /// Whether the lock still stands in the folder: somebody may have removed or renamed that.
-  [[nodiscard]] bool held() const;
-
- private:
-  std::filesystem::path file_;
-  int descriptor_ = -1;
-};
 
 class ResultFolder {
  public:
@@ -51,7 +36,7 @@ class ResultFolder {
 
   std::filesystem::path folder_;
   std::vector<std::string> files_, written_;
-  std::unique_ptr<const FolderLock> lock_;
+  std::unique_ptr<const LockFile> lock_;
   std::filesystem::path stage_;
 };
 

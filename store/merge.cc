@@ -1,0 +1,174 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <memory>
+#include <queue>
+#include <set>
+#include <system_error>
+
+#include "base/require.h"
+#include "store/place.h"
+#include "store/study_store.h"
+#include "store/tables.h"
+
+namespace softland {
+
+using namespace internal;
+namespace fs = std::filesystem;
+
+namespace {
+
+// The rows of one part in the order of their points.
+class Part {
+ public:
+  explicit Part(const fs::path& path) : database_(open_to_read(path)) {
+    check_schema(*database_);
+    current_ = current_plan(*database_);
+    database_->run("PRAGMA cache_size = -64");  // there may be a thousand parts
+  }
+  [[nodiscard]] const StoredPlan& plan() const { return current_.plan; }
+  [[nodiscard]] const StoredRow& row() const { return row_; }
+  [[nodiscard]] const Database& database() const { return *database_; }
+
+  bool next() {
+    if (!rows_) {
+      rows_.emplace(*database_, select_rows(plan().columns) + " WHERE plan = ? ORDER BY point");
+      rows_->bind(1, current_.number);
+    }
+    if (!rows_->step()) return false;
+    row_ = row_in(*rows_, plan().columns.size());
+    return true;
+  }
+
+ private:
+  std::unique_ptr<const Database> database_;
+  NumberedPlan current_;
+  std::optional<Statement> rows_;
+  StoredRow row_;
+};
+
+using Parts = std::vector<std::unique_ptr<Part>>;
+
+// Every part is one open file, or three where its writer was killed.
+void allow_files(std::size_t parts) {
+  rlimit limit{};
+  const rlim_t needed = 4 * parts + 64;
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return;
+  limit.rlim_cur = std::min(limit.rlim_max, needed);
+  static_cast<void>(::setrlimit(RLIMIT_NOFILE, &limit));
+}
+
+Parts opened(const std::vector<fs::path>& paths) {
+  allow_files(paths.size());
+  Parts parts;
+  std::set<fs::path> seen;
+  for (const fs::path& path : paths) {
+    parts.push_back(std::make_unique<Part>(path));
+    require(seen.insert(fs::canonical(path)).second, fmt::format("{}: is named twice", path.string()));
+    const StoredPlan &first = parts.front()->plan(), &plan = parts.back()->plan();
+    require(
+        plan.text == first.text && plan.columns == first.columns && plan.points == first.points,
+        fmt::format("{}: holds another plan than {}; only parts of one plan are merged", path.string(), paths.front().string()));
+  }
+  return parts;
+}
+
+// Points that no part holds, told by the parts of the plan that they belong to.
+std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, std::int64_t rows) {
+  std::vector<std::string> notes;
+  if (rows < plan.points) notes.push_back(fmt::format("{} of {} points are missing", plan.points - rows, plan.points));
+  std::set<int> missing;
+  const int count = parts.front()->plan().shard.count;
+  for (int index = 1; index <= count; ++index) missing.insert(index);
+  for (const auto& part : parts) {
+    if (part->plan().shard.count == count) missing.erase(part->plan().shard.index);
+  }
+  if (rows < plan.points && !missing.empty() && count > 1) {
+    std::vector<std::string> names;
+    for (const int index : missing) names.push_back(fmt::format("{}/{}", index, count));
+    notes.push_back(fmt::format("no part was given of {}", fmt::join(names, ", ")));
+  }
+  std::set<std::string> programs, processors;
+  for (const auto& part : parts) {
+    for (const StoredSession& session : sessions_in(part->database())) {
+      programs.insert(session.program);
+      processors.insert(session.processor);
+    }
+  }
+  if (programs.size() > 1)
+    notes.push_back(fmt::format("the parts were computed by several programs: {}", fmt::join(programs, "; ")));
+  if (processors.size() > 1)
+    notes.push_back(fmt::format("the parts were computed on several processors: {}", fmt::join(processors, "; ")));
+  return notes;
+}
+
+// Writes the rows of all parts in the order of their points.
+std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
+                        const Watch& watch) {
+  const auto later = [](const Part* a, const Part* b) { return a->row().point > b->row().point; };
+  std::priority_queue<Part*, std::vector<Part*>, decltype(later)> next(later);
+  for (const auto& part : parts) {
+    if (part->next()) next.push(part.get());
+  }
+  RowWriter writer(database, number, plan.columns);
+  std::map<std::string, std::int64_t> by_status;
+  std::int64_t rows = 0;
+  std::optional<StoredRow> last;
+  std::string last_name;
+  while (!next.empty()) {
+    if (rows % 1000 == 0) {
+      watch.throw_if_stopped();
+      watch.tell("merging", static_cast<double>(rows) / static_cast<double>(plan.points));
+    }
+    Part* part = next.top();
+    next.pop();
+    const StoredRow& row = part->row();
+    const bool again = last && last->point == row.point;
+    const std::string other = again ? difference(*last, row, plan.columns) : "";
+    require(other.empty(), fmt::format("{} and {} hold point {} with different bits: {}", last_name, part->database().shown(),
+                                       row.point, other));
+    if (!again && writer.write(row)) {
+      ++rows;
+      ++by_status[row.status];
+    }
+    last = row;
+    last_name = part->database().shown();
+    if (part->next()) next.push(part);
+  }
+  SessionTally(database, number, session).note(by_status);
+  return rows;
+}
+
+}  // namespace
+
+Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, const StoredOrigin& origin, const Watch& watch) {
+  require(!paths.empty(), "a merge needs one part at least");
+  std::error_code ignored;
+  require(!fs::exists(fs::symlink_status(out, ignored)), fmt::format("{}: exists already; it is not replaced", out.string()));
+  Parts parts = opened(paths);
+  const auto lock = lock_store(out, origin.command);
+  Merged merged{.plan = parts.front()->plan(), .rows = 0, .notes = {}};
+  merged.plan.shard = {};
+  const UnnamedStore made(out);
+  {
+    const Database database(made.path(), Access::create, out.string());
+    // Nobody reads it before it has its name, and a failure leaves nothing.
+    database.run("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF");
+    create_tables(database, merged.plan.columns);
+    Transaction transaction(database);
+    const std::int64_t number = insert_plan(database, merged.plan);
+    for (const auto& part : parts) {
+      for (const StoredSession& session : sessions_in(part->database())) insert_session(database, number, session);
+    }
+    const std::int64_t session = insert_session(database, number, origin);
+    merged.rows = write_rows(database, number, parts, merged.plan, session, watch);
+    transaction.commit();
+  }
+  made.give_name();
+  merged.notes = notes_on(parts, merged.plan, merged.rows);
+  return merged;
+}
+
+}  // namespace softland

@@ -1,0 +1,369 @@
+#include "store/study_store.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "base/output_lost.h"
+#include "base/require.h"
+#include "base/shortened.h"
+#include "store/place.h"
+#include "store/tables.h"
+
+namespace softland {
+
+using namespace internal;
+namespace fs = std::filesystem;
+
+std::string column_key(std::string_view name, std::string_view unit) {
+  std::string key;
+  const auto append = [&](std::string_view text) {
+    for (const char c : text) {
+      const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+      if (plain) key += c;
+      if (!plain && c != '^' && !key.empty() && key.back() != '_') key += '_';
+    }
+  };
+  append(name);
+  if (!unit.empty()) append("_" + std::string(unit));
+  return key;
+}
+
+Shard shard_from(std::string_view text) {
+  Shard shard{.index = 0, .count = 0};
+  const char* end = text.data() + text.size();
+  const auto [slash, first] = std::from_chars(text.data(), end, shard.index);
+  bool valid = first == std::errc() && slash != end && *slash == '/';
+  if (valid) {
+    const auto [last, second] = std::from_chars(slash + 1, end, shard.count);
+    valid = second == std::errc() && last == end && shard.index >= 1 && shard.index <= shard.count;
+  }
+  require(valid, fmt::format("\"{}\" is no part of a study: i/N with 1 <= i <= N is expected, 3/8 for the third of eight",
+                             shortened(text)));
+  return shard;
+}
+
+namespace {
+
+constexpr std::size_t rows_that_wait = 16 * rows_per_commit;
+constexpr std::uintmax_t checked_size = std::uintmax_t{64} << 20;  // [byte] above it damage shows where it is read
+
+void require_only_name(const fs::path& path) {
+  struct stat found {};
+  const bool linked = ::stat(path.c_str(), &found) == 0 && found.st_nlink > 1;
+  require(!linked, fmt::format("{}: has another name as well (a hard link), under which its log would not be found; copy it",
+                               path.string()));
+}
+
+void create_store(const fs::path& path, const StoredPlan& plan, const StoredOrigin& origin) {
+  const UnnamedStore made(path);
+  {
+    const Database database(made.path(), Access::create, path.string());
+    database.run("PRAGMA journal_mode = MEMORY");
+    create_tables(database, plan.columns);
+    Transaction transaction(database);
+    static_cast<void>(insert_session(database, insert_plan(database, plan), origin));
+    transaction.commit();
+  }
+  made.give_name();
+}
+
+void require_same_columns(const Database& database, const StoredPlan& there, const StoredPlan& plan) {
+  std::string other;
+  for (std::size_t i = 0; i < std::max(there.columns.size(), plan.columns.size()) && other.empty(); ++i) {
+    if (i >= there.columns.size()) other = fmt::format("it has none for {}", plan.columns[i].key);
+    if (i >= plan.columns.size()) other = fmt::format("it also has {}", there.columns[i].key);
+    if (other.empty() && there.columns[i] != plan.columns[i])
+      other = fmt::format("it has {} where this study has {}", there.columns[i].key, plan.columns[i].key);
+  }
+  require(other.empty(), fmt::format("{}: holds a study of other columns ({}); name another file", database.shown(), other));
+  const auto words = [](const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); };
+  require(there.shard == plan.shard, fmt::format("{}: holds the part {} of a study, not {}; name another file", database.shown(),
+                                                 words(there.shard), words(plan.shard)));
+}
+
+}  // namespace
+
+class StudyStore::Implementation {
+ public:
+  Implementation(const fs::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
+  ~Implementation();
+
+  void add(StoredRow row);
+  void flush();
+  void close();
+
+  const fs::path path_;
+  const StoredPlan plan_;
+  std::unique_ptr<const LockFile> lock_;
+  std::unique_ptr<Database> database_;
+  std::int64_t number_ = 0;
+  bool has_earlier_ = false;
+  std::vector<bool> done_;
+
+  mutable std::mutex finding_;
+  std::unique_ptr<const Database> earlier_;  // of its own, so that find() does not wait for the disk
+  mutable std::optional<Statement> find_;
+
+ private:
+  void open();
+  void start_session(const StoredOrigin& origin, bool resumed);
+  void prepare_finding();
+  void work();
+  void commit(const std::vector<StoredRow>& rows);
+  void commit_batch(std::unique_lock<std::mutex>& lock);
+  void throw_told();
+  void let_go();
+
+  std::optional<RowWriter> rows_;
+  std::optional<SessionTally> tally_;
+
+  std::mutex mutex_;
+  std::condition_variable for_writer_, for_callers_;
+  std::vector<StoredRow> waiting_;
+  std::chrono::steady_clock::time_point due_;
+  bool committing_ = false, hurried_ = false, stopping_ = false;
+  std::exception_ptr failure_;        // to write rows, which still wait
+  std::exception_ptr contradiction_;  // of a row, which was left out
+  std::thread writer_;
+};
+
+StudyStore::Implementation::Implementation(const fs::path& path, const StoredPlan& plan, const StoredOrigin& origin,
+                                           Opening opening)
+    : path_(path), plan_(plan) {
+  check_plan(plan);
+  std::error_code ignored;
+  const auto is_there = [&] {
+    const bool there = fs::exists(fs::status(path, ignored));
+    require(opening == Opening::resume || !there,
+            fmt::format("{}: exists already; it is not replaced (--resume continues a study)", path.string()));
+    return there;
+  };
+  if (is_there()) require_store(path);
+  lock_ = lock_store(path, origin.command);
+  const bool resumed = is_there();  // another run may have made it meanwhile
+  if (!resumed) create_store(path, plan, origin);
+  try {
+    open();
+    start_session(origin, resumed);
+  } catch (const DamagedStore& error) {
+    let_go();
+    throw InvalidInput(fmt::format("{}; {}", error.what(), kept_copy(path)));
+  }
+  writer_ = std::thread([this] { work(); });
+}
+
+void StudyStore::Implementation::open() {
+  require_store(path_);
+  require_only_name(path_);
+  std::error_code ignored;
+  database_ = std::make_unique<Database>(fs::canonical(path_), Access::write, path_.string());
+  require(sqlite3_db_readonly(database_->handle(), "main") == 0,
+          fmt::format("{}: the file cannot be written to", path_.string()));
+  check_schema(*database_);
+  if (fs::file_size(path_, ignored) <= checked_size) {
+    const std::string found = database_->text_of("PRAGMA quick_check(1)");
+    if (found != "ok") throw DamagedStore(fmt::format("{}: the store is damaged: {}", path_.string(), found));
+  }
+}
+
+void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool resumed) {
+  const NumberedPlan there = current_plan(*database_);
+  require_same_columns(*database_, there.plan, plan_);
+  database_->run(fmt::format("PRAGMA journal_mode = {}; PRAGMA synchronous = FULL", journal_at(path_)));
+  Transaction transaction(*database_);
+  number_ = number_of_plan(*database_, plan_.text);
+  if (number_ == 0) number_ = insert_plan(*database_, plan_);
+  if (resumed) static_cast<void>(insert_session(*database_, number_, origin));
+  has_earlier_ = database_->number_of("SELECT count(*) FROM study") > 1;
+  if (has_earlier_) database_->run("CREATE INDEX IF NOT EXISTS by_content ON results(content)");
+  transaction.commit();
+
+  done_.resize(static_cast<std::size_t>(plan_.points));
+  Statement points = database_->prepare("SELECT point FROM results WHERE plan = ?");
+  points.bind(1, number_);
+  while (points.step()) {
+    const std::int64_t point = points.integer(0);
+    if (point < 0 || point >= plan_.points)
+      throw DamagedStore(fmt::format("{}: the store is damaged: it has a point {}", path_.string(), point));
+    done_[static_cast<std::size_t>(point)] = true;
+  }
+  rows_.emplace(*database_, number_, plan_.columns);
+  tally_.emplace(*database_, number_, database_->number_of("SELECT max(session) FROM session"));
+  if (has_earlier_) prepare_finding();
+}
+
+void StudyStore::Implementation::prepare_finding() {
+  earlier_ = std::make_unique<const Database>(fs::canonical(path_), Access::recover, path_.string());
+  find_.emplace(*earlier_, select_rows(plan_.columns) + " WHERE content = ? AND plan != ? ORDER BY plan, point LIMIT 1");
+}
+
+StudyStore::Implementation::~Implementation() {
+  try {
+    close();
+  } catch (...) {  // said by close() to whoever wants to know
+  }
+}
+
+void StudyStore::Implementation::let_go() {
+  find_.reset();
+  earlier_.reset();
+  rows_.reset();
+  tally_.reset();
+  database_.reset();
+}
+
+// Tells the caller what went wrong since the last call, after which the rows that wait are tried again.
+void StudyStore::Implementation::throw_told() {
+  for (std::exception_ptr* told : {&failure_, &contradiction_}) {
+    if (!*told) continue;
+    for_writer_.notify_one();
+    std::rethrow_exception(std::exchange(*told, nullptr));
+  }
+}
+
+void StudyStore::Implementation::add(StoredRow row) {
+  const bool fits =
+      row.point >= 0 && row.point < plan_.points && plan_.shard.contains(row.point) && row.values.size() == plan_.columns.size();
+  require(fits,
+          fmt::format("{}: a row of point {} with {} values does not belong to a plan of {} points and {} columns, part {}/{}",
+                      path_.string(), row.point, row.values.size(), plan_.points, plan_.columns.size(), plan_.shard.index,
+                      plan_.shard.count));
+  std::unique_lock lock(mutex_);
+  for_callers_.wait(lock, [&] { return waiting_.size() < rows_that_wait || failure_ != nullptr; });
+  if (waiting_.empty())
+    due_ = std::chrono::steady_clock::now() +
+           std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds_per_commit));
+  waiting_.push_back(std::move(row));
+  if (waiting_.size() == 1 || waiting_.size() >= rows_per_commit) for_writer_.notify_one();
+  throw_told();
+}
+
+void StudyStore::Implementation::flush() {
+  std::unique_lock lock(mutex_);
+  failure_ = nullptr;  // what could not be written is tried now
+  hurried_ = true;
+  for_writer_.notify_one();
+  for_callers_.wait(lock, [&] { return failure_ != nullptr || (waiting_.empty() && !committing_); });
+  hurried_ = false;
+  throw_told();
+}
+
+void StudyStore::Implementation::close() {
+  if (!database_) return;
+  std::exception_ptr failure;
+  if (writer_.joinable()) {
+    try {
+      flush();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+      for_writer_.notify_one();
+    }
+    writer_.join();
+  }
+  find_.reset();
+  earlier_.reset();
+  // Where somebody reads, the log stays until the last one has done.
+  sqlite3_busy_timeout(database_->handle(), 0);
+  sqlite3_exec(database_->handle(), "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
+  let_go();
+  lock_.reset();
+  if (failure) std::rethrow_exception(failure);
+}
+
+// The thread that writes. After a failure it waits for the next call, which is told.
+void StudyStore::Implementation::work() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    for_writer_.wait(lock, [&] { return stopping_ || (!failure_ && !waiting_.empty()); });
+    if (stopping_) return;
+    const auto enough = [&] { return stopping_ || hurried_ || waiting_.size() >= rows_per_commit; };
+    for_writer_.wait_until(lock, due_, enough);
+    if (stopping_) return;
+    commit_batch(lock);
+  }
+}
+
+void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock) {
+  std::vector<StoredRow> rows = std::exchange(waiting_, {});
+  committing_ = true;
+  lock.unlock();
+  std::exception_ptr failure, contradiction;
+  try {
+    commit(rows);
+  } catch (const Contradiction&) {
+    contradiction = std::current_exception();
+  } catch (const DamagedStore& error) {
+    failure = std::make_exception_ptr(OutputLost(error.what()));
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  lock.lock();
+  committing_ = false;
+  if (failure) waiting_.insert(waiting_.begin(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+  if (failure) failure_ = failure;
+  if (contradiction) contradiction_ = contradiction;
+  for_callers_.notify_all();
+}
+
+// Rows that contradict what the store holds are left out and told; all others are written.
+void StudyStore::Implementation::commit(const std::vector<StoredRow>& rows) {
+  std::optional<Contradiction> contradiction;
+  std::map<std::string, std::int64_t> by_status;
+  Transaction transaction(*database_);
+  for (const StoredRow& row : rows) {
+    try {
+      if (rows_->write(row)) ++by_status[row.status];
+    } catch (const Contradiction& error) {
+      contradiction = error;
+    }
+  }
+  tally_->note(by_status);
+  transaction.commit();
+  if (contradiction) throw Contradiction(*contradiction);
+}
+
+StudyStore::StudyStore(const fs::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening)
+    : implementation_(std::make_unique<Implementation>(path, plan, origin, opening)) {}
+
+StudyStore::~StudyStore() = default;
+
+const fs::path& StudyStore::path() const { return implementation_->path_; }
+
+std::vector<bool> StudyStore::done() const { return implementation_->done_; }
+
+bool StudyStore::has_earlier_plans() const { return implementation_->has_earlier_; }
+
+std::optional<StoredRow> StudyStore::find(const ContentKey& content) const {
+  if (!implementation_->has_earlier_) return std::nullopt;
+  const std::lock_guard lock(implementation_->finding_);
+  Statement& find = *implementation_->find_;
+  find.reset();
+  find.bind(1, bytes_of(content)).bind(2, implementation_->number_);
+  if (!find.step()) return std::nullopt;
+  StoredRow row = row_in(find, implementation_->plan_.columns.size());
+  find.reset();
+  return row;
+}
+
+void StudyStore::add(StoredRow row) { implementation_->add(std::move(row)); }
+
+void StudyStore::flush() { implementation_->flush(); }
+
+void StudyStore::close() { implementation_->close(); }
+
+}  // namespace softland

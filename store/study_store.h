@@ -1,0 +1,197 @@
+// A study that outlives a power cut: one file that holds a plan, the points of it that are done, and who computed them.
+//
+// The file is a database of SQLite 3 and reads on every machine. It has one writer at a time, which holds FILE.lock while it
+// works, and any number of readers at any time. Rows become durable in batches of `rows_per_commit` or `seconds_per_commit`,
+// whichever comes first: whatever happens to process or machine, at most the rows of that last second are lost, and what is there
+// is whole.
+//
+// A row belongs to a point of a plan by its number, and to what was computed by its content: the key of the resolved scene. When
+// a study goes on with another plan of the same columns, a finer grid or a larger sample, find() gives the rows that the earlier
+// plans hold for equal content, so that no point is computed twice.
+//
+//   StudyStore store("map.sqlite", plan, origin, StudyStore::Opening::resume);
+//   const std::vector<bool> done = store.done();
+//   ... on any thread, for each point of plan.shard that is not done ...
+//     if (auto known = store.find(content)) { known->point = point; store.add(*std::move(known)); } else store.add(computed);
+//   store.close();
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/watch.h"
+
+namespace softland {
+
+/// Version of the tables. A store of a later one is refused.
+inline constexpr int store_schema = 1;
+inline constexpr std::size_t rows_per_commit = 1000;
+inline constexpr double seconds_per_commit = 1;  ///< [s] after the first row that is not yet durable
+
+/// What a column holds: something that the plan varies, or a figure of a closing.
+enum class ColumnKind { variable, figure };
+
+struct StoredColumn {
+  std::string key;   ///< in the database and in the header of CSV: "gap_contact_m"; see column_key()
+  std::string name;  ///< the key of the scene, "gap.contact", or the figure's name for people
+  std::string unit;  ///< of SI, "m/s"; empty for a count, a ratio, yes or no
+  ColumnKind kind = ColumnKind::figure;
+  bool operator==(const StoredColumn&) const = default;
+};
+
+/// A name with its unit as a word of letters, digits and underscores: ("gap.contact", "m") is "gap_contact_m".
+[[nodiscard]] std::string column_key(std::string_view name, std::string_view unit);
+
+/// Which points of a plan one part of a study computes: every `count`-th, from index - 1 on, so that all parts cost about the
+/// same.
+struct Shard {
+  int index = 1;  ///< 1 to count
+  int count = 1;
+  [[nodiscard]] bool contains(std::int64_t point) const { return point % count == index - 1; }
+  /// How many of the points 0 ... points - 1 it contains.
+  [[nodiscard]] std::int64_t size(std::int64_t points) const { return (points - index + count) / count; }
+  bool operator==(const Shard&) const = default;
+};
+
+/// "3/8" is the third of eight. Throws InvalidInput unless 1 <= index <= count.
+[[nodiscard]] Shard shard_from(std::string_view text);
+
+struct StoredPlan {
+  std::string text;                   ///< canonical: equal plans are equal bytes. The shard is no part of it
+  std::int64_t points = 0;            ///< numbered 0 ... points - 1
+  std::vector<StoredColumn> columns;  ///< of every row, in this order
+  std::uint64_t seed = 0;
+  Shard shard = {};  ///< what this file holds of it
+};
+
+/// What computes: it may change the last digits of what comes out.
+struct StoredOrigin {
+  std::string program;    ///< name, version and hash of the program
+  std::string processor;  ///< and the instructions that are used of it
+  std::string command;
+};
+
+/// A hash of 128 bits of what a row was computed from. Equal content has equal keys on every machine.
+struct ContentKey {
+  std::uint64_t high = 0, low = 0;
+  auto operator<=>(const ContentKey&) const = default;
+  [[nodiscard]] std::string hexadecimal() const;
+};
+[[nodiscard]] ContentKey content_key(std::string_view text);
+
+struct StoredRow {
+  std::int64_t point = 0;
+  ContentKey content = {};
+  std::string status;          ///< how the computation ended: "done", "no_contact", "numerical_failure"
+  std::string reason = {};     ///< in words, where it did not succeed
+  std::vector<double> values;  ///< one per column [SI]; NaN: not known. Of zeros the sign is not kept
+  std::string extra = {};      ///< JSON of whatever else belongs to the point, the waveform found there; may be empty
+};
+
+/// One run of the program on a store.
+struct StoredSession {
+  std::string program, processor, command;  ///< as StoredOrigin
+  std::string host;
+  std::int64_t process = 0;
+  std::string began, last;  ///< UTC, "2026-01-31 12:00:00.000"; `last`: of the last commit
+  double seconds = 0;       ///< from `began` to `last`
+  std::int64_t rows = 0;    ///< written in it
+};
+
+/// Whether this is a regular file that begins as a store does. Nothing else is opened: no pipe is waited for.
+[[nodiscard]] bool is_store(const std::filesystem::path& path);
+
+/// Who writes into the store now, in words ("process 4711 on node3 since ...: softland explore ..."); none: nobody.
+[[nodiscard]] std::optional<std::string> writer_of(const std::filesystem::path& path);
+
+/// The one writer of a store.
+class StudyStore {
+ public:
+  enum class Opening {
+    fresh,  ///< the file must not exist
+    resume  ///< one that exists is continued: this plan, or another of the same columns and shard
+  };
+
+  /// Creates or continues the store. Throws InvalidInput with path and reason where `path` exists and should not, is no store, is
+  /// one of a later schema or of other columns, where it cannot be written to, or another process writes into it, with the name
+  /// of that; OutputLost where the disk is full. A damaged store is left as it is, with a copy of it beside: FILE.damaged.
+  StudyStore(const std::filesystem::path& path, const StoredPlan& plan, const StoredOrigin& origin, Opening opening);
+  /// Commits what it can and says nothing: call close() to learn of errors.
+  ~StudyStore();
+  StudyStore(const StudyStore&) = delete;
+  StudyStore& operator=(const StudyStore&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const;
+  /// Of every point of the plan whether the store held it when it was opened.
+  [[nodiscard]] std::vector<bool> done() const;
+  /// Whether it holds rows of other plans, so that find() may find something.
+  [[nodiscard]] bool has_earlier_plans() const;
+  /// A row of an earlier plan with this content. May be called on any thread.
+  [[nodiscard]] std::optional<StoredRow> find(const ContentKey& content) const;
+
+  /// Takes a row to be written; returns soon. A row that the store holds with the same bits changes nothing. Throws InvalidInput
+  /// where it has a row of this point with other bits, or the row does not fit the plan; OutputLost where rows taken before could
+  /// not be written, which are kept and tried again with the next call. May be called on any thread.
+  void add(StoredRow row);
+  /// Waits until all rows taken are durable. Throws as add().
+  void flush();
+  /// flush(), and leaves the file alone in its folder, without log or lock. Throws as add().
+  void close();
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Which rows, in the words of SQL: an expression over the columns and `point`, `status`, `reason`; empty: all of them.
+struct StudyQuery {
+  std::string where = {};
+};
+
+/// A store as it stands, whether or not somebody writes into it. Never changes what it holds.
+class StudyReader {
+ public:
+  /// Throws InvalidInput with path and reason where this is no store, one of a later schema, a damaged one, or cannot be read.
+  explicit StudyReader(const std::filesystem::path& path);
+  ~StudyReader();
+  StudyReader(StudyReader&&) noexcept;
+  StudyReader& operator=(StudyReader&&) noexcept;
+
+  [[nodiscard]] const std::filesystem::path& path() const;
+  /// The plan of the last session.
+  [[nodiscard]] const StoredPlan& plan() const;
+  [[nodiscard]] std::vector<StoredSession> sessions() const;
+  /// How many rows of the plan ended in each status.
+  [[nodiscard]] std::map<std::string, std::int64_t> by_status() const;
+
+  /// Calls row(...) for the rows of the plan that the query asks for, in the order of their points. Throws InvalidInput naming
+  /// --where and the expression where that cannot be understood or does more than compare; Interrupted when asked to stop.
+  void read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query = {}, const Watch& watch = {}) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// What a merge has found.
+struct Merged {
+  StoredPlan plan;  ///< with the shard 1/1
+  std::int64_t rows = 0;
+  std::vector<std::string> notes;  ///< points that are missing, parts of several programs or processors
+};
+
+/// Writes one store of the parts of a study to `out`, which must not exist. Throws InvalidInput with the names where parts are of
+/// different plans, or hold a point with different bits.
+[[nodiscard]] Merged merge_studies(const std::vector<std::filesystem::path>& parts, const std::filesystem::path& out,
+                                   const StoredOrigin& origin, const Watch& watch = {});
+
+}  // namespace softland

@@ -1,0 +1,278 @@
+#include "store/tables.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
+#include "base/lock_file.h"
+#include "base/require.h"
+#include "base/shortened.h"
+#include "store/place.h"
+
+namespace softland::internal {
+namespace {
+
+constexpr std::size_t most_columns = 1900;  // SQLite takes 2000
+constexpr const char* now = "strftime('%Y-%m-%d %H:%M:%f', 'now')";
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
+
+std::string_view word_of(ColumnKind kind) { return kind == ColumnKind::variable ? "variable" : "figure"; }
+
+ContentKey key_of(std::span<const unsigned char> bytes) {
+  ContentKey key;
+  if (bytes.size() != 16) return key;
+  for (std::size_t i = 0; i < 8; ++i) {
+    key.high = key.high << 8 | bytes[i];
+    key.low = key.low << 8 | bytes[8 + i];
+  }
+  return key;
+}
+
+// As SQL writes a name.
+std::string sql_name(std::string_view name) {
+  std::string text = "\"";
+  for (const char c : name) text += c == '"' ? "\"\"" : std::string(1, c);
+  return text + "\"";
+}
+
+// What the database gives back of a number.
+double kept(double value) { return value + 0.0; }
+
+bool same_number(double a, double b) { return std::isnan(a) ? std::isnan(b) : kept(a) == kept(b); }
+
+}  // namespace
+
+std::array<unsigned char, 16> bytes_of(const ContentKey& key) {
+  std::array<unsigned char, 16> bytes{};
+  for (std::size_t i = 0; i < 8; ++i) {
+    bytes[i] = static_cast<unsigned char>(key.high >> (56 - 8 * i));
+    bytes[8 + i] = static_cast<unsigned char>(key.low >> (56 - 8 * i));
+  }
+  return bytes;
+}
+
+void check_plan(const StoredPlan& plan) {
+  require(plan.points >= 1, fmt::format("a study has one point at least, not {}", plan.points));
+  require(plan.columns.size() <= most_columns,
+          fmt::format("a store has at most {} columns, not {}", most_columns, plan.columns.size()));
+  std::set<std::string> keys(fixed_columns.begin(), fixed_columns.end());
+  for (const StoredColumn& column : plan.columns) {
+    const bool word =
+        !column.key.empty() && column_key(column.key, "") == column.key && (column.key[0] < '0' || column.key[0] > '9');
+    require(word, fmt::format("the column \"{}\" is no word of letters, digits and underscores", shortened(column.key)));
+    require(keys.insert(lower(column.key)).second,
+            fmt::format("two columns of the study are called {}; large and small letters are the same to a store", column.key));
+  }
+}
+
+void create_tables(const Database& database, const std::vector<StoredColumn>& columns) {
+  Transaction transaction(database);
+  database.run(fmt::format("PRAGMA application_id = {}", store_application));
+  database.run(fmt::format("PRAGMA user_version = {}", store_schema));
+  database.run(
+      "CREATE TABLE study(plan INTEGER PRIMARY KEY, text TEXT NOT NULL, digest TEXT NOT NULL, points INTEGER NOT NULL,"
+      " seed TEXT NOT NULL, shard INTEGER NOT NULL, shards INTEGER NOT NULL);"
+      "CREATE TABLE columns(position INTEGER PRIMARY KEY, key TEXT NOT NULL, name TEXT NOT NULL, unit TEXT NOT NULL, kind TEXT "
+      "NOT NULL);"
+      "CREATE TABLE session(session INTEGER PRIMARY KEY, plan INTEGER NOT NULL, program TEXT NOT NULL, processor TEXT NOT NULL,"
+      " command TEXT NOT NULL, host TEXT NOT NULL, process INTEGER NOT NULL, began TEXT NOT NULL, last TEXT NOT NULL,"
+      " rows INTEGER NOT NULL);"
+      "CREATE TABLE tally(plan INTEGER NOT NULL, status TEXT NOT NULL, rows INTEGER NOT NULL, PRIMARY KEY(plan, status)) WITHOUT "
+      "ROWID");
+  std::string sql =
+      "CREATE TABLE results(plan INTEGER NOT NULL, point INTEGER NOT NULL, content BLOB NOT NULL, status TEXT NOT NULL, reason "
+      "TEXT NOT NULL,"
+      " extra TEXT NOT NULL";
+  for (const StoredColumn& column : columns) sql += ", " + sql_name(column.key) + " REAL";
+  database.run(sql + ", PRIMARY KEY(plan, point)) WITHOUT ROWID");
+  Statement insert = database.prepare("INSERT INTO columns(key, name, unit, kind) VALUES(?, ?, ?, ?)");
+  for (const StoredColumn& column : columns)
+    insert.bind(1, column.key).bind(2, column.name).bind(3, column.unit).bind(4, word_of(column.kind)).step();
+  transaction.commit();
+}
+
+void check_schema(const Database& database) {
+  const std::int64_t schema = database.number_of("PRAGMA user_version");
+  require(schema <= store_schema,
+          fmt::format("{}: was written by a later softland (schema {} of stores; this one reads up to {})", database.shown(),
+                      schema, store_schema));
+  const std::int64_t tables = database.number_of(
+      "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('study', 'columns', 'session', 'results', 'tally')");
+  if (tables != 5 || schema < 1 || database.number_of("SELECT count(*) FROM session JOIN study USING(plan)") < 1)
+    throw DamagedStore(fmt::format("{}: the store is damaged: tables are missing", database.shown()));
+}
+
+NumberedPlan current_plan(const Database& database) {
+  NumberedPlan found;
+  Statement study = database.prepare(
+      "SELECT plan, text, points, seed, shard, shards FROM study WHERE plan = (SELECT plan FROM session ORDER BY session DESC "
+      "LIMIT 1)");
+  if (study.step()) {
+    found.number = study.integer(0);
+    found.plan = {.text = study.text(1), .points = study.integer(2), .columns = {}, .seed = 0, .shard = {}};
+    found.plan.seed = std::strtoull(study.text(3).c_str(), nullptr, 10);
+    found.plan.shard = {.index = static_cast<int>(study.integer(4)), .count = static_cast<int>(study.integer(5))};
+  }
+  Statement columns = database.prepare("SELECT key, name, unit, kind FROM columns ORDER BY position");
+  while (columns.step()) {
+    const ColumnKind kind = columns.text(3) == word_of(ColumnKind::variable) ? ColumnKind::variable : ColumnKind::figure;
+    found.plan.columns.push_back({.key = columns.text(0), .name = columns.text(1), .unit = columns.text(2), .kind = kind});
+  }
+  return found;
+}
+
+std::int64_t number_of_plan(const Database& database, const std::string& text) {
+  Statement plan = database.prepare("SELECT plan FROM study WHERE text = ?");
+  plan.bind(1, text);
+  return plan.step() ? plan.integer(0) : 0;
+}
+
+std::int64_t insert_plan(const Database& database, const StoredPlan& plan) {
+  Statement insert = database.prepare("INSERT INTO study(text, digest, points, seed, shard, shards) VALUES(?, ?, ?, ?, ?, ?)");
+  insert.bind(1, plan.text).bind(2, content_key(plan.text).hexadecimal()).bind(3, plan.points).bind(4, std::to_string(plan.seed));
+  insert.bind(5, std::int64_t{plan.shard.index}).bind(6, std::int64_t{plan.shard.count}).step();
+  return sqlite3_last_insert_rowid(database.handle());
+}
+
+std::int64_t insert_session(const Database& database, std::int64_t plan, const StoredOrigin& origin) {
+  const std::string moment = database.text_of(fmt::format("SELECT {}", now));
+  insert_session(database, plan,
+                 {.program = origin.program,
+                  .processor = origin.processor,
+                  .command = origin.command,
+                  .host = host_name(),
+                  .process = ::getpid(),
+                  .began = moment,
+                  .last = moment});
+  return sqlite3_last_insert_rowid(database.handle());
+}
+
+void insert_session(const Database& database, std::int64_t plan, const StoredSession& session) {
+  Statement insert = database.prepare(
+      "INSERT INTO session(plan, program, processor, command, host, process, began, last, rows) VALUES(?, ?, ?, ?, ?, ?, ?, ?, "
+      "?)");
+  insert.bind(1, plan).bind(2, session.program).bind(3, session.processor).bind(4, session.command).bind(5, session.host);
+  insert.bind(6, session.process).bind(7, session.began).bind(8, session.last).bind(9, session.rows).step();
+}
+
+SessionTally::SessionTally(const Database& database, std::int64_t plan, std::int64_t session)
+    : plan_(plan),
+      session_(session),
+      to_session_(database, fmt::format("UPDATE session SET rows = rows + ?1, last = {} WHERE session = ?2", now)),
+      to_tally_(database, "INSERT INTO tally VALUES(?1, ?2, ?3) ON CONFLICT(plan, status) DO UPDATE SET rows = rows + ?3") {}
+
+void SessionTally::note(const std::map<std::string, std::int64_t>& rows_by_status) {
+  std::int64_t rows = 0;
+  for (const auto& [status, count] : rows_by_status) {
+    to_tally_.bind(1, plan_).bind(2, status).bind(3, count).step();
+    rows += count;
+  }
+  to_session_.bind(1, rows).bind(2, session_).step();
+}
+
+std::vector<StoredSession> sessions_in(const Database& database) {
+  Statement statement = database.prepare(
+      "SELECT program, processor, command, host, process, began, last, rows, (julianday(last) - julianday(began)) * 86400"
+      " FROM session ORDER BY session");
+  std::vector<StoredSession> all;
+  while (statement.step()) {
+    all.push_back({.program = statement.text(0),
+                   .processor = statement.text(1),
+                   .command = statement.text(2),
+                   .host = statement.text(3),
+                   .process = statement.integer(4),
+                   .began = statement.text(5),
+                   .last = statement.text(6),
+                   .seconds = statement.number(8),
+                   .rows = statement.integer(7)});
+  }
+  return all;
+}
+
+std::map<std::string, std::int64_t> tally_of(const Database& database, std::int64_t plan) {
+  Statement statement = database.prepare("SELECT status, rows FROM tally WHERE plan = ?");
+  statement.bind(1, plan);
+  std::map<std::string, std::int64_t> tally;
+  while (statement.step()) tally[statement.text(0)] = statement.integer(1);
+  return tally;
+}
+
+std::string select_rows(const std::vector<StoredColumn>& columns) {
+  std::string sql = "SELECT point, content, status, reason, extra";
+  for (const StoredColumn& column : columns) sql += ", " + sql_name(column.key);
+  return sql + " FROM results";
+}
+
+StoredRow row_in(const Statement& statement, std::size_t values) {
+  StoredRow row{.point = statement.integer(0),
+                .content = key_of(statement.blob(1)),
+                .status = statement.text(2),
+                .reason = statement.text(3),
+                .values = std::vector<double>(values),
+                .extra = statement.text(4)};
+  for (std::size_t i = 0; i < values; ++i) row.values[i] = statement.number(5 + static_cast<int>(i));
+  return row;
+}
+
+namespace {
+
+std::string insert_rows(const std::vector<StoredColumn>& columns) {
+  std::string names = "plan, point, content, status, reason, extra", marks = "?, ?, ?, ?, ?, ?";
+  for (const StoredColumn& column : columns) {
+    names += ", " + sql_name(column.key);
+    marks += ", ?";
+  }
+  return fmt::format("INSERT INTO results({}) VALUES({}) ON CONFLICT DO NOTHING", names, marks);
+}
+
+}  // namespace
+
+RowWriter::RowWriter(const Database& database, std::int64_t plan, const std::vector<StoredColumn>& columns)
+    : database_(database),
+      plan_(plan),
+      columns_(columns),
+      insert_(database, insert_rows(columns)),
+      select_(database, select_rows(columns) + " WHERE plan = ? AND point = ?") {}
+
+bool RowWriter::write(const StoredRow& row) {
+  insert_.bind(1, plan_)
+      .bind(2, row.point)
+      .bind(3, bytes_of(row.content))
+      .bind(4, row.status)
+      .bind(5, row.reason)
+      .bind(6, row.extra);
+  int parameter = 7;
+  for (const double value : row.values) insert_.bind(parameter++, kept(value));
+  insert_.step();
+  if (sqlite3_changes(database_.handle()) == 1) return true;
+  select_.bind(1, plan_).bind(2, row.point);
+  if (!select_.step())
+    throw DamagedStore(fmt::format("{}: the store is damaged: point {} is there and is not", database_.shown(), row.point));
+  const StoredRow there = row_in(select_, columns_.size());
+  select_.reset();
+  const std::string other = difference(there, row, columns_);
+  if (!other.empty())
+    throw Contradiction(fmt::format("{}: point {} is there already, with other bits: {}", database_.shown(), row.point, other));
+  return false;
+}
+
+std::string difference(const StoredRow& a, const StoredRow& b, const std::vector<StoredColumn>& columns) {
+  if (a.status != b.status) return fmt::format("status {} and {}", a.status, b.status);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (!same_number(a.values[i], b.values[i])) return fmt::format("{} {} and {}", columns[i].key, a.values[i], b.values[i]);
+  }
+  if (a.content != b.content) return fmt::format("content {} and {}", a.content.hexadecimal(), b.content.hexadecimal());
+  if (a.reason != b.reason) return fmt::format("reason \"{}\" and \"{}\"", shortened(a.reason), shortened(b.reason));
+  return a.extra == b.extra ? "" : "what they keep beside the columns";
+}
+
+}  // namespace softland::internal
