@@ -19,6 +19,7 @@
 #include "studies/optimize.h"
 #include "studies/robustness.h"
 #include "studies/search_space.h"
+#include "waveforms/export.h"
 
 namespace softland {
 namespace {
@@ -96,6 +97,18 @@ std::vector<std::size_t> pulling_drives(const Device& device) {
   }
   if (drives.empty() && device.dispersion) drives.push_back(device.electrodes.size());
   return drives;
+}
+
+/// The drives as straight lines: exact for steps and pulses, a thousandth of the swing for sines.
+std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const Prepared& p) {
+  std::map<std::string, std::vector<std::pair<double, double>>> all;
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> signals = p.signals();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const double swing = signals[k].maximum(p.duration) - signals[k].minimum(p.duration);
+    if (names[k] != dispersion_drive) all[names[k]] = polyline(signals[k], p.duration, 1e-3 * swing, 0);
+  }
+  return all;
 }
 
 double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
@@ -336,7 +349,10 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& w
     const auto parameter = found.parameters.find(name);
     row.figures.push_back(parameter == found.parameters.end() ? Metrics::unset : finite(parameter->second));
   }
-  if (found.best_scene) row.scene = found.best_scene->scene.file.text();
+  if (found.best_scene) {
+    row.scene = found.best_scene->scene.file.text();
+    row.waveforms = lines_of(*found.best_scene);
+  }
   if (found.best && found.better_than_baseline) {
     row.status = to_string(found.best->metrics.status);
   } else {

@@ -14,9 +14,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/choice.h"
@@ -52,6 +53,8 @@ struct PointRow {
   std::string reason = {};
   std::vector<double> figures;  ///< as Exploration::figures(); NaN: there is none
   std::string scene = {};       ///< of a search: that of its waveform, which `simulate` runs to the same figures
+  /// Of a search: what drives it, as straight lines to look at [s], [V], by drive.
+  std::map<std::string, std::vector<std::pair<double, double>>> waveforms = {};
 };
 
 /// Checks the study and its options, and writes out those that are not given, so that the plan does not hang on a default. Throws

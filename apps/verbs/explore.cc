@@ -190,7 +190,7 @@ class Exploring {
       }
       row.status = std::move(found.status);
       row.reason = std::move(found.reason);
-      if (!found.scene.empty()) row.extra = json{{"scene_toml", found.scene}}.dump();
+      if (!found.scene.empty()) row.extra = json{{"scene_toml", found.scene}, {"waveforms", found.waveforms}}.dump();
       values.insert(values.end(), found.figures.begin(), found.figures.end());
     }
     row.values = std::move(values);

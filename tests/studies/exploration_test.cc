@@ -145,6 +145,7 @@ TEST(Exploration, OfSearchesKeepsWinnersThatSimulateRunsToTheirFigures) {
   const Closing again = simulate(prepare_and_choose(SceneFile::parse(row.scene, "best.toml")), true);
   EXPECT_EQ(row.figures[index_of(e, "impact_velocity")], again.metrics.impact_velocity);
   EXPECT_EQ(row.figures[index_of(e, "major_bounce_height")], again.metrics.major_bounce_height);
+  EXPECT_GE(row.waveforms.at("main").size(), 4U);
   EXPECT_LT(row.figures[index_of(e, "cost")], row.figures[index_of(e, "plain_step_cost")]);
 }
 
