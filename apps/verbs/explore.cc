@@ -36,8 +36,9 @@
 namespace softland::apps {
 namespace {
 
+using internal::left_aligned;
 using internal::quantity;
-using internal::whole;
+using internal::right_aligned;
 using nlohmann::json;
 
 struct ExploreRequest {
@@ -127,6 +128,8 @@ StoredOrigin origin_of(const Common& c) {
           .command = c.command};
 }
 
+std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
+
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -145,14 +148,9 @@ class Exploring {
     for (std::int64_t i = 0; i < of_shard(); ++i) known_ += done_[static_cast<std::size_t>(point(i))] ? 1 : 0;
   }
 
-  /// How many points the part has, how many of them the store held, and how many are in it now.
+  /// How many points the part has, and how many of them the store still lacks.
   [[nodiscard]] std::int64_t of_shard() const { return shard_.size(static_cast<std::int64_t>(exploration_.plan().points())); }
-  [[nodiscard]] std::int64_t known() const { return known_; }
-  [[nodiscard]] std::int64_t computed() const { return computed_; }
-  [[nodiscard]] std::int64_t reused() const { return reused_; }
   [[nodiscard]] std::int64_t remaining() const { return of_shard() - known_ - computed_ - reused_; }
-  /// Spent waiting for the store, by all threads [s].
-  [[nodiscard]] double store_seconds() const { return store_seconds_; }
 
   void run() {
     const std::int64_t missing = remaining();
@@ -162,10 +160,38 @@ class Exploring {
         static_cast<std::size_t>(of_shard()), jobs_, [this](std::size_t i) { take(point(static_cast<std::int64_t>(i))); },
         watch_.stop);
     bar_.close([this](double elapsed) { return state(elapsed); });
+    seconds_ = seconds_since(begin_);
+  }
+
+  [[nodiscard]] nlohmann::json json() const {
+    const Plan& plan = exploration_.plan();
+    return {{"status", remaining() > 0 ? "interrupted" : "done"},
+            {"plan", content_key(plan.text()).hexadecimal()},
+            {"study", plan.study()},
+            {"seed", plan.seed()},
+            {"points", plan.points()},
+            {"shard", fmt::format("{}/{}", shard_.index, shard_.count)},
+            {"rows", {{"known", known_}, {"computed", computed_.load()}, {"reused", reused_.load()}, {"remaining", remaining()}}},
+            {"work", {{"wall_s", seconds_}, {"store_s", store_seconds_.load()}, {"jobs", jobs_}}}};
+  }
+  [[nodiscard]] std::string text(const std::string& out) const {
+    std::string words = fmt::format("{} of {} points in {}: {} computed", whole(of_shard() - remaining()), whole(of_shard()),
+                                    printable_line(out), whole(computed_));
+    if (known_ > 0) words += fmt::format(", {} were there", whole(known_));
+    if (reused_ > 0) words += fmt::format(", {} taken over from an earlier plan", whole(reused_));
+    return words + fmt::format(", {}\n", quantity(seconds_, "s"));
   }
 
  private:
   [[nodiscard]] std::int64_t point(std::int64_t i) const { return i * shard_.count + shard_.index - 1; }
+
+  template <class Work>
+  auto timed(Work&& work) {
+    const Clock::time_point begin = Clock::now();
+    auto result = work();
+    store_seconds_ += seconds_since(begin);
+    return result;
+  }
 
   void take(std::int64_t k) {
     if (done_[static_cast<std::size_t>(k)]) return;
@@ -200,17 +226,9 @@ class Exploring {
     bar_.show([this](double elapsed) { return state(elapsed); });
   }
 
-  template <class Work>
-  auto timed(Work&& work) {
-    const Clock::time_point begin = Clock::now();
-    auto result = work();
-    store_seconds_ += seconds_since(begin);
-    return result;
-  }
-
   [[nodiscard]] std::pair<double, std::string> state(double elapsed) const {
     const std::int64_t all = of_shard(), there = all - remaining();
-    std::string words = fmt::format("{} of {} points", whole(static_cast<double>(there)), whole(static_cast<double>(all)));
+    std::string words = fmt::format("{} of {} points", whole(there), whole(all));
     if (const double rate = static_cast<double>(computed_) / elapsed; computed_ > 0 && elapsed > 0) {
       words += fmt::format(", {} per s", internal::plain_number(rate));
       if (remaining() > 0) words += fmt::format(", {} left", duration_words(static_cast<double>(remaining()) / rate));
@@ -236,7 +254,9 @@ class Exploring {
   Bar bar_;
   std::int64_t known_ = 0;
   std::atomic<std::int64_t> computed_ = 0, reused_ = 0;
-  std::atomic<double> store_seconds_ = 0;
+  std::atomic<double> store_seconds_ = 0;  // spent waiting for the store, by all threads [s]
+  Clock::time_point begin_ = Clock::now();
+  double seconds_ = 0;  // [s]
 };
 
 /// What the rows of a store say together.
@@ -287,7 +307,7 @@ json overview_json(const StoredPlan& plan, const Overview& found) {
 std::string overview_text(const StoredPlan& plan, const Overview& found) {
   std::string text;
   for (const auto& [status, count] : found.by_status) {
-    text += fmt::format("  {:<20} {:>9}", status, whole(static_cast<double>(count)));
+    text += fmt::format("  {:<20} {:>9}", status, whole(count));
     const auto reason = found.first_reasons.find(status);
     text += reason == found.first_reasons.end() ? "\n" : fmt::format("   {}\n", shortened(printable_line(reason->second), 140));
   }
@@ -374,50 +394,24 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   Exploration exploration(Plan(request), work->watch());
   work.reset();
 
-  const Clock::time_point begin = Clock::now();
   if (r.resume && !c.quiet) tell_of_other_programs(out);
   StudyStore store(out, stored_plan(exploration, shard), origin_of(c),
                    r.resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh);
   Exploring exploring(exploration, store, shard, c, jobs);
   if (!c.quiet) {
-    say(fmt::format("{}: {} of {} points to explore, study {}; rows go to {}", c.scene,
-                    whole(static_cast<double>(exploring.remaining())), whole(static_cast<double>(exploring.of_shard())),
-                    exploration.plan().study(), out));
+    say(fmt::format("{}: {} of {} points to explore, study {}; rows go to {}", c.scene, whole(exploring.remaining()),
+                    whole(exploring.of_shard()), exploration.plan().study(), out));
   }
   exploring.run();
   store.close();
-  const double seconds = seconds_since(begin);
 
-  const bool interrupted = exploring.remaining() > 0;
   const StudyReader reader(out);
   const Overview found = overview_of(reader);
   json j = overview_json(reader.plan(), found);
-  j.update({{"status", interrupted ? "interrupted" : "done"},
-            {"store", out},
-            {"plan", content_key(exploration.plan().text()).hexadecimal()},
-            {"study", exploration.plan().study()},
-            {"seed", exploration.plan().seed()},
-            {"points", exploration.plan().points()},
-            {"shard", fmt::format("{}/{}", shard.index, shard.count)},
-            {"rows",
-             {{"known", exploring.known()},
-              {"computed", exploring.computed()},
-              {"reused", exploring.reused()},
-              {"remaining", exploring.remaining()}}},
-            {"work", {{"wall_s", seconds}, {"store_s", exploring.store_seconds()}, {"jobs", jobs}}},
-            {"version", version},
-            {"command", c.command},
-            {"made_with", made_with_json()}});
-  std::string text = fmt::format(
-      "{} of {} points in {}: {} computed{}{}, {}\n", whole(static_cast<double>(exploring.of_shard() - exploring.remaining())),
-      whole(static_cast<double>(exploring.of_shard())), printable_line(out), whole(static_cast<double>(exploring.computed())),
-      exploring.known() > 0 ? fmt::format(", {} were there", whole(static_cast<double>(exploring.known()))) : "",
-      exploring.reused() > 0 ? fmt::format(", {} taken from an earlier plan", whole(static_cast<double>(exploring.reused())))
-                             : "",
-      quantity(seconds, "s"));
-  text += overview_text(reader.plan(), found);
-  print_json_or(c, j, text);
-  return status_of(found, interrupted);
+  j.update(exploring.json());
+  j.update({{"store", out}, {"version", version}, {"command", c.command}, {"made_with", made_with_json()}});
+  print_json_or(c, j, exploring.text(out) + overview_text(reader.plan(), found));
+  return status_of(found, exploring.remaining() > 0);
 }
 
 }  // namespace
