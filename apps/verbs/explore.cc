@@ -163,7 +163,7 @@ class Exploring {
     seconds_ = seconds_since(begin_);
   }
 
-  [[nodiscard]] nlohmann::json json() const {
+  [[nodiscard]] json data() const {
     const Plan& plan = exploration_.plan();
     return {{"status", remaining() > 0 ? "interrupted" : "done"},
             {"plan", content_key(plan.text()).hexadecimal()},
@@ -408,7 +408,7 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   const StudyReader reader(out);
   const Overview found = overview_of(reader);
   json j = overview_json(reader.plan(), found);
-  j.update(exploring.json());
+  j.update(exploring.data());
   j.update({{"store", out}, {"version", version}, {"command", c.command}, {"made_with", made_with_json()}});
   print_json_or(c, j, exploring.text(out) + overview_text(reader.plan(), found));
   return status_of(found, exploring.remaining() > 0);
