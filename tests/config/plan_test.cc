@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -200,8 +201,8 @@ TEST(Plan, RefusesWhatAFileSaysWrongWithItsPlace) {
       return error.what();
     }
   };
-  constexpr int above = 42;  // lines of the scene and its frame, on which these follow
-  const std::string place = fmt::format("map.toml:{}: plan.", above);
+  const auto line = 4 + std::count(small_scene.begin(), small_scene.end(), '\n');  // what follows the scene
+  const std::string place = fmt::format("map.toml:{}: plan.", line);
   EXPECT_EQ(told("vari = 1\n"), place + "vari = 1: unknown key (did you mean 'vary'?)");
   EXPECT_EQ(told("vary = [3]\n"), place + "vary = [3]: value 1: expected a text in quotes");
   EXPECT_EQ(told("seed = -1\n"), place + "seed = -1: must be a whole number from 0 on");

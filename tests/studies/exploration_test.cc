@@ -84,6 +84,31 @@ TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne) {
   }
 }
 
+TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
+  // The switch that is handed over with a scene is another one: what comes back tells whether it was looked at.
+  const Prepared ours = prepare(gold());
+  SceneFile deep = gold();
+  deep.assign("gap.contact", 2.1e-6);
+  const Prepared other = prepare(deep);
+  const double own = ours.pull_in.at("main").dynamically.voltage, of_other = other.pull_in.at("main").dynamically.voltage;
+  ASSERT_NE(own, of_other);
+  PullInMemory memory;
+  const auto found = [&](const SceneFile& scene, const Switch& model) {
+    return memory.finder(scene)(model, 0, {}).dynamically.voltage;
+  };
+  EXPECT_EQ(found(gold(), ours.model), own);
+  SceneFile driven = gold();
+  driven.set("waveform.main.level=\"1.1 Vdp\"");
+  driven.set("driver.main.max_voltage=\"1.2 Vdp\"");
+  driven.set("simulate.duration=\"200 us\"");
+  EXPECT_EQ(found(driven, other.model), own);
+  for (const char* change : {"gap.contact=\"2.1 um\"", "gas.viscosity=\"2e-5 Pa s\"", "simulate.accuracy=1e-3"}) {
+    SceneFile changed = gold();
+    changed.set(change);
+    EXPECT_EQ(found(changed, other.model), of_other) << change;
+  }
+}
+
 TEST(Exploration, WithErrorsGivesThoseOfCertify) {
   PlanRequest asked = request("simulate", {"structure.length=250 um"});
   asked.options["certify"] = "true";
