@@ -7,6 +7,7 @@
 #include <queue>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include "base/require.h"
 #include "store/place.h"
@@ -107,10 +108,13 @@ std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, st
 // Writes the rows of all parts in the order of their points.
 std::int64_t write_rows(const Database& database, std::int64_t number, Parts& parts, const StoredPlan& plan, std::int64_t session,
                         const Watch& watch) {
-  const auto later = [](const Part* a, const Part* b) { return a->row().point > b->row().point; };
-  std::priority_queue<Part*, std::vector<Part*>, decltype(later)> next(later);
-  for (const auto& part : parts) {
-    if (part->next()) next.push(part.get());
+  // Of those with the same point the part that was named first.
+  const auto later = [&](std::size_t a, std::size_t b) {
+    return std::pair(parts[a]->row().point, a) > std::pair(parts[b]->row().point, b);
+  };
+  std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(later)> next(later);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i]->next()) next.push(i);
   }
   RowWriter writer(database, number, plan.columns);
   std::map<std::string, std::int64_t> by_status;
@@ -122,20 +126,21 @@ std::int64_t write_rows(const Database& database, std::int64_t number, Parts& pa
       watch.throw_if_stopped();
       watch.tell("merging", static_cast<double>(rows) / static_cast<double>(plan.points));
     }
-    Part* part = next.top();
+    const std::size_t first = next.top();
     next.pop();
-    const StoredRow& row = part->row();
+    Part& part = *parts[first];
+    const StoredRow& row = part.row();
     const bool again = last && last->point == row.point;
     const std::string other = again ? difference(*last, row, plan.columns) : "";
-    require(other.empty(), fmt::format("{} and {} hold point {} with different bits: {}", last_name, part->database().shown(),
-                                       row.point, other));
+    require(other.empty(),
+            fmt::format("{} and {} hold point {} with different bits: {}", last_name, part.database().shown(), row.point, other));
     if (!again && writer.write(row)) {
       ++rows;
       ++by_status[row.status];
     }
     last = row;
-    last_name = part->database().shown();
-    if (part->next()) next.push(part);
+    last_name = part.database().shown();
+    if (part.next()) next.push(first);
   }
   SessionTally(database, number, session).note(by_status);
   return rows;

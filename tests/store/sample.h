@@ -2,12 +2,15 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "store/study_store.h"
+#include "tests/support/temporary_folder.h"
 
 namespace softland::test {
 
@@ -67,6 +70,18 @@ inline void make_store(const std::filesystem::path& path, std::int64_t points, S
     if (shard.contains(point)) store.add(row_of(point));
   }
   store.close();
+}
+
+/// Tests with a store in a folder of its own.
+struct WithStore : ::testing::Test, TemporaryFolder {
+  std::filesystem::path file = path("study.sqlite");
+};
+
+[[nodiscard]] inline std::vector<std::string> names_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 }  // namespace softland::test

@@ -8,7 +8,6 @@
 #include "base/require.h"
 #include "store/study_store.h"
 #include "tests/store/sample.h"
-#include "tests/support/temporary_folder.h"
 
 namespace softland::test {
 namespace {
@@ -17,15 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 using Opening = StudyStore::Opening;
 
-struct Store : ::testing::Test, TemporaryFolder {
-  std::filesystem::path file = path("study.sqlite");
-};
-
-std::vector<std::string> names_in(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
-  return names;
-}
+using Store = WithStore;
 
 TEST_F(Store, GivesBackEveryBitOfItsRows) {
   std::vector<StoredRow> rows;

@@ -1,0 +1,135 @@
+// A writer that is killed, again and again, and in the end has the rows of one that was not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "base/clock.h"
+#include "tests/store/sample.h"
+
+namespace softland::test {
+namespace {
+
+using Opening = StudyStore::Opening;
+using Kill = WithStore;
+
+constexpr std::int64_t points = 60'000;
+
+// What the writer tells of itself, in memory that outlives it.
+struct Told {
+  std::atomic<bool> writes = false;  ///< the store is open
+  std::atomic<std::int64_t> taken = 0;
+  std::array<double, points> when{};  ///< [s] a row was taken
+};
+
+struct Pace {
+  int rows;                        ///< between two rests
+  std::chrono::microseconds rest;  ///< so long that no machine is done before it is killed
+};
+
+// Writes what is missing until it is killed, or done.
+[[noreturn]] void write_on(const std::filesystem::path& file, Told& told, Pace pace) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  StudyStore store(file, plan_of(points), origin(), Opening::resume);
+  const std::vector<bool> done = store.done();
+  told.writes = true;
+  for (std::int64_t point = 0; point < points; ++point) {
+    if (done[static_cast<std::size_t>(point)]) continue;
+    store.add(row_of(point));
+    told.when[static_cast<std::size_t>(point)] = wall_clock();
+    told.taken = point + 1;
+    if (point % pace.rows == 0) std::this_thread::sleep_for(pace.rest);
+  }
+  store.close();
+  ::_exit(0);
+}
+
+class Writer {
+ public:
+  Writer(const std::filesystem::path& file, Told& told, Pace pace) : told_(told) {
+    told.writes = false;
+    child_ = ::fork();
+    if (child_ == 0) write_on(file, told, pace);
+  }
+  // Until it has the store open, for a minute.
+  void await() const {
+    for (int i = 0; i < 60'000 && !told_.writes; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_TRUE(told_.writes);
+  }
+  // Whether it was still at work.
+  bool kill() const {
+    ::kill(child_, SIGKILL);
+    int status = 0;
+    ::waitpid(child_, &status, 0);
+    return WIFSIGNALED(status);
+  }
+
+ private:
+  Told& told_;
+  pid_t child_;
+};
+
+TEST_F(Kill, FiftyTimesEndsWithTheSameBits) {
+  auto* told = new (::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Told;
+  std::mt19937 random(20260131);
+  std::uniform_real_distribution<double> part(0, 1);
+  constexpr int kills = 50, while_opening = 12;
+  int at_work = 0;
+  std::size_t held = 0;
+  for (int k = 0; k < kills; ++k) {
+    const Writer writer(file, *told, {.rows = 25, .rest = std::chrono::milliseconds(1)});
+    if (k >= while_opening) writer.await();
+    std::this_thread::sleep_for(std::chrono::duration<double>(part(random) * (k >= while_opening ? 0.1 : 0.02)));
+    at_work += writer.kill() ? 1 : 0;
+    if (!std::filesystem::exists(file)) continue;
+    const std::vector<StoredRow> rows = rows_in(file);
+    ASSERT_GE(rows.size(), held) << "of what was durable nothing is lost";
+    held = rows.size();
+    ASSERT_EQ(dump(rows), dump([&] {
+                std::vector<StoredRow> expected;
+                for (std::size_t point = 0; point < held; ++point) expected.push_back(row_of(static_cast<std::int64_t>(point)));
+                return expected;
+              }()))
+        << "rows become durable in the order in which they were taken";
+  }
+  EXPECT_GE(at_work, 45);
+  EXPECT_GT(held, 0u);
+  EXPECT_LT(held, static_cast<std::size_t>(points));
+
+  // Rows that come slowly become durable by time alone. Disks may be busy: the last second is lost, here at most three and a
+  // half.
+  const Writer slow(file, *told, {.rows = 1, .rest = std::chrono::milliseconds(5)});
+  slow.await();
+  std::this_thread::sleep_for(std::chrono::milliseconds(4500));
+  const double killed = wall_clock();
+  EXPECT_TRUE(slow.kill());
+  const std::size_t durable = rows_in(file).size();
+  ASSERT_GT(told->taken, static_cast<std::int64_t>(durable) - 1);
+  for (auto point = static_cast<std::size_t>(told->taken) - 1; point >= durable; --point)
+    ASSERT_GT(told->when[point], killed - seconds_per_commit - 2.5) << "point " << point << " is lost";
+  EXPECT_GT(durable, held);
+
+  StudyStore last(file, plan_of(points), origin(), Opening::resume);
+  const std::vector<bool> done = last.done();
+  for (std::int64_t point = 0; point < points; ++point) {
+    if (!done[static_cast<std::size_t>(point)]) last.add(row_of(point));
+  }
+  last.close();
+  make_store(path("undisturbed.sqlite"), points);
+  EXPECT_TRUE(dump(file) == dump(path("undisturbed.sqlite")));
+  EXPECT_EQ(StudyReader(file).by_status(), StudyReader(path("undisturbed.sqlite")).by_status());
+  EXPECT_THAT(names_in(TemporaryFolder::path()),
+              ::testing::IsSupersetOf({std::string("study.sqlite"), std::string("undisturbed.sqlite")}));
+  ::munmap(told, sizeof(Told));
+}
+
+}  // namespace
+}  // namespace softland::test

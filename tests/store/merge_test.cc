@@ -1,0 +1,125 @@
+// Parts of a study as one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "base/require.h"
+#include "tests/store/sample.h"
+
+namespace softland::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+using Opening = StudyStore::Opening;
+namespace fs = std::filesystem;
+
+struct Merge : WithStore {
+  std::vector<fs::path> parts_of(std::int64_t points, int count) {
+    std::vector<fs::path> parts;
+    for (int index = 1; index <= count; ++index) {
+      parts.emplace_back(path(fmt::format("part {}.sqlite", index)));
+      make_store(parts.back(), points, {.index = index, .count = count});
+    }
+    return parts;
+  }
+};
+
+TEST_F(Merge, OfAllPartsHasTheBitsOfTheUnsharedStudy) {
+  const Merged merged = merge_studies(parts_of(5003, 8), file, origin());
+  make_store(path("whole.sqlite"), 5003);
+  EXPECT_EQ(dump(file), dump(path("whole.sqlite")));
+  EXPECT_EQ(merged.rows, 5003);
+  EXPECT_THAT(merged.notes, IsEmpty());
+  EXPECT_EQ(StudyReader(file).by_status(), StudyReader(path("whole.sqlite")).by_status());
+  EXPECT_EQ(StudyReader(file).plan().shard, Shard{});
+  EXPECT_EQ(StudyReader(file).sessions().size(), 9u);
+  // It can be gone on with.
+  EXPECT_EQ(StudyStore(file, plan_of(5003), origin(), Opening::resume).done(), std::vector<bool>(5003, true));
+}
+
+TEST_F(Merge, TellsWhatIsMissing) {
+  std::vector<fs::path> parts = parts_of(100, 4);
+  parts.erase(parts.begin() + 1);
+  const Merged merged = merge_studies(parts, file, origin());
+  EXPECT_EQ(merged.rows, 75);
+  EXPECT_THAT(merged.notes, ElementsAre("25 of 100 points are missing", "no part was given of 2/4"));
+}
+
+TEST_F(Merge, OfMergedPartsIsTheSame) {
+  const std::vector<fs::path> parts = parts_of(100, 4);
+  static_cast<void>(merge_studies({parts[0], parts[1]}, path("a"), origin()));
+  static_cast<void>(merge_studies({parts[1], parts[2], parts[3]}, path("b"), origin()));
+  EXPECT_THAT(merge_studies({path("b"), path("a")}, file, origin()).notes, IsEmpty());  // what both hold has the same bits
+  EXPECT_EQ(rows_in(file).size(), 100u);
+}
+
+TEST_F(Merge, RefusesOtherBitsForOnePoint) {
+  make_store(path("a"), 100);
+  {
+    StudyStore store(path("b"), plan_of(100), origin(), Opening::fresh);
+    StoredRow row = row_of(17);
+    row.values[1] = std::nextafter(row.values[1], 1);
+    store.add(row);
+  }
+  EXPECT_THAT(
+      [&] {
+        static_cast<void>(merge_studies({path("a"), path("b")}, file, origin()));
+      },
+      ThrowsMessage<InvalidInput>(
+          AllOf(HasSubstr("/a and "), HasSubstr("/b hold point 17 with different bits: impact_velocity_m_s 0.2"))));
+  EXPECT_THAT(names_in(TemporaryFolder::path()), ElementsAre("a", "b"));
+}
+
+TEST_F(Merge, RefusesWhatDoesNotBelongTogether) {
+  make_store(path("a"), 100);
+  make_store(path("b"), 99);
+  const auto refused = [&](const std::vector<fs::path>& parts, const fs::path& out, const std::string& reason) {
+    EXPECT_THAT([&] { static_cast<void>(merge_studies(parts, out, origin())); }, ThrowsMessage<InvalidInput>(HasSubstr(reason)));
+  };
+  refused({path("a"), path("b")}, file, "holds another plan than");
+  refused({path("a"), path("a")}, file, "is named twice");
+  refused({path("a")}, path("b"), "exists already; it is not replaced");
+  refused({path("a")}, path("a"), "exists already; it is not replaced");
+  refused({path("a"), path("nothing")}, file, "there is no such file");
+  refused({}, file, "one part at least");
+  EXPECT_THAT(names_in(TemporaryFolder::path()), ElementsAre("a", "b"));
+}
+
+TEST_F(Merge, TellsOfSeveralProgramsAndProcessors) {
+  for (int index = 1; index <= 2; ++index) {
+    StudyStore store(
+        path(std::to_string(index)), plan_of(2, {.index = index, .count = 2}),
+        {.program = fmt::format("softland {}", index), .processor = fmt::format("processor {}", index), .command = ""},
+        Opening::fresh);
+    store.add(row_of(index - 1));
+  }
+  std::vector<std::string> notes =
+      merge_studies({path("1"), path("2")}, file, {.program = "softland 1", .processor = "processor 1", .command = ""}).notes;
+  EXPECT_THAT(notes, ElementsAre("the parts were computed by several programs: softland 1; softland 2",
+                                 "the parts were computed on several processors: processor 1; processor 2"));
+}
+
+TEST_F(Merge, StopsWhenItIsAsked) {
+  make_store(path("a"), 100);
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW(static_cast<void>(merge_studies({path("a")}, file, origin(), {.stop = &stop})), Interrupted);
+  EXPECT_FALSE(fs::exists(file));
+}
+
+TEST_F(Merge, OfMorePartsThanAProcessMayOpenFilesAsksForMore) {
+  const std::vector<fs::path> parts = parts_of(24, 12);
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const rlim_t before = std::exchange(limit.rlim_cur, 14);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_EQ(merge_studies(parts, file, origin()).rows, 24);
+  limit.rlim_cur = before;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+}  // namespace
+}  // namespace softland::test

@@ -1,0 +1,297 @@
+// What may stand where a store is or should be, and what each of it is answered.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "base/output_lost.h"
+#include "base/require.h"
+#include "store/place.h"
+#include "store/tables.h"
+#include "tests/store/sample.h"
+#include "tests/support/access_rights.h"
+
+namespace softland::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+using Opening = StudyStore::Opening;
+namespace fs = std::filesystem;
+
+using Place = WithStore;
+
+void write_at(const fs::path& file, long place, const std::string& bytes) {
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  stream.seekp(place);
+  stream << bytes;
+}
+
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void run_sql(const fs::path& file, const char* sql) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+  sqlite3_close(database);
+}
+
+// Neither read nor continued, for this reason, and not touched.
+void expect_refused(const fs::path& file, const std::string& reason) {
+  const bool regular = fs::is_regular_file(file);
+  const std::string before = regular ? content_of(file) : "";
+  EXPECT_FALSE(is_store(file)) << file;
+  EXPECT_THAT([&] { StudyReader{file}; }, ThrowsMessage<InvalidInput>(AllOf(HasSubstr(file.string()), HasSubstr(reason))));
+  EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); }, ThrowsMessage<InvalidInput>(HasSubstr(reason)));
+  EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::fresh); },
+              ThrowsMessage<InvalidInput>(HasSubstr("exists already")));
+  EXPECT_EQ(regular ? content_of(file) : "", before);
+}
+
+TEST_F(Place, OfAnythingButAStoreIsRefused) {
+  expect_refused(write("empty", ""), "is empty (0 bytes)");
+  expect_refused(write("text", "title = \"a scene\"\n"), "is no store of softland");
+  expect_refused(write("long text", std::string(5000, 'x')), "is no store of softland");
+  run_sql(path("other"), "CREATE TABLE t(x)");
+  expect_refused(path("other"), "is a database of SQLite, but no store of softland");
+  fs::create_directory(path("folder"));
+  expect_refused(path("folder"), "is a folder");
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  expect_refused(path("pipe"), "is no regular file");
+  expect_refused("/dev/zero", "is no regular file");
+  EXPECT_FALSE(is_store(path("nothing")));
+  EXPECT_THAT([&] { StudyReader{path("nothing")}; }, ThrowsMessage<InvalidInput>(HasSubstr("there is no such file")));
+  EXPECT_THAT([&] { StudyStore(path("no folder/a"), plan_of(10), origin(), Opening::resume); },
+              ThrowsMessage<InvalidInput>(HasSubstr("the folder of the store cannot be written to: No such file")));
+}
+
+TEST_F(Place, OfAStoreIsRecognised) {
+  make_store(file, 10);
+  EXPECT_TRUE(is_store(file));
+  fs::create_symlink(file, path("link"));
+  EXPECT_TRUE(is_store(path("link")));
+  EXPECT_EQ(rows_in(path("link")).size(), 10u);
+}
+
+TEST_F(Place, WithNamesThatSqliteWouldReadAsSomethingElse) {
+  for (const char* name : {":memory:", "file:a?mode=memory", "100%41#?.sqlite", "-x", "a'b\"c"}) {
+    make_store(path(name), 10);
+    EXPECT_TRUE(fs::exists(path(name)));
+    EXPECT_EQ(rows_in(path(name)).size(), 10u) << name;
+  }
+}
+
+TEST_F(Place, OfAStoreOfALaterSchemaIsRefused) {
+  make_store(file, 10);
+  run_sql(file, "PRAGMA user_version = 2");
+  const std::string before = content_of(file);
+  EXPECT_THAT(
+      [&] { StudyReader{file}; },
+      ThrowsMessage<InvalidInput>(HasSubstr("was written by a later softland (schema 2 of stores; this one reads up to 1)")));
+  EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
+              ThrowsMessage<InvalidInput>(HasSubstr("a later softland")));
+  EXPECT_EQ(content_of(file), before);
+}
+
+TEST_F(Place, OfADamagedStoreKeepsItAndACopy) {
+  make_store(file, 3000);
+  write_at(file, static_cast<long>(fs::file_size(file)) / 2, std::string(20000, '\xAB'));
+  const std::string before = content_of(file);
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_THAT(
+        [&] { StudyStore(file, plan_of(3000), origin(), Opening::resume); },
+        ThrowsMessage<InvalidInput>(AllOf(HasSubstr("the store is damaged"), HasSubstr("study.sqlite.damaged is a copy of it"))));
+    EXPECT_EQ(content_of(file), before);
+    EXPECT_EQ(content_of(path("study.sqlite.damaged")), before);
+    EXPECT_THAT(names_in(TemporaryFolder::path()), ElementsAre("study.sqlite", "study.sqlite.damaged"));
+  }
+  EXPECT_THAT([&] { static_cast<void>(rows_in(file)); }, ThrowsMessage<InvalidInput>(HasSubstr("the store is damaged")));
+}
+
+TEST_F(Place, OfAStoreThatWasCutShortIsRefused) {
+  make_store(file, 3000);
+  fs::resize_file(file, 8192);
+  EXPECT_THAT([&] { StudyStore(file, plan_of(3000), origin(), Opening::resume); },
+              ThrowsMessage<InvalidInput>(HasSubstr("the store is damaged")));
+  EXPECT_THAT([&] { static_cast<void>(rows_in(file)); }, ThrowsMessage<InvalidInput>(HasSubstr("the store is damaged")));
+}
+
+TEST_F(Place, OfAStoreWithMissingTablesIsRefused) {
+  make_store(file, 10);
+  run_sql(file, "DROP TABLE tally");
+  EXPECT_THAT([&] { StudyReader{file}; }, ThrowsMessage<InvalidInput>(HasSubstr("damaged: tables are missing")));
+  EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
+              ThrowsMessage<InvalidInput>(HasSubstr("is a copy of it")));
+}
+
+TEST_F(Place, TakesOneWriterWhoSaysItsName) {
+  EXPECT_FALSE(writer_of(file));
+  {
+    StudyStore store(file, plan_of(10), origin(), Opening::fresh);
+    ASSERT_TRUE(writer_of(file));
+    EXPECT_THAT(*writer_of(file),
+                AllOf(HasSubstr(fmt::format("process {} on ", ::getpid())), HasSubstr("softland explore a.toml")));
+    fs::create_symlink(file, path("link"));
+    for (const std::string& name : {file.string(), path("link")}) {
+      EXPECT_THAT([&] { StudyStore(name, plan_of(10), origin(), Opening::resume); },
+                  ThrowsMessage<InvalidInput>(
+                      AllOf(HasSubstr("another run writes into this store (process "), HasSubstr("explore a.toml)"))));
+    }
+  }
+  EXPECT_FALSE(writer_of(file));
+  StudyStore(file, plan_of(10), origin(), Opening::resume).close();
+}
+
+TEST_F(Place, WithALockOfOneThatDiedIsFree) {
+  make_store(file, 10);
+  const std::string lock = write("study.sqlite.lock", "process 1 on elsewhere since 2026-01-31 12:00:00 UTC: softland explore");
+  EXPECT_FALSE(writer_of(file));
+  StudyStore(file, plan_of(10), origin(), Opening::resume).close();
+  EXPECT_FALSE(fs::exists(lock));
+}
+
+TEST_F(Place, UnderTwoNamesIsNotWritten) {
+  make_store(file, 10);
+  fs::create_hard_link(file, path("other name"));
+  EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
+              ThrowsMessage<InvalidInput>(HasSubstr("has another name as well")));
+}
+
+TEST_F(Place, ThatCannotBeWrittenToIsReadWithoutLitter) {
+  make_store(file, 100);
+  make_store(path("logged"), 100);
+  // As a writer leaves it whose last reader went after it: no log, but the header says that there may be one.
+  run_sql(path("logged"), "PRAGMA journal_mode = WAL");
+  fs::remove(path("logged-wal"));
+  fs::remove(path("logged-shm"));
+  const auto before = names_in(TemporaryFolder::path());
+  fs::permissions(TemporaryFolder::path(), fs::perms::owner_read | fs::perms::owner_exec);
+  expect_where_access_rights_bind([&] {
+    EXPECT_EQ(rows_in(file).size(), 100u);
+    EXPECT_EQ(rows_in(path("logged")).size(), 100u);
+    EXPECT_THAT([&] { StudyStore(file, plan_of(100), origin(), Opening::resume); },
+                ThrowsMessage<InvalidInput>(HasSubstr("the folder of the store cannot be written to: Permission denied")));
+    EXPECT_THAT([&] { StudyStore(path("new"), plan_of(100), origin(), Opening::fresh); },
+                ThrowsMessage<InvalidInput>(HasSubstr("Permission denied")));
+  });
+  fs::permissions(TemporaryFolder::path(), fs::perms::owner_all);
+  EXPECT_EQ(names_in(TemporaryFolder::path()), before);
+}
+
+TEST_F(Place, OfAFileThatMayNotBeWrittenOrReadIsRefused) {
+  make_store(file, 100);
+  expect_where_access_rights_bind([&] {
+    fs::permissions(file, fs::perms::owner_read);
+    EXPECT_THAT([&] { StudyStore(file, plan_of(100), origin(), Opening::resume); },
+                ThrowsMessage<InvalidInput>(HasSubstr("cannot be written to")));
+    EXPECT_EQ(rows_in(file).size(), 100u);
+    fs::permissions(file, fs::perms::none);
+    EXPECT_THAT([&] { StudyReader{file}; }, ThrowsMessage<InvalidInput>(HasSubstr("Permission denied")));
+  });
+}
+
+// A process that dies within a transaction of a rollback journal, as one does that is killed while it closes a store.
+void leave_hot_journal(const fs::path& file) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    sqlite3* database = nullptr;
+    sqlite3_open(file.c_str(), &database);
+    sqlite3_exec(database, "PRAGMA cache_size = 2; BEGIN IMMEDIATE; UPDATE results SET status = 'lost'", nullptr, nullptr,
+                 nullptr);
+    sqlite3_db_cacheflush(database);
+    ::raise(SIGKILL);
+  }
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  ASSERT_GT(fs::file_size(file.string() + "-journal"), 0u);
+}
+
+TEST_F(Place, WithTheJournalOfOneThatDiedIsPutInOrder) {
+  make_store(file, 3000);
+  const std::string before = dump(file);
+  leave_hot_journal(file);
+  EXPECT_NE(content_of(file).find("lost"), std::string::npos);  // so there is something to put in order
+  fs::copy(TemporaryFolder::path(), path("copy"));
+  fs::permissions(path("copy"), fs::perms::owner_read | fs::perms::owner_exec);
+  expect_where_access_rights_bind([&] {
+    EXPECT_THAT([&] { StudyReader{path("copy/study.sqlite")}; },
+                ThrowsMessage<InvalidInput>(HasSubstr("copy it with its -journal")));
+  });
+  fs::permissions(path("copy"), fs::perms::owner_all);
+  EXPECT_EQ(dump(file), before);
+  EXPECT_EQ(dump(fs::path(path("copy/study.sqlite"))), before);
+  StudyStore(path("copy/study.sqlite"), plan_of(3000), origin(), Opening::resume).close();
+  EXPECT_THAT(names_in(path("copy")), ElementsAre("study.sqlite"));
+}
+
+TEST_F(Place, OnAFullDiskLosesNoRowThatItTold) {
+  // The limit of a file's size stands for the end of the disk, in a process of its own.
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    [&]() noexcept {
+      ::signal(SIGXFSZ, SIG_IGN);
+      StudyStore store(file, plan_of(20000), origin(), Opening::fresh);
+      for (int point = 0; point < 100; ++point) store.add(row_of(point));
+      store.flush();
+      rlimit limit{};
+      ::getrlimit(RLIMIT_FSIZE, &limit);
+      const rlim_t before = std::exchange(limit.rlim_cur, 100'000);
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      for (int point = 100; point < 5000; ++point) {
+        try {
+          store.add(row_of(point));
+        } catch (const OutputLost& lost) {
+          EXPECT_THAT(lost.what(), HasSubstr("study.sqlite: "));
+        }
+      }
+      EXPECT_THROW(store.flush(), OutputLost);
+      EXPECT_EQ(rows_in(file).size() % 100, 0u);
+      EXPECT_LT(rows_in(file).size(), 5000u);
+      limit.rlim_cur = before;  // there is room again: what was taken is still there
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      store.flush();
+      store.close();
+    }();
+    ::_exit(::testing::Test::HasFailure() ? 1 : 0);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0) << "see the failures above";
+  make_store(path("whole.sqlite"), 5000);
+  EXPECT_EQ(dump(file), dump(path("whole.sqlite")));
+}
+
+TEST_F(Place, HeldByAnotherProgramIsToldToBeSo) {
+  make_store(file, 10);
+  sqlite3* other = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &other), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(other, "BEGIN EXCLUSIVE", nullptr, nullptr, nullptr), SQLITE_OK);
+  const internal::Database database(file, internal::Access::write, "study.sqlite");
+  sqlite3_busy_timeout(database.handle(), 1);
+  EXPECT_THAT([&] { internal::check_schema(database); },
+              ThrowsMessage<InvalidInput>(HasSubstr("another program holds the file")));
+  sqlite3_close(other);
+}
+
+TEST(Journal, IsNoSharedMemoryWhereSeveralMachinesSeeTheFile) {
+  EXPECT_STREQ(internal::journal_on(0xEF53), "WAL");                                                // ext4
+  EXPECT_STREQ(internal::journal_on(0x01021994), "WAL");                                            // tmpfs
+  EXPECT_STREQ(internal::journal_on(0x6969), "TRUNCATE");                                           // NFS
+  EXPECT_STREQ(internal::journal_on(0x0BD00BD0), "TRUNCATE");                                       // Lustre
+  EXPECT_STREQ(internal::journal_on(static_cast<long>(static_cast<int>(0xFF534D42))), "TRUNCATE");  // CIFS, sign and all
+}
+
+}  // namespace
+}  // namespace softland::test
