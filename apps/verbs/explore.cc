@@ -123,7 +123,7 @@ StoredPlan stored_plan(const Exploration& exploration, const Shard& shard) {
 
 StoredOrigin origin_of(const Common& c) {
   const MadeWith& m = made_with();
-  return {.program = m.program,
+  return {.program = fmt::format("softland {} ({})", version, m.program),
           .processor = fmt::format("{}, {}, {}, {}", m.processor, m.instruction_set, m.vectors, m.c_library),
           .command = c.command};
 }
