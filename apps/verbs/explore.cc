@@ -17,6 +17,7 @@
 #include "apps/progress.h"
 #include "apps/scenes.h"
 #include "apps/shell_word.h"
+#include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
@@ -119,13 +120,6 @@ StoredPlan stored_plan(const Exploration& exploration, const Shard& shard) {
   for (const PointFigure& f : exploration.figures())
     stored.columns.push_back({.key = column_key(f.quantity, f.unit), .name = f.name, .unit = f.unit, .kind = ColumnKind::figure});
   return stored;
-}
-
-StoredOrigin origin_of(const Common& c) {
-  const MadeWith& m = made_with();
-  return {.program = fmt::format("softland {} ({})", version, m.program),
-          .processor = fmt::format("{}, {}, {}, {}", m.processor, m.instruction_set, m.vectors, m.c_library),
-          .command = c.command};
 }
 
 std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
@@ -234,13 +228,6 @@ class Exploring {
       if (remaining() > 0) words += fmt::format(", {} left", duration_words(static_cast<double>(remaining()) / rate));
     }
     return {all > 0 ? static_cast<double>(there) / static_cast<double>(all) : 1, words + fmt::format(", {:.0f} s", elapsed)};
-  }
-
-  static std::string duration_words(double seconds) {
-    constexpr double minute = 60, hour = 3600, day = 86400;
-    if (seconds < 2 * minute) return fmt::format("{:.0f} s", seconds);
-    if (seconds < 2 * hour) return fmt::format("{:.0f} min", seconds / minute);
-    return seconds < 2 * day ? fmt::format("{:.1f} h", seconds / hour) : fmt::format("{:.1f} days", seconds / day);
   }
 
   Exploration& exploration_;
