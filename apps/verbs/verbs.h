@@ -14,11 +14,13 @@ void add_check(Verb& verb);
 void add_effects(Verb& verb);
 void add_accuracy(Verb& verb);
 void add_optimize(Verb& verb);
+void add_explore(Verb& verb);
 void add_robustness(Verb& verb);
 void add_calibrate(Verb& verb);
 void add_table(Verb& verb);
 void add_status(Verb& verb);
 void add_merge(Verb& verb);
+void add_slurm(Verb& verb);
 void add_new(Verb& verb);
 void add_export(Verb& verb);
 void add_report(Verb& verb);
@@ -37,11 +39,13 @@ inline constexpr std::array all_verbs{
     VerbRow{"effects", "which effects matter in a scene, by how much, and what each costs", add_effects},
     VerbRow{"accuracy", "what accuracy costs in time: errors of the figures for every integrator and setting", add_accuracy},
     VerbRow{"optimize", "search the drive waveform that closes without bounce", add_optimize},
+    VerbRow{"explore", "compute many points of a design space into a store", add_explore},
     VerbRow{"robustness", "how drives do on devices that differ as [spread] says", add_robustness},
     VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},
     VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},
     VerbRow{"status", "how far studies are, and who writes into their stores", add_status},
     VerbRow{"merge", "make one store of the parts of a study", add_merge},
+    VerbRow{"slurm", "print the script of a study for a cluster with Slurm", add_slurm},
     VerbRow{"new", "print a commented scene to start from", add_new},
     VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
     VerbRow{"report", "make report.html and gap.svg of a result.json again", add_report},
