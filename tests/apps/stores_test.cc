@@ -66,8 +66,8 @@ TEST_F(Table, AsCsvIsReadByOthersToTheBit) {
     }
     for (const double value : row.values) {
       std::getline(cells, cell, '|');
-      if (std::isnan(value)) EXPECT_EQ(cell, "-") << point;
-      if (!std::isnan(value)) EXPECT_EQ(std::strtod(cell.c_str(), nullptr), value) << point;
+      EXPECT_EQ(cell == "-", std::isnan(value)) << point;
+      EXPECT_TRUE(std::isnan(value) || std::strtod(cell.c_str(), nullptr) == value) << point;
     }
   }
   EXPECT_FALSE(std::getline(lines, line));
@@ -146,6 +146,96 @@ TEST_F(MergeVerb, MakesOneStoreOfParts) {
   make_store(at("other.sqlite"), 99);
   expect_bad({"merge", "part 1.sqlite", "other.sqlite", "--out", "new.sqlite"},
              "other.sqlite: holds another plan than part 1.sqlite");
+}
+
+class SlurmVerb : public Stores {
+ protected:
+  static constexpr const char* folder = "it's $(a) \"map\"";
+
+  SlurmVerb() {
+    fs::create_directory(at(folder));
+    write(
+        at("map.toml"),
+        "[plan]\nscene = \"gold.toml\"\nset = [\"structure.modes=2\", \"simulate.accuracy=1e-3\", \"simulate.duration=80 us\"]\n"
+        "vary = [\"waveform.main.level=20 V:24 V:11\"]\n");
+    write(at("script.sh"), printed({"slurm", "map.toml", "--tasks", "3", "--out", std::string(folder) + "/map.sqlite"}));
+    // Stands for that of Slurm: tells what it was asked, and does it at once.
+    write(at("sbatch"), R"(#!/bin/bash
+printf '%s\n' "$*" >>"$(dirname -- "$0")/asked.txt"
+array= wrap= script=
+for word; do
+  case $word in
+    --array=*) array=${word#*=} ;;
+    --wrap=*) wrap=${word#*=} ;;
+    -*) ;;
+    *) script=$word ;;
+  esac
+done
+if [ -n "$wrap" ]; then bash -c "$wrap" >&2; fi
+for task in $(seq "${array%-*}" "${array#*-}"); do SLURM_ARRAY_TASK_ID=$task SLURM_CPUS_PER_TASK=2 bash "$script" >&2; done
+echo '42;cluster'
+)");
+    fs::permissions(at("sbatch"), fs::perms::owner_all);
+  }
+  [[nodiscard]] int submitted(const std::string& words = "") const {
+    return std::system(
+        fmt::format("cd '{0}' && PATH='{0}':\"$PATH\" bash script.sh {1} >told.txt 2>log.txt", here.path().string(), words)
+            .c_str());
+  }
+};
+
+TEST_F(SlurmVerb, PrintsAScriptThatASubmissionRunsToTheBitsOfOneRun) {
+  ASSERT_EQ(submitted(), 0) << read(at("log.txt"));
+  const std::string parts = (at(folder) / "map-parts").string();
+  EXPECT_EQ(read(at("told.txt")), fmt::format("parts: job 42, merge: job 42, logs in {}\n", parts));
+  EXPECT_THAT(read(at("asked.txt")),
+              AllOf(StartsWith(fmt::format("--parsable --array=1-3 --output={}/part-%a.log {}/script.sh\n--parsable", parts,
+                                           here.path().string())),
+                    HasSubstr("--dependency=afterok:42 --kill-on-invalid-dep=yes")));
+  ASSERT_EQ(here.run({"explore", "map.toml", "--out", "whole.sqlite", "--quiet"}).status, 0);
+  EXPECT_EQ(dump(at(folder) / "map.sqlite"), dump(at("whole.sqlite")));
+  EXPECT_EQ(test::rows_in(at("whole.sqlite")).size(), 11u);
+  // What stands there is not replaced, and nothing is submitted for it.
+  fs::remove(at("asked.txt"));
+  EXPECT_NE(submitted(), 0);
+  EXPECT_THAT(read(at("log.txt")), HasSubstr("map.sqlite exists already"));
+  EXPECT_FALSE(fs::exists(at("asked.txt")));
+}
+
+TEST_F(SlurmVerb, KeepsTheNumberOfPartsOfOneThatIsSubmittedAlone) {
+  ASSERT_EQ(submitted("2-2"), 0);
+  const StudyReader part(at(folder) / "map-parts/part-2-of-3.sqlite");
+  EXPECT_EQ(part.plan().shard, (Shard{.index = 2, .count = 3}));
+  EXPECT_FALSE(fs::exists(at(folder) / "map.sqlite"));
+  EXPECT_THAT(read(at("log.txt")), HasSubstr("part-1-of-3.sqlite: there is no such file"));
+  ASSERT_EQ(submitted("1-3"), 0);
+  EXPECT_EQ(test::rows_in(at(folder) / "map.sqlite").size(), 11u);
+  EXPECT_EQ(part.sessions().size(), 2u) << "the part went on with what it held";
+}
+
+TEST_F(SlurmVerb, PrintsAScriptWithoutFaults) {
+  if (std::system("command -v shellcheck >/dev/null 2>&1") != 0) GTEST_SKIP() << "shellcheck is not installed";
+  EXPECT_EQ(std::system(fmt::format("cd '{}' && shellcheck script.sh", here.path().string()).c_str()), 0);
+}
+
+TEST_F(SlurmVerb, TakesThePlanOfAStoreToo) {
+  ASSERT_EQ(here.run({"explore", "map.toml", "--out", "whole.sqlite", "--quiet"}).status, 0);
+  const auto plan_in = [](const std::string& script) {
+    const std::size_t begin = script.find("cat <<");
+    return script.substr(begin, script.rfind("end of plan") - begin);
+  };
+  const std::string script = printed({"slurm", "whole.sqlite", "--tasks", "3"});
+  EXPECT_EQ(plan_in(script), plan_in(read(at("script.sh"))));
+  EXPECT_THAT(script, HasSubstr("/softland-out.sqlite"));
+}
+
+TEST_F(SlurmVerb, NamesWhatItCannotTake) {
+  expect_bad({"slurm", "map.toml"}, "--tasks is required");
+  expect_bad({"slurm", "map.toml", "--tasks", "0"}, "--tasks 0: must be a whole number from 1 on");
+  expect_bad({"slurm", "map.toml", "--tasks", "12"}, "--tasks 12: a study of 11 points has at most 11 parts");
+  expect_bad({"slurm", "map.toml", "--tasks", "2", "--cpus", "x"}, "--cpus x: must be a whole number from 1 on");
+  expect_bad({"slurm", "map.toml", "--tasks", "2", "--out", "gold.toml"}, "gold.toml: exists already");
+  expect_bad({"slurm", "gold.toml", "--tasks", "2"}, "gold.toml: is neither a plan, which has a section [plan], nor a store");
 }
 
 }  // namespace
