@@ -55,6 +55,7 @@ std::string head(const Common& c, const Plan& plan, std::uint64_t tasks, std::ui
       "#SBATCH --cpus-per-task={}\n"
       "#SBATCH --requeue\n"
       "#SBATCH --open-mode=append\n"
+      "# shellcheck disable=SC2016 # names of files stand as they are\n"
       "set -eu\n\n"
       "softland={}\n"
       "parts={} # a folder that all machines see\n"
@@ -68,7 +69,7 @@ std::string head(const Common& c, const Plan& plan, std::uint64_t tasks, std::ui
       digest);
 }
 
-constexpr std::string_view body = R"(
+constexpr std::string_view body = R"bash(
 part() { printf '%s/part-%d-of-%d.sqlite' "$parts" "$1" "$count"; }
 
 if [ -n "${SLURM_ARRAY_TASK_ID:-}" ]; then
@@ -77,28 +78,29 @@ if [ -n "${SLURM_ARRAY_TASK_ID:-}" ]; then
   write_plan >"$plan"
   status=0
   "$softland" explore "$plan" --shard "$SLURM_ARRAY_TASK_ID/$count" --resume --jobs "${SLURM_CPUS_PER_TASK:-1}" \
-    --out "$(part "$SLURM_ARRAY_TASK_ID")" ||
-                                  status = $
-    ? ["$status" != 4] || status = 0 #a part in which no switch closes is done too exit "$status" fi
+    --out "$(part "$SLURM_ARRAY_TASK_ID")" || status=$?
+  [ "$status" != 4 ] || status=0 # a part in which no switch closes is done too
+  exit "$status"
+fi
 
-      if["${1:-}" = merge];
-then set-- for ((i = 1; i <= count; ++i));
-do
-  set -- "$@" "$(part "$i")";
-done exec "$softland" merge "$@" --complete-- out "$out" fi
+if [ "${1:-}" = merge ]; then
+  set --
+  for ((i = 1; i <= count; ++i)); do set -- "$@" "$(part "$i")"; done
+  exec "$softland" merge "$@" --complete --out "$out"
+fi
 
-    if[-e "$out"];
-then printf '%s exists already\n' "$out" > & 2 exit 2 fi script = $(readlink - f-- "$0") mkdir - p-- "$parts" array =
-                                                                      $(sbatch-- parsable-- array = "${1:-1-$count}" --output =
-                                                                            "$parts/part-%a.log"
-                                                                            "$script") array = $ {
-  array % % ;
-  *
-}
+if [ -e "$out" ]; then
+  printf '%s exists already\n' "$out" >&2
+  exit 2
+fi
+script=$(readlink -f -- "$0")
+mkdir -p -- "$parts"
+array=$(sbatch --parsable --array="${1:-1-$count}" --chdir="$parts" --output=part-%a.log "$script")
+array=${array%%;*}
 merge=$(sbatch --parsable --job-name=softland-merge --dependency="afterok:$array" --kill-on-invalid-dep=yes \
-  --output="$parts/merge.log" --wrap="exec bash $(printf '%q' "$script") merge")
+  --chdir="$parts" --output=merge.log --wrap="exec bash $(printf '%q' "$script") merge")
 printf 'parts: job %s, merge: job %s, logs in %s\n' "$array" "${merge%%;*}" "$parts"
-)";
+)bash";
 
 int slurm_verb(const Common& c, const SlurmRequest& request) {
   require(request.tasks.has_value(), "--tasks is required: how many parts the study has");

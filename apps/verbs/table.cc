@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/exit_status.h"
@@ -117,15 +118,17 @@ void print_table(const StudyReader& store, const TableRequest& request, const st
     widths.push_back(std::max<std::size_t>(column.key.size(), 12) + 1);
     header += internal::right_aligned(column.key, widths.back());
   }
-  print(header + "\n");
+  // Before the first row the expression is looked at.
+  std::string text = header + "\n";
   store.read(
       [&](const StoredRow& row) {
-        std::string line;
         for (std::size_t i = 0; i < columns.size(); ++i)
-          line += internal::right_aligned(" " + shortened(columns[i].shown(row), 60), widths[i]);
-        print(line + "\n");
+          text += internal::right_aligned(" " + shortened(columns[i].shown(row), 60), widths[i]);
+        text += "\n";
+        print(std::exchange(text, {}));
       },
       {.where = request.where}, watch);
+  print(text);
 }
 
 int table_verb(const Common& c, const TableRequest& request) {

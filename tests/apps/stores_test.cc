@@ -189,8 +189,8 @@ TEST_F(SlurmVerb, PrintsAScriptThatASubmissionRunsToTheBitsOfOneRun) {
   const std::string parts = (at(folder) / "map-parts").string();
   EXPECT_EQ(read(at("told.txt")), fmt::format("parts: job 42, merge: job 42, logs in {}\n", parts));
   EXPECT_THAT(read(at("asked.txt")),
-              AllOf(StartsWith(fmt::format("--parsable --array=1-3 --output={}/part-%a.log {}/script.sh\n--parsable", parts,
-                                           here.path().string())),
+              AllOf(StartsWith(fmt::format("--parsable --array=1-3 --chdir={} --output=part-%a.log {}/script.sh\n--parsable",
+                                           parts, here.path().string())),
                     HasSubstr("--dependency=afterok:42 --kill-on-invalid-dep=yes")));
   ASSERT_EQ(here.run({"explore", "map.toml", "--out", "whole.sqlite", "--quiet"}).status, 0);
   EXPECT_EQ(dump(at(folder) / "map.sqlite"), dump(at("whole.sqlite")));
