@@ -427,6 +427,8 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
           [&] { return fmt::format("{}: is a store already: --resume goes on with it, and --out is not for that", c.scene); });
   const std::string out = goes_on ? c.scene : r.out.empty() ? "softland-out.sqlite" : r.out;
   static_cast<void>(claim_places(c, {}));
+  require(c.json.empty() || std::filesystem::weakly_canonical(c.json) != std::filesystem::weakly_canonical(out),
+          [&] { return fmt::format("--json {}: is the store; name another file", c.json); });
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   Exploration exploration(Plan(request), work->watch());
   work.reset();

@@ -161,6 +161,7 @@ TEST_F(Explore, RefusesWhatItCannotExplore) {
       {{"explore", "gold.toml", "--vary", vary, "--out", "there.sqlite"}, "there.sqlite: exists already"},
       {{"explore", "gold.toml", "--vary", "gap.contact=1 um,2 um", "--out", "there.sqlite", "--resume"}, "of other columns"},
       {{"explore", "there.sqlite"}, "--resume goes on with it"},
+      {{"explore", "gold.toml", "--vary", vary, "--out", "new.sqlite", "--json", "new.sqlite"}, "is the store; name another"},
       {{"explore", "there.sqlite", "--resume", "--vary", vary}, "holds the whole plan: --vary is not for it"},
       {{"explore", "there.sqlite", "--point", "2"}, "--point 2: the plan has 2 points"},
       {{"explore", "there.sqlite", "--point", "1", "--out", "there.sqlite"}, "is a store; name another file"},
