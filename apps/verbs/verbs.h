@@ -48,7 +48,7 @@ inline constexpr std::array all_verbs{
     VerbRow{"slurm", "print the script of a study for a cluster with Slurm", add_slurm},
     VerbRow{"new", "print a commented scene to start from", add_new},
     VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
-    VerbRow{"report", "make report.html and gap.svg of a result.json again", add_report},
+    VerbRow{"report", "make the report of a result.json again, or the page of an exploration", add_report},
 };
 
 }  // namespace softland::apps
