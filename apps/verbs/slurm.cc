@@ -107,6 +107,7 @@ int slurm_verb(const Common& c, const SlurmRequest& request) {
   const auto tasks = whole_number<std::uint64_t>("--tasks", *request.tasks, 1);
   const auto processors = request.processors ? whole_number<std::uint64_t>("--cpus", *request.processors, 1) : 1;
   const Plan plan = plan_of(request.plan);
+  require(tasks == 1 || !plan.is_search(), "--tasks: a search for a front goes from point to point and cannot be divided");
   require(tasks <= most_tasks && tasks <= plan.points(), [&] {
     return fmt::format("--tasks {}: a study of {} points has at most {} parts", tasks, plan.points(),
                        std::min(most_tasks, plan.points()));

@@ -235,6 +235,10 @@ TEST_F(SlurmVerb, NamesWhatItCannotTake) {
   expect_bad({"slurm", "map.toml", "--tasks", "12"}, "--tasks 12: a study of 11 points has at most 11 parts");
   expect_bad({"slurm", "map.toml", "--tasks", "2", "--cpus", "x"}, "--cpus x: must be a whole number from 1 on");
   expect_bad({"slurm", "map.toml", "--tasks", "2", "--out", "gold.toml"}, "gold.toml: exists already");
+  write(at("front.toml"),
+        "[plan]\nscene = \"gold.toml\"\nvary = [\"waveform.main.level=20 V:24 V\"]\nsample = \"nsga2:100\"\n"
+        "pareto = \"initial_contact_time,impact_velocity\"\n");
+  expect_bad({"slurm", "front.toml", "--tasks", "2"}, "a search for a front goes from point to point and cannot be divided");
   expect_bad({"slurm", "gold.toml", "--tasks", "2"}, "gold.toml: is neither a plan, which has a section [plan], nor a store");
 }
 
