@@ -54,13 +54,12 @@ class BadInput : public ::testing::Test {
 
 TEST_F(BadInput, Verbs) {
   const std::string missing =
-      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, robustness, calibrate, new, export or "
-      "report (see softland --help)";
+      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, explore, robustness, calibrate, new, "
+      "export or report (see softland --help)";
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "there is no verb 'frobnicate' (see softland --help)"},
       {{"--frob"}, missing},
-      {{"explore", "gold.toml", "--shard", "1/2"}, "the verb 'explore' is not available yet"},
   });
 }
 
