@@ -74,6 +74,21 @@ TEST(Exploration, OfClosingsGivesTheFiguresOfSimulate) {
   }
 }
 
+TEST(Exploration, StartsFromACanonicalSceneThatClosesAsTheGivenOne) {
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(SOFTLAND_SOURCE_DIR) / "scenes")) {
+    SceneFile given = SceneFile::load(entry.path());
+    given.assign("simulate.accuracy", 1e-3);
+    if (given.json()["structure"]["kind"] != "plate") given.assign("structure.modes", 2);
+    if (given.json().contains("gas") && given.json()["gas"]["model"] == "reynolds") given.set("gas.model=strip");
+    const SceneFile same = canonical(given, "scene");
+    const Closing a = simulate(prepare(given), false), b = simulate(prepare(same), false);
+    for (const Figure& figure : all_figures)
+      EXPECT_TRUE(figure.value(a.metrics) == figure.value(b.metrics) || std::isnan(figure.value(a.metrics)))
+          << entry.path() << ": " << figure.key;
+    EXPECT_EQ(a.metrics.status, b.metrics.status) << entry.path();
+  }
+}
+
 TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne) {
   // The same points in an order in which the switch changes every time, and with a memory that knows only the other drives.
   Exploration by_switch = exploration(request("simulate", {"gap.contact=1.9 um,2 um", "waveform.main.level=1.2 Vdp,1.3 Vdp"}));
