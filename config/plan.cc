@@ -28,6 +28,7 @@ using internal::SectionReader;
 
 constexpr std::string_view plan_section = "plan";
 constexpr std::uint64_t most_values = 10'000'000;  // of one variable, or rows of a list
+constexpr std::uint64_t most_searched = 10'000'000;
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blank = " \t\r";
@@ -319,7 +320,11 @@ std::pair<std::string, std::string> name_and_values(const std::string& entry) {
 std::string PlanVariable::unit() const { return unit_symbol(dimension); }
 
 Plan::Plan(const PlanRequest& request)
-    : base_(canonical(request.scene, "scene")), study_(request.study), options_(request.options), seed_(request.seed) {
+    : base_(canonical(request.scene, "scene")),
+      study_(request.study),
+      options_(request.options),
+      seed_(request.seed),
+      pareto_(request.pareto) {
   if (!request.columns.empty()) {
     require(request.sample.empty() && request.vary.empty(), [&] {
       return fmt::format("{}: gives the points: nothing else varies or is sampled beside it", request.place("list", 0));
@@ -327,6 +332,9 @@ Plan::Plan(const PlanRequest& request)
     read_rows(request);
   } else {
     if (!request.sample.empty()) at_place(request, "sample", 0, [&] { read_sample(request); });
+    at_place(request, is_search_ ? "sample" : "pareto", 0, [&] {
+      require(is_search_ == !pareto_.empty(), "a search for a front needs its figures (pareto) and its points (sample nsga2:N)");
+    });
     read_variables(request);
   }
   std::set<std::string> seen;
@@ -344,8 +352,9 @@ Plan::Plan(const PlanRequest& request)
 void Plan::read_sample(const PlanRequest& request) {
   const std::vector<std::string> parts = split(request.sample, ':');
   const bool is_latin = parts.front() == "lhs";
-  const Named<PointSet>* kind = find_named(point_sets, is_latin ? "latin_hypercube" : parts.front());
-  require(kind != nullptr && parts.size() == 2, "must be sobol:N or lhs:N with N points");
+  is_search_ = parts.front() == "nsga2";
+  const Named<PointSet>* kind = find_named(point_sets, is_latin ? "latin_hypercube" : is_search_ ? "sobol" : parts.front());
+  require(kind != nullptr && parts.size() == 2, "must be sobol:N, lhs:N or, for a front, nsga2:N with N points");
   const auto count = whole_number(parts[1]);
   require(count && *count >= 1 && *count <= SamplePoints::largest_size, [&] {
     return fmt::format("'{}' must be a whole number of points from 1 to {}", shortened(parts[1]), SamplePoints::largest_size);
@@ -409,6 +418,8 @@ void Plan::read_rows(const PlanRequest& request) {
 void Plan::count_points() {
   if (!rows_.empty()) {
     points_ = rows_.size();
+  } else if (is_search_) {
+    require(points_ <= most_searched, [&] { return fmt::format("a search has at most {} points", most_searched); });
   } else if (sample_) {
     sampled_.emplace(*sample_, variables_.size(), seed_, Stream::plan, points_);
   } else {
@@ -420,17 +431,22 @@ void Plan::count_points() {
   }
 }
 
+std::vector<double> Plan::values_in_box(std::vector<double> place) const {
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    const PlanVariable& v = variables_[i];
+    place[i] = v.is_whole ? std::min(v.high, std::floor(v.low + place[i] * (v.high - v.low + 1))) : between(v, place[i]);
+  }
+  return place;
+}
+
 std::vector<double> Plan::values(std::uint64_t k) const {
   require(k < points_, [&] { return fmt::format("point {} must be below {}: points are counted from 0", k, points_); });
+  require(!is_search_, "the points of a search for a front are known only where they are computed");
   if (!rows_.empty()) return rows_[k];
   std::vector<double> values(variables_.size());
   if (sampled_) {
     sampled_->point(k, values);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const PlanVariable& v = variables_[i];
-      values[i] = v.is_whole ? std::floor(v.low + values[i] * (v.high - v.low + 1)) : between(v, values[i]);
-    }
-    return values;
+    return values_in_box(std::move(values));
   }
   for (std::size_t i = values.size(); i-- > 0;) {
     const std::vector<double>& all = variables_[i].values;
@@ -471,8 +487,12 @@ std::string Plan::canonical_text() const {
   for (const auto& [name, value] : options_) text += fmt::format("{} = {}\n", name, internal::toml_string(value));
   text += fmt::format("seed = \"{}\"\n", seed_);
   if (sample_)
-    text += fmt::format("sample = \"{}:{}\"\n", *sample_ == PointSet::latin_hypercube ? "lhs" : name_of(point_sets, *sample_),
+    text += fmt::format("sample = \"{}:{}\"\n",
+                        is_search_                              ? "nsga2"
+                        : *sample_ == PointSet::latin_hypercube ? "lhs"
+                                                                : name_of(point_sets, *sample_),
                         points_);
+  if (is_search_) text += fmt::format("pareto = {}\n", internal::toml_string(pareto_));
   if (!rows_.empty()) {
     text += fmt::format("columns = {}\nrows = {}\n",
                         list(variables_,
@@ -533,8 +553,8 @@ class PlanReader {
       if (name.str() != plan_section)
         file_.fail(internal::join_path("", name.str()), "a plan has the one section [plan]; the scene is a file of its own");
     }
-    std::vector<std::string_view> known{"scene",  "scene_text", "set",     "study", "vary",
-                                        "sample", "list",       "columns", "rows",  "seed"};
+    std::vector<std::string_view> known{"scene", "scene_text", "set",  "study", "vary",  "sample",
+                                        "list",  "columns",    "rows", "seed",  "pareto"};
     known.insert(known.end(), std::begin(plan_options), std::end(plan_options));
     for (const auto& [name, node] : *section->as_table()) {
       if (std::find(known.begin(), known.end(), name.str()) == known.end())
@@ -628,6 +648,7 @@ PlanRequest read_plan(const SceneFile& file) {
   request.place = in.place();
   request.vary = in.texts("vary");
   request.sample = in.text("sample").value_or("");
+  request.pareto = in.text("pareto").value_or("");
   request.study = in.text("study").value_or(request.study);
   for (const std::string_view option : plan_options) {
     if (const std::optional<std::string> value = in.text(option)) request.options[std::string(option)] = *value;

@@ -6,6 +6,8 @@
 //   grid     all combinations of the values of the variables, the last one fastest
 //   sample   a point set in the box of the ranges (sampling/points.h)
 //   list     the rows of a table
+//   nsga2    points in the box of the ranges that a search for a front finds one after the other (optimizers/nsga2.h): point k is
+//            known when those before it are computed
 // Values between the ends of a range are rounded to 15 significant digits, so that a finer grid meets the values of a coarser one
 // exactly, and every number can be written short.
 #pragma once
@@ -32,6 +34,7 @@ struct PlanRequest {
   SceneFile scene;
   std::vector<std::string> vary = {};               ///< "structure.length=245 um:275 um:7"
   std::string sample = {};                          ///< "sobol:128"; empty: a grid
+  std::string pareto = {};                          ///< of a search for a front: the figures it minimises
   std::vector<std::string> columns = {};            ///< of a list: "gap.contact [um]"; empty: no list
   std::vector<std::vector<double>> rows = {};       ///< of a list
   std::string study = "simulate";                   ///< what is asked of every point
@@ -87,7 +90,12 @@ class Plan {
   [[nodiscard]] const std::string& study() const { return study_; }
   [[nodiscard]] const std::map<std::string, std::string>& options() const { return options_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  /// Of the variables at point k, in their order [SI unit].
+  /// Whether points are found by a search for a front, and the figures that this minimises.
+  [[nodiscard]] bool is_search() const { return is_search_; }
+  [[nodiscard]] const std::string& pareto() const { return pareto_; }
+  /// Of the variables at a place of the unit cube that stands for the box of their ranges [SI unit].
+  [[nodiscard]] std::vector<double> values_in_box(std::vector<double> place) const;
+  /// Of the variables at point k, in their order [SI unit]. Throws InvalidInput for the points of a search.
   [[nodiscard]] std::vector<double> values(std::uint64_t k) const;
   /// The scene at these values. It may be one that cannot be: that is for whoever reads it to say.
   [[nodiscard]] SceneFile scene(const std::vector<double>& values) const;
@@ -105,9 +113,11 @@ class Plan {
   std::string study_;
   std::map<std::string, std::string> options_;
   std::uint64_t seed_;
+  std::string pareto_;
   std::vector<PlanVariable> variables_;
   std::vector<std::vector<double>> rows_;  // of a list [SI unit]
-  std::optional<PointSet> sample_;
+  std::optional<PointSet> sample_;         // of a search: how its ranges are read
+  bool is_search_ = false;
   std::uint64_t points_ = 1;
   std::optional<SamplePoints> sampled_;
   std::string text_;

@@ -239,6 +239,14 @@ std::string Exploration::content(const SceneFile& scene) const {
   return text + "\n\n" + scene.text();
 }
 
+std::map<std::string, std::vector<std::pair<double, double>>> Exploration::waveforms(const SceneFile& scene, const Watch& watch) {
+  try {
+    return lines_of(prepared(scene, false, watch));
+  } catch (const InvalidInput&) {
+    return {};
+  }
+}
+
 PointRow Exploration::row(const SceneFile& scene, int jobs, const Watch& watch) {
   PointRow row;
   try {

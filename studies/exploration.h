@@ -70,6 +70,9 @@ class Exploration {
   [[nodiscard]] const std::vector<PointFigure>& figures() const { return figures_; }
   /// Everything that decides the row of a scene: equal texts have equal rows.
   [[nodiscard]] std::string content(const SceneFile& scene) const;
+  /// The drives of a scene of the plan as broken lines [s, V]; none where the scene cannot be.
+  [[nodiscard]] std::map<std::string, std::vector<std::pair<double, double>>> waveforms(const SceneFile& scene,
+                                                                                        const Watch& watch = {});
   /// The row of a scene of the plan. May be called on any thread; `jobs` more of them for one point do not change it. Throws
   /// Interrupted where `watch` asks to stop.
   [[nodiscard]] PointRow row(const SceneFile& scene, int jobs = 1, const Watch& watch = {});

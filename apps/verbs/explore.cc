@@ -13,6 +13,8 @@
 #include <utility>
 
 #include "apps/exit_status.h"
+#include "apps/explored.h"
+#include "apps/front_search.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
@@ -26,6 +28,7 @@
 #include "base/require.h"
 #include "base/shortened.h"
 #include "config/plan.h"
+#include "reports/exploration_report.h"
 #include "reports/files.h"
 #include "reports/made_with.h"
 #include "reports/quantity.h"
@@ -44,7 +47,7 @@ using nlohmann::json;
 
 struct ExploreRequest {
   std::vector<std::string> vary;
-  std::string sample, list, study, target, actuator, waveform, optimizer, shard;
+  std::string sample, pareto, list, study, target, actuator, waveform, optimizer, shard;
   std::string out;
   std::optional<std::string> samples, budget, seed, jobs, point;
   bool certify = false, resume = false;
@@ -57,6 +60,7 @@ struct ExploreRequest {
     };
     if (!vary.empty()) given.emplace("vary", vary.front());
     add("sample", sample);
+    add("pareto", pareto);
     add("list", list);
     add("study", study);
     add("target", target);
@@ -73,7 +77,8 @@ struct ExploreRequest {
 
 // The plan in the words of the options.
 PlanRequest plan_of_options(const Common& c, const ExploreRequest& r) {
-  PlanRequest plan{.scene = load_scene(c), .vary = r.vary, .sample = r.sample};
+  PlanRequest plan{.scene = load_scene(c), .vary = r.vary, .sample = r.sample, .pareto = r.pareto};
+  if (!r.pareto.empty() && r.sample.empty()) plan.sample = "nsga2:2000";
   const std::map<std::string, std::string> given = r.of_plan();
   plan.place = [given, vary = r.vary](std::string_view key, std::size_t number) {
     const auto found = given.find(std::string(key));
@@ -86,8 +91,9 @@ PlanRequest plan_of_options(const Common& c, const ExploreRequest& r) {
   }
   plan.seed = seed_of(r.seed, plan.seed);
   if (!r.list.empty()) {
-    require(r.vary.empty() && r.sample.empty(),
-            [&] { return fmt::format("--list {}: gives the points: --vary and --sample are not for it", r.list); });
+    require(r.vary.empty() && plan.sample.empty(), [&] {
+      return fmt::format("--list {}: gives the points: --vary and --sample are not for it, nor is --pareto", r.list);
+    });
     read_list(plan, r.list);
   }
   require(!plan.vary.empty() || !plan.columns.empty(),
@@ -347,14 +353,21 @@ int print_point(const Common& c, const ExploreRequest& r) {
   complete(request);
   const Plan plan(request);
   require(k < plan.points(), [&] { return fmt::format("--point {}: the plan has {} points, counted from 0", k, plan.points()); });
-  std::string text = plan.scene(plan.values(k)).text();
-  if (plan.study() == name_of(point_studies, PointStudy::optimize) && is_store(c.scene)) {
-    std::optional<StoredRow> found;
+  const bool is_optimized = plan.study() == name_of(point_studies, PointStudy::optimize);
+  std::optional<StoredRow> found;
+  if (is_store(c.scene) && (is_optimized || plan.is_search())) {
     StudyReader(c.scene).read([&](const StoredRow& row) { found = row; }, {.where = fmt::format("point = {}", k)});
     require(found.has_value(), [&] { return fmt::format("--point {}: {} does not hold it yet", k, c.scene); });
+  }
+  std::string text;
+  if (found && is_optimized) {
     require(!found->extra.empty(),
             [&] { return fmt::format("--point {}: its search found no waveform: {} ({})", k, found->reason, found->status); });
     text = json::parse(found->extra).at("scene_toml").get<std::string>();
+  } else {
+    std::vector<double> values = found ? found->values : plan.values(k);
+    values.resize(plan.variables().size());
+    text = plan.scene(values).text();
   }
   if (r.out.empty()) {
     print(text);
@@ -364,6 +377,43 @@ int print_point(const Common& c, const ExploreRequest& r) {
   write_whole(r.out, text);
   if (!c.quiet) say(fmt::format("wrote {}: softland simulate {}", r.out, shell_word(r.out)));
   return exit_done;
+}
+
+// A search for a front, whose points are known only as it goes.
+int search_front(const Common& c, const ExploreRequest& r, Exploration& exploration, const std::string& out) {
+  const StoredPlan plan = stored_plan(exploration, {});
+  std::vector<ExploredColumn> columns;
+  for (const StoredColumn& column : plan.columns)
+    columns.push_back({column.key, column.name, column.unit, column.kind == ColumnKind::variable});
+  const std::vector<ExploredAim> aims = explored_aims(columns, exploration.plan().pareto(), "--pareto");
+  KnownRows known = r.resume ? known_rows(out) : KnownRows{};
+  StudyStore store(out, plan, origin_of(c), r.resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh);
+  const auto there = static_cast<std::int64_t>(known.size());
+  if (!c.quiet) {
+    say(fmt::format("{}: searching the front of {} with {} points, {} of them known, study {}; rows go to {}", c.scene,
+                    exploration.plan().pareto(), whole(plan.points), whole(there), exploration.plan().study(), out));
+  }
+  FrontSearch search(exploration, store, std::move(known), aims, job_count(r.jobs), c.quiet, c.stop);
+  search.run();
+  store.close();
+
+  const bool interrupted = search.result().termination == Termination::interrupted;
+  const StudyReader reader(out);
+  const ExplorationReport report = explored(reader, {});
+  const Overview found = overview_of(reader);
+  json j = overview_json(reader.plan(), found);
+  j.update(exploration_json(report));
+  j.update({{"status", interrupted ? "interrupted" : "done"},
+            {"termination", to_string(search.result().termination)},
+            {"seed", exploration.plan().seed()},
+            {"rows", {{"known", there}, {"computed", search.computed()}}},
+            {"store", out},
+            {"made_with", made_with_json()}});
+  print_json_or(c, j,
+                exploration_text(report) + fmt::format("\n{} computed. The scene of a point: softland explore {} --point K\n"
+                                                       "The page: softland report {}\n",
+                                                       whole(search.computed()), shell_word(out), shell_word(out)));
+  return status_of(found, interrupted);
 }
 
 int explore_verb(const Common& c, const ExploreRequest& r) {
@@ -384,6 +434,11 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   work.reset();
 
   if (r.resume && !c.quiet) tell_of_other_programs(out);
+  if (exploration.plan().is_search()) {
+    require(shard.count == 1,
+            "--shard: a search for a front goes from point to point and cannot be divided; --jobs makes it faster");
+    return search_front(c, r, exploration, out);
+  }
   StudyStore store(out, stored_plan(exploration, shard), origin_of(c),
                    r.resume ? StudyStore::Opening::resume : StudyStore::Opening::fresh);
   Exploring exploring(exploration, store, shard, c, jobs);
@@ -412,6 +467,10 @@ void add_explore(Verb& verb) {
                 "what varies: KEY=LOW:HIGH:N, with :log in equal ratios, or KEY=A,B,C; KEY*KEY=... by one factor; KEY[2] is an "
                 "element of a list; may be repeated: all combinations");
   verb.option("--sample", request->sample, "SET", "sobol:N or lhs:N points in the box of --vary KEY=LOW:HIGH");
+  verb.option(
+      "--pareto", request->pareto, "FIGURES",
+      "search the points that no other one beats in all of these figures, \"initial_contact_time,impact_velocity\", in the box "
+      "of --vary KEY=LOW:HIGH by NSGA-II; max:FIGURE is to be large; --sample nsga2:N for N points (default: 2000)");
   verb.option("--list", request->list, "FILE", "points of a CSV file, whose header names keys with units: structure.length [um]");
   verb.option("--study", request->study, "NAME", "at every point: " + first_is_default(listed(point_studies)));
   verb.flag("--certify", request->certify, "simulate: the errors of the figures too");
@@ -437,6 +496,8 @@ void add_explore(Verb& verb) {
       "  softland explore scenes/mem-gold.toml --vary \"waveform.main.level=1.05 Vdp:1.6 Vdp:40\" --out level.sqlite\n"
       "  softland explore scenes/mem-gold.toml --vary \"gap.electrode*gap.contact=0.9:1.1\" --sample sobol:256 --study "
       "robustness\n"
+      "  softland explore scenes/mem-gold.toml --vary \"gap.contact=1.6 um:2.4 um\" --vary \"waveform.main.level=1.05 Vdp:1.6 "
+      "Vdp\" --pareto initial_contact_time,impact_velocity,peak_voltage\n"
       "  softland explore softland-out.sqlite --resume\n"
       "  softland explore softland-out.sqlite --point 17 --out point17.toml");
   verb.runs([request](const Common& common) { return explore_verb(common, *request); });

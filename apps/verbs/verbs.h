@@ -40,7 +40,7 @@ inline constexpr std::array all_verbs{
     VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},
     VerbRow{"new", "print a commented scene to start from", add_new},
     VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
-    VerbRow{"report", "make report.html and gap.svg of a result.json again", add_report},
+    VerbRow{"report", "make the report of a result.json again, or the page of an exploration", add_report},
 };
 
 }  // namespace softland::apps
