@@ -342,7 +342,9 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& w
                          .max_evaluations = std::stol(asked.at("budget")),
                          .seed = plan_.seed(),
                          .jobs = jobs,
-                         .stop = watch.stop};
+                         .stop = watch.stop,
+                         // A search that was asked to stop would still verify what it has found, for a row that is not kept.
+                         .on_preparation = [&watch](std::string_view, double) { watch.throw_if_stopped(); }};
   const OptimizeResult found = optimize(scene, search);
   if (found.search.termination == Termination::interrupted) throw Interrupted();
   PointRow row{.status = {}, .reason = {}, .figures = {}};
