@@ -23,10 +23,6 @@ namespace {
 using namespace softland;
 using namespace softland::apps;
 
-// Refused with these words until they exist.
-constexpr std::array<std::string_view, 1> coming_verbs{"explore"};
-constexpr std::array<std::string_view, 2> coming_options{"--resume", "--shard"};
-
 // Quoted so that the line can be pasted into a shell.
 std::string command_line(const std::vector<std::string>& words) {
   std::string line = "softland";
@@ -34,15 +30,11 @@ std::string command_line(const std::vector<std::string>& words) {
   return line;
 }
 
+// Refused with these words until it exists.
 void refuse_what_is_coming(const std::vector<std::string>& words) {
-  for (const std::string_view verb : coming_verbs) {
-    if (!words.empty() && words.front() == verb) throw InvalidInput("the verb '" + words.front() + "' is not available yet");
-  }
+  if (words.empty() || words.front() != "optimize") return;
   for (const std::string& word : words) {
-    for (const std::string_view option : coming_options) {
-      if (word == option || word.starts_with(std::string(option) + "="))
-        throw InvalidInput("the option " + std::string(option) + " is not available yet");
-    }
+    if (word == "--resume" || word.starts_with("--resume=")) throw InvalidInput("the option --resume is not available yet");
   }
 }
 

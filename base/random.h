@@ -29,6 +29,7 @@ enum class Stream : std::uint64_t {
   fresh = 12,        ///< seeds of devices that a search has not seen
   jitter = 13,       ///< times by which the edges of a drive are late
   classes = 14,      ///< the devices that classes are made of, and where their search begins
+  plan = 15,         ///< the points of an exploration
   offspring = 16,    ///< which members of a population are parents, and how their child differs from them
 };
 

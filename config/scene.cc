@@ -109,6 +109,30 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   return warnings;
 }
 
+/// Every section that is in force, but [spread] as resolved_spread() gives it; `keys_of` makes the table of one.
+template <class KeysOf>
+toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
+  toml::table root;
+  for (const internal::Section& section : internal::schema()) {
+    const std::string name(section.name);
+    if (name == "spread") {
+      if (toml::table spread = internal::resolved_spread(file); !spread.empty()) root.insert(name, std::move(spread));
+    } else if (name.empty()) {
+      root = keys_of(SectionReader(file, ""));
+    } else if (!section.is_named) {
+      const SectionReader in(file, name);
+      if (in.is_present() || section.always_in_force) root.insert(name, keys_of(in));
+    } else {
+      toml::table named;
+      for (const std::string& entry : file.names_in(name)) named.insert(entry, keys_of(SectionReader(file, name, entry)));
+      if (const toml::node* key = section.beside.empty() ? nullptr : file.find({name, std::string(section.beside)}))
+        key->visit([&](const auto& node) { named.insert(section.beside, node); });
+      if (!named.empty()) root.insert(name, std::move(named));
+    }
+  }
+  return root;
+}
+
 }  // namespace
 
 Scene read_scene(const SceneFile& file) {
@@ -144,27 +168,8 @@ Drives Scene::drives(const std::map<std::string, PullInVoltages>& pull_in) const
 SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltages>& pull_in) {
   const Drives drives = scene.drives(pull_in);
   const SceneFile::Impl& impl = scene.file.impl();
-  toml::table root;
-  for (const internal::Section& section : internal::schema()) {
-    const std::string name(section.name);
-    if (name == "waveform" || name == "driver") continue;
-    if (name == "spread") {
-      if (toml::table spread = internal::resolved_spread(impl); !spread.empty()) root.insert(name, std::move(spread));
-    } else if (name.empty()) {
-      root = SectionReader(impl, "").with_defaults();
-    } else if (!section.is_named) {
-      const SectionReader in(impl, name);
-      if (in.is_present() || section.always_in_force) root.insert(name, in.with_defaults());
-    } else {
-      toml::table named;
-      for (const std::string& entry : impl.names_in(name)) {
-        named.insert(entry, SectionReader(impl, name, entry).with_defaults());
-      }
-      if (const toml::node* key = section.beside.empty() ? nullptr : impl.find({name, std::string(section.beside)}))
-        key->visit([&](const auto& node) { named.insert(section.beside, node); });
-      if (!named.empty()) root.insert(name, std::move(named));
-    }
-  }
+  toml::table root = sections_of(impl, [](const SectionReader& in) { return in.with_defaults(); });
+  for (const char* drive_section : {"waveform", "driver"}) root.erase(drive_section);
   toml::table drivers;
   for (const auto& [name, limits] : drives.limits) {
     toml::table keys;
@@ -182,6 +187,21 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
   for (const auto& [name, waveform] : drives.waveforms) file.set_waveform(name, waveform);
   return file;
+}
+
+SceneFile canonical(const SceneFile& file, const std::string& name) {
+  const Scene scene = read_scene(file);
+  const SceneFile::Impl& impl = scene.file.impl();
+  const toml::table root = sections_of(impl, [](const SectionReader& in) { return in.in_si_units(); });
+  SceneFile same = SceneFile::parse(internal::write_scene(root), name);
+  for (const std::string& drive : impl.names_in("waveform")) {
+    const SectionReader in(impl, "waveform", drive);
+    if (!in.is_given(internal::file_key)) continue;
+    Waveform rows = read_table((impl.directory / in.text(internal::file_key)).string(), drive);
+    same.set_waveform(drive, drive == internal::dispersion_drive ? internal::raised(std::move(rows), -1) : std::move(rows));
+  }
+  same.forget_places();
+  return same;
 }
 
 }  // namespace softland

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/spread.h"
+#include "config/units.h"
 #include "model/device.h"
 #include "objectives/metrics.h"
 #include "waveforms/limits.h"
@@ -38,11 +39,17 @@ class SceneFile {
   void set(std::string_view assignment);
   /// Gives a key this value; a number counts in the key's SI unit. Throws std::logic_error for a key that no scene has.
   void assign(const std::string& path, const SceneValue& value);
+  /// Gives a key of one quantity this one, in the unit of its dimension; of a list its element number `element`, counted from 1.
+  /// Throws std::logic_error for a key or an element that is not there to be given it.
+  void assign(const std::string& path, const Quantity& value, std::size_t element = 0);
   /// Takes a section or a key out, if it is there.
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a
   /// Table stand in the scene itself. Throws InvalidInput for a waveform outside its family's rules.
   void set_waveform(const std::string& drive, const Waveform& given);
+
+  /// Forgets where keys were written: messages about them then say the name of the file alone.
+  void forget_places();
 
   /// The scene as TOML text: parsing it again gives the same scene, digit for digit.
   [[nodiscard]] std::string text() const;
@@ -127,5 +134,10 @@ struct Scene {
 /// The scene with every default written out and every voltage in volts; what has no fixed default (a duration that is chosen)
 /// stays absent. Throws as Scene::drives does. Its messages say "NAME (resolved)", because its lines are not those of the file.
 [[nodiscard]] SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltages>& pull_in);
+
+/// The scene with every default written out, quantities in SI units, multiples of pull-in voltages as such, and the content of
+/// the files it names in their place: equal scenes have equal texts, however they are written, and this one needs no other file.
+/// Messages about it say `name` and no line. Throws as read_scene() does.
+[[nodiscard]] SceneFile canonical(const SceneFile& file, const std::string& name);
 
 }  // namespace softland

@@ -452,6 +452,24 @@ void SceneFile::assign(const std::string& path, const SceneValue& value) {
   impl_->insert(parts, *holder.get(internal::value_key), {impl_->name});
 }
 
+void SceneFile::assign(const std::string& path, const Quantity& value, std::size_t element) {
+  const std::vector<std::string> parts = internal::split_path(path);
+  const internal::Section* section = internal::find_section(parts.front(), parts.size() > 1 ? parts[1] : std::string());
+  const internal::Key* key = section ? section->find(parts.back()) : nullptr;
+  if (key == nullptr) throw std::logic_error("no scene has the key " + path);
+  toml::table holder;
+  internal::insert_quantity(*key, value, [&](const auto& node) { holder.insert(internal::value_key, node); });
+  if (element == 0) return impl_->insert(parts, *holder.get(internal::value_key), {impl_->name});
+  const toml::node* there = impl_->find(parts);
+  if (there == nullptr || !there->is_array() || element > there->as_array()->size())
+    throw std::logic_error(fmt::format("{} has no element {}", path, element));
+  toml::array list = *there->as_array();
+  holder.get(internal::value_key)->visit([&](const auto& node) {
+    list.replace(list.cbegin() + static_cast<std::ptrdiff_t>(element - 1), node);
+  });
+  impl_->insert(parts, list, {impl_->name});
+}
+
 void SceneFile::erase(const std::string& path) {
   const std::vector<std::string> parts = internal::split_path(path);
   toml::table* table = &impl_->root;
@@ -490,6 +508,8 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
   impl_->forget(path);
   impl_->origins[path] = {impl_->name};
 }
+
+void SceneFile::forget_places() { impl_->origins.clear(); }
 
 std::string SceneFile::text() const { return internal::write_scene(impl_->root); }
 nlohmann::json SceneFile::json() const { return internal::to_json(impl_->root); }

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "config/scene.h"
+#include "config/schema.h"
+#include "config/units.h"
 
 namespace softland::internal {
 
@@ -28,6 +30,14 @@ namespace softland::internal {
 /// A table that holds the value of a TOML text under `value_key`. Throws InvalidInput.
 [[nodiscard]] toml::table parse_value(std::string_view toml_text);
 inline constexpr std::string_view value_key = "v";
+
+/// Calls insert(node) with the TOML value that gives `key` this quantity, which reads back to the same bits.
+template <class Insert>
+void insert_quantity(const Key& key, const Quantity& quantity, Insert&& insert) {
+  if (key.is_bare_number()) return insert(quantity.value);
+  insert(quantity.dimension == dimension::none ? percent_text(quantity.value)
+                                               : quantity_text(quantity.value, quantity.dimension));
+}
 
 }  // namespace softland::internal
 

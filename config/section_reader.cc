@@ -259,6 +259,34 @@ toml::table SectionReader::with_defaults() const {
   return table;
 }
 
+toml::table SectionReader::in_si_units() const {
+  toml::table table;
+  for (const auto& [name, value] : values_) {
+    const Key& key = *find(name);
+    const auto insert = [&, k = name](const auto& node) { table.insert(k, node); };
+    if (const auto* numbers = std::get_if<std::vector<Quantity>>(&value)) {
+      if (key.type == KeyType::quantity) {
+        insert_quantity(key, numbers->front(), insert);
+        continue;
+      }
+      toml::array array;
+      for (const Quantity& one : *numbers) insert_quantity(key, one, [&](const auto& node) { array.push_back(node); });
+      insert(array);
+    } else if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
+      toml::array array;
+      for (const std::string& one : *texts) array.push_back(one);
+      insert(array);
+    } else if (const auto* text = std::get_if<std::string>(&value)) {
+      insert(*text);
+    } else if (const auto* flag = std::get_if<bool>(&value)) {
+      insert(*flag);
+    } else {
+      insert(std::get<std::int64_t>(value));
+    }
+  }
+  return table;
+}
+
 void SectionReader::set_members(Scene& scene, std::size_t entry) const {
   for (const auto& [name, value] : values_) {
     const Bound& bound = find(name)->bound;

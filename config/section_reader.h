@@ -47,6 +47,8 @@ class SectionReader {
   [[nodiscard]] std::vector<std::string_view> keys_in_pull_in_units() const;
   /// Every key that is in force with its TOML value: as written, or the default.
   [[nodiscard]] toml::table with_defaults() const;
+  /// The same with quantities in SI units: a value has one text, however it was written.
+  [[nodiscard]] toml::table in_si_units() const;
 
   /// Sets the members of the scene that the keys in force are bound to; `entry` is the number of an electrode.
   void set_members(Scene& scene, std::size_t entry) const;

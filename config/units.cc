@@ -329,4 +329,14 @@ std::string quantity_text(double value, const Dimension& dimension) {
   return unit.empty() ? number_text(value) : number_text(value) + " " + unit;
 }
 
+std::string percent_text(double value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific).ptr;
+  const std::string_view text(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+  const auto e = text.find('e');
+  int exponent = 0;  // from_chars knows no leading plus
+  std::from_chars(text.data() + e + (text[e + 1] == '+' ? 2 : 1), end, exponent);
+  return exponent == -2 ? fmt::format("{} %", text.substr(0, e)) : fmt::format("{}e{} %", text.substr(0, e), exponent + 2);
+}
+
 }  // namespace softland

@@ -76,5 +76,7 @@ struct Quantity {
 [[nodiscard]] std::string number_text(double value);
 /// "2e-06 m": reads back to the same bits. `value` [SI unit of `dimension`].
 [[nodiscard]] std::string quantity_text(double value, const Dimension& dimension);
+/// "1.5e1 %" of 0.15: reads back to the same bits.
+[[nodiscard]] std::string percent_text(double value);
 
 }  // namespace softland

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "reports/axis.h"
 #include "reports/chart.h"
 #include "reports/escape.h"
 #include "reports/quantity.h"
@@ -52,51 +53,6 @@ Stroke stroke(Role role) {
 
 /// Whether a role's points are not joined.
 bool dots(Role role) { return role == Role::evaluations || role == Role::measured; }
-
-/// Data to pixels along one axis.
-struct Axis {
-  Scale scale = Scale::linear;
-  double low = 0, high = 1;  // data
-  double pixel_low = 0, pixel_high = 1;
-
-  [[nodiscard]] double transformed(double value) const { return scale == Scale::linear ? value : std::log10(value); }
-  [[nodiscard]] double pixel(double value) const {
-    constexpr double farthest = 1e7;  // any paper ends before
-    const double from = transformed(low);
-    const double at = pixel_low + (transformed(value) - from) / (transformed(high) - from) * (pixel_high - pixel_low);
-    return std::clamp(at, -farthest, farthest);
-  }
-};
-
-std::vector<double> ticks(const Axis& axis, int wanted) {
-  std::vector<double> out;
-  if (axis.scale == Scale::linear) {
-    const double raw = (axis.high - axis.low) / wanted;
-    const double decade = std::pow(10, std::floor(std::log10(raw)));
-    double step = 10 * decade;
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      if (factor * decade >= raw * (1 - 1e-9)) {
-        step = factor * decade;
-        break;
-      }
-    }
-    for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; ++k) out.push_back(k * step);
-    return out;
-  }
-  const int first = static_cast<int>(std::ceil(std::log10(axis.low) - 1e-9));
-  const int last = static_cast<int>(std::floor(std::log10(axis.high) + 1e-9));
-  const int every = std::max(1, (last - first + 7) / 8);
-  for (int exponent = first; exponent <= last; exponent += every) out.push_back(std::pow(10, exponent));
-  if (out.size() > 2) return out;
-  out.clear();  // few decades: their parts as well
-  for (int exponent = first - 1; exponent <= last; ++exponent) {
-    for (const double part : {1.0, 2.0, 5.0}) {
-      const double tick = part * std::pow(10, exponent);
-      if (tick >= axis.low * (1 - 1e-9) && tick <= axis.high * (1 + 1e-9)) out.push_back(tick);
-    }
-  }
-  return out;
-}
 
 /// Rows of a table in view plus one on either side, thinned to first, lowest, highest and last per pixel column.
 std::vector<std::array<double, 2>> visible(const Axis& x, const Axis& y, const std::vector<double>& xs,

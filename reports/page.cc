@@ -89,10 +89,11 @@ std::string figure_html(const CurveTables& tables, const Chart& chart) {
 std::string chart_style() { return std::string(page_file("uplot/uPlot.min.css")); }
 
 std::string chart_scripts(const Picture& drawn) {
-  return filled(page_file("page/scripts.html"), {{"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
-                                                 {"chart_licence", std::string(page_file("uplot/LICENSE"))},
-                                                 {"js", std::string(page_file("page/page.js"))},
-                                                 {"data", script_json(chart_json(drawn, rows_per_curve))}});
+  return filled(page_file("page/scripts.html"),
+                {{"chart_js", std::string(page_file("uplot/uPlot.iife.min.js"))},
+                 {"chart_licence", std::string(page_file("uplot/LICENSE"))},
+                 {"js", std::string(page_file("page/words.js")) + std::string(page_file("page/page.js"))},
+                 {"data", script_json(chart_json(drawn, rows_per_curve))}});
 }
 
 std::string reproduce(const Result& result) {

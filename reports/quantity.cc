@@ -107,6 +107,12 @@ Prefix prefix_for(double largest) {
 
 std::string with_true_minus(const std::string& number) { return number.starts_with('-') ? "−" + number.substr(1) : number; }
 
+bool takes_prefix(std::string_view unit) {
+  constexpr std::array<std::string_view, 20> with{"m",   "s",   "V", "N", "J", "Pa", "Hz", "rad/s", "m/s", "V/s",
+                                                  "N/m", "m/V", "A", "W", "F", "C",  "K",  "ohm",   "H",   "Pa s"};
+  return std::find(with.begin(), with.end(), unit) != with.end();
+}
+
 double resolution(std::string_view unit) {
   constexpr std::array<std::pair<std::string_view, double>, 7> least{
       {{"m", 1e-12}, {"s", 1e-15}, {"m/s", 1e-9}, {"N", 1e-15}, {"J", 1e-21}, {"V", 1e-6}, {"V/s", 1}}};

@@ -20,6 +20,9 @@ struct Prefix {
 /// non-finite values.
 [[nodiscard]] Prefix prefix_for(double largest);
 
+/// Whether people write a unit with a prefix: "m/s" and "V" do, "kg/m^3", "m^2" and "Vdp" do not.
+[[nodiscard]] bool takes_prefix(std::string_view unit);
+
 /// The least value of a unit that says something about a switch, a power of ten: 1 pm, 1 fs, 1 nm/s, 1 fN, 1 zJ (thermal energy
 /// is 4 zJ), 1 µV, 1 V/s. 0 for other units.
 [[nodiscard]] double resolution(std::string_view unit);

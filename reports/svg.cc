@@ -15,6 +15,8 @@
 namespace softland {
 namespace {
 
+constexpr double between = 14;  // parts of a picture
+
 /// Words in lines of at most `columns` bytes; a longer word stands alone.
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   const std::string words = printable_line(text);
@@ -31,12 +33,11 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
 
 }  // namespace
 
-std::string svg_page(const std::string& headline, const std::string& words, const internal::Picture& drawn,
-                     std::size_t charts_per_row) {
-  using namespace internal;
+std::string svg_frame(const std::string& headline, const std::string& words,
+                      const std::function<std::pair<std::string, double>(double width, double top)>& draw) {
+  using internal::escaped;
   constexpr double width = 900;
   constexpr double margin = 24;
-  constexpr double between = 14;
   constexpr double line_height = 24;
   constexpr std::size_t columns = 88;
 
@@ -53,28 +54,36 @@ std::string svg_page(const std::string& headline, const std::string& words, cons
       top += line_height;
     }
   }
-  top += between;
-  const double cell =
-      (width - 2 * margin - between * static_cast<double>(charts_per_row - 1)) / static_cast<double>(charts_per_row);
-  double row_height = 0;
-  for (std::size_t i = 0; i < drawn.charts.size(); ++i) {
-    const std::size_t column = i % charts_per_row;
-    if (column == 0) {
-      top += row_height;
-      row_height = 0;
-    }
-    const std::string chart = chart_svg(drawn.tables, drawn.charts[i], cell, top);
-    row_height = std::max(row_height, chart_svg_height(drawn.charts[i]) + between);
-    body += column == 0 ? chart
-                        : fmt::format("<g transform=\"translate({:.1f} 0)\">\n{}</g>\n",
-                                      static_cast<double>(column) * (cell + between), chart);
-  }
+  const auto [elements, bottom] = draw(width - 2 * margin, top + between);
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1:.0f}\" viewBox=\"0 0 {0} {1:.0f}\" role=\"img\" "
       "font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\">\n<title>{2}</title>\n<rect width=\"100%\" "
       "height=\"100%\" fill=\"#fff\"/>\n"
       "<g transform=\"translate({3} {4})\">\n{5}</g>\n</svg>\n",
-      width, top + row_height + margin, escaped(printable_line(headline)), margin, 10, body);
+      width, bottom + margin, escaped(printable_line(headline)), margin, 10, body + elements);
+}
+
+std::string svg_page(const std::string& headline, const std::string& words, const internal::Picture& drawn,
+                     std::size_t charts_per_row) {
+  using namespace internal;
+  return svg_frame(headline, words, [&](double width, double top) {
+    const double cell = (width - between * static_cast<double>(charts_per_row - 1)) / static_cast<double>(charts_per_row);
+    std::string body;
+    double row_height = 0;
+    for (std::size_t i = 0; i < drawn.charts.size(); ++i) {
+      const std::size_t column = i % charts_per_row;
+      if (column == 0) {
+        top += row_height;
+        row_height = 0;
+      }
+      const std::string chart = chart_svg(drawn.tables, drawn.charts[i], cell, top);
+      row_height = std::max(row_height, chart_svg_height(drawn.charts[i]) + between);
+      body += column == 0 ? chart
+                          : fmt::format("<g transform=\"translate({:.1f} 0)\">\n{}</g>\n",
+                                        static_cast<double>(column) * (cell + between), chart);
+    }
+    return std::pair{body, top + row_height};
+  });
 }
 
 std::string svg_gap_chart(const Result& result) {

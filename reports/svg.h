@@ -1,7 +1,9 @@
 // A picture of a result for documents that cannot run a page.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "reports/chart.h"
 
@@ -10,6 +12,11 @@ namespace softland {
 /// A static SVG document, 900 px wide: the finding in words, gap against time of baseline and winner (the whole closing and the
 /// landing enlarged) and the drive waveforms below. What the result lacks is left out.
 [[nodiscard]] std::string svg_gap_chart(const Result& result);
+
+/// The frame around any picture: a headline, smaller words below it, and what draw(width, top) gives: elements, and where they
+/// end.
+[[nodiscard]] std::string svg_frame(const std::string& headline, const std::string& words,
+                                    const std::function<std::pair<std::string, double>(double width, double top)>& draw);
 
 /// The same frame around any charts: a headline, smaller words below it, and the charts row by row.
 [[nodiscard]] std::string svg_page(const std::string& headline, const std::string& words, const internal::Picture& drawn,

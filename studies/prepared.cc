@@ -75,7 +75,13 @@ void check_window(const Prepared& p) {
 
 }  // namespace
 
-Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch) {
+ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, const Watch& watch) {
+  ElectrodePullIn found{.statically = static_pull_in(model, electrode)};
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, watch);
+  return found;
+}
+
+Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch, const PullInFinder& find_pull_in) {
   const Scene scene = read_scene(file);
   const double accuracy = scene.simulate.tolerance > 0 ? SimulateOptions{}.accuracy : scene.simulate.accuracy;
   const SwitchOptions quadrature = quadrature_for(accuracy, scene.device.structure.modes);
@@ -87,8 +93,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch)
     const std::string& name = scene.device.electrodes[k].name;
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
     if (!needed && !default_limits) continue;
-    ElectrodePullIn found{.statically = static_pull_in(p.model, k)};
-    found.dynamically = dynamic_pull_in(p.model, k, found.statically, watch);
+    const ElectrodePullIn found = find_pull_in(p.model, k, watch);
     watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
     if (needed && !ok) {

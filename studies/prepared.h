@@ -2,6 +2,7 @@
 // volts.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -53,11 +54,17 @@ struct Prepared {
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
 
+/// Finds the pull-in voltages of an electrode of a switch, by its number: electrode_pull_in(), or who remembers what that has
+/// found.
+using PullInFinder = std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, const Watch& watch)>;
+[[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, const Watch& watch = {});
+
 /// Reads, composes and resolves a scene; pull-in voltages are computed for the electrodes that need them (and, with
 /// `default_limits`, for all that have no written limit). What the scene leaves to softland is not chosen yet (choices.h):
 /// modes = "auto" stands for the usual number, effects = "auto" for all of them.
 /// Throws InvalidInput for a bad scene, or one whose pull-in voltage is needed and does not exist; Interrupted where `watch` asks
 /// to stop.
-[[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false, const Watch& watch = {});
+[[nodiscard]] Prepared prepare(const SceneFile& file, bool default_limits = false, const Watch& watch = {},
+                               const PullInFinder& find_pull_in = electrode_pull_in);
 
 }  // namespace softland

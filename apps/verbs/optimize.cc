@@ -274,6 +274,17 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   return status_of(result);
 }
 
+// "settling, impact and energy"
+std::string targets_with_own_cost() {
+  std::vector<std::string_view> names;
+  for (const TargetRow& row : targets) {
+    if (row.has_own_cost) names.push_back(row.name);
+  }
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
 std::string optimizer_help() {
   std::string text = "\nOptimizers:\n";
   for (const std::string_view name : optimizer_names()) {
@@ -311,8 +322,10 @@ void add_optimize(Verb& verb) {
   verb.option("--optimizer", request->optimizer, "NAME", "auto (default), or another of the names below");
   verb.optional(
       "--budget", request->budget, "N|TIME",
-      "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both, half as much again for "
-      "settling, impact and energy; with --robust closings of devices, 60000");
+      fmt::format(
+          "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both, half as much again for "
+          "{}; with --robust closings of devices, 60000",
+          targets_with_own_cost()));
   verb.with_seed(request->seed, "same result, whatever --jobs is");
   verb.with_jobs(request->jobs, "threads (default: one per core)");
   verb.with_out("folder for the report, the waveform found and all data (default: softland-out)");

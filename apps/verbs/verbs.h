@@ -14,6 +14,7 @@ void add_check(Verb& verb);
 void add_effects(Verb& verb);
 void add_accuracy(Verb& verb);
 void add_optimize(Verb& verb);
+void add_explore(Verb& verb);
 void add_robustness(Verb& verb);
 void add_calibrate(Verb& verb);
 void add_new(Verb& verb);
@@ -34,11 +35,12 @@ inline constexpr std::array all_verbs{
     VerbRow{"effects", "which effects matter in a scene, by how much, and what each costs", add_effects},
     VerbRow{"accuracy", "what accuracy costs in time: errors of the figures for every integrator and setting", add_accuracy},
     VerbRow{"optimize", "search the drive waveform that closes without bounce", add_optimize},
+    VerbRow{"explore", "compute many points of a design space into a store", add_explore},
     VerbRow{"robustness", "how drives do on devices that differ as [spread] says", add_robustness},
     VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},
     VerbRow{"new", "print a commented scene to start from", add_new},
     VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
-    VerbRow{"report", "make report.html and gap.svg of a result.json again", add_report},
+    VerbRow{"report", "make the report of a result.json again, or the page of an exploration", add_report},
 };
 
 }  // namespace softland::apps

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/literals.h"
+#include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
 #include "tests/config/small_scene.h"
 #include "tests/support/measured_actuators.h"
@@ -210,12 +211,9 @@ fringing = "none"
 }
 
 TEST(Scene, EveryFringingLawHasAName) {
-  for (const auto& [name, law] : std::map<std::string, Fringing>{{"none", Fringing::none},
-                                                                 {"bao-2001", Fringing::bao_2001},
-                                                                 {"meijs-fokkema", Fringing::meijs_fokkema},
-                                                                 {"linear", Fringing::linear}}) {
-    const Scene scene = read(edited(small_scene, "[gas]", "fringing = \"" + name + "\"\n[gas]"));
-    EXPECT_EQ(scene.device.electrodes[0].fringing, law) << name;
+  for (const FringingRow& law : fringing_laws) {
+    const Scene scene = read(edited(small_scene, "[gas]", "fringing = \"" + std::string(law.name) + "\"\n[gas]"));
+    EXPECT_EQ(scene.device.electrodes[0].fringing, law.value) << law.name;
   }
 }
 

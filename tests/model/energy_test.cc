@@ -11,6 +11,7 @@
 #include "base/literals.h"
 #include "model/closing.h"
 #include "model/constants.h"
+#include "model/forces/electrostatic.h"
 #include "model/pull_in.h"
 #include "tests/model/gold.h"
 #include "tests/support/devices.h"
@@ -118,13 +119,13 @@ TEST(EnergyBalance, ClosesForEveryContactAlongThePad) {
 }
 
 TEST(EnergyBalance, ClosesForEveryFringingFactor) {
-  for (const Fringing fringing : {Fringing::none, Fringing::linear, Fringing::meijs_fokkema, Fringing::bao_2001}) {
+  for (const FringingRow& fringing : fringing_laws) {
     Device d = test::gold_cantilever();
-    d.electrodes[0].fringing = fringing;
+    d.electrodes[0].fringing = fringing.value;
     const std::vector<Signal> drives = waveforms(1, step_level, false);
     const Trajectory t = simulate_closing(Switch(d), drives, {.duration = 100_us, .tolerance = 1e-9});
     ASSERT_EQ(t.status, Status::done);
-    EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << static_cast<int>(fringing);
+    EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << fringing.name;
   }
 }
 

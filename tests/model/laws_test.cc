@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "base/literals.h"
@@ -37,6 +38,14 @@ double derivative(F&& f, double x, double h) {
          (840 * h);
 }
 
+/// The laws that a scene can name, from the variant that holds one of them.
+template <class Variant>
+struct LawsOf;
+template <class... Laws>
+struct LawsOf<std::variant<Laws...>> {
+  using Types = testing::Types<Laws...>;
+};
+
 // ---- fringing: the same checks for every factor
 
 template <class Law>
@@ -49,13 +58,13 @@ Law fringing(double width, double thickness) {
 }
 
 template <class Law>
-class FringingLaw : public testing::Test {};
-using FringingLaws = testing::Types<NoFringing, LinearFringing, MeijsFokkemaFringing, Bao2001Fringing>;
-TYPED_TEST_SUITE(FringingLaw, FringingLaws);
+class FringingLawOfType : public testing::Test {};
+using FringingLaws = LawsOf<FringingLaw>::Types;
+TYPED_TEST_SUITE(FringingLawOfType, FringingLaws);
 
 constexpr std::array gaps{0.03_um, 0.2_um, 1_um, 3.5_um, 20_um};
 
-TYPED_TEST(FringingLaw, ForceIsMinusHalfTheSlopeOfTheCapacitance) {
+TYPED_TEST(FringingLawOfType, ForceIsMinusHalfTheSlopeOfTheCapacitance) {
   constexpr double differences = 1e-9;  // relative: rounding of the difference quotient
   const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
   for (const double h : gaps) {
@@ -65,7 +74,7 @@ TYPED_TEST(FringingLaw, ForceIsMinusHalfTheSlopeOfTheCapacitance) {
   }
 }
 
-TYPED_TEST(FringingLaw, DualSlopeIsTheComplexStepDerivative) {
+TYPED_TEST(FringingLawOfType, DualSlopeIsTheComplexStepDerivative) {
   constexpr double step = 1e-30;  // no difference is taken, so no step is too small
   const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
   for (const double h : gaps) {
@@ -77,7 +86,7 @@ TYPED_TEST(FringingLaw, DualSlopeIsTheComplexStepDerivative) {
   }
 }
 
-TYPED_TEST(FringingLaw, PullsAndPullsHarderAtSmallerGaps) {
+TYPED_TEST(FringingLawOfType, PullsAndPullsHarderAtSmallerGaps) {
   const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
   double previous = 0;
   for (double h = 20_um; h > 0.01_um; h /= 1.1) {
@@ -87,7 +96,7 @@ TYPED_TEST(FringingLaw, PullsAndPullsHarderAtSmallerGaps) {
   }
 }
 
-TYPED_TEST(FringingLaw, BecomesTheParallelPlateAtVanishingGap) {
+TYPED_TEST(FringingLawOfType, BecomesTheParallelPlateAtVanishingGap) {
   const TypeParam law = fringing<TypeParam>(20_um, 2_um);
   EXPECT_NEAR(law.factor(1e-6 * 20_um), 1, 2e-3);  // the face term of van der Meijs & Fokkema vanishes like the root of h
   EXPECT_GE(law.factor(1_nm), 1);
@@ -105,7 +114,7 @@ FarSide<ElectrostaticForce<Law>> above() {
   return {.law = {fringing<Law>(20_um, 2_um)}, .both_gaps = 8.5_um, .floor = 0.05_um};
 }
 
-TYPED_TEST(FringingLaw, OnTheFarSideIsTheMirrorImage) {
+TYPED_TEST(FringingLawOfType, OnTheFarSideIsTheMirrorImage) {
   const ElectrostaticForce<TypeParam> law{fringing<TypeParam>(20_um, 2_um)};
   const auto far = above<TypeParam>();
   const BothSides<ElectrostaticForce<TypeParam>> both{.near = law, .far = far};
@@ -117,7 +126,7 @@ TYPED_TEST(FringingLaw, OnTheFarSideIsTheMirrorImage) {
   }
 }
 
-TYPED_TEST(FringingLaw, OnTheFarSideHasItsPotentialAndGoesOnAsATangent) {
+TYPED_TEST(FringingLawOfType, OnTheFarSideHasItsPotentialAndGoesOnAsATangent) {
   constexpr double differences = 1e-8, little = 1e-10;
   const auto far = above<TypeParam>();
   const double floor = far.both_gaps - far.floor;  // in terms of the near gap
@@ -371,8 +380,7 @@ Law gas_law_of_type(double width, double free_path, double viscosity = 1.86e-5_P
 
 template <class Law>
 class GasLawOfType : public testing::Test {};
-using GasLaws = testing::Types<StripSqueezeFilm, StripOverSlit, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm,
-                               GuoAlexeenkoFilm, SlipFilm, LinearDamper>;
+using GasLaws = LawsOf<GasLaw>::Types;
 TYPED_TEST_SUITE(GasLawOfType, GasLaws);
 
 TYPED_TEST(GasLawOfType, OpposesTheMotionAndTakesItsEnergy) {
@@ -1231,12 +1239,15 @@ class LawAlongTheBeam : public testing::Test {
     }
   }
 };
+template <class Fringing, class Gas, class... Others>
+struct AlongTheBeam;
+template <class... Fringing, class... Gas, class... Others>
+struct AlongTheBeam<std::variant<Fringing...>, std::variant<Gas...>, Others...> {
+  using Types = testing::Types<ElectrostaticForce<Fringing>..., Gas..., Others...>;
+};
 using LawsAlongTheBeam =
-    testing::Types<ElectrostaticForce<NoFringing>, ElectrostaticForce<LinearFringing>, ElectrostaticForce<MeijsFokkemaFringing>,
-                   ElectrostaticForce<Bao2001Fringing>, StripSqueezeFilm, VeijolaFilm, GallisTorczynskiFilm, NearContactFilm,
-                   GuoAlexeenkoFilm, LinearDamper, DispersionForce<IdealCasimir>, DispersionForce<GoldCasimir>,
-                   DispersionForce<VanDerWaals>, DispersionForce<SmallerOfBoth<IdealCasimir>>,
-                   DispersionForce<SmallerOfBoth<GoldCasimir>>>;
+    AlongTheBeam<FringingLaw, GasLaw, DispersionForce<IdealCasimir>, DispersionForce<GoldCasimir>, DispersionForce<VanDerWaals>,
+                 DispersionForce<SmallerOfBoth<IdealCasimir>>, DispersionForce<SmallerOfBoth<GoldCasimir>>>::Types;
 TYPED_TEST_SUITE(LawAlongTheBeam, LawsAlongTheBeam);
 
 constexpr double gap_floor = 35_nm;

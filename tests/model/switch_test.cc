@@ -12,6 +12,7 @@
 
 #include "base/literals.h"
 #include "model/constants.h"
+#include "model/forces/electrostatic.h"
 #include "tests/support/devices.h"
 
 namespace softland {
@@ -26,19 +27,19 @@ struct Combination {
 
 std::vector<Combination> combinations() {
   std::vector<Combination> all;
-  for (const Fringing fringing : {Fringing::none, Fringing::linear, Fringing::meijs_fokkema, Fringing::bao_2001}) {
+  for (const FringingRow& fringing : fringing_laws) {
     for (const bool layer : {false, true}) {
       for (const bool gas : {false, true}) {
         for (const double damping : {0.0, 0.03}) {
           for (const Contact& contact : test::contacts()) {
             Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
-            d.electrodes[0].fringing = fringing;
+            d.electrodes[0].fringing = fringing.value;
             d.structure.damping_ratio = damping;
             if (!gas) d.gas.reset();
             d.contact = contact;
             d.contact->pressure.asperity_distance = 60_nm;  // its corners lie beyond the states looked at
-            all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {} {}", static_cast<int>(fringing),
-                                       layer, gas, damping, name_of(contact_laws, contact.model), contact.damping),
+            all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {} {}", fringing.name, layer, gas,
+                                       damping, name_of(contact_laws, contact.model), contact.damping),
                            d});
           }
         }

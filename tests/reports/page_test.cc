@@ -1,77 +1,30 @@
 // The page in a real browser: what the script draws and what it complains about.
 #include <gmock/gmock.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
 
-#include "reports/escape.h"
-#include "reports/files.h"
+#include "browser.h"
 #include "reports/html.h"
 #include "reports/result_reader.h"
 #include "sample_result.h"
-#include "tests/support/temporary_folder.h"
 
 namespace softland {
 namespace {
 
 using nlohmann::json;
-using test::TemporaryFolder;
+using test::in_frame;
+using test::PageInBrowser;
+using test::said;
+using test::Visit;
+using test::visit;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-/// Standard output of a command.
-std::string output(const std::string& command) {
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) return {};
-  std::string text;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe)) text.append(buffer.data(), got);
-  ::pclose(pipe);
-  return text;
-}
-
-std::string browser() {
-  std::string name = output("command -v chromium || command -v chromium-browser || command -v google-chrome");
-  while (!name.empty() && name.back() == '\n') name.pop_back();
-  return name;
-}
-
-struct Visit {
-  std::string dom;
-  std::string console;  ///< what the page wrote to the console, and errors it did not catch
-};
-
-Visit visit(const std::string& program, const std::string& page) {
-  const TemporaryFolder folder;
-  write_whole(folder.path() / "page.html", page);
-  const std::string in = folder.path().string();
-  const std::string command =
-      "timeout 120 '" + program +
-      "' --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
-      "--disable-component-update --disable-sync --enable-logging=stderr --v=0 --virtual-time-budget=3000 --user-data-dir='" +
-      in + "/profile' --dump-dom 'file://" + in + "/page.html' 2>'" + in + "/log'";
-  Visit seen;
-  seen.dom = output(command);
-  seen.console = output("grep -F CONSOLE '" + in + "/log'");
-  return seen;
-}
 
 std::size_t canvases(const std::string& dom) {
   std::size_t count = 0;
   for (std::size_t at = dom.find("<canvas"); at != std::string::npos; at = dom.find("<canvas", at + 1)) ++count;
   return count;
 }
-
-class PageInBrowser : public ::testing::Test {
- protected:
-  void SetUp() override {
-    program = browser();
-    if (program.empty()) GTEST_SKIP() << "no Chromium here (apt-get install chromium)";
-  }
-  std::string program;
-};
 
 TEST_F(PageInBrowser, DrawsEveryChartOfASearchInSilence) {
   const Visit seen = visit(program, html_report(read_result(test::sample_optimize_result(20000))));
@@ -107,21 +60,6 @@ TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle) {
   EXPECT_EQ(seen.console, "");
   EXPECT_THAT(seen.dom, Not(HasSubstr("class=\"owned\"")));
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
-}
-
-/// The page in a frame of this width [px], and what `script` says of it; `page` is its document there.
-std::string in_frame(const std::string& program, const std::string& page, int width, const std::string& script) {
-  return visit(program, "<!DOCTYPE html><body><iframe style=\"width:" + std::to_string(width) +
-                            "px;height:900px;border:0\"></iframe><p id=\"said\"></p><script>const frame = "
-                            "document.querySelector('iframe'); frame.onload = async () => { const page = frame.contentDocument; "
-                            "const say = (words) => { document.getElementById('said').textContent += words + ';'; }; " +
-                            script + " say('end'); }; frame.srcdoc = " + internal::script_json(page) + ";</script>")
-      .dom;
-}
-
-std::string said(const std::string& dom) {
-  const std::size_t begin = dom.find("<p id=\"said\">");
-  return begin == std::string::npos ? dom.substr(0, 200) : dom.substr(begin + 13, dom.find("</p>", begin) - begin - 13);
 }
 
 /// A search of the scene with the sketch, the limits and the drawing of its parameters.

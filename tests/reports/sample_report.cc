@@ -2,10 +2,12 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "reports/exploration_report.h"
 #include "reports/files.h"
 #include "reports/html.h"
 #include "reports/result_reader.h"
 #include "reports/svg.h"
+#include "sample_exploration.h"
 #include "sample_result.h"
 
 int main(int argc, char** argv) {
@@ -20,5 +22,9 @@ int main(int argc, char** argv) {
   softland::write_whole(folder / "simulate.html", softland::html_report(softland::read_result(simulate)));
   softland::write_whole(folder / "optimize.svg", softland::svg_gap_chart(softland::read_result(optimize)));
   softland::write_whole(folder / "simulate.svg", softland::svg_gap_chart(softland::read_result(simulate)));
+  const auto grid = softland::test::sample_grid(200, 200);
+  softland::write_whole(folder / "grid.html", softland::exploration_html(grid));
+  softland::write_whole(folder / "grid.svg", softland::exploration_map_svg(grid, 0, 1, 6));
+  softland::write_whole(folder / "cloud.html", softland::exploration_html(softland::test::sample_cloud(100'000)));
   return 0;
 }

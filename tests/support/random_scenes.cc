@@ -6,11 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/random.h"
 #include "base/require.h"
 #include "model/constants.h"
+#include "model/forces/electrostatic.h"
+#include "model/gas/gas_law.h"
 #include "model/pull_in.h"
 #include "studies/prepared.h"
 
@@ -98,7 +101,7 @@ void vary_electrodes(SceneFile& file, Dice& dice) {
   const bool plate = d.structure.kind == StructureKind::plate;
   for (const Electrode& e : d.electrodes) {
     const std::string section = "electrode." + e.name;
-    put(file, section + ".fringing", dice.one_of(std::array{"none", "bao-2001", "meijs-fokkema", "linear"}));
+    put(file, section + ".fringing", std::string(dice.one_of(names_of(fringing_laws))));
     if (e.side != Side::near) put(file, section + ".gap", e.gap * dice.about(), "m");
     if (plate) {
       put(file, section + ".area", dice.between(0.5, 0.999) * d.structure.length * d.structure.width, "m^2");
@@ -118,9 +121,10 @@ void vary_gas(SceneFile& file, Dice& dice) {
   if (dice.chance(0.3)) return;
   const Device d = device_of(file);
   // The compressible film takes a hundred times longer than the others.
-  const std::string model = dice.chance(0.04) ? "reynolds"
-                                              : dice.one_of(std::array{"strip", "strip-slit", "veijola", "gallis-torczynski",
-                                                                       "near-contact", "guo-alexeenko", "linear"});
+  constexpr std::string_view slow = "reynolds";
+  std::vector<std::string_view> quick = names_of(gas_laws);
+  std::erase(quick, slow);
+  const std::string model(dice.chance(0.04) ? slow : dice.one_of(quick));
   put(file, "gas.model", model);
   if (model == "linear") return put(file, "gas.quality_factor", dice.log_between(0.3, 3000));
   put_state(file, dice);
@@ -129,7 +133,7 @@ void vary_gas(SceneFile& file, Dice& dice) {
     put(file, "gas.slit_length", d.gap.electrode * dice.log_between(0.3, 3), "m");
   }
   for (const Electrode& e : d.electrodes) {
-    if (e.side != Side::near && model != "reynolds") put(file, "gas.far_gap", e.gap, "m");
+    if (e.side != Side::near && model != slow) put(file, "gas.far_gap", e.gap, "m");
   }
 }
 

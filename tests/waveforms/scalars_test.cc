@@ -4,13 +4,17 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <experimental/simd>
+#include <utility>
+#include <vector>
 
 #include "base/require.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
 #include "waveforms/step.h"
+#include "waveforms/table.h"
 
 namespace softland::scalars_test {
 namespace {
@@ -104,11 +108,36 @@ struct ASilentHarmonic {
   }
 };
 
+/// The rows of a table over another scalar.
+template <class P>
+struct Rows {
+  std::vector<std::pair<P, P>> points;
+};
+template <class P>
+Pieces<P> pieces(const Rows<P>& rows) {
+  return internal::straight_pieces(rows.points);
+}
+/// With a jump: two rows of the same time.
+struct ATable {
+  static constexpr std::array parameters{5.0, 40.0, 10.0, 30.0, 10e-6, 25e-6, 50e-6};
+  template <class P>
+  static auto make(const std::array<P, 7>& p) {
+    const std::vector<P> time{P(0), p[4], p[5], p[5], p[6]}, voltage{p[0], p[1], p[1] + P(1), p[2], p[3]};
+    if constexpr (std::same_as<P, double>) {
+      return Table{.time = time, .voltage = voltage};
+    } else {
+      Rows<P> rows;
+      for (std::size_t i = 0; i < time.size(); ++i) rows.points.emplace_back(time[i], voltage[i]);
+      return rows;
+    }
+  }
+};
+
 constexpr std::array times{1e-6, 3.3e-6, 12e-6, 21.5e-6, 30e-6, 46e-6, 58e-6, 80e-6};
 
 template <class Family>
 class ScalarsOf : public testing::Test {};
-using Families = testing::Types<AStep, APulse, AStaircase, AHarmonic, ASilentHarmonic>;
+using Families = testing::Types<AStep, APulse, AStaircase, AHarmonic, ASilentHarmonic, ATable>;
 TYPED_TEST_SUITE(ScalarsOf, Families);
 
 TYPED_TEST(ScalarsOf, EveryDeviceOfALaneHasItsOwnSignal) {

@@ -1,0 +1,23 @@
+// The axis of a picture: data to pixels, and the round numbers to write at it.
+#pragma once
+
+#include <vector>
+
+#include "reports/chart.h"
+
+namespace softland::internal {
+
+/// Data to pixels along one axis.
+struct Axis {
+  Scale scale = Scale::linear;
+  double low = 0, high = 1;  // data
+  double pixel_low = 0, pixel_high = 1;
+
+  [[nodiscard]] double transformed(double value) const;
+  [[nodiscard]] double pixel(double value) const;
+};
+
+/// About `wanted` round numbers between the ends of the axis, or its decades.
+[[nodiscard]] std::vector<double> ticks(const Axis& axis, int wanted);
+
+}  // namespace softland::internal

@@ -1,0 +1,381 @@
+#include "reports/exploration_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/printable.h"
+#include "base/require.h"
+#include "optimizers/pareto.h"
+#include "reports/escape.h"
+#include "reports/exploration_view.h"
+#include "reports/heat_map.h"
+#include "reports/json_number.h"
+#include "reports/page.h"
+#include "reports/page_files.h"
+#include "reports/quantity.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using internal::columns_of;
+using internal::escaped;
+using internal::explored_text;
+using internal::json_number;
+using internal::section;
+using internal::TableRow;
+using nlohmann::json;
+
+constexpr std::string_view largest_mark = "max:";
+constexpr std::size_t most_front_rows = 40;  // in words
+
+/// What is minimised: an aim that is to be large changes its sign.
+double sign_of(const ExploredAim& aim) { return aim.is_largest ? -1 : 1; }
+
+std::string aim_name(const ExplorationReport& report, const ExploredAim& aim) {
+  return report.columns[aim.column].name + (aim.is_largest ? " (large)" : "");
+}
+
+std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+struct Outcome {
+  std::int64_t points = 0;
+  std::map<std::string, std::int64_t> reasons;
+};
+
+std::map<std::string, Outcome> outcomes_of(const ExplorationReport& report) {
+  std::map<std::string, Outcome> outcomes;
+  for (const ExploredPoint& point : report.points) {
+    Outcome& outcome = outcomes[point.status];
+    ++outcome.points;
+    if (!point.reason.empty()) ++outcome.reasons[point.reason];
+  }
+  return outcomes;
+}
+
+std::string with_blanks(std::string words) {
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// The variables of a report that vary, by name: "structure.length and gap.contact".
+std::string varying_names(const ExplorationReport& report) {
+  std::vector<std::string> names;
+  for (const std::size_t c : columns_of(report, true)) {
+    const double first = report.points.empty() ? 0 : report.points.front().values[c];
+    const bool varies =
+        std::any_of(report.points.begin(), report.points.end(), [&](const ExploredPoint& p) { return p.values[c] != first; });
+    if (varies) names.push_back(report.columns[c].name);
+  }
+  if (names.empty()) return "one point";
+  const std::string last = names.back();
+  names.pop_back();
+  return names.empty() ? last : fmt::format("{} and {}", fmt::join(names, ", "), last);
+}
+
+std::pair<std::string, std::string> headline_of(const ExplorationReport& report) {
+  const auto finished =
+      std::count_if(report.points.begin(), report.points.end(), [](const auto& p) { return has_figures(p.status); });
+  return {fmt::format("{} over {}", counted(static_cast<std::int64_t>(report.points.size()), "point", "points"),
+                      varying_names(report)),
+          fmt::format(": {} with figures{}.", finished,
+                      report.planned > static_cast<std::int64_t>(report.points.size())
+                          ? fmt::format(", {} of the plan's {} still to come",
+                                        report.planned - static_cast<std::int64_t>(report.points.size()), report.planned)
+                          : "")};
+}
+
+std::string range_key(const ExplorationReport& report) {
+  const std::size_t c = internal::leading_figure(report);
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const ExploredPoint& point : report.points) {
+    if (!std::isfinite(point.values[c])) continue;
+    low = std::min(low, point.values[c]);
+    high = std::max(high, point.values[c]);
+  }
+  if (!(low <= high)) return {};
+  return internal::key_html(escaped(report.columns[c].name) + ", least", escaped(explored_text(report.columns[c], low, 3)),
+                            "up to " + escaped(explored_text(report.columns[c], high, 3)));
+}
+
+std::string keys_of(const ExplorationReport& report, const ExploredFront& front) {
+  const auto finished =
+      std::count_if(report.points.begin(), report.points.end(), [](const auto& p) { return has_figures(p.status); });
+  std::string keys = internal::key_html("Points", fmt::format("{}", report.points.size()),
+                                        report.planned > 0 ? fmt::format("of {} in the plan", report.planned) : "");
+  keys += internal::key_html("With figures", fmt::format("{}", finished),
+                             fmt::format("{} ended otherwise", static_cast<std::int64_t>(report.points.size()) - finished));
+  keys += range_key(report);
+  if (!front.members.empty())
+    keys += internal::key_html(
+        "On the front", fmt::format("{}", front.members.size()),
+        std::isfinite(front.share) ? fmt::format("hypervolume {} of its box", internal::percent(front.share)) : "");
+  return keys;
+}
+
+std::string values_text(const ExplorationReport& report, std::size_t point, const std::vector<std::size_t>& columns) {
+  std::vector<std::string> parts;
+  for (const std::size_t c : columns)
+    parts.push_back(
+        fmt::format("{} {}", report.columns[c].name, explored_text(report.columns[c], report.points[point].values[c])));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// A part of the page that the script fills.
+std::string drawn_section(std::string_view id, std::string_view heading, std::string_view words, const std::string& still = {}) {
+  return section(id, heading, fmt::format("<p>{}</p>\n<div class=\"part\"></div>\n{}", words, still));
+}
+
+/// A map without a script, of as many cells as a print shows.
+std::string still_map(const ExplorationReport& report, const internal::ExploredGrid& grid) {
+  constexpr std::size_t most_cells = 14'400;
+  const std::size_t figure = internal::leading_figure(report);
+  const internal::HeatMap map = internal::heat_map_of(report, grid, grid.variables[0], grid.variables[1], figure);
+  if (map.values.size() > most_cells) return {};
+  constexpr double width = 960;
+  return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
+                     internal::heat_map_height(width), escaped(map.label), internal::heat_map_elements(map, width));
+}
+
+std::string outcome_section(const ExplorationReport& report) {
+  std::vector<TableRow> rows;
+  constexpr std::size_t most_reasons = 5;
+  for (const auto& [status, outcome] : outcomes_of(report)) {
+    std::vector<std::pair<std::string, std::int64_t>> ranked(outcome.reasons.begin(), outcome.reasons.end());
+    std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::string reasons;
+    for (std::size_t k = 0; k < std::min(most_reasons, ranked.size()); ++k)
+      reasons += fmt::format("{}{} ({})", k == 0 ? "" : "; ", escaped(internal::shortened(printable_line(ranked[k].first))),
+                             ranked[k].second);
+    if (ranked.size() > most_reasons) reasons += fmt::format("; {} more", ranked.size() - most_reasons);
+    rows.push_back({escaped(with_blanks(status)), fmt::format("{}", outcome.points), internal::Cell(reasons, "missing")});
+  }
+  return section("outcomes", "How the points ended", internal::table_html({"Ended", "Points", "Reasons"}, rows));
+}
+
+std::string front_words(const ExplorationReport& report, const ExploredFront& front) {
+  std::vector<std::string> names;
+  for (const ExploredAim& aim : report.aims) names.push_back(aim_name(report, aim));
+  std::string words =
+      fmt::format("{} that no other one beats in all of {}",
+                  counted(static_cast<std::int64_t>(front.members.size()), "point", "points"), fmt::join(names, ", "));
+  if (std::isfinite(front.hypervolume)) {
+    std::vector<std::string> reference;
+    for (std::size_t i = 0; i < front.reference.size(); ++i)
+      reference.push_back(explored_text(report.columns[report.aims[i].column], front.reference[i]));
+    words += fmt::format("; hypervolume {} of the box between the best and the worst values, which are {}",
+                         internal::percent(front.share), fmt::join(reference, ", "));
+  }
+  return words + ".";
+}
+
+std::string front_section(const ExplorationReport& report, const ExploredFront& front) {
+  if (report.aims.empty()) return {};
+  if (front.members.empty()) return section("front", "The front", "<p>No point has all of the figures.</p>\n");
+  return drawn_section("front", "The front",
+                       escaped(front_words(report, front)) +
+                           " Move over the picture, or focus it and press ← →, to see a point; grey dots are the other points.");
+}
+
+std::string script_of(const internal::ExplorationData& data) {
+  return internal::filled(
+      internal::page_file("page/exploration.html"),
+      {{"data", internal::script_json(data.json)},
+       {"js", std::string(internal::page_file("page/words.js")) + std::string(internal::page_file("page/exploration.js"))}});
+}
+
+json point_json(const ExplorationReport& report, std::size_t k) {
+  json values;
+  for (std::size_t c = 0; c < report.columns.size(); ++c) values[report.columns[c].key] = json_number(report.points[k].values[c]);
+  return {{"point", report.points[k].number}, {"values", std::move(values)}};
+}
+
+}  // namespace
+
+std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list,
+                                       std::string_view option) {
+  std::vector<ExploredAim> aims;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    std::string name = list.substr(begin, end - begin);
+    begin = end + 1;
+    ExploredAim aim{.is_largest = name.starts_with(largest_mark)};
+    if (aim.is_largest) name.erase(0, largest_mark.size());
+    const auto is_it = [&](const ExploredColumn& c) {
+      const bool without_unit = c.key.starts_with(name + "_") && !c.unit.empty() && c.key.size() > name.size() &&
+                                c.key.size() - name.size() <= c.unit.size() + 1;
+      return !c.is_variable && (c.key == name || c.name == name || without_unit);
+    };
+    const auto found = std::find_if(columns.begin(), columns.end(), is_it);
+    std::vector<std::string> there;
+    for (const ExploredColumn& c : columns) {
+      if (!c.is_variable) there.push_back(c.key);
+    }
+    require(!name.empty() && found != columns.end(), fmt::format("{} {}: \"{}\" is not among the figures: {}", option, list,
+                                                                 printable_line(name), fmt::join(there, ", ")));
+    aim.column = static_cast<std::size_t>(found - columns.begin());
+    require(std::none_of(aims.begin(), aims.end(), [&](const ExploredAim& other) { return other.column == aim.column; }),
+            fmt::format("{} {}: {} stands twice", option, list, name));
+    aims.push_back(aim);
+  }
+  require(aims.size() >= 2, fmt::format("{} {}: a front needs at least two figures", option, list));
+  return aims;
+}
+
+bool has_figures(std::string_view status) { return status == "done" || status == "not_settled"; }
+
+ExploredFront explored_front(const ExplorationReport& report) {
+  ExploredFront front;
+  if (report.aims.empty()) return front;
+  std::vector<Objectives> all;
+  std::vector<std::size_t> whose;
+  for (std::size_t k = 0; k < report.points.size(); ++k) {
+    if (!has_figures(report.points[k].status)) continue;
+    Objectives values;
+    for (const ExploredAim& aim : report.aims) values.push_back(sign_of(aim) * report.points[k].values[aim.column]);
+    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) continue;
+    all.push_back(std::move(values));
+    whose.push_back(k);
+  }
+  if (all.empty()) return front;
+  std::vector<std::size_t> chosen = pareto_front(all);
+  std::stable_sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) { return all[a] < all[b]; });
+  std::vector<Objectives> values;
+  for (const std::size_t k : chosen) {
+    values.push_back(all[k]);
+    front.members.push_back(whose[k]);
+  }
+  if (const auto knee = pareto_knee(values)) front.knee = front.members[*knee];
+  double box = 1;
+  Objectives reference;
+  const std::vector<ObjectiveRange> ranges = objective_ranges(all);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    reference.push_back(ranges[i].highest);
+    front.reference.push_back(sign_of(report.aims[i]) * ranges[i].highest);
+    box *= ranges[i].highest - ranges[i].lowest;
+  }
+  if (reference.size() > 3) return front;
+  front.hypervolume = hypervolume(values, reference);
+  front.share = box > 0 ? front.hypervolume / box : Metrics::unset;
+  return front;
+}
+
+std::string exploration_html(const ExplorationReport& report) {
+  const ExploredFront front = explored_front(report);
+  const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
+  const internal::ExplorationData data = internal::exploration_data(report, grid, front);
+  const std::string thinning = data.thinning.empty() ? "" : " " + escaped(data.thinning);
+  std::string body;
+  if (grid)
+    body += drawn_section(
+        "map", "Map",
+        "Hatched: the figure does not exist there, for the reason in the legend. Move over the map, or focus it and "
+        "press ← → ↑ ↓, to read a point." +
+            thinning,
+        still_map(report, *grid));
+  body += front_section(report, front);
+  body +=
+      drawn_section("parallel", "All columns at once",
+                    "Every line is a point. Drag along an axis to keep what is within, click it to let go; with the keys: ← → "
+                    "choose an axis, ↑ ↓ move its limits, + − widen and narrow them, Delete takes them away. The limits hold "
+                    "for every picture of this page." +
+                        (grid ? std::string() : thinning));
+  body += drawn_section("matrix", "Every pair", "Columns and colour are those chosen above.");
+  body +=
+      drawn_section("effects", "What each variable does",
+                    "Median of the figure over all points at a value of the variable, whatever the others are; the bands hold 50 "
+                    "and 90&nbsp;% of the points.");
+  body += outcome_section(report);
+  Result result{.command = report.command, .version = std::string(version)};
+  body += internal::reproduce(result);
+  if (!report.made_with.empty()) body += fmt::format("<p class=\"below\">Computed by {}.</p>\n", escaped(report.made_with));
+  if (!report.plan.empty())
+    body += section("plan", "The plan",
+                    "<details><summary>As a file</summary>\n<pre><code>" + escaped(internal::shortened(report.plan)) +
+                        "</code></pre></details>\n");
+  const auto [main, rest] = headline_of(report);
+  return internal::page({.title = report.title,
+                         .origin = "exploration: " + report.study,
+                         .headline = main,
+                         .headline_rest = rest,
+                         .keys = keys_of(report, front),
+                         .body = body,
+                         .style = std::string(internal::page_file("page/exploration.css")),
+                         .scripts = script_of(data)});
+}
+
+std::string exploration_text(const ExplorationReport& report) {
+  const auto [main, rest] = headline_of(report);
+  std::string text = wrapped(main + rest) + "\n";
+  for (const auto& [status, outcome] : outcomes_of(report))
+    text += fmt::format("  {:<24}{:>10}\n", with_blanks(status), outcome.points);
+  if (report.aims.empty()) return text;
+  const ExploredFront front = explored_front(report);
+  if (front.members.empty()) return text + "\nNo point has all of the figures of the front.\n";
+  text += "\n" + wrapped("Front: " + front_words(report, front)) + "\n";
+  std::vector<std::size_t> columns;
+  for (const ExploredAim& aim : report.aims) columns.push_back(aim.column);
+  for (const std::size_t c : columns_of(report, true)) columns.push_back(c);
+  // As many as fit on a screen, evenly along the front, with its knee and its ends.
+  const std::size_t stride = (front.members.size() + most_front_rows - 1) / most_front_rows;
+  for (std::size_t k = 0; k < front.members.size(); ++k) {
+    const bool is_knee = front.members[k] == front.knee;
+    if (k % stride != 0 && !is_knee && k + 1 < front.members.size()) continue;
+    text += fmt::format("{} point {}: {}\n", is_knee ? "*" : " ", report.points[front.members[k]].number,
+                        values_text(report, front.members[k], columns));
+  }
+  if (front.knee) text += "* the knee, where the front bends most\n";
+  if (stride > 1) text += fmt::format("One in {} of the front is shown.\n", stride);
+  return text;
+}
+
+json exploration_json(const ExplorationReport& report) {
+  json counts = json::object();
+  for (const auto& [status, outcome] : outcomes_of(report)) counts[status] = outcome.points;
+  json out{{"kind", "exploration"},          {"study", report.study},          {"planned", report.planned},
+           {"points", report.points.size()}, {"by_status", std::move(counts)}, {"version", version},
+           {"command", report.command}};
+  if (report.aims.empty()) return out;
+  const ExploredFront front = explored_front(report);
+  json aims = json::array(), members = json::array(), reference = json::object();
+  for (std::size_t i = 0; i < report.aims.size(); ++i) {
+    const std::string& key = report.columns[report.aims[i].column].key;
+    aims.push_back({{"figure", key}, {"better", report.aims[i].is_largest ? "large" : "small"}});
+    if (i < front.reference.size()) reference[key] = front.reference[i];
+  }
+  for (const std::size_t k : front.members) members.push_back(point_json(report, k));
+  out["pareto"] = {{"aims", std::move(aims)},
+                   {"front", std::move(members)},
+                   {"knee", front.knee ? json(report.points[*front.knee].number) : json(nullptr)},
+                   {"reference", std::move(reference)},
+                   {"hypervolume", json_number(front.hypervolume)},
+                   {"hypervolume_share", json_number(front.share)}};
+  return out;
+}
+
+std::vector<std::size_t> grid_variables(const ExplorationReport& report) {
+  const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
+  return grid ? grid->variables : std::vector<std::size_t>{};
+}
+
+std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure) {
+  const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
+  require(grid.has_value(), "a map needs points on a grid of at least two variables");
+  const internal::HeatMap map = internal::heat_map_of(report, *grid, x, y, figure);
+  return svg_frame(
+      fmt::format("{} over {} and {}", map.label, map.x.label, map.y.label), report.title, [&](double width, double top) {
+        return std::pair{
+            fmt::format("<g transform=\"translate(0 {:.1f})\">\n{}</g>\n", top, internal::heat_map_elements(map, width)),
+            top + internal::heat_map_height(width)};
+      });
+}
+
+}  // namespace softland

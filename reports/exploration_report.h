@@ -1,0 +1,88 @@
+// What an exploration found, made ready to be looked at: a page, the map of a figure as a picture, the front of several figures
+// as words and as JSON. The points may come from anywhere; the store of `softland explore` is one maker.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "reports/result.h"
+
+namespace softland {
+
+/// Something that varies, or a figure.
+struct ExploredColumn {
+  std::string key;   ///< what options and files call it: "impact_velocity_m_s"
+  std::string name;  ///< for people: "Impact speed", or the key of the scene
+  std::string unit;  ///< of SI; empty: a plain number
+  bool is_variable = false;
+};
+
+struct ExploredPoint {
+  std::int64_t number = 0;
+  std::string status;  ///< how it ended: "done"
+  std::string reason;
+  std::vector<double> values;  ///< one per column [SI]; NaN: not known
+};
+
+/// A figure that is to be small, or large.
+struct ExploredAim {
+  std::size_t column = 0;
+  bool is_largest = false;
+};
+
+struct ExplorationReport {
+  std::string title;
+  std::string study;  ///< what was asked of every point: "simulate"
+  std::vector<ExploredColumn> columns;
+  std::vector<ExploredPoint> points;
+  std::int64_t planned = 0;       ///< points of the plan
+  std::vector<ExploredAim> aims;  ///< of the front; may be empty
+  /// The drives of points, where they are known: by number and drive.
+  std::map<std::int64_t, std::map<std::string, Points>> waveforms;
+  std::string plan;       ///< its text
+  std::string command;    ///< that computed the points
+  std::string made_with;  ///< program and processor
+};
+
+/// The aims that a list names: "impact_velocity,max:bounce_free". A figure goes by its key, by its key without the unit, or by
+/// its name. Throws InvalidInput with `option` for a name that is no figure or stands twice, and for fewer than two.
+[[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list,
+                                                     std::string_view option);
+
+/// Whether the figures of a point that ended so are what they are: "done", or "not_settled", where the window ended before the
+/// last rebound.
+[[nodiscard]] bool has_figures(std::string_view status);
+
+/// The front of the aims, of all points that have figures, those of the aims among them.
+struct ExploredFront {
+  std::vector<std::size_t> members;     ///< numbers of points in the report, by the first aim
+  std::optional<std::size_t> knee;      ///< the member, a number of a point in the report
+  std::vector<double> reference;        ///< the worst value of every aim among the points
+  double hypervolume = Metrics::unset;  ///< in the units of the aims, of what lies below the reference; NaN: more than three aims
+  /// The same as a part of the box between the best and the worst values.
+  double share = Metrics::unset;
+};
+[[nodiscard]] ExploredFront explored_front(const ExplorationReport& report);
+
+/// A self-contained page, below 2 MB whatever the number of points: maps of every figure over two variables of a grid, parallel
+/// coordinates, a scatter matrix, the front with waveforms, the effect of each variable, failures. Where not all points fit, what
+/// is drawn is thinned and the page says how; counts, effects and the front are of all points.
+[[nodiscard]] std::string exploration_html(const ExplorationReport& report);
+
+/// How many points ended how, and the front with its knee.
+[[nodiscard]] std::string exploration_text(const ExplorationReport& report);
+[[nodiscard]] nlohmann::json exploration_json(const ExplorationReport& report);
+
+/// The variables of a grid, in their order; none where the points are no grid of at least two.
+[[nodiscard]] std::vector<std::size_t> grid_variables(const ExplorationReport& report);
+
+/// The map of a figure over two variables as a picture of its own; the other variables, where there are any, stand at the middle
+/// one of their values. Throws InvalidInput where the points are no grid of these variables.
+[[nodiscard]] std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure);
+
+}  // namespace softland

@@ -1,0 +1,375 @@
+#include "studies/exploration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "base/require.h"
+#include "base/shortened.h"
+#include "model/pull_in.h"
+#include "objectives/figures.h"
+#include "studies/certify.h"
+#include "studies/choices.h"
+#include "studies/optimize.h"
+#include "studies/robustness.h"
+#include "studies/search_space.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+constexpr std::uint64_t default_devices = 500;  // of a robustness study: 2000 as the verb takes are for one drive, not for a map
+constexpr std::array shown_quantiles{0.5, 0.95};
+constexpr std::array step_figures{figure_of(&Metrics::permanent_contact_time), figure_of(&Metrics::bounce_count),
+                                  figure_of(&Metrics::major_bounce_height), figure_of(&Metrics::impact_velocity)};
+
+struct OptionRow {
+  std::string_view name;
+  PointStudy study;  // that it belongs to
+};
+constexpr std::array options{OptionRow{"certify", PointStudy::simulate},  OptionRow{"samples", PointStudy::robustness},
+                             OptionRow{"target", PointStudy::optimize},   OptionRow{"actuator", PointStudy::optimize},
+                             OptionRow{"waveform", PointStudy::optimize}, OptionRow{"optimizer", PointStudy::optimize},
+                             OptionRow{"budget", PointStudy::optimize}};
+static_assert(options.size() == std::size(plan_options));
+
+std::uint64_t whole_number(const std::string& text, std::uint64_t least, std::uint64_t most) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  require(!text.empty() && error == std::errc() && end == text.data() + text.size() && value >= least && value <= most,
+          [&] { return fmt::format("must be a whole number from {} to {}", least, most); });
+  return value;
+}
+
+/// Options of a search with their defaults.
+void complete_search(std::map<std::string, std::string>& given, const auto& checked) {
+  given.try_emplace("target", name_of(targets, Target::bounce));
+  given.try_emplace("actuator", name_of(actuators, Actuator::electrostatic));
+  given.try_emplace("waveform", "pulse");
+  given.try_emplace("optimizer", "auto");
+  const auto* target = find_named(targets, given["target"]);
+  checked("target", [&] { require(target != nullptr, [] { return fmt::format("must be {}", listed(targets)); }); });
+  const auto* actuator = find_named(actuators, given["actuator"]);
+  checked("actuator", [&] { require(actuator != nullptr, [] { return fmt::format("must be {}", listed(actuators)); }); });
+  checked("optimizer", [&] { static_cast<void>(optimizer_description(given["optimizer"])); });
+  given.try_emplace("budget", std::to_string(default_budget(target->value, actuator->value)));
+  checked("budget", [&] {
+    constexpr std::uint64_t most = 1'000'000'000;
+    try {
+      static_cast<void>(whole_number(given["budget"], 1, most));
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(std::string(error.what()) +
+                         " of evaluations for each search; a time would give every machine other searches (Ctrl-C and --resume "
+                         "divide a long exploration)");
+    }
+  });
+}
+
+/// "main.level_1_V" -> "main.level_1", "V".
+PointFigure parameter_figure(const std::string& name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> suffixes{
+      {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_s", "s"}, {"_V", "V"}}};
+  for (const auto& [suffix, unit] : suffixes) {
+    if (!name.ends_with(suffix)) continue;
+    std::string quantity = name.substr(0, name.size() - suffix.size());
+    return {.quantity = quantity, .name = quantity, .unit = std::string(unit)};
+  }
+  return {.quantity = name, .name = name, .unit = {}};
+}
+
+PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {}) {
+  return {.quantity = before + std::string(figure.quantity()),
+          .name = std::string(figure.name) + words,
+          .unit = std::string(figure.unit)};
+}
+
+/// The drives whose pull-in is told: the electrodes that pull in, or where there are none the dispersion force.
+std::vector<std::size_t> pulling_drives(const Device& device) {
+  std::vector<std::size_t> drives;
+  for (std::size_t k = 0; k < device.electrodes.size(); ++k) {
+    if (pulls_in(device, k)) drives.push_back(k);
+  }
+  if (drives.empty() && device.dispersion) drives.push_back(device.electrodes.size());
+  return drives;
+}
+
+/// The drives as straight lines: exact for steps and pulses, a thousandth of the swing for sines.
+std::map<std::string, std::vector<std::pair<double, double>>> lines_of(const Prepared& p) {
+  std::map<std::string, std::vector<std::pair<double, double>>> all;
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> signals = p.signals();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const double swing = signals[k].maximum(p.duration) - signals[k].minimum(p.duration);
+    if (names[k] != dispersion_drive) all[names[k]] = polyline(signals[k], p.duration, 1e-3 * swing, 0);
+  }
+  return all;
+}
+
+double finite(double value) { return std::isfinite(value) ? value : Metrics::unset; }
+
+/// What is said of a scene of a plan, which is no file of the user's.
+std::string without_file(std::string_view message) {
+  constexpr std::string_view file = "scene: ";
+  if (message.starts_with(file)) message.remove_prefix(file.size());
+  return std::string(message);
+}
+
+}  // namespace
+
+void complete(PlanRequest& request) {
+  const auto checked = [&](std::string_view key, auto&& check) {
+    try {
+      check();
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{}: {}", request.place(key, 0), error.what()));
+    }
+  };
+  const auto* study = find_named(point_studies, request.study);
+  checked("study", [&] { require(study != nullptr, [] { return fmt::format("must be {}", listed(point_studies)); }); });
+  for (const OptionRow& option : options) {
+    const auto given = request.options.find(std::string(option.name));
+    if (given == request.options.end() || option.study == study->value) continue;
+    checked(option.name, [&] {
+      throw InvalidInput(fmt::format("belongs to study {}, not to {}", name_of(point_studies, option.study), request.study));
+    });
+  }
+  switch (study->value) {
+    case PointStudy::simulate:
+      if (const auto certify = request.options.find("certify"); certify != request.options.end()) {
+        checked("certify", [&] { require(certify->second == "true" || certify->second == "false", "must be true or false"); });
+        if (certify->second == "false") request.options.erase(certify);
+      }
+      break;
+    case PointStudy::pull_in:
+      break;
+    case PointStudy::robustness:
+      request.options.try_emplace("samples", std::to_string(default_devices));
+      checked("samples", [&] { static_cast<void>(whole_number(request.options["samples"], 1, SamplePoints::largest_size)); });
+      break;
+    case PointStudy::optimize:
+      complete_search(request.options, checked);
+      break;
+  }
+}
+
+Exploration::Exploration(Plan plan, const Watch& watch)
+    : plan_(std::move(plan)), study_(find_named(point_studies, plan_.study())->value) {
+  for (const PlanVariable& variable : plan_.variables()) {
+    for (const PlanKey& key : variable.keys) {
+      shares_switches_ = shares_switches_ || key.path.starts_with("waveform.") || key.path.starts_with("driver.") ||
+                         key.path.starts_with("spread.") || key.path.starts_with("metrics.") || key.path == "simulate.duration";
+    }
+  }
+  list_figures(watch);
+}
+
+void Exploration::list_figures(const Watch& watch) {
+  const auto add = [&](const PointFigure& figure) { figures_.push_back(figure); };
+  const auto add_closing = [&] {
+    for (const Figure& figure : all_figures) add(figure_column(figure));
+  };
+  switch (study_) {
+    case PointStudy::simulate:
+      add_closing();
+      if (!plan_.options().contains("certify")) return;
+      for (const Figure& figure : all_figures) {
+        if (figure.has_error())
+          add({.quantity = std::string(figure.quantity()) + "_error",
+               .name = std::string(figure.name) + ", error",
+               .unit = std::string(figure.unit)});
+      }
+      return;
+    case PointStudy::pull_in: {
+      const Device device = read_scene(plan_.base()).device;
+      const std::vector<std::size_t> drives = pulling_drives(device);
+      require(!drives.empty(), "study pull-in needs an electrode that pulls in, or a dispersion force");
+      for (const std::size_t k : drives) {
+        const bool is_electrode = k < device.electrodes.size();
+        const std::string of = drives.size() > 1 ? device.electrodes[k].name + "_" : "";
+        const std::string words = drives.size() > 1 ? " of " + device.electrodes[k].name : "";
+        const std::string unit = is_electrode ? "V" : "";
+        const char *what = is_electrode ? "pull_in" : "factor", *name = is_electrode ? "pull-in" : "factor";
+        add({of + "static_" + what, std::string("Static ") + name + words, unit});
+        add({of + "dynamic_" + what, std::string("Dynamic ") + name + words, unit});
+        if (is_electrode) add({of + "release", "Release" + words, unit});
+      }
+      return;
+    }
+    case PointStudy::robustness:
+      require(!read_scene(plan_.base()).spread.empty(), "study robustness needs a [spread] in the scene: how devices differ");
+      add({"closing_yield", "Share that closes", ""});
+      add({"bounce_free_yield", "Share without a rebound", ""});
+      for (const EnsembleFigure& figure : ensemble_figures()) {
+        const std::string_view quantity =
+            figure.key.substr(0, figure.key.size() - (figure.unit.empty() ? 0 : figure.unit.size() + 1));
+        for (const double p : shown_quantiles)
+          add({fmt::format("{}_q{:g}", quantity, 100 * p), fmt::format("{}, {:g} % of devices below", figure.name, 100 * p),
+               std::string(figure.unit)});
+      }
+      return;
+    case PointStudy::optimize: {
+      add_closing();
+      add({"goal_met", "Goal met", ""});
+      add({"cost", "Cost", ""});
+      add({"plain_step_cost", "Cost of the plain step", ""});
+      for (const Figure& figure : step_figures) add(figure_column(figure, "plain_step_", ", plain step"));
+      add({"evaluations", "Evaluations", ""});
+      const Prepared base = prepared(plan_.base(), true, watch);
+      const SearchSpace space(base, find_named(actuators, plan_.options().at("actuator"))->value, plan_.options().at("waveform"),
+                              base.duration / 2);
+      for (const Variable& variable : space.variables()) {
+        parameters_.push_back(variable.name);
+        add(parameter_figure(variable.name));
+      }
+      return;
+    }
+  }
+}
+
+std::string Exploration::content(const SceneFile& scene) const {
+  std::string text = plan_.study();
+  for (const auto& [name, value] : plan_.options()) text += fmt::format("\n{}={}", name, value);
+  if (study_ == PointStudy::robustness || study_ == PointStudy::optimize) text += fmt::format("\nseed={}", plan_.seed());
+  return text + "\n\n" + scene.text();
+}
+
+std::map<std::string, std::vector<std::pair<double, double>>> Exploration::waveforms(const SceneFile& scene, const Watch& watch) {
+  try {
+    return lines_of(prepared(scene, false, watch));
+  } catch (const InvalidInput&) {
+    return {};
+  }
+}
+
+PointRow Exploration::row(const SceneFile& scene, int jobs, const Watch& watch) {
+  PointRow row;
+  try {
+    row = computed(scene, jobs, watch);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const InvalidInput& error) {
+    row = {.status = std::string(infeasible), .reason = without_file(error.what()), .figures = {}};
+  } catch (const std::exception& error) {
+    row = {.status = std::string(internal_fault), .reason = error.what(), .figures = {}};
+  }
+  watch.throw_if_stopped();  // what was cut short is no row
+  row.figures.resize(figures_.size(), Metrics::unset);
+  return row;
+}
+
+PointRow Exploration::computed(const SceneFile& scene, int jobs, const Watch& watch) {
+  switch (study_) {
+    case PointStudy::simulate:
+      return simulated(scene, jobs, watch);
+    case PointStudy::pull_in:
+      return pulled_in(scene, watch);
+    case PointStudy::robustness:
+      return on_devices(scene, jobs, watch);
+    case PointStudy::optimize:
+      break;
+  }
+  return optimized(scene, jobs, watch);
+}
+
+Prepared Exploration::prepared(const SceneFile& scene, bool default_limits, const Watch& watch) {
+  const PullInFinder finder = shares_switches_ ? pull_in_.finder(scene) : PullInFinder(electrode_pull_in);
+  return choose(prepare(scene, default_limits, watch, finder), default_limits, watch);
+}
+
+PointRow Exploration::simulated(const SceneFile& scene, int jobs, const Watch& watch) {
+  const Prepared p = prepared(scene, false, watch);
+  const bool certified = plan_.options().contains("certify");
+  const Closing closing = certified ? certify(p, watch, jobs) : simulate(p, true, watch);
+  PointRow row{.status = std::string(to_string(closing.metrics.status)), .reason = closing.trajectory.message, .figures = {}};
+  for (const Figure& figure : all_figures) row.figures.push_back(finite(figure.value(closing.metrics)));
+  if (!certified) return row;
+  for (const Figure& figure : all_figures) {
+    if (figure.has_error()) row.figures.push_back(finite(closing.errors[figure]));
+  }
+  return row;
+}
+
+PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
+  const Prepared p = prepared(scene, false, watch);
+  const Device& device = p.scene.device;
+  PointRow row{.status = std::string(to_string(Status::done)), .reason = {}, .figures = {}};
+  for (const std::size_t k : pulling_drives(device)) {
+    const bool is_electrode = k < device.electrodes.size();
+    const auto known = is_electrode ? p.pull_in.find(device.electrodes[k].name) : p.pull_in.end();
+    const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, watch);
+    const Status status = found.statically.status == Status::done ? found.dynamically.status : found.statically.status;
+    if (status != Status::done) row.status = to_string(status);
+    const double offset = is_electrode ? 0 : 1;  // the value of the dispersion force is its factor less one
+    row.figures.push_back(finite(offset + found.statically.voltage));
+    row.figures.push_back(finite(offset + found.dynamically.voltage));
+    if (is_electrode) row.figures.push_back(finite(release_voltage(p.model, k)));
+  }
+  return row;
+}
+
+PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& watch) {
+  const Prepared nominal = prepared(scene, true, watch);
+  const Robustness found =
+      robustness(nominal, {{.name = "scene", .waveforms = nominal.drives.waveforms, .calibration = nominal.scene.calibration}},
+                 {.samples = std::stoull(plan_.options().at("samples")), .seed = plan_.seed(), .jobs = jobs}, watch);
+  if (found.interrupted) throw Interrupted();
+  const DriveRobustness& own = found.drives.back();
+  PointRow row{
+      .status = std::string(to_string(Status::done)), .reason = {}, .figures = {own.closing.value, own.bounce_free.value}};
+  for (const FigureStatistics& figure : own.figures) {
+    for (const double p : shown_quantiles) {
+      const auto at = std::find(robustness_quantiles.begin(), robustness_quantiles.end(), p) - robustness_quantiles.begin();
+      row.figures.push_back(finite(figure.quantiles.at(static_cast<std::size_t>(at)).value));
+    }
+  }
+  return row;
+}
+
+PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& watch) {
+  const std::map<std::string, std::string>& asked = plan_.options();
+  OptimizeOptions search{.target = find_named(targets, asked.at("target"))->value,
+                         .actuator = find_named(actuators, asked.at("actuator"))->value,
+                         .family = asked.at("waveform"),
+                         .optimizer = asked.at("optimizer"),
+                         .max_evaluations = std::stol(asked.at("budget")),
+                         .seed = plan_.seed(),
+                         .jobs = jobs,
+                         .stop = watch.stop,
+                         // A search that was asked to stop would still verify what it has found, for a row that is not kept.
+                         .on_preparation = [&watch](std::string_view, double) { watch.throw_if_stopped(); }};
+  const OptimizeResult found = optimize(scene, search);
+  if (found.search.termination == Termination::interrupted) throw Interrupted();
+  PointRow row{.status = {}, .reason = {}, .figures = {}};
+  const Metrics figures = found.best ? found.best->metrics : Metrics{};
+  for (const Figure& figure : all_figures) row.figures.push_back(found.best ? finite(figure.value(figures)) : Metrics::unset);
+  row.figures.push_back(found.goal_met ? 1 : 0);
+  row.figures.push_back(finite(found.best_cost));
+  row.figures.push_back(finite(found.baseline_cost));
+  for (const Figure& figure : step_figures) row.figures.push_back(finite(figure.value(found.baseline.metrics)));
+  row.figures.push_back(static_cast<double>(found.search.evaluations));
+  for (const std::string& name : parameters_) {
+    const auto parameter = found.parameters.find(name);
+    row.figures.push_back(parameter == found.parameters.end() ? Metrics::unset : finite(parameter->second));
+  }
+  if (found.best_scene) {
+    row.scene = found.best_scene->scene.file.text();
+    row.waveforms = lines_of(*found.best_scene);
+  }
+  if (found.best && found.better_than_baseline) {
+    row.status = to_string(found.best->metrics.status);
+  } else {
+    row.status = no_success;
+    row.reason = found.best ? "the search found nothing better than the plain step" : "no feasible waveform was found";
+  }
+  return row;
+}
+
+}  // namespace softland

@@ -1,0 +1,97 @@
+// What an exploration computes at a point of its plan: one row of figures, and how it ended. A point depends on its scene and on
+// the options of the study only; every row is what the verb of the same name gives for the scene of its point, to the bit.
+//
+//   simulate    every figure of merit of the closing under the scene's waveforms, with `certify` their errors too. Closings run
+//               one at a time: in lanes (model/ensemble/fleet.h) their last digits would differ.
+//   pull-in     static and dynamic pull-in voltage and release voltage; of a switch without electrodes the factors of the
+//               dispersion force
+//   robustness  yields and quantiles of the figures over `samples` devices that differ as [spread] says, under the scene's own
+//               waveforms
+//   optimize    a whole search: the figures of the waveform found, its parameters, the goal, and the plain step's figures beside
+//               them
+//
+// A point is never an exception: one whose scene cannot be has the status `infeasible` and the reason, numerical trouble its own.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/choice.h"
+#include "base/watch.h"
+#include "config/plan.h"
+#include "studies/pull_in_memory.h"
+
+namespace softland {
+
+enum class PointStudy { simulate, pull_in, robustness, optimize };
+inline constexpr auto point_studies = std::to_array<Named<PointStudy>>({{PointStudy::simulate, "simulate"},
+                                                                        {PointStudy::pull_in, "pull-in"},
+                                                                        {PointStudy::robustness, "robustness"},
+                                                                        {PointStudy::optimize, "optimize"}});
+static_assert(is_complete<point_studies>());
+
+/// A column of figures.
+struct PointFigure {
+  std::string quantity;  ///< "impact_velocity"
+  std::string name;      ///< for people: "Impact speed"
+  std::string unit;      ///< of SI; empty for a count, a share, yes or no (1 or 0)
+};
+
+/// Status of a point whose scene cannot be, or cannot be studied: the reason says why.
+inline constexpr std::string_view infeasible = "infeasible";
+/// Of one where the program itself went wrong.
+inline constexpr std::string_view internal_fault = "internal_error";
+/// Of a search that found nothing better than the plain step.
+inline constexpr std::string_view no_success = "no_success";
+
+struct PointRow {
+  std::string status;
+  std::string reason = {};
+  std::vector<double> figures;  ///< as Exploration::figures(); NaN: there is none
+  std::string scene = {};       ///< of a search: that of its waveform, which `simulate` runs to the same figures
+  /// Of a search: what drives it, as straight lines to look at [s], [V], by drive.
+  std::map<std::string, std::vector<std::pair<double, double>>> waveforms = {};
+};
+
+/// Checks the study and its options, and writes out those that are not given, so that the plan does not hang on a default. Throws
+/// InvalidInput, beginning with the place of the entry.
+void complete(PlanRequest& request);
+
+class Exploration {
+ public:
+  /// The plan's study must be complete. Throws InvalidInput where the scene of the plan lacks what the study needs.
+  explicit Exploration(Plan plan, const Watch& watch = {});
+
+  [[nodiscard]] const Plan& plan() const { return plan_; }
+  [[nodiscard]] const std::vector<PointFigure>& figures() const { return figures_; }
+  /// Everything that decides the row of a scene: equal texts have equal rows.
+  [[nodiscard]] std::string content(const SceneFile& scene) const;
+  /// The drives of a scene of the plan as broken lines [s, V]; none where the scene cannot be.
+  [[nodiscard]] std::map<std::string, std::vector<std::pair<double, double>>> waveforms(const SceneFile& scene,
+                                                                                        const Watch& watch = {});
+  /// The row of a scene of the plan. May be called on any thread; `jobs` more of them for one point do not change it. Throws
+  /// Interrupted where `watch` asks to stop.
+  [[nodiscard]] PointRow row(const SceneFile& scene, int jobs = 1, const Watch& watch = {});
+
+ private:
+  void list_figures(const Watch& watch);
+  [[nodiscard]] PointRow computed(const SceneFile& scene, int jobs, const Watch& watch);
+  [[nodiscard]] PointRow simulated(const SceneFile& scene, int jobs, const Watch& watch);
+  [[nodiscard]] PointRow pulled_in(const SceneFile& scene, const Watch& watch);
+  [[nodiscard]] PointRow on_devices(const SceneFile& scene, int jobs, const Watch& watch);
+  [[nodiscard]] PointRow optimized(const SceneFile& scene, int jobs, const Watch& watch);
+  [[nodiscard]] Prepared prepared(const SceneFile& scene, bool default_limits, const Watch& watch);
+
+  Plan plan_;
+  PointStudy study_;
+  std::vector<PointFigure> figures_;
+  std::vector<std::string> parameters_;  // of a search
+  bool shares_switches_ = false;         // points of the plan may have the same switch
+  PullInMemory pull_in_;
+};
+
+}  // namespace softland

@@ -1,0 +1,45 @@
+#include "studies/pull_in_memory.h"
+
+#include <exception>
+#include <utility>
+
+namespace softland {
+
+PullInFinder PullInMemory::finder(const SceneFile& scene) {
+  SceneFile same = scene;
+  for (const char* path : {"title", "waveform", "driver", "metrics", "spread", "calibration", "simulate.duration"})
+    same.erase(path);
+  return [this, text = same.text()](const Switch& model, std::size_t electrode, const Watch& watch) {
+    return find(text, model, electrode, watch);
+  };
+}
+
+ElectrodePullIn PullInMemory::find(const std::string& switch_text, const Switch& model, std::size_t electrode,
+                                   const Watch& watch) {
+  std::string key = switch_text + std::to_string(electrode);
+  std::promise<ElectrodePullIn> mine;
+  {
+    std::unique_lock lock(mutex_);
+    if (const auto found = known_.find(key); found != known_.end()) {
+      const std::shared_future<ElectrodePullIn> known = found->second;
+      lock.unlock();
+      return known.get();
+    }
+    known_.emplace(key, mine.get_future().share());
+    order_.push_back(std::move(key));
+    if (order_.size() > most_remembered) {
+      known_.erase(order_.front());
+      order_.pop_front();
+    }
+  }
+  try {
+    const ElectrodePullIn found = electrode_pull_in(model, electrode, watch);
+    mine.set_value(found);
+    return found;
+  } catch (...) {
+    mine.set_exception(std::current_exception());
+    throw;
+  }
+}
+
+}  // namespace softland
