@@ -261,6 +261,8 @@ std::string legend(const HeatMap& map, const ColourRange& range, const Prefix& p
   for (const double tick : ticks(axis, 8))
     out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 22, axis.pixel(tick) + 4,
                        plain_number(tick / prefix.factor, 5));
+  if (!map.unit.empty())
+    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}{}</text>\n", x, bottom + 32, prefix.symbol, escaped(map.unit));
   if (range.cut_above) out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">and above</text>\n", x, above - 3);
   if (range.cut_below) out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">and below</text>\n", x, bottom + 14);
   std::set<std::size_t> marked;

@@ -154,6 +154,24 @@ TEST(Plan, IsItsTextWhichReadsBackToIt) {
   }
 }
 
+TEST(Plan, OfASearchHasABoxAndFiguresInsteadOfPoints) {
+  PlanRequest asked =
+      request({"structure.length=245 um:275 um", "gas.viscosity=1e-6 Pa s:1e-4 Pa s:log", "structure.modes=2:6"}, "nsga2:300");
+  EXPECT_THROW((void)Plan(asked), InvalidInput) << "it needs its figures";
+  asked.pareto = "initial_contact_time,impact_velocity";
+  const Plan p(asked), again = read_again(p);
+  EXPECT_TRUE(again.is_search());
+  EXPECT_EQ(again.points(), 300U);
+  EXPECT_EQ(again.pareto(), asked.pareto);
+  EXPECT_EQ(again.text(), p.text());
+  EXPECT_EQ(p.values_in_box({0, 0, 0}), (std::vector<double>{245e-6, 1e-6, 2}));
+  EXPECT_EQ(p.values_in_box({1, 1, 1}), (std::vector<double>{275e-6, 1e-4, 6}));
+  EXPECT_EQ(p.values_in_box({0.5, 0.5, 0.5}), (std::vector<double>{260e-6, 1e-5, 4}));
+  EXPECT_THROW((void)p.values(0), InvalidInput);
+  asked.sample = "sobol:300";
+  EXPECT_THROW((void)Plan(asked), InvalidInput) << "figures belong to a search";
+}
+
 TEST(Plan, IsTheSameHoweverItIsWritten) {
   PlanRequest one = request({"structure.length=245 um:275 um:4"}),
               other = request({"structure.length=0.000245m,255um,265 um,0.275 mm"});

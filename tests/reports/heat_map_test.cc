@@ -123,6 +123,7 @@ TEST(HeatMap, IsWellFormedWithAxesInTheirUnitsAndMarkedCells) {
   EXPECT_EQ(test::xml_fault(svg), "");
   EXPECT_THAT(svg, HasSubstr("structure.length (µm)"));
   EXPECT_THAT(svg, HasSubstr("gap.contact (µm)"));
+  EXPECT_THAT(svg, HasSubstr(">mm/s<"));
   EXPECT_THAT(svg, HasSubstr("fill=\"url(#reason-1)\""));
   EXPECT_THAT(svg, HasSubstr(">no contact<"));
   EXPECT_THAT(svg, Not(HasSubstr(">not computed<"))) << "no cell is";
