@@ -28,7 +28,7 @@ constexpr auto signs = std::to_array<Sign>({{"<=", Comparison::at_most},
                                             {">", Comparison::above},
                                             {"=", Comparison::equal}});
 
-std::string_view trimmed(std::string_view text) {
+std::string_view unquoted(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\"'"), end = text.find_last_not_of(" \t\"'");
   return begin == std::string_view::npos ? std::string_view() : text.substr(begin, end - begin + 1);
 }
@@ -75,12 +75,12 @@ bool Criterion::holds(double value) const {
 }
 
 Criterion parse_criterion(std::string_view text, std::span<const FigureName> figures) {
-  const std::string_view all = trimmed(text);
+  const std::string_view all = unquoted(text);
   const std::size_t at = all.find_first_of("<>=");
   require(at != std::string_view::npos,
           [&] { return fmt::format("'{}' is no condition: write a figure, <, <=, ==, >= or >, and a value", all); });
   const auto sign = std::find_if(signs.begin(), signs.end(), [&](const Sign& s) { return all.substr(at).starts_with(s.text); });
-  const std::string_view name = trimmed(all.substr(0, at)), value = trimmed(all.substr(at + sign->text.size()));
+  const std::string_view name = unquoted(all.substr(0, at)), value = unquoted(all.substr(at + sign->text.size()));
 
   std::vector<std::string> names;
   for (const FigureName& f : figures) names.push_back(quantity_name(f));

@@ -13,7 +13,7 @@
 namespace softland {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 bool is_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
@@ -27,7 +27,7 @@ void require_length(std::span<const double> point, std::size_t objectives) {
 /// lies everything above y that is dominated.
 class Staircase {
  public:
-  Staircase(double x_reference, double y_reference) : steps_{{-infinity, y_reference}, {x_reference, -infinity}} {}
+  Staircase(double x_reference, double y_reference) : steps_{{-unbounded, y_reference}, {x_reference, -unbounded}} {}
 
   /// The point lies below the corner in both objectives.
   void insert(double x, double y) {
@@ -110,7 +110,7 @@ double hypervolume(std::span<const Objectives> points, std::span<const double> r
 std::vector<ObjectiveRange> objective_ranges(std::span<const Objectives> points) {
   std::vector<ObjectiveRange> ranges;
   for (const Objectives& point : points) {
-    if (ranges.empty()) ranges.assign(point.size(), {infinity, -infinity});
+    if (ranges.empty()) ranges.assign(point.size(), {unbounded, -unbounded});
     require_length(point, ranges.size());
     for (std::size_t i = 0; i < point.size(); ++i) {
       ranges[i].lowest = std::min(ranges[i].lowest, point[i]);

@@ -309,11 +309,23 @@ class RobustSearch {
 
 namespace {
 
+// Candidates are ranked by closings of this accuracy at best; the verdict has that of the scene.
+constexpr double ranking_accuracy = 1e-4;
+
+Prepared for_ranking(const Prepared& given) {
+  Prepared coarse = given;
+  coarse.quadrature.points_per_length = std::min(
+      given.quadrature.points_per_length, quadrature_for(ranking_accuracy, given.scene.device.structure.modes).points_per_length);
+  coarse.model = Switch(coarse.scene.device, coarse.quadrature);
+  return coarse;
+}
+
 // The devices of a search, of the comparison of what it finds, of nothing else: which ones they are depends on the seed.
 BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, const OptimizeOptions& options,
                           std::uint64_t count, std::uint64_t which, const Watch& watch) {
   const std::uint64_t seed = fresh_seed(options.seed, which);
-  return build_all(Ensemble(setting.given, count, seed), known, seed, options.jobs, watch);
+  const Prepared nominal = for_ranking(setting.given);
+  return build_all(Ensemble(nominal, count, seed), known, seed, options.jobs, watch);
 }
 
 // The best of the candidates on devices that none of them was made for.
