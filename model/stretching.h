@@ -12,33 +12,63 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
+#include <cstddef>
+#include <vector>
 
 namespace softland {
 
-struct MidPlaneStretching {
-  Eigen::MatrixXd slopes;  ///< G [1/(kg m)]
-  double stiffness = 0;    ///< EA/(2 L) [N/m]
-
-  using Coordinates = Eigen::Map<const Eigen::VectorXd>;
+/// Over the scalar P of its parameters; the scalar S of the state can be made of P.
+template <class P>
+struct MidPlaneStretchingOf {
+  std::size_t modes = 0;
+  std::vector<P> slopes = {};  ///< G [1/(kg m)], column by column
+  P stiffness = P(0);          ///< EA/(2 L) [N/m]
 
   /// result += Q
-  void add_force(const double* q, double* result) const {
-    const Eigen::Index n = slopes.rows();
-    double strain = 0;  // q'G q
-    for (Eigen::Index i = 0; i < n; ++i) strain += q[i] * slopes.col(i).dot(Coordinates(q, n));
-    for (Eigen::Index i = 0; i < n; ++i) result[i] -= stiffness * strain * slopes.col(i).dot(Coordinates(q, n));
+  template <class S>
+  void add_force(const S* q, S* result) const {
+    const S strain = strain_of(q);
+    for (std::size_t i = 0; i < modes; ++i) result[i] = result[i] - S(stiffness) * strain * pull(i, q);
   }
   /// by_q += dQ/dq
-  void add_derivative(const double* q, Eigen::Ref<Eigen::MatrixXd> by_q) const {
-    const Coordinates at(q, slopes.rows());
-    const Eigen::VectorXd pull = slopes * at;
-    by_q -= stiffness * (at.dot(pull) * slopes + 2 * pull * pull.transpose());
+  void add_derivative(const double* q, Eigen::Ref<Eigen::MatrixXd> by_q) const requires std::same_as<P, double> {
+    const auto n = static_cast<Eigen::Index>(modes);
+    const Eigen::Map<const Eigen::MatrixXd> g(slopes.data(), n, n);
+    const Coordinates at(q, n);
+    const Eigen::VectorXd pulls = g * at;
+    by_q -= stiffness * (at.dot(pulls) * g + 2 * pulls * pulls.transpose());
   }
-  [[nodiscard]] double energy(const double* q) const {
-    const Coordinates at(q, slopes.rows());
-    const double strain = at.dot(slopes * at);
-    return stiffness / 4 * strain * strain;
+  template <class S>
+  [[nodiscard]] S energy(const S* q) const {
+    const S strain = strain_of(q);
+    return S(stiffness) / S(4) * strain * strain;
+  }
+
+ private:
+  using Coordinates = Eigen::Map<const Eigen::VectorXd>;
+
+  // (G q)_i; of plain numbers several at once.
+  template <class S>
+  [[nodiscard]] S pull(std::size_t i, const S* q) const {
+    const P* column = slopes.data() + i * modes;
+    if constexpr (std::same_as<P, double> && std::same_as<S, double>) {
+      const auto n = static_cast<Eigen::Index>(modes);
+      return Coordinates(column, n).dot(Coordinates(q, n));
+    } else {
+      S sum = S(0);
+      for (std::size_t j = 0; j < modes; ++j) sum = sum + S(column[j]) * q[j];
+      return sum;
+    }
+  }
+  // q'G q
+  template <class S>
+  [[nodiscard]] S strain_of(const S* q) const {
+    S sum = S(0);
+    for (std::size_t i = 0; i < modes; ++i) sum = sum + q[i] * pull(i, q);
+    return sum;
   }
 };
+using MidPlaneStretching = MidPlaneStretchingOf<double>;
 
 }  // namespace softland

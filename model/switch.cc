@@ -169,7 +169,10 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
                          like != nullptr ? like->frame_->modes : nullptr);
     move_in(beam, options.points_per_length, 3, like);
     if (s.kind == StructureKind::clamped_clamped && s.stretching) {
-      stretching_ = {.slopes = beam.slope_products(), .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};
+      const Eigen::MatrixXd slopes = beam.slope_products();
+      stretching_ = {.modes = static_cast<std::size_t>(slopes.rows()),
+                     .slopes = std::vector<double>(slopes.data(), slopes.data() + slopes.size()),
+                     .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};
     }
   }
   const Eigen::Index n = points();

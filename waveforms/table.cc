@@ -5,7 +5,6 @@
 #include <cmath>
 #include <span>
 #include <string_view>
-#include <utility>
 
 #include "base/csv.h"
 #include "base/read_file.h"
@@ -19,8 +18,6 @@ Signal signal(const Table& table) {
           fmt::format("a table has {} times and {} voltages; there must be as many of both", count, table.voltage.size()));
   require(count >= 1, "a table has no rows; there must be at least one");
   require(table.time.front() == 0, fmt::format("the time of the first row of a table is {} s; it must be 0", table.time.front()));
-  std::vector<std::pair<double, double>> points;
-  points.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     if (!(std::isfinite(table.time[i]) && (i == 0 || table.time[i] >= table.time[i - 1]))) {
       throw InvalidInput(fmt::format("the time of row {} of a table is {} s; it must be finite and not before the row above",
@@ -29,9 +26,8 @@ Signal signal(const Table& table) {
     if (!std::isfinite(table.voltage[i])) {
       throw InvalidInput(fmt::format("the voltage of row {} of a table is {} V; it must be finite", i + 1, table.voltage[i]));
     }
-    points.emplace_back(table.time[i], table.voltage[i]);
   }
-  return Signal::piecewise_linear(points);
+  return Signal::piecewise_linear(points(table));
 }
 
 Table read_table(const std::string& file, const std::string& drive) { return parse_table(read_file(file), file, drive); }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "waveforms/parameter.h"
@@ -11,10 +13,12 @@
 
 namespace softland {
 
-struct Table {
-  std::vector<double> time = {};     ///< [s], from 0 on, not decreasing
-  std::vector<double> voltage = {};  ///< [V]
+template <class P>
+struct TableOf {
+  std::vector<P> time = {};     ///< [s], from 0 on, not decreasing
+  std::vector<P> voltage = {};  ///< [V]
 };
+using Table = TableOf<double>;
 
 template <>
 struct FamilyOf<Table> {
@@ -26,6 +30,19 @@ struct FamilyOf<Table> {
   });
 };
 
+/// The points [s, V] that straight lines connect, of a valid table.
+template <class P>
+[[nodiscard]] std::vector<std::pair<P, P>> points(const TableOf<P>& table) {
+  std::vector<std::pair<P, P>> all;
+  all.reserve(table.time.size());
+  for (std::size_t i = 0; i < table.time.size(); ++i) all.emplace_back(table.time[i], table.voltage[i]);
+  return all;
+}
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const TableOf<P>& table) {
+  return internal::straight_pieces(points(table));
+}
+/// Throws InvalidInput.
 [[nodiscard]] Signal signal(const Table& table);
 
 /// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file,

@@ -8,7 +8,7 @@
 namespace softland {
 namespace {
 
-constexpr int degree = 2 * ReynoldsFilm::nodes;  // of the polynomials across the whole width
+constexpr int degree = 2 * internal::StripNodes::count;  // of the polynomials across the whole width
 
 double legendre(double x) {
   double before = 1, last = x;
@@ -37,13 +37,9 @@ double free_energy(double p) { return (1 + p) * std::log1p(p) - p; }
 
 }  // namespace
 
-ReynoldsFilm::ReynoldsFilm(const Gas& gas, double width, Eigen::Index stations, double floor)
-    : stations_(stations),
-      floor_(floor),
-      ambient_(gas.pressure),
-      half_width_(width / 2),
-      diffusion_(gas.pressure / (12 * viscosity(gas) * half_width_ * half_width_)),
-      slip_(6 * mean_free_path(gas)) {
+namespace internal {
+
+StripNodes strip_nodes() {
   const Eigen::VectorXd x = lobatto_points();
   Eigen::VectorXd at(degree + 1), weights(degree + 1);
   for (int i = 0; i <= degree; ++i) {
@@ -57,24 +53,30 @@ ReynoldsFilm::ReynoldsFilm(const Gas& gas, double width, Eigen::Index stations, 
     }
     slope(i, i) = -slope.row(i).sum();  // a constant has no slope
   }
-  // Nodes from the middle (0) to the last one inside the edge, each standing for its mirror image as well.
-  Eigen::MatrixXd unfold = Eigen::MatrixXd::Zero(degree + 1, nodes);
-  for (int i = 0; i < nodes; ++i) unfold(nodes + i, i) = unfold(nodes - i, i) = 1;
-  weights_ = unfold.transpose() * weights;
+  constexpr int count = StripNodes::count;
+  Eigen::MatrixXd unfold = Eigen::MatrixXd::Zero(degree + 1, count);
+  for (int i = 0; i < count; ++i) unfold(count + i, i) = unfold(count - i, i) = 1;
+  StripNodes nodes;
+  nodes.weights = unfold.transpose() * weights;
   const Eigen::MatrixXd inward = slope * unfold;
-  exchange_ = -(weights_.cwiseInverse().asDiagonal() * (inward.transpose() * weights.asDiagonal() * inward));
-  load_by_film_ = -ambient_ * half_width_ * weights_;
+  nodes.exchange = -(nodes.weights.cwiseInverse().asDiagonal() * (inward.transpose() * weights.asDiagonal() * inward));
+  return nodes;
 }
+
+}  // namespace internal
+
+ReynoldsFilm::ReynoldsFilm(const Gas& gas, double width, Eigen::Index stations, double floor)
+    : stations_(stations), floor_(floor), station_(gas.pressure, viscosity(gas), mean_free_path(gas), width) {}
 
 void ReynoldsFilm::add_load(const double* film, double* load) const {
   for (Eigen::Index s = 0; s < stations_; ++s, film += nodes) {
-    for (int i = 0; i < nodes; ++i) load[s] += load_by_film_[i] * film[i];
+    station_.add_load(film, load[s]);
   }
 }
 
 void ReynoldsFilm::rates(const GapField& field, const double* film, double* result) const {
   for (Eigen::Index s = 0; s < stations_; ++s, film += nodes, result += nodes) {
-    station(above_floor(field.gap[s]), field.velocity[s], film, result);
+    station_.rates(above_floor(field.gap[s]), field.velocity[s], film, result);
   }
 }
 
@@ -83,7 +85,7 @@ ReynoldsFilm::Derivatives ReynoldsFilm::derivatives(double gap, double velocity,
   std::array<Dual, nodes> at, rate;
   for (std::size_t i = 0; i < nodes; ++i) at[i] = Dual(film[i]);
   const auto slopes = [&](double by_gap, double by_velocity) {
-    station(Dual(above_floor(gap), by_gap), Dual(velocity, by_velocity), at.data(), rate.data());
+    station_.rates(Dual(above_floor(gap), by_gap), Dual(velocity, by_velocity), at.data(), rate.data());
     Eigen::Matrix<double, nodes, 1> column;
     for (std::size_t i = 0; i < nodes; ++i) column[static_cast<int>(i)] = rate[i].slope;
     return column;
@@ -102,23 +104,23 @@ double ReynoldsFilm::energy(const GapField& field, const Eigen::ArrayXd& weights
   double sum = 0;
   for (Eigen::Index s = 0; s < stations_; ++s, film += nodes) {
     double across = 0;
-    for (int i = 0; i < nodes; ++i) across += weights_[i] * free_energy(film[i]);
+    for (int i = 0; i < nodes; ++i) across += station_.weights()[i] * free_energy(film[i]);
     sum += weights[s] * above_floor(field.gap[s]) * across;
   }
-  return ambient_ * half_width_ * sum;
+  return station_.ambient() * station_.half_width() * sum;
 }
 
 double ReynoldsFilm::dissipated_power(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const {
   double sum = 0;
   std::array<double, nodes> in;
   for (Eigen::Index s = 0; s < stations_; ++s, film += nodes) {
-    flow(film, in.data());
+    station_.flow(film, in.data());
     double across = 0;
-    for (int i = 0; i < nodes; ++i) across -= weights_[i] * std::log1p(film[i]) * in[static_cast<std::size_t>(i)];
+    for (int i = 0; i < nodes; ++i) across -= station_.weights()[i] * std::log1p(film[i]) * in[static_cast<std::size_t>(i)];
     const double gap = above_floor(field.gap[s]);
-    sum += weights[s] * gap * diffusion(gap) * across;
+    sum += weights[s] * gap * station_.diffusion(gap) * across;
   }
-  return ambient_ * half_width_ * sum;
+  return station_.ambient() * station_.half_width() * sum;
 }
 
 }  // namespace softland

@@ -21,6 +21,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -29,9 +30,82 @@
 
 namespace softland {
 
+namespace internal {
+
+/// Points across a strip, from the middle to the last one inside the edge, each standing for its mirror image as well.
+struct StripNodes {
+  static constexpr int count = 4;
+  Eigen::Matrix<double, count, 1> weights;       ///< over both halves, in units of a/2
+  Eigen::Matrix<double, count, count> exchange;  ///< flow into every node by P + P^2/2 of each, for a unit diffusion
+};
+[[nodiscard]] StripNodes strip_nodes();
+
+}  // namespace internal
+
+/// The film of one station, over the scalar P of its parameters; the scalar S of gap, velocity and pressures can be made of P.
+template <class P>
+class ReynoldsStationOf {
+ public:
+  static constexpr int nodes = internal::StripNodes::count;
+
+  /// Ambient pressure [Pa], viscosity [Pa s], mean free path [m], width [m].
+  ReynoldsStationOf(P pressure, P viscosity, P mean_free_path, P width)
+      : nodes_(internal::strip_nodes()),
+        ambient_(pressure),
+        half_width_(width / P(2)),
+        diffusion_(pressure / (P(12) * viscosity * half_width_ * half_width_)),
+        slip_(P(6) * mean_free_path) {
+    for (int i = 0; i < nodes; ++i) load_by_film_[static_cast<std::size_t>(i)] = -ambient_ * half_width_ * P(nodes_.weights[i]);
+  }
+
+  /// load += f [N/m]
+  template <class S>
+  void add_load(const S* film, S& load) const {
+    for (std::size_t i = 0; i < nodes; ++i) load = load + S(load_by_film_[i]) * film[i];
+  }
+  /// dP/dt [1/s]
+  template <class S>
+  void rates(const S& gap, const S& velocity, const S* film, S* result) const {
+    const S squeezing = velocity / gap, mixing = diffusion(gap);
+    flow(film, result);
+    for (int i = 0; i < nodes; ++i) result[i] = (S(1) + film[i]) * squeezing + mixing * result[i];
+  }
+  /// Flow into every node for a unit diffusion: the exchange times (P + P^2/2).
+  template <class S>
+  void flow(const S* film, S* result) const {
+    std::array<S, nodes> half_squares;
+    for (std::size_t j = 0; j < nodes; ++j) half_squares[j] = film[j] + S(0.5) * film[j] * film[j];
+    for (std::size_t i = 0; i < nodes; ++i) {
+      S sum(0);
+      for (std::size_t j = 0; j < nodes; ++j) {
+        sum = sum + S(nodes_.exchange(static_cast<int>(i), static_cast<int>(j))) * half_squares[j];
+      }
+      result[i] = sum;
+    }
+  }
+  /// pa (h^2 + 6 lambda h)/(12 mu (a/2)^2) [1/s]
+  template <class S>
+  [[nodiscard]] S diffusion(const S& gap) const {
+    return S(diffusion_) * gap * (gap + S(slip_));
+  }
+
+  [[nodiscard]] const P& ambient() const { return ambient_; }
+  [[nodiscard]] const P& half_width() const { return half_width_; }
+  /// Of the nodes, over both halves, in units of a/2.
+  [[nodiscard]] const Eigen::Matrix<double, nodes, 1>& weights() const { return nodes_.weights; }
+  /// df/dP [N/m]
+  [[nodiscard]] const std::array<P, nodes>& load_by_film() const { return load_by_film_; }
+
+ private:
+  internal::StripNodes nodes_;
+  P ambient_, half_width_, diffusion_, slip_;
+  std::array<P, nodes> load_by_film_;
+};
+
 class ReynoldsFilm {
  public:
-  static constexpr int nodes = 4;  ///< pressures per station
+  using Station = ReynoldsStationOf<double>;
+  static constexpr int nodes = Station::nodes;  ///< pressures per station
 
   /// `stations` are the points of the beam, in order; gaps below `floor` [m] count as that.
   ReynoldsFilm(const Gas& gas, double width, Eigen::Index stations, double floor);
@@ -49,46 +123,22 @@ class ReynoldsFilm {
   };
   [[nodiscard]] Derivatives derivatives(double gap, double velocity, const double* film) const;
   /// df/dP [N/m], the same at every station.
-  [[nodiscard]] const Eigen::Matrix<double, nodes, 1>& load_by_film() const { return load_by_film_; }
+  [[nodiscard]] Eigen::Matrix<double, nodes, 1> load_by_film() const {
+    return Eigen::Map<const Eigen::Matrix<double, nodes, 1>>(station_.load_by_film().data());
+  }
   /// Integral of U over stations with these weights [J].
   [[nodiscard]] double energy(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
   /// Integral of D [W].
   [[nodiscard]] double dissipated_power(const GapField& field, const Eigen::ArrayXd& weights, const double* film) const;
   /// Ambient pressure [Pa]
-  [[nodiscard]] double ambient() const { return ambient_; }
+  [[nodiscard]] double ambient() const { return station_.ambient(); }
 
  private:
-  // Flow into every node: exchange_ times (P + P^2/2), for a unit diffusion.
-  template <class S>
-  void flow(const S* film, S* result) const {
-    std::array<S, nodes> half_squares;
-    for (std::size_t j = 0; j < nodes; ++j) half_squares[j] = film[j] + S(0.5) * film[j] * film[j];
-    for (std::size_t i = 0; i < nodes; ++i) {
-      S sum(0);
-      for (std::size_t j = 0; j < nodes; ++j) {
-        sum = sum + S(exchange_(static_cast<int>(i), static_cast<int>(j))) * half_squares[j];
-      }
-      result[i] = sum;
-    }
-  }
-  // pa (h^2 + 6 lambda h)/(12 mu (a/2)^2) [1/s]
-  template <class S>
-  S diffusion(S gap) const {
-    return S(diffusion_) * gap * (gap + S(slip_));
-  }
-  template <class S>
-  void station(S gap, S velocity, const S* film, S* result) const {
-    const S squeezing = velocity / gap, mixing = diffusion(gap);
-    flow(film, result);
-    for (int i = 0; i < nodes; ++i) result[i] = (S(1) + film[i]) * squeezing + mixing * result[i];
-  }
   [[nodiscard]] double above_floor(double gap) const { return std::max(gap, floor_); }
 
   Eigen::Index stations_;
-  double floor_, ambient_, half_width_, diffusion_, slip_;
-  Eigen::Matrix<double, nodes, nodes> exchange_;
-  Eigen::Matrix<double, nodes, 1> weights_;  // over both halves, in units of a/2
-  Eigen::Matrix<double, nodes, 1> load_by_film_;
+  double floor_;
+  Station station_;
 };
 
 }  // namespace softland

@@ -16,6 +16,8 @@
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
 #include "model/gas/gas_law.h"
+#include "model/gas/reynolds_film.h"
+#include "model/stretching.h"
 
 namespace softland::scalars_test {
 namespace {
@@ -74,6 +76,22 @@ struct GuoAlexeenko : PerLength<GuoAlexeenko> {
   template <class P>
   static auto make(const std::array<P, 3>& p) {
     return GuoAlexeenkoFilmOf<P>{.mean_free_path = p[0], .width = p[1], .thickness = p[2]};
+  }
+};
+/// A rate of the film's own unknowns, and its load, which do not lean on the same parameters.
+template <bool rate>
+struct Compressible {
+  static constexpr std::array parameters{101325.0, 1.8e-5, 65e-9, 20e-6};
+  static constexpr auto& states = gaps;
+  template <class P, class S>
+  static S act(const std::array<P, 4>& p, S gap, S velocity) {
+    const ReynoldsStationOf<P> station(p[0], p[1], p[2], p[3]);
+    const std::array<S, 4> film{S(0.3), S(0.2), velocity, S(-0.1)};
+    std::array<S, 4> rates;
+    station.rates(gap, velocity, film.data(), rates.data());
+    S load = S(0);
+    station.add_load(film.data(), load);
+    return rate ? rates[1] : load;
   }
 };
 struct Damper : PerLength<Damper> {
@@ -252,14 +270,30 @@ struct Repulsive : AtContact<Repulsive> {
   }
 };
 
+/// Of two modes: the force on the second one, and the energy.
+template <bool energy>
+struct Stretched {
+  static constexpr std::array parameters{3e5, -2e4, 8e5, 40.0};
+  static constexpr std::array states{State{2e-9, 3e-9}, State{1e-9, -2e-9}, State{-4e-9, 1e-9}, State{0.5e-9, 5e-9}};
+  template <class P, class S>
+  static S act(const std::array<P, 4>& p, S first, S second) {
+    const MidPlaneStretchingOf<P> law{.modes = 2, .slopes = {p[0], p[1], p[1], p[2]}, .stiffness = p[3]};
+    const std::array<S, 2> q{first, second};
+    std::array<S, 2> force{S(0), S(0)};
+    law.add_force(q.data(), force.data());
+    return energy ? law.energy(q.data()) : force[1];
+  }
+};
+
 template <class Law>
 class ScalarsOf : public testing::Test {};
 using Laws =
     testing::Types<Strip, Slit, Rarefied<VeijolaFilmOf>, Rarefied<GallisTorczynskiFilmOf>, Rarefied<NearContactFilmOf>,
-                   Rarefied<SlipFilmOf>, GuoAlexeenko, Damper, OfWidth<NoFringingOf>, OfWidth<LinearFringingOf>,
-                   OfSection<MeijsFokkemaFringingOf>, OfSection<Bao2001FringingOf>, OnBothSides, FarFilm, Retarded<IdealCasimir>,
-                   Retarded<GoldCasimir>, Hamaker, SmallerOne<IdealCasimir>, SmallerOne<GoldCasimir>, Spring, Uniform, Gaussian,
-                   Adhesive, Damped, Yielding<ZmcAsperity>, Yielding<KogutEtsionAsperity>, Remembering, Repulsive>;
+                   Rarefied<SlipFilmOf>, GuoAlexeenko, Compressible<true>, Compressible<false>, Stretched<true>, Stretched<false>,
+                   Damper, OfWidth<NoFringingOf>, OfWidth<LinearFringingOf>, OfSection<MeijsFokkemaFringingOf>,
+                   OfSection<Bao2001FringingOf>, OnBothSides, FarFilm, Retarded<IdealCasimir>, Retarded<GoldCasimir>, Hamaker,
+                   SmallerOne<IdealCasimir>, SmallerOne<GoldCasimir>, Spring, Uniform, Gaussian, Adhesive, Damped,
+                   Yielding<ZmcAsperity>, Yielding<KogutEtsionAsperity>, Remembering, Repulsive>;
 TYPED_TEST_SUITE(ScalarsOf, Laws);
 
 /// The parameters of a law, the k-th device's each some per cent off the last one's.
