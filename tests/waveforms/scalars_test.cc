@@ -108,28 +108,12 @@ struct ASilentHarmonic {
   }
 };
 
-/// The rows of a table over another scalar.
-template <class P>
-struct Rows {
-  std::vector<std::pair<P, P>> points;
-};
-template <class P>
-Pieces<P> pieces(const Rows<P>& rows) {
-  return internal::straight_pieces(rows.points);
-}
 /// With a jump: two rows of the same time.
 struct ATable {
   static constexpr std::array parameters{5.0, 40.0, 10.0, 30.0, 10e-6, 25e-6, 50e-6};
   template <class P>
   static auto make(const std::array<P, 7>& p) {
-    const std::vector<P> time{P(0), p[4], p[5], p[5], p[6]}, voltage{p[0], p[1], p[1] + P(1), p[2], p[3]};
-    if constexpr (std::same_as<P, double>) {
-      return Table{.time = time, .voltage = voltage};
-    } else {
-      Rows<P> rows;
-      for (std::size_t i = 0; i < time.size(); ++i) rows.points.emplace_back(time[i], voltage[i]);
-      return rows;
-    }
+    return TableOf<P>{.time = {P(0), p[4], p[5], p[5], p[6]}, .voltage = {p[0], p[1], p[1] + P(1), p[2], p[3]}};
   }
 };
 
