@@ -4,11 +4,8 @@
 
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <experimental/simd>
-#include <utility>
-#include <vector>
 
 #include "base/require.h"
 #include "waveforms/harmonic.h"
