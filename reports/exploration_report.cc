@@ -200,6 +200,13 @@ json point_json(const ExplorationReport& report, std::size_t k) {
 
 }  // namespace
 
+bool goes_by(const ExploredColumn& column, const std::string& name) {
+  const std::string& key = column.key;
+  const bool without_unit =
+      !column.unit.empty() && key.starts_with(name + "_") && key.size() - name.size() <= column.unit.size() + 1;
+  return key == name || column.name == name || without_unit;
+}
+
 std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list,
                                        std::string_view option) {
   std::vector<ExploredAim> aims;
@@ -209,12 +216,8 @@ std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& column
     begin = end + 1;
     ExploredAim aim{.is_largest = name.starts_with(largest_mark)};
     if (aim.is_largest) name.erase(0, largest_mark.size());
-    const auto is_it = [&](const ExploredColumn& c) {
-      const bool without_unit = c.key.starts_with(name + "_") && !c.unit.empty() && c.key.size() > name.size() &&
-                                c.key.size() - name.size() <= c.unit.size() + 1;
-      return !c.is_variable && (c.key == name || c.name == name || without_unit);
-    };
-    const auto found = std::find_if(columns.begin(), columns.end(), is_it);
+    const auto found =
+        std::find_if(columns.begin(), columns.end(), [&](const ExploredColumn& c) { return !c.is_variable && goes_by(c, name); });
     std::vector<std::string> there;
     for (const ExploredColumn& c : columns) {
       if (!c.is_variable) there.push_back(c.key);

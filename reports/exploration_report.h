@@ -49,8 +49,11 @@ struct ExplorationReport {
   std::string made_with;  ///< program and processor
 };
 
-/// The aims that a list names: "impact_velocity,max:bounce_free". A figure goes by its key, by its key without the unit, or by
-/// its name. Throws InvalidInput with `option` for a name that is no figure or stands twice, and for fewer than two.
+/// Whether this is the name of a column: its key, its key without the unit, or its name for people.
+[[nodiscard]] bool goes_by(const ExploredColumn& column, const std::string& name);
+
+/// The aims that a list names: "impact_velocity,max:bounce_free". Throws InvalidInput with `option` for a name that is no figure
+/// or stands twice, and for fewer than two.
 [[nodiscard]] std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& columns, const std::string& list,
                                                      std::string_view option);
 

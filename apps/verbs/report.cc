@@ -35,7 +35,7 @@ std::size_t column_named(const ExplorationReport& report, const std::string& nam
   for (std::size_t c = 0; c < report.columns.size(); ++c) {
     const ExploredColumn& column = report.columns[c];
     if (column.is_variable != is_variable) continue;
-    if (name == column.key || name == column.name) return c;
+    if (goes_by(column, name)) return c;
     there += (there.empty() ? "" : ", ") + (is_variable ? column.name : column.key);
   }
   throw InvalidInput(fmt::format("--map {}: is no {} of this exploration: {}", name, is_variable ? "variable" : "figure", there));
@@ -118,7 +118,7 @@ void add_report(Verb& verb) {
               "of a store: also map.svg, the figure over the first two variables of a grid, or over those of FIGURE:ACROSS:UP");
   verb.footer(
       "Examples:\n  softland report softland-out\n"
-      "  softland report map.sqlite --map impact_velocity_m_s --pareto initial_contact_time,impact_velocity");
+      "  softland report map.sqlite --map impact_velocity --pareto initial_contact_time,impact_velocity");
   verb.runs([request](const Common& common) { return report_verb(common, *request); });
 }
 

@@ -94,7 +94,7 @@ TEST_F(Front, HasAPageWithTheWaveformsOfItsPoints) {
 TEST_F(Front, OfAGridIsMarkedInItsReportBesideAMap) {
   static_cast<void>(done(
       explore({"--vary", "waveform.main.level=18 V:30 V:5", "--vary", "gap.contact=1.6 um:2.2 um:4", "--out", "map.sqlite"})));
-  const Outcome o = here.run({"report", "map.sqlite", "--out", "page", "--map", "impact_velocity_m_s", "--pareto",
+  const Outcome o = here.run({"report", "map.sqlite", "--out", "page", "--map", "impact_velocity", "--pareto",
                               "initial_contact_time,impact_velocity", "--quiet"});
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(read(here.path() / "page/report.html"), HasSubstr("id=\"map\""));
