@@ -28,8 +28,8 @@ double seconds() { return std::chrono::duration<double>(std::chrono::steady_cloc
 
 /// Devices of a scene, and the window that a search scores.
 struct Fleet {
-  Fleet(const std::string& scene, std::string_view accuracy, std::uint64_t devices)
-      : nominal(prepared(scene, accuracy)), ensemble(nominal, devices), signals(nominal.signals()) {
+  Fleet(const std::string& scene, std::string_view accuracy, std::uint64_t count)
+      : nominal(prepared(scene, accuracy)), ensemble(nominal, count), signals(nominal.signals()) {
     build();
     window = std::max(0.6 * 2 * M_PI / nominal.model.angular_frequencies()[0], 2.5 * nominal.model.in_contact_period());
   }
