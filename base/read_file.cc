@@ -73,6 +73,13 @@ std::string read_file(const std::filesystem::path& path) {
   return content;
 }
 
+void mark_as_read(const std::filesystem::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return;
+  const std::lock_guard lock(guard);
+  files_read().emplace(info.st_dev, info.st_ino);
+}
+
 bool was_read(const std::filesystem::path& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) != 0) return false;

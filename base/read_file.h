@@ -14,7 +14,11 @@ inline constexpr std::size_t largest_file = std::size_t{64} << 20;
 /// (a folder, a device, a pipe: it is not waited for), or is larger than `largest_file`.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
-/// Whether this is a file that read_file() has read in this process, under whatever name: results must not replace it.
+/// For files that others read, such as databases.
+void mark_as_read(const std::filesystem::path& path);
+
+/// Whether this is a file that was read in this process, by read_file() or as mark_as_read() was told, under whatever name:
+/// results must not replace it.
 [[nodiscard]] bool was_read(const std::filesystem::path& path);
 
 }  // namespace softland

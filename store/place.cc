@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "base/output_lost.h"
+#include "base/read_file.h"
 #include "base/require.h"
 #include "store/study_store.h"
 
@@ -117,6 +118,7 @@ std::unique_ptr<const LockFile> lock_store(const fs::path& path, const std::stri
 
 std::unique_ptr<const Database> open_to_read(const fs::path& path) {
   require_store(path);
+  mark_as_read(path);
   const fs::path real = beside(path, "");
   if (writable(path)) return std::make_unique<Database>(real, Access::recover, path.string());
   require(
