@@ -16,11 +16,11 @@ namespace {
 using nlohmann::json;
 
 // In a window that holds every landing a search may choose, a quarter of the scene's own.
-const std::vector<std::string> quick{"gold.toml", "--quiet", "--set", "simulate.duration=150 us"};
+const std::vector<std::string> quick_search{"gold.toml", "--quiet", "--set", "simulate.duration=150 us"};
 
 std::vector<std::string> words(const std::string& verb, std::vector<std::string> more) {
   std::vector<std::string> all{verb};
-  all.insert(all.end(), quick.begin(), quick.end());
+  all.insert(all.end(), quick_search.begin(), quick_search.end());
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
