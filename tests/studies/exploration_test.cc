@@ -20,7 +20,7 @@
 namespace softland {
 namespace {
 
-SceneFile gold(double accuracy = 1e-4) {
+SceneFile short_gold(double accuracy = 1e-4) {
   SceneFile file = SceneFile::load(std::filesystem::path(SOFTLAND_SOURCE_DIR) / "scenes" / "mem-gold.toml");
   file.assign("simulate.accuracy", accuracy);
   file.assign("structure.modes", 2);
@@ -28,7 +28,7 @@ SceneFile gold(double accuracy = 1e-4) {
 }
 
 PlanRequest request(const std::string& study, const std::vector<std::string>& vary) {
-  PlanRequest asked{.scene = gold(), .vary = vary, .study = study};
+  PlanRequest asked{.scene = short_gold(), .vary = vary, .study = study};
   asked.place = [](std::string_view key, std::size_t) { return fmt::format("--{}", key); };
   return asked;
 }
@@ -101,8 +101,8 @@ TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne) {
 
 TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
   // The switch that is handed over with a scene is another one: what comes back tells whether it was looked at.
-  const Prepared ours = prepare(gold());
-  SceneFile deep = gold();
+  const Prepared ours = prepare(short_gold());
+  SceneFile deep = short_gold();
   deep.assign("gap.contact", 2.1e-6);
   const Prepared other = prepare(deep);
   const double own = ours.pull_in.at("main").dynamically.voltage, of_other = other.pull_in.at("main").dynamically.voltage;
@@ -111,14 +111,14 @@ TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
   const auto found = [&](const SceneFile& scene, const Switch& model) {
     return memory.finder(scene)(model, 0, {}).dynamically.voltage;
   };
-  EXPECT_EQ(found(gold(), ours.model), own);
-  SceneFile driven = gold();
+  EXPECT_EQ(found(short_gold(), ours.model), own);
+  SceneFile driven = short_gold();
   driven.set("waveform.main.level=\"1.1 Vdp\"");
   driven.set("driver.main.max_voltage=\"1.2 Vdp\"");
   driven.set("simulate.duration=\"200 us\"");
   EXPECT_EQ(found(driven, other.model), own);
   for (const char* change : {"gap.contact=\"2.1 um\"", "gas.viscosity=\"2e-5 Pa s\"", "simulate.accuracy=1e-3"}) {
-    SceneFile changed = gold();
+    SceneFile changed = short_gold();
     changed.set(change);
     EXPECT_EQ(found(changed, other.model), of_other) << change;
   }
@@ -137,8 +137,8 @@ TEST(Exploration, WithErrorsGivesThoseOfCertify) {
 TEST(Exploration, OfPullInGivesTheVoltages) {
   Exploration e = exploration(request("pull-in", {"gap.contact=1.8 um,2 um"}));
   ASSERT_EQ(e.figures().size(), 3U);
-  const Prepared p = prepare(gold());
-  SceneFile other = gold();
+  const Prepared p = prepare(short_gold());
+  SceneFile other = short_gold();
   other.assign("gap.contact", 1.8e-6);
   EXPECT_EQ(row_of(e, 1).figures[1], p.pull_in.at("main").dynamically.voltage);
   EXPECT_EQ(row_of(e, 0).figures[0], prepare(other).pull_in.at("main").statically.voltage);
@@ -162,7 +162,7 @@ TEST(Exploration, OfDevicesGivesTheYieldsOfRobustness) {
   asked.seed = 5;
   Exploration e = exploration(asked);
   const PointRow row = row_of(e, 0);
-  SceneFile scene = gold();
+  SceneFile scene = short_gold();
   scene.set("waveform.main.level=\"1.2 Vdp\"");
   const Prepared nominal = prepare_and_choose(scene, true);
   const Robustness found =
