@@ -80,11 +80,12 @@ def picture(found, step):
             out += [line(across(t), down(low), across(t), down(high), colour, ' stroke-width="1.5"'),
                     f'<circle cx="{across(t):.1f}" cy="{down(v):.1f}" r="4" fill="{colour}"/>']
         t, (v, _) = front[-1]
-        out.append(words(across(t) - 6, down(v) + 22, f"known of every device: {known}", 13, "end", INK))
+        side = "end" if across(t) > (left + right) / 2 else "start"
+        out.append(words(across(t) - 6, down(v) + 22, f"known of every device: {known}", 13, side, INK))
     x, y = across(quantile(step, TIME)[0]), down(quantile(step, SPEED)[0])
     out += [f'<path d="M{x - 5:.1f},{y:.1f}h10M{x:.1f},{y - 5:.1f}v10" stroke="{INK}" stroke-width="2"/>',
             words(x + 10, y + 4, "plain step", 13, colour=INK, more=BOLD)]
-    return drawing(width, height, ["Softer takes longer: 95 % of the devices against 95 % of the devices"], [
+    return drawing(width, height, ["Softer takes longer: what 95 % of the devices stay below"], [
         f"mem-gold under its spread; every dot is one search (cvar:0.9, {FAMILY}, {BUDGET} closings) under a ceiling of the closing time, judged",
         "on 2000 fresh devices over the whole window. Bars: 95 % confidence. The line joins what no other dot is both faster and softer than."],
         out)
