@@ -27,6 +27,10 @@ class DistributedLaw {
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
   /// Derivatives of the load with respect to deflection and velocity, added at the law's points.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
+  /// Second derivatives of the load: by deflection twice, by deflection and velocity, by velocity twice, added at the law's
+  /// points; nothing at points below the floor, where the load goes on by its tangent.
+  virtual void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
+                              double* by_velocities) const = 0;
   /// Integral of the potential per length over the law's points, at unit drive [J]; 0 for laws that are not driven.
   [[nodiscard]] virtual double potential(const GapField& field, const Eigen::ArrayXd& weights) const = 0;
 };
@@ -72,6 +76,27 @@ class DistributedLawOf final : public DistributedLaw {
       const double gap = field.gap[p], velocity = field.velocity[p];
       by_deflection[p] -= factor * law_.load(Dual(gap, 1), Dual(velocity)).slope;  // the gap shrinks as the beam deflects
       by_velocity[p] += factor * law_.load(Dual(gap), Dual(velocity, 1)).slope;
+    }
+  }
+
+  void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
+                      double* by_velocities) const override {
+    const double factor = Law::driven ? drive : 1;
+    for (Eigen::Index p = begin_; p < end_; ++p) {
+      const double gap = field.gap[p], velocity = field.velocity[p];
+      if (gap < floor_) continue;
+      // The outer direction of each number, then the inner one.
+      const auto mixed = [&](double gap_outer, double gap_inner) {
+        return law_
+            .load(DualOf<Dual>(Dual(gap, gap_inner), Dual(gap_outer)),
+                  DualOf<Dual>(Dual(velocity, 1 - gap_inner), Dual(1 - gap_outer)))
+            .slope.slope;
+      };
+      by_deflections[p] += factor * mixed(1, 1);
+      if constexpr (!Law::driven) {
+        by_both[p] -= factor * mixed(1, 0);  // the gap shrinks as the beam deflects
+        by_velocities[p] += factor * mixed(0, 0);
+      }
     }
   }
 

@@ -39,6 +39,14 @@ struct MidPlaneStretchingOf {
     const Eigen::VectorXd pulls = g * at;
     by_q -= stiffness * (at.dot(pulls) * g + 2 * pulls * pulls.transpose());
   }
+  /// by_q_q += second derivatives of the sum of multiplier_i Q_i
+  void add_curvature(const double* q, const double* multipliers,
+                     Eigen::Ref<Eigen::MatrixXd> by_q_q) const requires std::same_as<P, double> {
+    const auto n = static_cast<Eigen::Index>(modes);
+    const Eigen::Map<const Eigen::MatrixXd> g(slopes.data(), n, n);
+    const Eigen::VectorXd pulls = g * Coordinates(q, n), weights = g * Coordinates(multipliers, n);
+    by_q_q -= 2 * stiffness * (weights.dot(Coordinates(q, n)) * g + pulls * weights.transpose() + weights * pulls.transpose());
+  }
   template <class S>
   [[nodiscard]] S energy(const S* q) const {
     const S strain = strain_of(q);

@@ -122,6 +122,20 @@ class Switch {
   /// Adds the film's part to the derivatives of (v, rates) by the state (q, v, film) whose field `work` holds.
   void add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const;
 
+  /// The motion before the first touch, whose accelerations are linear in the strengths of the drives (V^2 of an electrode, the
+  /// factor of the dispersion force, V of the piezo): no contact, and no compressible film, acts.
+  struct FreeMotion {
+    Eigen::VectorXd accelerations;  ///< [m kg^(1/2) / s^2]
+    Eigen::MatrixXd by_q, by_v;     ///< modes x modes
+    Eigen::MatrixXd by_strength;    ///< modes x drives
+  };
+  [[nodiscard]] FreeMotion free_motion(const double* q, const double* v, std::span<const double> strengths,
+                                       Workspace& work) const;
+  /// Second derivatives of the sum over modes of multiplier_i q_i'' in that motion, by (q, v, strengths): symmetric, 2 modes +
+  /// drives rows. Exact but at points nearer to an electrode than gap_floor(), which count as if the load had none.
+  [[nodiscard]] Eigen::MatrixXd free_motion_curvature(const double* q, const double* v, std::span<const double> strengths,
+                                                      const double* multipliers, Workspace& work) const;
+
   [[nodiscard]] double contact_deflection(const double* q) const;  ///< y(x_c) [m]; also the velocity when given v
   /// Smallest local gap in the last field computed with `work` [m].
   [[nodiscard]] static double smallest_gap(const Workspace& work) { return work.field.smallest_gap; }
@@ -185,6 +199,7 @@ class Switch {
   [[nodiscard]] double penetration_under(double force) const;
   void set_gap(const double* q, Workspace& work) const;
   void set_field(const double* q, const double* v, Workspace& work) const;
+  void set_free_field(const double* q, const double* v, Workspace& work) const;
   /// Adds modes from `first` on to the field; returns the smallest gap so far.
   template <int Modes>
   double add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const;

@@ -1,24 +1,15 @@
-// Ipopt 3.11.9 as a bounded quasi-Newton method with differenced gradients. Two solves at once abort the process (its linear
-// solver MUMPS keeps global state), hence the mutex. Ipopt answers an objective it cannot evaluate by shortening steps, thousands
-// of times; the Strand counts, and its Cut passes through Ipopt, which catches whatever callbacks throw and returns
-// NonIpopt_Exception_Thrown.
+// Ipopt 3.11.9 as a bounded quasi-Newton method with differenced gradients. Ipopt answers an objective it cannot evaluate by
+// shortening steps, thousands of times; the Strand counts, and its Cut passes through Ipopt, which catches whatever callbacks
+// throw and returns NonIpopt_Exception_Thrown.
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
-#include <chrono>
-#include <mutex>
-#include <thread>
 
 #include "optimizers/backends.h"
+#include "optimizers/ipopt_turn.h"
 
 namespace softland::internal {
 namespace {
-
-std::mutex& one_solve_at_a_time() {
-  static std::mutex mutex;
-  return mutex;
-}
-constexpr std::chrono::milliseconds look_up{1};  // while waiting: how often to see whether it is our turn, or too late
 
 class BoxProblem final : public Ipopt::TNLP {
  public:
@@ -98,11 +89,8 @@ RunReport report_of(Ipopt::ApplicationReturnStatus status) {
 }  // namespace
 
 RunReport run_ipopt(const Run& run, Strand& strand) {
-  std::unique_lock turn(one_solve_at_a_time(), std::defer_lock);
-  while (!turn.try_lock()) {
-    if (strand.over()) return {.converged = false, .message = "Ipopt: stopped by us while waiting for another solve"};
-    std::this_thread::sleep_for(look_up);
-  }
+  const auto turn = ipopt_turn([&] { return strand.over(); });
+  if (!turn) return {.converged = false, .message = "Ipopt: stopped by us while waiting for another solve"};
   strand.begin_search();
   const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
   const auto options = application->Options();

@@ -24,21 +24,6 @@ double figure(Target target, const Metrics& m) {
   return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
 }
 
-// The same closing by a tighter integrator, and with a richer beam where there is one.
-std::vector<ConfirmingRun> confirm(const Prepared& winner) {
-  const std::vector<Signal> signals = winner.signals();
-  const auto run = [&](const Switch& model, double tolerance) {
-    return metrics(simulate_closing(model, signals, {.duration = winner.duration, .tolerance = tolerance}), winner.scene.metrics);
-  };
-  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.model, tight_tolerance)}};
-  Device richer = winner.scene.device;
-  if (richer.structure.kind != StructureKind::plate) {
-    richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
-    runs.push_back({fmt::format("{} modes", richer.structure.modes), run(Switch(richer, winner.quadrature), winner.tolerance)});
-  }
-  return runs;
-}
-
 // How far a candidate is believed.
 enum class Belief { touches, settles, meets_goal, confirmed };
 
@@ -127,6 +112,20 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
 }
 
 }  // namespace
+
+std::vector<ConfirmingRun> confirm(const Prepared& winner) {
+  const std::vector<Signal> signals = winner.signals();
+  const auto run = [&](const Switch& model, double tolerance) {
+    return metrics(simulate_closing(model, signals, {.duration = winner.duration, .tolerance = tolerance}), winner.scene.metrics);
+  };
+  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.model, tight_tolerance)}};
+  Device richer = winner.scene.device;
+  if (richer.structure.kind != StructureKind::plate) {
+    richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
+    runs.push_back({fmt::format("{} modes", richer.structure.modes), run(Switch(richer, winner.quadrature), winner.tolerance)});
+  }
+  return runs;
+}
 
 long default_budget(Target target, Actuator actuator) {
   const long by_bounce = actuator == Actuator::electrostatic ? 2500 : 10000;

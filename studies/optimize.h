@@ -69,6 +69,9 @@ struct ConfirmingRun {
   Metrics metrics;
 };
 
+/// The same closing by a tighter integrator, and with a richer beam where there is one.
+[[nodiscard]] std::vector<ConfirmingRun> confirm(const Prepared& winner);
+
 struct OptimizeResult {
   Prepared scene;  ///< as given
   Prepared baseline_scene;

@@ -1,0 +1,193 @@
+#include "reports/limit_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "reports/chart.h"
+#include "reports/json_number.h"
+#include "reports/made_with.h"
+#include "reports/quantity.h"
+#include "reports/result_json.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using internal::json_number;
+using internal::left_aligned;
+using internal::quantity;
+using internal::right_aligned;
+using nlohmann::json;
+
+json least_json(const LeastTime& least) {
+  return {{"status", to_string(least.status)},
+          {"message", least.message},
+          {"least_time_s", json_number(least.time)},
+          {"impact_velocity_m_s", json_number(least.impact_velocity)},
+          {"peak_voltage_V", json_number(least.peak)},
+          {"simulated_time_s", json_number(least.simulated_time)},
+          {"simulated_impact_velocity_m_s", json_number(least.simulated_velocity)},
+          {"distance_from_rest", json_number(least.room)}};
+}
+
+json list_json(const std::vector<LeastTime>& all) {
+  json list = json::array();
+  for (const LeastTime& least : all) list.push_back(least_json(least));
+  return list;
+}
+
+json landing_json(const LimitLanding& landing) {
+  json checks = json::array();
+  for (const ConfirmingRun& c : landing.checks) checks.push_back({{"name", c.name}, {"metrics", metrics_json(c.metrics)}});
+  return {{"way", least_json(landing.way)},
+          {"at_rest", std::isfinite(landing.way.room)},
+          {"catch_s", json_number(landing.catch_time)},
+          {"bounce_free", landing.bounce_free},
+          {"metrics", metrics_json(landing.closing.metrics)},
+          {"confirmed_by", checks},
+          {"scene", landing.scene.scene.file.json()}};
+}
+
+std::string drives_of(Actuator actuator) {
+  switch (actuator) {
+    case Actuator::electrostatic:
+      return "the electrodes";
+    case Actuator::pzt:
+      return "the piezo";
+    case Actuator::both:
+      break;
+  }
+  return "electrodes and piezo";
+}
+
+constexpr std::size_t name_width = 44, cell_width = 12;
+
+std::string row(const std::string& name, const std::string& time, const std::string& velocity, const std::string& rest = {}) {
+  return "  " + left_aligned(name, name_width) + right_aligned(time, cell_width) + right_aligned(velocity, cell_width) +
+         (rest.empty() ? "" : "  " + rest) + "\n";
+}
+
+std::string why_not(const LeastTime& least) {
+  return least.message.empty() ? std::string(to_string(least.status)) : least.message;
+}
+
+std::string least_row(const std::string& name, const LeastTime& least) {
+  if (least.status != Status::done) return row(name, "—", "—", why_not(least));
+  return row(name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"));
+}
+
+// What follows the touch of a landing.
+std::string words_after(const LimitLanding& landing) {
+  if (landing.bounce_free) return "no rebound, confirmed";
+  const Metrics& own = landing.closing.metrics;
+  std::string words =
+      own.major_bounce_height > 0 ? fmt::format("rebounds up to {}", quantity(own.major_bounce_height, "m")) : "no rebound";
+  for (const ConfirmingRun& c : landing.checks) {
+    if (c.metrics.bounce_count > 0 || c.metrics.status != Status::done)
+      words += fmt::format(", but with {} up to {}", c.name, quantity(c.metrics.major_bounce_height, "m"));
+  }
+  return words;
+}
+
+// Column pairs of a curve; what was not found is left out.
+template <class X>
+void add_curve(internal::CurveTables& tables, const std::string& name, const std::vector<LeastTime>& all, X x) {
+  for (const LeastTime& least : all) {
+    if (least.status != Status::done) continue;
+    tables[name]["x"].push_back(x(least));
+    tables[name]["time"].push_back(least.time);
+  }
+}
+
+internal::Chart curve(const std::string& table, const std::string& title, const std::string& x_label, const std::string& x_unit,
+                      const internal::CurveTable& columns) {
+  const auto [low, high] = std::minmax_element(columns.at("x").begin(), columns.at("x").end());
+  internal::Chart chart{
+      .id = table, .title = title, .x_column = "x", .x_label = x_label, .x_unit = x_unit, .y_label = "least time", .y_unit = "s"};
+  chart.x_home = chart.x_whole = {*low, *high};
+  chart.series = {{.table = table, .column = "time", .label = "least time of a touch"}};
+  for (std::size_t k = 0; k < columns.at("x").size(); ++k)
+    chart.marks.push_back({columns.at("x")[k], columns.at("time")[k], internal::Role::best, ""});
+  return chart;
+}
+
+}  // namespace
+
+json limit_json(const Limit& limit, const Provenance& provenance) {
+  return {{"kind", "limit"},
+          {"status", limit.interrupted ? "interrupted" : to_string(limit.touch.status)},
+          {"actuator", name_of(actuators, limit.options.actuator)},
+          {"permitted_impact_velocity_m_s", json_number(limit.impact_velocity)},
+          {"plain_step", metrics_json(limit.step)},
+          {"touch", least_json(limit.touch)},
+          {"at_rest", least_json(limit.rest)},
+          {"landing", limit.landing ? landing_json(*limit.landing) : json()},
+          {"over_impact_velocity", list_json(limit.over_velocity)},
+          {"over_peak_voltage", list_json(limit.over_peak)},
+          {"scene", resolved(limit.given.scene, limit.given.voltage_units()).json()},
+          {"version", version},
+          {"made_with", made_with_json()},
+          {"command", provenance.command}};
+}
+
+std::string limit_text(const Limit& limit) {
+  std::string text = limit.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
+  const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
+  text += fmt::format("How quickly {} can close the switch{}\n\n", drives_of(limit.options.actuator), peak);
+  text += row("", "first touch", "speed");
+  text += row("plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s"));
+  text += least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch);
+  text += least_row("least time with every mode at rest", limit.rest);
+  if (limit.landing) {
+    const Metrics& m = limit.landing->closing.metrics;
+    const std::string after = words_after(*limit.landing);
+    text +=
+        row(limit.landing->catch_time > 0 ? fmt::format("landing, then a catch of {}", quantity(limit.landing->catch_time, "s"))
+                                          : std::string("landing"),
+            quantity(m.initial_contact_time, "s", 4), quantity(m.impact_velocity, "m/s"), after);
+  }
+  const auto list = [&](const std::string& title, const std::vector<LeastTime>& all, const auto& name) {
+    if (all.empty()) return;
+    text += "\n" + row(title, "least time", "");
+    for (const LeastTime& least : all) {
+      text += least.status == Status::done ? row(name(least), quantity(least.time, "s", 4), "")
+                                           : row(name(least), "—", "", why_not(least));
+    }
+  };
+  list("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); });
+  list("volts up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); });
+  return text + "\n" +
+         wrapped(
+             "No waveform of these drives touches earlier at that speed, as far as Ipopt can tell: the optimum is a local one, "
+             "found from the "
+             "quickest single swing. A beam whose modes still ring may bounce after a soft touch: the landing was simulated.") +
+         "\n";
+}
+
+std::string limit_svg(const Limit& limit) {
+  internal::Picture drawn;
+  add_curve(drawn.tables, "speed", limit.over_velocity, [](const LeastTime& l) { return l.permitted; });
+  add_curve(drawn.tables, "peak", limit.over_peak, [](const LeastTime& l) { return l.peak; });
+  if (drawn.tables.contains("peak")) {
+    drawn.charts.push_back(curve("peak", "Least time against the peak voltage", "largest voltage", "V", drawn.tables.at("peak")));
+  }
+  if (drawn.tables.contains("speed")) {
+    drawn.charts.push_back(curve("speed", "Least time against the permitted speed of the touch", "impact speed at most", "m/s",
+                                 drawn.tables.at("speed")));
+    drawn.charts.back().x_scale = internal::Scale::logarithmic;
+  }
+  const std::string headline = limit.touch.status == Status::done
+                                   ? fmt::format("No waveform touches before {} at {} or less",
+                                                 quantity(limit.touch.time, "s", 4), quantity(limit.impact_velocity, "m/s"))
+                                   : "The least time was not found";
+  return svg_page(headline, limit.given.scene.title, drawn, 1);
+}
+
+}  // namespace softland

@@ -1,0 +1,140 @@
+// The limit of what any waveform can do: against closed forms, kept values of an independent calculation, and simulations.
+#include "studies/limit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/gauss.h"
+#include "model/constants.h"
+#include "studies/choices.h"
+#include "studies/free_flight.h"
+#include "tests/studies/scenes.h"
+
+namespace softland {
+namespace {
+
+// A rigid plate on a spring without gas: one degree of freedom.
+constexpr const char* plate = R"(
+[structure]
+kind = "plate"
+area = "1e-8 m^2"
+mass = "2.4e-9 kg"
+stiffness = "42 N/m"
+[gap]
+electrode = "3.8 um"
+contact = "2.6 um"
+[electrode.main]
+fringing = "none"
+[contact]
+model = "linear"
+stiffness = "1e5 N/m"
+[waveform.main]
+family = "step"
+level = "100 V"
+[driver.main]
+min_voltage = "0 V"
+max_voltage = "120 V"
+[simulate]
+duration = "300 us"
+accuracy = 1e-6
+)";
+
+// Full voltage to x_s, 0 V from there: the plate arrives at the contact with speed v. The field's work is the energy there.
+double bang_bang(const Structure& s, const Gap& gap, double volts, double v) {
+  const double area = s.width * s.length, force = vacuum_permittivity * area * volts * volts / 2;
+  const double mass = s.mass, k = s.stiffness;
+  const auto work = [&](double x) { return force * (1 / (gap.electrode - x) - 1 / gap.electrode); };
+  const double energy = (k * gap.contact * gap.contact + mass * v * v) / 2;
+  const double x_s = gap.electrode - 1 / (energy / force + 1 / gap.electrode);
+  // x = y^2, so that the root at rest is smooth.
+  const GaussRule rule = gauss_rule(60);
+  double pulled = 0;
+  for (std::size_t i = 0; i < rule.points.size(); ++i) {
+    const double end = std::sqrt(x_s), y = end * (1 + rule.points[i]) / 2, x = y * y;
+    pulled += rule.weights[i] * end / 2 * 2 * y / std::sqrt((2 * work(x) - k * x * x) / mass);
+  }
+  const double omega = std::sqrt(k / mass), amplitude = std::sqrt(2 * energy / k);
+  return pulled + (std::asin(gap.contact / amplitude) - std::asin(x_s / amplitude)) / omega;
+}
+
+TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
+  const Prepared p = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
+  for (const double v : {1e-3, 0.05}) {
+    const LeastTime found = least_time(p, {.impact_velocity = v});
+    ASSERT_EQ(found.status, Status::done) << found.message;
+    EXPECT_NEAR(found.time / bang_bang(p.scene.device.structure, p.scene.device.gap, 120, v), 1, 1e-4);
+    EXPECT_NEAR(found.impact_velocity / v, 1, 1e-3);
+  }
+}
+
+TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation) {
+  const Prepared p = prepare_and_choose(gold(), true);
+  // A free-form calculation by another program: 31.85, 31.66 and 31.06 us.
+  for (const auto& [velocity, known] : {std::pair{1e-3, 31.85e-6}, {3e-3, 31.66e-6}, {10e-3, 31.06e-6}}) {
+    const LeastTime found = least_time(p, {.impact_velocity = velocity});
+    ASSERT_EQ(found.status, Status::done) << found.message;
+    EXPECT_NEAR(found.time, known, 0.01e-6);
+    EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
+    EXPECT_LE(found.simulated_velocity, 1.2 * velocity);
+  }
+}
+
+TEST(LeastTime, GrowsWhereThereIsLessToPullWith) {
+  const Prepared p = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
+  double last = 0;
+  for (const double peak : {120.0, 110.0, 100.0}) {
+    const LeastTime found = least_time(p, {.impact_velocity = 0.01, .peak = peak});
+    ASSERT_EQ(found.status, Status::done) << peak << ": " << found.message;
+    EXPECT_GT(found.time, last);
+    EXPECT_EQ(found.peak, peak);
+    last = found.time;
+  }
+  const LeastTime none = least_time(p, {.impact_velocity = 0.01, .peak = 50});
+  EXPECT_EQ(none.status, Status::no_contact);
+  EXPECT_FALSE(none.message.empty());
+}
+
+TEST(LeastTime, KeepsTheSlewOfTheDriver) {
+  const Prepared jumps = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
+  SceneFile file = SceneFile::parse(plate, "plate.toml");
+  file.set("driver.main.max_slew=40 V/us");
+  file.set("waveform.main.rise_time=5 us");
+  const Prepared ramps = prepare_and_choose(file, true);
+  const LeastTime fast = least_time(jumps, {.impact_velocity = 0.01}), slow = least_time(ramps, {.impact_velocity = 0.01});
+  ASSERT_EQ(fast.status, Status::done) << fast.message;
+  ASSERT_EQ(slow.status, Status::done) << slow.message;
+  EXPECT_GT(slow.time, fast.time);
+  EXPECT_TRUE(violation(signal(slow.waveforms.at("main")), ramps.drives.limits.at("main")).empty())
+      << violation(signal(slow.waveforms.at("main")), ramps.drives.limits.at("main"));
+}
+
+TEST(LeastTime, RefusesWhatItDoesNotFit) {
+  EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(scene("hung-senturia.toml"), true), {}); }).find("compressible"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(gold(), true), {.actuator = Actuator::pzt}); }).find("[piezo]"),
+            std::string::npos);
+  EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(gold(), true), {.impact_velocity = 0}); }).find("positive"),
+            std::string::npos);
+}
+
+TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime) {
+  const Limit found = limit(gold(), {.impact_velocity = 1e-3, .curves = false});
+  ASSERT_TRUE(found.landing.has_value());
+  EXPECT_TRUE(found.landing->bounce_free);
+  EXPECT_LE(found.landing->closing.metrics.permanent_contact_time, 1.02 * found.touch.time);
+  EXPECT_EQ(found.rest.status, Status::done) << found.rest.message;
+  EXPECT_GT(found.rest.time, found.touch.time);
+}
+
+TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes) {
+  // Jumps of the piezo ring modes beyond the four of the scene.
+  const Limit found = limit(gold_pzt(), {.actuator = Actuator::both, .curves = false});
+  ASSERT_TRUE(found.landing.has_value());
+  EXPECT_EQ(found.landing->closing.metrics.bounce_count, 0);
+  EXPECT_FALSE(found.landing->bounce_free);
+}
+
+}  // namespace
+}  // namespace softland
