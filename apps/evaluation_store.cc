@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "studies/exploration.h"
@@ -91,7 +92,9 @@ void EvaluationStore::note(const EvaluationKey& key, const EvaluationValues& val
 
 void EvaluationStore::add(const ContentKey& content, const EvaluationKey& key, const EvaluationValues& values) {
   StoredRow row{.content = content, .status = std::isfinite(values.cost) ? "done" : "infeasible", .values = key.x};
-  const auto or_none = [&](double value) { return key.devices > 0 ? value : std::numeric_limits<double>::quiet_NaN(); };
+  const auto or_none = [&](double value) {
+    return key.devices > 0 && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+  };
   row.values.insert(row.values.end(),
                     {values.cost, values.leading, or_none(static_cast<double>(key.devices)), or_none(key.hopeless),
                      or_none(static_cast<double>(key.seed)), static_cast<double>(values.closings)});

@@ -16,8 +16,6 @@ namespace {
 using internal::quantity;
 using nlohmann::json;
 
-std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
-
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "apps/stores.h"
 #include "base/printable.h"
 #include "base/shortened.h"
 #include "reports/quantity.h"
@@ -16,8 +17,6 @@ using internal::left_aligned;
 using internal::quantity;
 using internal::right_aligned;
 using nlohmann::json;
-
-std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
 
 }  // namespace
 

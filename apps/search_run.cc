@@ -70,7 +70,7 @@ PlannedSearch planned_or_known(const Common& c, const OptimizeRequest& request, 
       PlannedSearch search = planned(c, request, plan);
       const std::string other = difference(plan, search.plan);
       if (other.empty()) {
-        known = KnownSearch{.place = store.parent_path(), .plan = plan};
+        known = KnownSearch{.place = store.parent_path(), .plan = plan, .command = StudyReader(store).sessions().front().command};
         return search;
       }
       if (refusal.empty()) refusal = fmt::format("--resume: {} holds another search: {}", store.string(), other);
@@ -126,6 +126,11 @@ void SearchRun::close() {
   progress_.close();
   log_->flush();
   places_->evaluations().close();
+}
+
+std::vector<std::string> SearchRun::commands() const {
+  if (!known_ || known_->command == common_.command) return {common_.command};
+  return {known_->command, common_.command};
 }
 
 std::string search_words(const Common& c, const PlannedSearch& search) {

@@ -23,6 +23,7 @@ inline constexpr const char* seeds_file = "seeds.sqlite";
 struct KnownSearch {
   std::filesystem::path place;  ///< the folder with its stores
   nlohmann::json plan;
+  std::string command;  ///< that began it
 };
 
 /// What the command line asks for, as a search that goes on with one in the folder of --out where it says --resume and there is
@@ -42,6 +43,8 @@ class SearchPlaces {
   [[nodiscard]] EvaluationStore& evaluations() { return evaluations_; }
   /// Where another store of the search is.
   [[nodiscard]] std::filesystem::path store(const std::string& name);
+  /// Whether the stores are, or will be, among results that are put here.
+  [[nodiscard]] bool stores_go_to(const std::filesystem::path& place) const { return !kept_ || place == folder_.path(); }
 
  private:
   std::optional<std::filesystem::path> kept_;  // the stores of the folder itself are gone on with
@@ -59,7 +62,10 @@ class SearchRun {
   /// When the search has ended: says so, and lets the store go.
   void close();
   [[nodiscard]] ResultFolder& folder() { return places_->folder(); }
+  [[nodiscard]] const SearchPlaces& places() const { return *places_; }
   [[nodiscard]] const SearchLog& log() const { return *log_; }
+  /// The command lines that make its result again.
+  [[nodiscard]] std::vector<std::string> commands() const;
 
  private:
   void begin(const std::vector<std::string>& variables);

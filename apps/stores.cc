@@ -8,6 +8,7 @@
 #include "apps/streams.h"
 #include "base/require.h"
 #include "reports/made_with.h"
+#include "reports/quantity.h"
 
 namespace softland::apps {
 
@@ -35,6 +36,8 @@ PlanRequest exploration_in(const StudyReader& store) {
           fmt::format("{}: holds a search and no exploration; softland table shows its rows", store.path().string()));
   return read_plan(SceneFile::parse(text, store.path().string() + " (plan)"));
 }
+
+std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
 
 std::string duration_words(double seconds) {
   constexpr double minute = 60, hour = 3600, day = 86400;

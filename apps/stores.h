@@ -1,6 +1,7 @@
 // What the verbs that work on stores of studies share.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "apps/options.h"
@@ -17,6 +18,9 @@ void tell_of_other_programs(const std::string& store);
 
 /// The plan of the exploration that a store holds. Throws InvalidInput where it holds a search.
 [[nodiscard]] PlanRequest exploration_in(const StudyReader& store);
+
+/// A count of rows or points with all its digits.
+[[nodiscard]] std::string whole(std::int64_t count);
 
 /// "2 min", "3.4 h"
 [[nodiscard]] std::string duration_words(double seconds);

@@ -23,12 +23,12 @@ namespace {
 using namespace internal;
 using nlohmann::json;
 
-constexpr double none = std::numeric_limits<double>::infinity();
+constexpr double worst = std::numeric_limits<double>::infinity();
 constexpr std::array shown_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
                                    figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
                                    figure_of(&Metrics::impact_velocity)};
 
-double or_none(double value) { return std::isfinite(value) ? value : none; }
+double or_none(double value) { return std::isfinite(value) ? value : worst; }
 
 // Least, quartiles and most.
 using FiveNumbers = std::array<double, 5>;
@@ -148,7 +148,7 @@ std::string seeds_caption(const ResultSeeds& seeds) {
   if (!std::isfinite(best.cost)) return words + " None of them found a feasible waveform.";
   words += fmt::format(" The best is that of seed {}, with cost {}.", best.seed, quantity(best.cost, "", 4));
   const FiveNumbers cost = spread_of_cost(seeds);
-  const auto number = [](double value) { return value == none ? std::string("none") : quantity(value, "", 4); };
+  const auto number = [](double value) { return value == worst ? std::string("none") : quantity(value, "", 4); };
   words += fmt::format(" Cost: median {}, quartiles {} and {}, from {} to {}.", number(cost[2]), number(cost[1]), number(cost[3]),
                        number(cost[0]), number(cost[4]));
   std::string failed;

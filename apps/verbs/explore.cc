@@ -34,8 +34,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
-
 int status_of(const Overview& found, bool interrupted) {
   if (interrupted) return exit_interrupted;
   if (found.by_status.contains(std::string(internal_fault))) return exit_internal_error;

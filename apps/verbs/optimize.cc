@@ -80,7 +80,8 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
 std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& result, Result& found, const fs::path& place) {
   for (const auto& [index, e] : run.log().evaluations())
     found.search.evaluations.push_back({static_cast<double>(index), e.value});
-  found.reproduce = {found.command, "softland simulate " + shell_word((place / "best.toml").string())};
+  found.reproduce = run.commands();
+  found.reproduce.push_back("softland simulate " + shell_word((place / "best.toml").string()));
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
   ResultFolder& folder = run.folder();
   if (result.best_scene) {
@@ -88,8 +89,11 @@ std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& resul
     folder.write("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
     left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
-  left.insert(left.end(), {"evaluations.csv", evaluations_file});
-  if (found.seeds) left.emplace_back(seeds_file);
+  left.emplace_back("evaluations.csv");
+  if (run.places().stores_go_to(place)) {
+    left.emplace_back(evaluations_file);
+    if (found.seeds) left.emplace_back(seeds_file);
+  }
   write_result(folder, found);
   return left;
 }

@@ -95,7 +95,6 @@ TEST_F(BadInput, Options) {
       {{"optimize", "gold.toml", "--certify"},
        "The following argument was not expected: --certify (see softland optimize --help)"},
       {{"optimize", "--resume", "--out", "folder"}, "--resume: folder holds no search to go on with"},
-      {{"optimize", "gold.toml", "--resume=2"}, "--resume: expected no value (see softland optimize --help)"},
       {{"optimize", "gold.toml", "--robust", "wrost"},
        "--robust wrost: 'wrost' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst and yield:\"bounce_count == "
        "0\""},

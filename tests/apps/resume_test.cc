@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 using test::expect_same_search;
 using test::optimize;
-using test::rows_in;
+using test::rows_of;
 using testing::HasSubstr;
 
 using namespace std::chrono_literals;
@@ -34,7 +34,7 @@ class Resume : public test::Searches {
     more.insert(more.end(), {"--budget", "100000000", "--out", out});
     const pid_t child = here.start(optimize(more));
     const fs::path store = at(out) / "unfinished/evaluations.sqlite";
-    for (int i = 0; i < 600 && !(is_store(store) && rows_in(store).size() > 100); ++i) std::this_thread::sleep_for(50ms);
+    for (int i = 0; i < 600 && !(is_store(store) && rows_of(store).size() > 100); ++i) std::this_thread::sleep_for(50ms);
     kill(child, SIGKILL);
     (void)here.finish(child);
   }
@@ -49,23 +49,28 @@ TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits) {
   done(with({"--out", "whole"}));
   std::mt19937 random(3);
   constexpr int kills = 4;  // after the second in which rows may be lost
-  for (int i = 0; i < kills; ++i) killed(with({"--out", "killed", "--resume"}), std::chrono::milliseconds(1200 + random() % 1200));
+  for (int i = 0; i < kills; ++i)
+    killed(with({"--out", "killed", "--resume"}), std::chrono::milliseconds(1200 + random() % 1200));
   done(with({"--out", "killed", "--resume"}));
   expect_same_search(at("whole"), at("killed"));
   const StudyReader store(at("killed/evaluations.sqlite"));
   EXPECT_GT(store.sessions().size(), 1U);
-  EXPECT_LT(store.sessions().back().rows, static_cast<std::int64_t>(rows_in(at("whole/evaluations.sqlite")).size()))
+  EXPECT_LT(store.sessions().back().rows, static_cast<std::int64_t>(rows_of(at("whole/evaluations.sqlite")).size()))
       << "what was there is not simulated again";
-  EXPECT_EQ(rows_in(at("killed/evaluations.sqlite")).size(), rows_in(at("whole/evaluations.sqlite")).size());
+  EXPECT_EQ(rows_of(at("killed/evaluations.sqlite")).size(), rows_of(at("whole/evaluations.sqlite")).size());
   EXPECT_FALSE(fs::exists(at("killed/unfinished")));
 }
 
 TEST_F(Resume, WithALargerBudgetIsTheSearchThatBeganWithIt) {
   done(optimize({"--out", "out", "--budget", "200", "--optimizer", "cma-es"}));
   done({"optimize", "--resume", "--quiet", "--out", "out", "--budget", "500"});
+  const json commands = json::parse(read(at("out/result.json")))["reproduce"];
+  ASSERT_EQ(commands.size(), 3U) << commands;
+  EXPECT_THAT(commands[0].get<std::string>(), testing::StartsWith("softland optimize gold.toml"));
+  EXPECT_EQ(commands[1], "softland optimize --resume --quiet --out out --budget 500");
   done(optimize({"--out", "whole", "--budget", "500", "--optimizer", "cma-es"}));
   expect_same_search(at("whole"), at("out"));
-  EXPECT_EQ(rows_in(at("out/evaluations.sqlite")).size(), rows_in(at("whole/evaluations.sqlite")).size());
+  EXPECT_EQ(rows_of(at("out/evaluations.sqlite")).size(), rows_of(at("whole/evaluations.sqlite")).size());
   // Once more, all of it is known.
   done({"optimize", "--resume", "--quiet", "--out", "out"});
   expect_same_search(at("whole"), at("out"));
@@ -90,7 +95,7 @@ TEST_F(Resume, AfterCtrlCGoesOn) {
   std::this_thread::sleep_for(500ms);
   kill(child, SIGINT);
   EXPECT_EQ(here.finish(child).status, 130);
-  EXPECT_GT(rows_in(at("out/evaluations.sqlite")).size(), 0U);
+  EXPECT_GT(rows_of(at("out/evaluations.sqlite")).size(), 0U);
   EXPECT_FALSE(fs::exists(at("out/evaluations.sqlite-wal")));
   done({"optimize", "--resume", "--quiet", "--out", "out", "--budget", "300"});
   done(optimize({"--out", "whole", "--budget", "300"}));

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "explorations.h"
 #include "program.h"
-#include "store/study_store.h"
 
 namespace softland::test {
 
@@ -53,12 +53,6 @@ inline void expect_same_search(const fs::path& a, const fs::path& b) {
   const json one = result_in(a), other = result_in(b);
   EXPECT_TRUE(one.is_object());
   EXPECT_TRUE(one == other) << json::diff(one, other).dump().substr(0, 2000);
-}
-
-inline std::vector<StoredRow> rows_in(const fs::path& store) {
-  std::vector<StoredRow> rows;
-  StudyReader(store).read([&](const StoredRow& row) { rows.push_back(row); });
-  return rows;
 }
 
 class Searches : public testing::Test {

@@ -8,7 +8,6 @@
 #include <random>
 #include <thread>
 
-#include "explorations.h"
 #include "searches.h"
 
 namespace softland {
@@ -18,7 +17,7 @@ using nlohmann::json;
 using test::expect_same_rows;
 using test::expect_same_search;
 using test::optimize;
-using test::rows_in;
+using test::rows_of;
 using testing::HasSubstr;
 
 class Seeds : public test::Searches {};
@@ -30,7 +29,7 @@ std::vector<std::string> seeds(const std::string& count, std::vector<std::string
 
 TEST_F(Seeds, AreOneSearchEachAndTheBestIsReported) {
   done(seeds("3", {"--out", "one", "--jobs", "1"}));
-  const std::vector<StoredRow> rows = rows_in(at("one/seeds.sqlite"));
+  const std::vector<StoredRow> rows = rows_of(at("one/seeds.sqlite"));
   ASSERT_EQ(rows.size(), 3U);
   const json j = test::result_in(at("one"));
   const json& study = j["seeds"];
@@ -72,7 +71,7 @@ TEST_F(Seeds, HaveTheSameBitsWhateverTheNumberOfJobs) {
     const std::string out = std::string("jobs") + jobs;
     done(seeds("3", {"--out", out, "--jobs", jobs}));
     expect_same_search(at("one"), at(out));
-    expect_same_rows(rows_in(at("one/seeds.sqlite")), rows_in(at(out) / "seeds.sqlite"));
+    expect_same_rows(rows_of(at("one/seeds.sqlite")), rows_of(at(out) / "seeds.sqlite"));
   }
 }
 
@@ -93,7 +92,7 @@ TEST_F(Seeds, AfterKillsAtRandomMomentsEndWithTheSameBits) {
   }
   done(with("killed", {"--resume"}));
   expect_same_search(at("whole"), at("killed"));
-  expect_same_rows(rows_in(at("whole/seeds.sqlite")), rows_in(at("killed/seeds.sqlite")));
+  expect_same_rows(rows_of(at("whole/seeds.sqlite")), rows_of(at("killed/seeds.sqlite")));
 }
 
 TEST_F(Seeds, ThatAreThereAreNotRepeatedWhenMoreAreAsked) {
@@ -118,7 +117,7 @@ TEST_F(Seeds, ThatAreInterruptedTellWhatIsDoneAndGoOn) {
   const pid_t child =
       here.start(optimize({"--seeds", "400", "--budget", "60", "--jobs", "1", "--out", "out", "--json", "out.json"}));
   const fs::path store = at("out/unfinished/seeds.sqlite");
-  for (int i = 0; i < 1200 && !(is_store(store) && !rows_in(store).empty()); ++i)
+  for (int i = 0; i < 1200 && !(is_store(store) && !rows_of(store).empty()); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   kill(child, SIGINT);
   const Outcome o = here.finish(child);
@@ -127,7 +126,7 @@ TEST_F(Seeds, ThatAreInterruptedTellWhatIsDoneAndGoOn) {
   const json j = json::parse(read(at("out.json")), nullptr, false);
   EXPECT_EQ(j["status"], "interrupted");
   EXPECT_EQ(j["seeds"]["planned"], 400);
-  const std::size_t there = rows_in(store).size();
+  const std::size_t there = rows_of(store).size();
   EXPECT_EQ(j["seeds"]["searches"].size(), there);
   EXPECT_TRUE(fs::exists(at("out/unfinished/best.toml")));
   EXPECT_FALSE(fs::exists(at("out/result.json")));
@@ -156,7 +155,7 @@ TEST_F(Seeds, OfARobustSearchEndWithTheSameBits) {
   };
   const pid_t child = here.start(with("killed", {}));
   const fs::path store = at("killed/unfinished/evaluations.sqlite");
-  for (int i = 0; i < 1200 && !(is_store(store) && rows_in(store).size() > 60); ++i)
+  for (int i = 0; i < 1200 && !(is_store(store) && rows_of(store).size() > 60); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   kill(child, SIGKILL);
   (void)here.finish(child);
@@ -164,7 +163,7 @@ TEST_F(Seeds, OfARobustSearchEndWithTheSameBits) {
   EXPECT_EQ(resumed.status, whole.status) << resumed.err;
   expect_same_search(at("whole"), at("killed"));
   EXPECT_EQ(read(at("whole/devices.csv")), read(at("killed/devices.csv")));
-  expect_same_rows(rows_in(at("whole/seeds.sqlite")), rows_in(at("killed/seeds.sqlite")));
+  expect_same_rows(rows_of(at("whole/seeds.sqlite")), rows_of(at("killed/seeds.sqlite")));
 }
 
 }  // namespace
