@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/require.h"
+#include "apps/stores.h"
 #include "config/plan.h"
 #include "studies/exploration.h"
 
@@ -16,9 +16,7 @@ using nlohmann::json;
 
 constexpr std::size_t most_waveforms = 400;  // of a front
 
-Plan plan_of(const StudyReader& store) {
-  return Plan(read_plan(SceneFile::parse(store.plan().text, store.path().string() + " (plan)")));
-}
+Plan plan_of(const StudyReader& store) { return Plan(exploration_in(store)); }
 
 }  // namespace
 

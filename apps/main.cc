@@ -30,14 +30,6 @@ std::string command_line(const std::vector<std::string>& words) {
   return line;
 }
 
-// Refused with these words until it exists.
-void refuse_what_is_coming(const std::vector<std::string>& words) {
-  if (words.empty() || words.front() != "optimize") return;
-  for (const std::string& word : words) {
-    if (word == "--resume" || word.starts_with("--resume=")) throw InvalidInput("the option --resume is not available yet");
-  }
-}
-
 void describe(CLI::App& app) {
   app.name("softland");
   app.get_formatter()->label("SUBCOMMAND", "VERB");
@@ -83,7 +75,6 @@ int run(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   // Called by the name `optimize`, the program is that verb.
   if (std::filesystem::path(argv[0]).filename() == "optimize") words.insert(words.begin(), "optimize");
-  refuse_what_is_coming(words);
 
   Common common{.command = command_line(words), .stop = &stop_requested()};
   CLI::App app{

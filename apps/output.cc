@@ -42,10 +42,11 @@ void check_json_place(const std::string& file, const fs::path& folder) {
   require(!is_output, fmt::format("--json {}: is this run's standard output; use --json -", file));
 }
 
-std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std::string>& files) {
+std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std::string>& files,
+                                         const std::vector<std::string>& kept) {
   const bool has_file = !c.json.empty() && c.json != "-";
   std::optional<ResultFolder> folder;
-  if (!c.out.empty()) folder.emplace(c.out, c.command, files);
+  if (!c.out.empty()) folder.emplace(c.out, c.command, files, kept);
   if (has_file) check_json_place(c.json, folder ? folder->path() : fs::path());
   for (const std::string& name : folder ? files : std::vector<std::string>()) {
     const fs::path file = folder->path() / name;

@@ -18,9 +18,11 @@ namespace softland::apps {
 [[nodiscard]] std::string json_text(const nlohmann::json& data, int indent = -1);
 
 /// Takes the places that --json and --out name, for the run's output alone: to be called when the scene has been read and before
-/// anything long is computed. The folder, where there is one, will hold `files`. Throws InvalidInput where one cannot be written
-/// to, or would replace an input of this run or another of its outputs.
-[[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files);
+/// anything long is computed. The folder, where there is one, will hold `files`, of which the `kept` ones are those of an earlier
+/// run that this one goes on with. Throws InvalidInput where one cannot be written to, or would replace an input of this run or
+/// another of its outputs.
+[[nodiscard]] std::optional<ResultFolder> claim_places(const Common& common, const std::vector<std::string>& files,
+                                                       const std::vector<std::string>& kept = {});
 
 /// The files of a result: result.json, report.html, gap.svg, trajectory.csv where there is a trajectory.
 void write_result(ResultFolder& folder, const Result& result);

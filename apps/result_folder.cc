@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <system_error>
 
 #include "base/output_lost.h"
@@ -18,6 +19,15 @@ namespace fs = std::filesystem;
 constexpr const char* lock_name = "softland.lock";
 constexpr int most_stages = 100;
 
+// What SQLite and a lock leave beside a store whose writer was killed.
+constexpr std::array<std::string_view, 4> companions{"-wal", "-shm", "-journal", ".lock"};
+
+fs::path staged(const fs::path& folder, int k) { return folder / (k == 1 ? "unfinished" : fmt::format("unfinished-{}", k)); }
+
+bool is_of(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 fs::path created(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -27,21 +37,32 @@ fs::path created(const std::string& folder) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files)
+ResultFolder::ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files,
+                           const std::vector<std::string>& kept)
     : folder_(created(folder)),
       files_(files),
+      kept_(kept),
       lock_(std::make_unique<LockFile>(folder_ / lock_name,
                                        LockedPlace{"--out " + folder, "folder", "another run works in this folder"}, command)) {
   for (const std::string& name : files_) {
     std::error_code ignored;
     require(!fs::is_directory(folder_ / name, ignored),
             fmt::format("--out {}: {} is a folder, where a result would be written", folder, (folder_ / name).string()));
-    require(!was_read(folder_ / name), fmt::format("--out {}: {} would be replaced, which this run reads; name another folder",
-                                                   folder, (folder_ / name).string()));
+    require(is_of(kept_, name) || !was_read(folder_ / name),
+            fmt::format("--out {}: {} would be replaced, which this run reads; name another folder", folder,
+                        (folder_ / name).string()));
   }
 }
 
-fs::path ResultFolder::staged(int k) const { return folder_ / (k == 1 ? "unfinished" : fmt::format("unfinished-{}", k)); }
+std::vector<fs::path> ResultFolder::places(const fs::path& folder, const std::string& name) {
+  std::vector<fs::path> all;
+  std::error_code ignored;
+  for (int k = most_stages; k >= 1; --k) {
+    if (fs::exists(staged(folder, k) / name, ignored)) all.push_back(staged(folder, k) / name);
+  }
+  if (fs::exists(folder / name, ignored)) all.push_back(folder / name);
+  return all;
+}
 
 fs::path ResultFolder::destination(bool interrupted) const {
   const bool taken = std::any_of(files_.begin(), files_.end(), [&](const std::string& name) {
@@ -54,12 +75,17 @@ fs::path ResultFolder::destination(bool interrupted) const {
 void ResultFolder::remove_abandoned() const {
   std::error_code error;
   for (int k = 1; k <= most_stages; ++k) {
-    const fs::path stage = staged(k);
+    const fs::path stage = staged(folder_, k);
     if (!fs::is_directory(stage, error)) continue;
     // Only what this kind of run leaves: a search is not given up for a simulation in the same folder.
     bool ours = true;
-    for (const auto& entry : fs::directory_iterator(stage, error))
-      ours = ours && std::find(files_.begin(), files_.end(), entry.path().filename()) != files_.end() && !was_read(entry.path());
+    for (const auto& entry : fs::directory_iterator(stage, error)) {
+      std::string name = entry.path().filename();
+      for (const std::string_view end : companions) {
+        if (name.ends_with(end)) name.resize(name.size() - end.size());
+      }
+      ours = ours && is_of(files_, name) && !was_read(entry.path());
+    }
     if (ours) fs::remove_all(stage, error);
   }
 }
@@ -68,20 +94,33 @@ void ResultFolder::check_lock() const {
   if (!lock_->held()) throw OutputLost(fmt::format("{}: the folder was removed or replaced during this run", folder_.string()));
 }
 
-void ResultFolder::write(const std::string& name, std::string_view content) {
+void ResultFolder::make_stage() {
   check_lock();
   std::error_code error;
   // Results of a run that was killed are all there is of it: they stay until these are finished.
   for (int k = 1; stage_.empty(); ++k) {
+    const fs::path stage = staged(folder_, k);
     require(k <= most_stages, fmt::format("{} and {} more hold results of runs that were killed: move or remove them",
-                                          staged(1).string(), most_stages - 1));
-    const bool fresh = fs::create_directory(staged(k), error);
-    if (error) throw OutputLost(fmt::format("{}: cannot be created: {}", staged(k).string(), error.message()));
-    if (fresh) stage_ = staged(k);
+                                          staged(folder_, 1).string(), most_stages - 1));
+    const bool fresh = fs::create_directory(stage, error);
+    if (error) throw OutputLost(fmt::format("{}: cannot be created: {}", stage.string(), error.message()));
+    if (fresh) stage_ = stage;
   }
-  write_whole(stage_ / name, content);
-  if (std::find(written_.begin(), written_.end(), name) == written_.end()) written_.push_back(name);
 }
+
+fs::path ResultFolder::place(const std::string& name) {
+  make_stage();
+  if (!is_of(written_, name)) written_.push_back(name);
+  return stage_ / name;
+}
+
+void ResultFolder::write(const std::string& name, std::string_view content) {
+  make_stage();
+  write_whole(stage_ / name, content);
+  if (!is_of(written_, name)) written_.push_back(name);
+}
+
+void ResultFolder::adopt(const fs::path& stage) { stage_ = stage; }
 
 void ResultFolder::publish(bool interrupted) {
   check_lock();
@@ -95,9 +134,12 @@ void ResultFolder::publish(bool interrupted) {
     if (error)
       throw OutputLost(
           fmt::format("{}: cannot be replaced by {}: {}", (folder_ / name).string(), (stage_ / name).string(), error.message()));
+    // A store that somebody reads keeps its log until that one has done.
+    const fs::path log = stage_ / (name + "-wal");
+    if (fs::exists(log, error)) fs::rename(log, folder_ / (name + "-wal"), error);
   }
   for (const std::string& name : files_) {
-    if (std::find(written_.begin(), written_.end(), name) == written_.end()) fs::remove(folder_ / name, error);
+    if (!is_of(written_, name) && !is_of(kept_, name)) fs::remove(folder_ / name, error);
   }
   fs::remove(stage_, error);
   remove_abandoned();

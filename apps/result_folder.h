@@ -14,12 +14,20 @@ namespace softland::apps {
 
 class ResultFolder {
  public:
-  /// Creates and locks the folder for the run `command`, which will leave `files` in it. Throws InvalidInput, before anything is
-  /// changed, where that is not possible or one of these files is an input of this run.
-  ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files);
+  /// Creates and locks the folder for the run `command`, which will leave `files` in it; of those it goes on with the `kept` ones
+  /// of an earlier run, which stay where they are. Throws InvalidInput, before anything is changed, where that is not possible or
+  /// one of the others is an input of this run.
+  ResultFolder(const std::string& folder, const std::string& command, const std::vector<std::string>& files,
+               const std::vector<std::string>& kept = {});
 
   /// Writes a file of the unfinished results.
   void write(const std::string& name, std::string_view content);
+  /// Where a file of the unfinished results is to be written by somebody else, who must have let it go before publish().
+  [[nodiscard]] std::filesystem::path place(const std::string& name);
+  /// Goes on with the unfinished results of a run that was killed, which are in `stage`.
+  void adopt(const std::filesystem::path& stage);
+  /// Places in `folder` where a file of this name may be, of results that are unfinished or not: the newest first.
+  [[nodiscard]] static std::vector<std::filesystem::path> places(const std::filesystem::path& folder, const std::string& name);
   /// Where the results written will be: in the folder, but those of a run that was `interrupted` stay where they are if an
   /// earlier run has left its own.
   [[nodiscard]] std::filesystem::path destination(bool interrupted) const;
@@ -30,12 +38,12 @@ class ResultFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
  private:
-  [[nodiscard]] std::filesystem::path staged(int k) const;
+  void make_stage();
   void remove_abandoned() const;
   void check_lock() const;
 
   std::filesystem::path folder_;
-  std::vector<std::string> files_, written_;
+  std::vector<std::string> files_, written_, kept_;
   std::unique_ptr<const LockFile> lock_;
   std::filesystem::path stage_;
 };

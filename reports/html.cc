@@ -16,6 +16,7 @@
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/result_view.h"
+#include "reports/seeds_report.h"
 #include "reports/sketch.h"
 
 namespace softland {
@@ -321,8 +322,8 @@ std::string html_report(const Result& result) {
                .doubt = checks_agree(result) ? "" : checks_caption(result),
                .keys = key_numbers(result),
                .body = drawn_switch(result) + charts(drawn) + figures_table(result) + checks_table(result) +
-                       list_of(result.warnings, "Warnings", "warnings") + parameters_table(result) + facts(result) +
-                       reproduce(result) + scene(result),
+                       seeds_section(result.seeds) + list_of(result.warnings, "Warnings", "warnings") + parameters_table(result) +
+                       facts(result) + reproduce(result) + scene(result),
                .style = chart_style(),
                .scripts = chart_scripts(drawn)});
 }

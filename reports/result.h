@@ -114,6 +114,20 @@ struct ResultRobust {
   std::vector<Condition> conditions;
 };
 
+/// Searches that differ in their seeds alone; the result is that of the best.
+struct ResultSeeds {
+  struct Search {
+    std::uint64_t seed = 0;
+    std::string status, termination;
+    double cost = Metrics::unset, evaluations = Metrics::unset;
+    bool goal_met = false, confirmed = false, better_than_baseline = false;
+    FigureValues figures;  ///< of the waveform found
+  };
+  std::uint64_t planned = 0;     ///< searches, of which those below are done
+  std::vector<Search> searches;  ///< in the order of their seeds
+  std::size_t best = 0;          ///< of them
+};
+
 struct Result {
   bool is_search = false;  ///< of optimize, else of simulate
   std::string status, message, title;
@@ -127,6 +141,7 @@ struct Result {
   std::vector<ResultCheck> checks;
   ResultSearch search;
   std::optional<ResultRobust> robust;
+  std::optional<ResultSeeds> seeds;
   std::map<std::string, double> parameters;             ///< of the winner, by drive.name
   std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
   std::map<std::string, PullInVoltages> pull_in;        ///< by electrode

@@ -4,6 +4,7 @@
 
 #include "reports/json_number.h"
 #include "reports/made_with.h"
+#include "reports/seeds_report.h"
 
 namespace softland {
 namespace {
@@ -142,6 +143,7 @@ void add_search(json& j, const Result& r) {
   if (!r.search.evaluations.empty()) j["search"]["evaluations"] = counted_json(r.search.evaluations);
   j["reproduce"] = r.reproduce;
   if (r.robust) j["robust"] = robust_json(*r.robust);
+  if (r.seeds) j["seeds"] = seeds_json(*r.seeds);
   if (!r.best.figures) return;
   j["best"]["parameters"] = r.parameters;
   j["best"]["bounds"] = r.bounds;

@@ -198,6 +198,29 @@ std::optional<ResultRobust> robust(const json& found) {
   return all;
 }
 
+ResultSeeds::Search search_of_seed(const json& one) {
+  const json& seed = at(one, {"seed"});
+  return {.seed = seed.is_number_unsigned() ? seed.get<std::uint64_t>() : 0,
+          .status = text(one, {"status"}),
+          .termination = text(one, {"termination"}),
+          .cost = number(one, {"cost"}),
+          .evaluations = number(one, {"evaluations"}),
+          .goal_met = truth(one, {"goal_met"}).value_or(false),
+          .confirmed = truth(one, {"confirmed"}).value_or(false),
+          .better_than_baseline = truth(one, {"better_than_baseline"}).value_or(false),
+          .figures = figures(at(one, {"metrics"}))};
+}
+
+std::optional<ResultSeeds> seeds(const json& found) {
+  if (!found.is_object()) return std::nullopt;
+  ResultSeeds all{.planned = whole<std::uint64_t>(at(found, {"planned"})),
+                  .searches = each(at(found, {"searches"}), search_of_seed)};
+  for (std::size_t k = 0; k < all.searches.size(); ++k) {
+    if (at(found, {"best_seed"}) == all.searches[k].seed) all.best = k;
+  }
+  return all;
+}
+
 bool is_search(const json& result) {
   const std::string kind = text(result, {"kind"});
   return kind == "optimize" || (kind.empty() && !at(result, {"baseline"}).is_null());
@@ -250,6 +273,7 @@ Result read_result(const json& result) {
                       .best_so_far = points(at(result, {"search", "best_so_far"})),
                       .evaluations = points(at(result, {"search", "evaluations"}))},
            .robust = robust(at(result, {"robust"})),
+           .seeds = seeds(at(result, {"seeds"})),
            .pull_in = pull_in(at(result, {"pull_in"})),
            .natural_frequencies = numbers(at(result, {"natural_frequencies_rad_s"})),
            .work = work(at(result, {"work"})),

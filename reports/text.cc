@@ -9,6 +9,7 @@
 #include "reports/course.h"
 #include "reports/figure_text.h"
 #include "reports/findings.h"
+#include "reports/seeds_report.h"
 
 namespace softland {
 
@@ -74,6 +75,7 @@ std::string text_report(const Result& result) {
     out += "\n" + wrapped(checks) + "\n";
   if (const std::string words = internal::certificate_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   if (const std::string words = internal::robust_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
+  if (const std::string words = internal::seeds_text(result.seeds); !words.empty()) out += "\n" + words;
   for (const std::string& warning : result.warnings) out += "\n" + wrapped("warning: " + warning) + "\n";
   return out;
 }

@@ -109,6 +109,7 @@ class StudyStore::Implementation {
   std::unique_ptr<Database> database_;
   std::int64_t number_ = 0;
   bool has_earlier_ = false;
+  std::int64_t earlier_rows_ = 0;
   std::vector<bool> done_;
 
   mutable std::mutex finding_;
@@ -200,7 +201,9 @@ void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool 
   }
   rows_.emplace(*database_, number_, plan_.columns);
   tally_.emplace(*database_, number_, database_->number_of("SELECT max(session) FROM session"));
-  if (has_earlier_) prepare_finding();
+  if (!has_earlier_) return;
+  earlier_rows_ = database_->number_of(fmt::format("SELECT ifnull(sum(rows), 0) FROM tally WHERE plan != {}", number_));
+  prepare_finding();
 }
 
 void StudyStore::Implementation::prepare_finding() {
@@ -347,6 +350,8 @@ const fs::path& StudyStore::path() const { return implementation_->path_; }
 std::vector<bool> StudyStore::done() const { return implementation_->done_; }
 
 bool StudyStore::has_earlier_plans() const { return implementation_->has_earlier_; }
+
+std::int64_t StudyStore::earlier_rows() const { return implementation_->earlier_rows_; }
 
 std::optional<StoredRow> StudyStore::find(const ContentKey& content) const {
   if (!implementation_->has_earlier_) return std::nullopt;

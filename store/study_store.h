@@ -135,6 +135,8 @@ class StudyStore {
   [[nodiscard]] std::vector<bool> done() const;
   /// Whether it holds rows of other plans, so that find() may find something.
   [[nodiscard]] bool has_earlier_plans() const;
+  /// How many rows these are.
+  [[nodiscard]] std::int64_t earlier_rows() const;
   /// A row of an earlier plan with this content. May be called on any thread.
   [[nodiscard]] std::optional<StoredRow> find(const ContentKey& content) const;
 

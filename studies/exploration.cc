@@ -71,24 +71,6 @@ void complete_search(std::map<std::string, std::string>& given, const auto& chec
   });
 }
 
-/// "main.level_1_V" -> "main.level_1", "V".
-PointFigure parameter_figure(const std::string& name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> suffixes{
-      {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_s", "s"}, {"_V", "V"}}};
-  for (const auto& [suffix, unit] : suffixes) {
-    if (!name.ends_with(suffix)) continue;
-    std::string quantity = name.substr(0, name.size() - suffix.size());
-    return {.quantity = quantity, .name = quantity, .unit = std::string(unit)};
-  }
-  return {.quantity = name, .name = name, .unit = {}};
-}
-
-PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {}) {
-  return {.quantity = before + std::string(figure.quantity()),
-          .name = std::string(figure.name) + words,
-          .unit = std::string(figure.unit)};
-}
-
 /// The drives whose pull-in is told: the electrodes that pull in, or where there are none the dispersion force.
 std::vector<std::size_t> pulling_drives(const Device& device) {
   std::vector<std::size_t> drives;
@@ -121,6 +103,23 @@ std::string without_file(std::string_view message) {
 }
 
 }  // namespace
+
+PointFigure parameter_figure(const std::string& name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> suffixes{
+      {{"_rad_s", "rad/s"}, {"_rad", "rad"}, {"_s", "s"}, {"_V", "V"}}};
+  for (const auto& [suffix, unit] : suffixes) {
+    if (!name.ends_with(suffix)) continue;
+    std::string quantity = name.substr(0, name.size() - suffix.size());
+    return {.quantity = quantity, .name = quantity, .unit = std::string(unit)};
+  }
+  return {.quantity = name, .name = name, .unit = {}};
+}
+
+PointFigure figure_column(const Figure& figure, const std::string& before, const std::string& words) {
+  return {.quantity = before + std::string(figure.quantity()),
+          .name = std::string(figure.name) + words,
+          .unit = std::string(figure.unit)};
+}
 
 void complete(PlanRequest& request) {
   const auto checked = [&](std::string_view key, auto&& check) {

@@ -23,6 +23,7 @@
 #include "base/choice.h"
 #include "base/watch.h"
 #include "config/plan.h"
+#include "objectives/figures.h"
 #include "studies/pull_in_memory.h"
 
 namespace softland {
@@ -40,6 +41,11 @@ struct PointFigure {
   std::string name;      ///< for people: "Impact speed"
   std::string unit;      ///< of SI; empty for a count, a share, yes or no (1 or 0)
 };
+
+/// Of a searched parameter: "main.level_1_V" is "main.level_1" in V.
+[[nodiscard]] PointFigure parameter_figure(const std::string& name);
+/// Of a figure of merit, with something before its quantity and after its name.
+[[nodiscard]] PointFigure figure_column(const Figure& figure, const std::string& before = {}, const std::string& words = {});
 
 /// Status of a point whose scene cannot be, or cannot be studied: the reason says why.
 inline constexpr std::string_view infeasible = "infeasible";

@@ -82,6 +82,7 @@ class Verification {
   void move_to(OptimizeResult& result) {
     if (!best_) return;
     result.goal_met = best_->belief >= Belief::meets_goal;
+    result.confirmed = best_->belief == Belief::confirmed;
     result.better_than_baseline = figure(target_, best_->closing.metrics) < figure(target_, baseline_);
     result.best_scene = std::move(best_->scene);
     result.best = std::move(best_->closing);
@@ -145,29 +146,28 @@ class Search {
   Search(const SearchSetting& setting, const OptimizeOptions& options)
       : setting_(setting),
         options_(options),
-        problem_{.variables = setting.space.variables(), .objective = {}, .starts = setting.space.starts()},
-        given_point_(setting.space.parameters(setting.given.drives.waveforms)),
+        problem_{.variables = setting.space.variables(), .objective = {}, .starts = {}},
         progress_{.baseline_cost = setting.baseline_cost} {
     for (const Variable& v : problem_.variables) names_.push_back(v.name);
     if (options.on_start) options.on_start(names_);
   }
 
-  // A scene that holds a landing already is refined: its drives are the first candidate, and where the search can describe them
-  // it starts there.
-  void refine_given() {
+  // A scene that holds a landing already is refined, and so are landings that other searches have found: they are the first
+  // candidates, and where the search can describe them it starts there.
+  void begin() {
     const std::vector<Signal> drives = setting_.given.signals();
-    if (same_drives(drives, setting_.baseline_scene.signals())) return;
-    given_cost_ = setting_.price(drives).own;
-    if (given_point_) problem_.starts.insert(problem_.starts.begin(), *given_point_);
-    if (!(given_cost_ < never_touched)) return;
-    progress_.best_cost = given_cost_;
-    if (options_.on_improvement)
-      options_.on_improvement({.index = given_index, .value = given_cost_, .x = given_point_.value_or(std::vector<double>{})},
-                              with_waveforms(setting_.given, {}));
+    if (!same_drives(drives, setting_.baseline_scene.signals()))
+      refine(drives, setting_.space.parameters(setting_.given.drives.waveforms), with_waveforms(setting_.given, {}));
+    for (const StartingWaveforms& start : options_.starts) {
+      const std::map<std::string, Waveform> searched = setting_.space.searched(start.waveforms);
+      refine(signals_of(setting_.drives(searched)), setting_.space.parameters(searched), setting_.scene(searched));
+    }
+    for (std::vector<double>& start : setting_.space.starts()) problem_.starts.push_back(std::move(start));
   }
 
   OptimizerResult run() {
-    TwoStages stages([&](std::span<const double> x) { return setting_.price_at(x); }, [&](const Evaluation& e) { evaluated(e); });
+    TwoStages stages([&](std::span<const double> x) { return setting_.price_at(x, options_.memory); },
+                     [&](const Evaluation& e) { evaluated(e); });
     return stages.run(std::move(problem_),
                       {.optimizer = options_.optimizer,
                        .max_evaluations = options_.max_evaluations,
@@ -178,12 +178,10 @@ class Search {
                       has_own_cost(options_.target));
   }
 
-  // The best of the given drives and of what the search came upon, each verified.
+  // The best of the landings that were given and of what the search came upon, each verified.
   Verification verified(const std::vector<Evaluation>& improvements) const {
     Verification all(setting_, options_);
-    if (given_cost_ < never_touched)
-      all.add(with_waveforms(setting_.given, {}), given_cost_,
-              given_point_ ? named(*given_point_) : std::map<std::string, double>{});
+    for (const Landing& given : landings_) all.add(given.scene, given.cost, named(given.x));
     for (const Evaluation& e : candidates(improvements)) {
       all.add(setting_.scene(setting_.space.waveforms(e.x)), e.value, named(e.x));
       if (all.decided(e.value)) break;
@@ -192,6 +190,23 @@ class Search {
   }
 
  private:
+  // A landing to begin with. Its parameters are empty where the search cannot describe it.
+  struct Landing {
+    SceneFile scene;
+    double cost;
+    std::vector<double> x;
+  };
+
+  void refine(const std::vector<Signal>& drives, const std::optional<std::vector<double>>& point, const SceneFile& scene) {
+    const double cost = setting_.price(drives).own;
+    if (point) problem_.starts.push_back(*point);
+    if (!(cost < never_touched)) return;
+    landings_.push_back({.scene = scene, .cost = cost, .x = point.value_or(std::vector<double>{})});
+    if (progress_.best_cost <= cost) return;
+    progress_.best_cost = cost;
+    if (options_.on_improvement) options_.on_improvement({.index = given_index, .value = cost, .x = landings_.back().x}, scene);
+  }
+
   void evaluated(const Evaluation& e) {
     ++progress_.evaluations;
     const bool improves = std::isfinite(e.value) && !(progress_.best_cost <= e.value);
@@ -211,8 +226,7 @@ class Search {
   const OptimizeOptions& options_;
   Problem problem_;
   std::vector<std::string> names_;
-  std::optional<std::vector<double>> given_point_;
-  double given_cost_ = never_touched;
+  std::vector<Landing> landings_;
   OptimizeProgress progress_;
 };
 
@@ -222,8 +236,9 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family,
                                                {.stop = options.stop, .progress = options.on_preparation});
+  setting.check_starts(options.starts);
   Search search(setting, options);
-  search.refine_given();
+  search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;
   result.variables = setting.space.variables();

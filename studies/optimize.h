@@ -2,8 +2,8 @@
 //
 // The winner is believed only after a run over the whole window at the scene's accuracy, read back from the very text of
 // best.toml; runs with a tighter integrator and with two more modes confirm it. Where the best candidate fails one of these, the
-// next ones of the search are tried. The waveform that the scene holds already is a candidate too, so that refining a winner
-// never ends with a worse one. Baseline and scores: search_setting.h.
+// next ones of the search are tried. The waveform that the scene holds already, and those it is told to start with, are
+// candidates too, so that refining a winner never ends with a worse one. Baseline and scores: search_setting.h.
 #pragma once
 
 #include <atomic>
@@ -17,6 +17,7 @@
 
 #include "objectives/cost.h"
 #include "optimizers/problem.h"
+#include "studies/evaluation_memory.h"
 #include "studies/search_space.h"
 #include "studies/simulate.h"
 
@@ -34,7 +35,7 @@ struct OptimizeProgress {
 /// `bounce`.
 [[nodiscard]] long default_budget(Target target, Actuator actuator);
 
-/// Evaluation::index of the scene's own waveform.
+/// Evaluation::index of the scene's own waveform, and of those to start with.
 inline constexpr long given_index = -1;
 
 struct OptimizeOptions {
@@ -46,6 +47,11 @@ struct OptimizeOptions {
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
   int jobs = 1;
+  /// Landings that other searches have found: candidates, and first points of this one. Their drives and family must be those
+  /// that are searched.
+  std::vector<StartingWaveforms> starts = {};
+  /// What is known of candidates already, and learns of those that are simulated; may be null.
+  EvaluationMemory* memory = nullptr;
   /// Set from outside (Ctrl-C): ends the search. The runs that verify and confirm what it found by then are run to their end.
   const std::atomic<bool>* stop = nullptr;
   /// Told before and after the search itself, of the pull-in voltages, the baseline and the runs that verify the winner: see
@@ -59,8 +65,8 @@ struct OptimizeOptions {
   /// Called under the same lock where a search is at work that is not on record, as on a part of the devices.
   std::function<void(const OptimizeProgress&)> on_progress = {};
   /// Called under the same lock at every improvement that touches, with the scene file that gives it. The first may be the
-  /// scene's own waveform, before the search: its index is given_index, and x is empty where the searched family cannot describe
-  /// it.
+  /// scene's own waveform, or one of `starts`, before the search: their index is given_index, and x is empty where the searched
+  /// family cannot describe it.
   std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
 };
 
@@ -85,6 +91,7 @@ struct OptimizeResult {
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   OptimizerResult search;
   bool goal_met = false;
+  bool confirmed = false;  ///< the goal is met in the confirming runs too
   bool better_than_baseline = false;
 };
 

@@ -150,16 +150,32 @@ class RobustSearch {
   double evaluate(const Point& x, std::size_t devices, double hopeless, int jobs, long& used) const {
     const std::map<std::string, Waveform> searched = setting_.space.waveforms(x);
     if (!setting_.is_allowed(searched)) return std::numeric_limits<double>::infinity();
-    const std::vector<Waveform> drives = setting_.drives(searched);
+    const EvaluationKey key{.x = x, .devices = devices, .seed = options_.seed, .hopeless = hopeless};
+    if (options_.memory != nullptr) {
+      if (const auto known = options_.memory->recall(key)) {
+        used += known->closings;
+        return known->cost;
+      }
+    }
+    const EvaluationValues found = tried(setting_.drives(searched), devices, hopeless, jobs);
+    if (options_.memory != nullptr) options_.memory->note(key, found);
+    used += found.closings;
+    return found.cost;
+  }
+
+  [[nodiscard]] EvaluationValues tried(const std::vector<Waveform>& drives, std::size_t devices, double hopeless,
+                                       int jobs) const {
     std::vector<DeviceOutcome> outcomes;
+    EvaluationValues found{.closings = 0};
     for (const std::size_t stage : {race[0], race[1], devices}) {
       if (stage > devices || stage <= outcomes.size()) continue;
       const std::vector<DeviceOutcome> more = cost_.close(drives, outcomes.size(), stage, jobs);
-      used += static_cast<long>(more.size());
+      found.closings += static_cast<long>(more.size());
       outcomes.insert(outcomes.end(), more.begin(), more.end());
-      if (const double value = cost_.value(outcomes); stage == devices || value > hopeless) return value;
+      found.cost = cost_.value(outcomes);
+      if (found.cost > hopeless) break;
     }
-    return std::numeric_limits<double>::infinity();
+    return found;
   }
 
   // Notes an evaluation on all devices; `index` orders them whatever the threads.
@@ -187,7 +203,7 @@ class RobustSearch {
     for (int k = 0; k < nominal_searches && !over(); ++k) {
       const OptimizerResult found =
           minimize({.variables = variables_,
-                    .objective = [&](std::span<const double> x) { return setting_.price_at(x).leading; },
+                    .objective = [&](std::span<const double> x) { return setting_.price_at(x, options_.memory).leading; },
                     .starts = setting_.space.starts()},
                    {.max_evaluations = scouting_.nominal_evaluations,
                     .max_seconds = std::max(1e-3, scouting_time * options_.max_seconds),
@@ -207,6 +223,7 @@ class RobustSearch {
     const auto add = [&](const Point& x) { all.push_back({.x = x}); };
     for (const Point& x : setting_.space.starts()) add(x);
     if (const auto given = setting_.space.parameters(setting_.given.drives.waveforms)) add(*given);
+    for (const StartingWaveforms& start : options_.starts) add(setting_.space.parameters(start.waveforms).value());
     for (const Point& x : nominal_winners()) add(x);
     for (Point u : internal::sobol_points(options_.seed, variables_.size(), 0, scouting_.box_points)) {
       for (std::size_t i = 0; i < u.size(); ++i) u[i] = variables_[i].lower + u[i] * (variables_[i].upper - variables_[i].lower);
@@ -376,6 +393,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
 RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust) {
   const Watch watch{.stop = options.stop, .progress = options.on_preparation};
   const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
+  setting.check_starts(options.starts);
   const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
   const RobustCost cost(setting, robust.aim, own_devices(setting, known, options, robust.samples, 0, watch));
   RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline}};
@@ -416,6 +434,20 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
     out.search.termination = Termination::interrupted;
   }
   return result;
+}
+
+SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
+                                       const Watch& watch) {
+  static_cast<void>(optimizer_description(options.optimizer));
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
+  setting.check_starts(options.starts);
+  if (over_devices) {
+    static_cast<void>(known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch));
+    static_cast<void>(Ensemble(setting.given, 1, options.seed));
+  }
+  SearchedParameters searched{.names = {}, .significant_rebound = setting.given.scene.metrics.significant_rebound};
+  for (const Variable& v : setting.space.variables()) searched.names.push_back(v.name);
+  return searched;
 }
 
 }  // namespace softland

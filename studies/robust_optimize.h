@@ -1,11 +1,12 @@
 // The search for a drive that does well on devices as they come from manufacturing.
 //
 // The same devices for all candidates. Starts are those of the family, the best of two searches on the nominal device, the
-// waveform of the scene and points of the whole box; all are tried on 8 devices, the best of them on 32, and the best six of
-// these begin CMA-ES on 32 devices; on all of them it goes on from the best two, and then from the best, by smaller steps. A
-// candidate that is worse on the first 8 or 32 devices than the median of those before it is not tried on the rest, and has the
-// cost of those. The best point of every heat is compared on 512 other devices, and what wins there is judged on 2000 fresh ones
-// over the whole window: its cost on the devices that were searched is too good by what the search has learned of them by heart.
+// waveform of the scene, those that the search is told to start with, and points of the whole box; all are tried on 8 devices,
+// the best of them on 32, and the best six of these begin CMA-ES on 32 devices; on all of them it goes on from the best two, and
+// then from the best, by smaller steps. A candidate that is worse on the first 8 or 32 devices than the median of those before it
+// is not tried on the rest, and has the cost of those. The best point of every heat is compared on 512 other devices, and what
+// wins there is judged on 2000 fresh ones over the whole window: its cost on the devices that were searched is too good by what
+// the search has learned of them by heart.
 //
 // Source for the races: O. Maron & A. W. Moore, "Hoeffding races", NIPS 1993 (the idea; our test is the median of the candidates
 // before).
@@ -50,5 +51,14 @@ struct RobustResult {
 /// `options.max_evaluations` counts closings of devices; its optimizer is not used. Throws InvalidInput as optimize() does, and
 /// for a scene without [spread].
 [[nodiscard]] RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust);
+
+/// What a search will vary, and the height from which on a rebound counts.
+struct SearchedParameters {
+  std::vector<std::string> names;
+  double significant_rebound = 0;  ///< [m]
+};
+/// Of optimize(), or of robust_optimize() `over_devices`; throws what these would throw before they begin.
+[[nodiscard]] SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
+                                                     const Watch& watch);
 
 }  // namespace softland

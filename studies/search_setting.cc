@@ -67,9 +67,24 @@ Prices SearchSetting::price(const std::vector<Signal>& signals) const {
   return {.leading = leading, .own = has_own_cost(target) ? by(target) : leading};
 }
 
-Prices SearchSetting::price_at(std::span<const double> x) const {
+Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory) const {
   const std::map<std::string, Waveform> searched = space.waveforms(x);
-  return is_allowed(searched) ? price(signals_of(drives(searched))) : Prices{};
+  if (!is_allowed(searched)) return {};
+  const EvaluationKey key{.x = {x.begin(), x.end()}};
+  if (memory != nullptr) {
+    if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost};
+  }
+  Prices found = price(signals_of(drives(searched)));
+  found = {.leading = found.leading + 0.0, .own = found.own + 0.0};  // of zeros a memory need not keep the sign
+  if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading});
+  return found;
+}
+
+void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) const {
+  for (const StartingWaveforms& start : starts) {
+    const std::string reason = space.misfit(start.waveforms);
+    require(reason.empty(), [&] { return fmt::format("{}: {}", start.name, reason); });
+  }
 }
 
 SearchSetting search_setting(const SceneFile& file, Target target, Actuator actuator, const std::string& family,

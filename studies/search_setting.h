@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "objectives/cost.h"
+#include "studies/evaluation_memory.h"
 #include "studies/search_space.h"
 #include "studies/simulate.h"
 #include "studies/two_stages.h"
@@ -40,8 +41,11 @@ struct SearchSetting {
   /// Whether the searched drives stay inside their limits.
   [[nodiscard]] bool is_allowed(const std::map<std::string, Waveform>& searched) const;
   [[nodiscard]] Prices price(const std::vector<Signal>& signals) const;
-  /// Of a point of the search space; infinite where it leaves the limits of a driver.
-  [[nodiscard]] Prices price_at(std::span<const double> x) const;
+  /// Of a point of the search space, on the nominal device; infinite where it leaves the limits of a driver. What `memory` holds
+  /// is not simulated again.
+  [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr) const;
+  /// Throws InvalidInput with the name of the first that a search cannot begin with, and why.
+  void check_starts(const std::vector<StartingWaveforms>& starts) const;
 };
 
 /// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.

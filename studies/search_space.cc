@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "studies/searched_families.h"
 
 namespace softland {
 namespace {
+
+constexpr double rounding = 1e-9;  // of the distance of two bounds: a scene file writes rounded numbers
 
 double hold_level(const Prepared& p, const std::string& drive) {
   const auto found = p.drives.waveforms.find(drive);
@@ -46,18 +49,47 @@ std::vector<std::string> braking_electrodes(const Prepared& prepared) {
 
 Waveform DriveSearch::waveform(std::span<const double> x) const { return family->at(*this, x); }
 
-std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& waveform) const {
+std::optional<std::vector<double>> DriveSearch::unbounded_parameters(const Waveform& waveform) const {
   if (softland::family(waveform) != family->waveform) return std::nullopt;
-  std::optional<std::vector<double>> found = family->parameters(*this, waveform);
-  if (!found) return std::nullopt;
-  std::vector<double>& x = *found;
-  constexpr double rounding = 1e-9;  // of the bounds' distance: a scene file writes rounded numbers
+  return family->parameters(*this, waveform);
+}
+
+std::optional<std::size_t> DriveSearch::out_of_bounds(const std::vector<double>& x) const {
   for (std::size_t k = 0; k < x.size(); ++k) {
-    const double lower = variables[k].lower, upper = variables[k].upper, inside = std::clamp(x[k], lower, upper);
-    if (!(std::abs(x[k] - inside) <= rounding * (upper - lower))) return std::nullopt;
-    x[k] = inside;
+    const double lower = variables[k].lower, upper = variables[k].upper;
+    if (!(std::abs(x[k] - std::clamp(x[k], lower, upper)) <= rounding * (upper - lower))) return k;
   }
+  return std::nullopt;
+}
+
+std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& waveform) const {
+  std::optional<std::vector<double>> x = unbounded_parameters(waveform);
+  if (!x || out_of_bounds(*x)) return std::nullopt;
+  for (std::size_t k = 0; k < x->size(); ++k) (*x)[k] = std::clamp((*x)[k], variables[k].lower, variables[k].upper);
   return x;
+}
+
+std::string DriveSearch::misfit(const Waveform& waveform) const {
+  const std::string_view given = softland::family(waveform);
+  if (given != family->waveform)
+    return fmt::format("drive '{}' has a waveform of the family {}, and the search is for {}", drive, given, searched_name());
+  const std::optional<std::vector<double>> x = unbounded_parameters(waveform);
+  if (!x) return fmt::format("drive '{}' has a {} that is none of the searched family {}", drive, given, searched_name());
+  const double held = signal(waveform).hold_level();
+  if (!(std::abs(held - hold) <= rounding * (limits.max_voltage - limits.min_voltage)))
+    return fmt::format("drive '{}' ends on {}, and the scene holds {}, which no search changes", drive, engineering(held, "V", 6),
+                       engineering(hold, "V", 6));
+  if (const auto k = out_of_bounds(*x)) {
+    const Variable& v = variables[*k];
+    return fmt::format("drive '{}': {} = {:.6g} lies outside its bounds, {:.6g} to {:.6g}", drive, v.name, (*x)[*k], v.lower,
+                       v.upper);
+  }
+  const std::string broken = violation(signal(waveform), limits);
+  return broken.empty() ? broken : fmt::format("drive '{}': {}", drive, broken);
+}
+
+std::string DriveSearch::searched_name() const {
+  return count > 0 ? fmt::format("{}:{}", family->name, count) : std::string(family->name);
 }
 
 SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch) {
@@ -130,6 +162,23 @@ std::optional<std::vector<double>> SearchSpace::parameters(const std::map<std::s
     all.insert(all.end(), part->begin(), part->end());
   }
   return all;
+}
+
+std::map<std::string, Waveform> SearchSpace::searched(const std::map<std::string, Waveform>& waveforms) const {
+  std::map<std::string, Waveform> chosen;
+  for (const DriveSearch& d : drives_) {
+    if (const auto found = waveforms.find(d.drive); found != waveforms.end()) chosen.insert(*found);
+  }
+  return chosen;
+}
+
+std::string SearchSpace::misfit(const std::map<std::string, Waveform>& waveforms) const {
+  for (const DriveSearch& d : drives_) {
+    const auto found = waveforms.find(d.drive);
+    if (found == waveforms.end()) return fmt::format("there is no waveform of the searched drive '{}'", d.drive);
+    if (std::string reason = d.misfit(found->second); !reason.empty()) return reason;
+  }
+  return {};
 }
 
 }  // namespace softland

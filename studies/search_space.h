@@ -53,8 +53,17 @@ struct DriveSearch {
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
   [[nodiscard]] Waveform waveform(std::span<const double> x) const;
-  /// The parameters of a waveform of this family and hold level that lies within the bounds, to rounding.
+  /// The parameters of a waveform of this family that lies within the bounds, to rounding.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
+  /// Why a waveform has no parameters here, or holds another level, in words; empty where the search can begin with it.
+  [[nodiscard]] std::string misfit(const Waveform& waveform) const;
+
+ private:
+  /// "knots:6"
+  [[nodiscard]] std::string searched_name() const;
+  [[nodiscard]] std::optional<std::vector<double>> unbounded_parameters(const Waveform& waveform) const;
+  /// The first parameter that lies beyond its bounds by more than rounding.
+  [[nodiscard]] std::optional<std::size_t> out_of_bounds(const std::vector<double>& x) const;
 };
 
 class SearchSpace {
@@ -69,6 +78,10 @@ class SearchSpace {
   [[nodiscard]] std::map<std::string, Waveform> waveforms(std::span<const double> x) const;
   /// The point that gives these waveforms, if there is one: where a search refines what was found before.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const std::map<std::string, Waveform>& waveforms) const;
+  /// Why a search cannot begin with these waveforms, in words; empty where it can.
+  [[nodiscard]] std::string misfit(const std::map<std::string, Waveform>& waveforms) const;
+  /// Of these waveforms those of the searched drives.
+  [[nodiscard]] std::map<std::string, Waveform> searched(const std::map<std::string, Waveform>& waveforms) const;
 
  private:
   std::vector<DriveSearch> drives_;

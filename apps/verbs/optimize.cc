@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,18 +19,21 @@
 #include "apps/progress.h"
 #include "apps/robustness_files.h"
 #include "apps/scenes.h"
-#include "apps/search_log.h"
+#include "apps/search_request.h"
+#include "apps/search_run.h"
+#include "apps/seed_study.h"
 #include "apps/shell_word.h"
+#include "apps/stores.h"
 #include "apps/streams.h"
-#include "apps/values.h"
 #include "apps/verbs/verbs.h"
-#include "base/require.h"
-#include "config/units.h"
 #include "optimizers/problem.h"
+#include "reports/made_with.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
+#include "reports/seeds_report.h"
 #include "reports/text.h"
 #include "studies/robust_optimize.h"
+#include "version.h"
 #include "waveforms/export.h"
 
 namespace softland::apps {
@@ -38,42 +42,7 @@ namespace {
 namespace fs = std::filesystem;
 using internal::percent;
 using internal::quantity;
-
-struct OptimizeRequest {
-  std::string target = "bounce";
-  std::string actuator = "electrostatic";
-  std::string waveform = "pulse";
-  std::string optimizer = "auto";
-  std::string robust;                   ///< the measure of a robust search; empty: the nominal device alone
-  std::vector<std::string> conditions;  ///< of a robust search
-  std::string calibration;              ///< what is measured on every device; empty: what the scene says
-  std::optional<std::string> samples;   ///< devices of a robust search
-  std::optional<std::string> budget;    ///< evaluations ("2500") or time ("90 s"); default: default_budget(), or default_closings
-  std::optional<std::string> seed;      ///< default: 1
-  std::optional<std::string> jobs;      ///< default: one per core
-};
-
-// "2500" evaluations or "90 s".
-void read_budget(const std::string& text, OptimizeOptions& options) {
-  const auto rule = [&](bool ok) {
-    require(ok, fmt::format("--budget {}: must be a whole number of evaluations such as 2500, or a time such as \"90 s\"",
-                            shown(text)));
-  };
-  Quantity q;
-  try {
-    q = parse_quantity(text);
-  } catch (const InvalidInput&) {
-    rule(false);
-  }
-  if (q.dimension == dimension::time) {
-    rule(q.value > 0);
-    options.max_seconds = q.value;
-    options.max_evaluations = 1'000'000'000;
-  } else {
-    rule(q.dimension == dimension::none && q.value >= 1 && q.value <= 1e9 && q.value == std::floor(q.value));
-    options.max_evaluations = static_cast<long>(q.value);
-  }
-}
+using nlohmann::json;
 
 // How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
 // asked to stop.
@@ -107,108 +76,24 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
   }
 }
 
-// What a search is asked for, but for its robustness.
-OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
-  const TargetRow* target = find_named(targets, request.target);
-  require(target != nullptr, [&] { return fmt::format("--target {}: must be {}", request.target, listed(targets)); });
-  const Named<Actuator>* actuator = find_named(actuators, request.actuator);
-  require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
-  OptimizeOptions options{.target = target->value,
-                          .actuator = actuator->value,
-                          .family = request.waveform,
-                          .optimizer = request.optimizer,
-                          .stop = c.stop};
-  options.jobs = job_count(request.jobs);
-  options.seed = seed_of(request.seed, options.seed);
-  options.max_evaluations = request.robust.empty() ? default_budget(options.target, options.actuator) : default_closings;
-  if (request.budget) read_budget(*request.budget, options);
-  return options;
-}
-
-Common with_defaults(Common c) {
-  if (c.scene.empty()) c.scene = shipped_scene("mem-gold-pzt.toml").string();
-  if (c.out.empty()) c.out = "softland-out";
-  return c;
-}
-
-RobustOptions read_robust_options(const OptimizeRequest& request) {
-  const std::vector<FigureName> figures = conditioned_figures();
-  const auto read = [](const std::string& option, const auto& parse) {
-    try {
-      return parse();
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format("{}: {}", option, error.what()));
-    }
-  };
-  RobustOptions robust;
-  robust.aim.measure = read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
-  for (const std::string& text : request.conditions)
-    robust.aim.conditions.push_back(read("--constrain", [&] { return parse_criterion(text, figures); }));
-  robust.samples = sample_count(request.samples, robust.samples, 8, most_searched);
-  require(request.optimizer == "auto",
-          [&] { return fmt::format("--optimizer {}: a robust search has a method of its own", request.optimizer); });
-  return robust;
-}
-
-// A search on its way: its progress, the folder it fills, its log.
-class Searching {
- public:
-  Searching(const Common& c, const OptimizeRequest& request, OptimizeOptions& options)
-      : preparation_(std::in_place, c.quiet, c.stop),
-        progress_(c.quiet, options, request.robust.empty() ? "evaluations" : "closings") {
-    options.on_preparation = [this](std::string_view what, double part) {
-      if (!preparation_) return;
-      preparation_->watch().tell(what, part);
-    };
-    options.on_start = [this, &c, &request](const std::vector<std::string>& variables) {
-      preparation_.emplace(c.quiet, c.stop);
-      std::vector<std::string> files{"best.toml",   "best.csv",       "report.html",    "gap.svg",
-                                     "result.json", "trajectory.csv", "evaluations.csv"};
-      if (!request.robust.empty()) files.insert(files.end(), robustness_files.begin(), robustness_files.end());
-      folder_ = claim_places(c, files);
-      log_.emplace(*folder_, variables);
-      if (c.quiet) return;
-      const std::string devices = request.robust.empty() ? "" : fmt::format(", over devices of the spread ({})", request.robust);
-      say(fmt::format("{}: searching a {} waveform, actuator {}, target {}{}; results go to {}", c.scene, request.waveform,
-                      request.actuator, request.target, devices, c.out));
-    };
-    options.on_evaluation = [this](const Evaluation& e, const OptimizeProgress& p) {
-      log_->evaluated(e);
-      progress_.show(p);
-    };
-    options.on_progress = [this](const OptimizeProgress& p) { progress_.show(p); };
-    options.on_improvement = [this](const Evaluation&, const SceneFile& best) { log_->improved(best); };
-  }
-
-  // When the search has ended.
-  void close() {
-    preparation_.reset();
-    progress_.close();
-    log_->flush();
-  }
-  [[nodiscard]] ResultFolder& folder() { return *folder_; }
-  [[nodiscard]] const SearchLog& log() const { return *log_; }
-
- private:
-  std::optional<WatchedWork> preparation_;
-  SearchProgress progress_;
-  std::optional<ResultFolder> folder_;
-  std::optional<SearchLog> log_;
-};
-
 // Writes what a search has found, and names the files it leaves.
-std::vector<std::string> write_found(Searching& searching, const OptimizeResult& result, Result& found, const fs::path& place) {
-  for (const auto& [index, e] : searching.log().evaluations())
+std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& result, Result& found, const fs::path& place) {
+  for (const auto& [index, e] : run.log().evaluations())
     found.search.evaluations.push_back({static_cast<double>(index), e.value});
-  found.reproduce = {found.command, "softland simulate " + shell_word((place / "best.toml").string())};
+  found.reproduce = run.commands();
+  found.reproduce.push_back("softland simulate " + shell_word((place / "best.toml").string()));
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
-  ResultFolder& folder = searching.folder();
+  ResultFolder& folder = run.folder();
   if (result.best_scene) {
     folder.write("best.toml", result.best_scene->scene.file.text());
     folder.write("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
     left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
   left.emplace_back("evaluations.csv");
+  if (run.places().stores_go_to(place)) {
+    left.emplace_back(evaluations_file);
+    if (found.seeds) left.emplace_back(seeds_file);
+  }
   write_result(folder, found);
   return left;
 }
@@ -218,14 +103,21 @@ int status_of(const OptimizeResult& result) {
   return result.best && result.better_than_baseline ? exit_done : exit_no_success;
 }
 
-int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
-  const Common c = with_defaults(given);
-  OptimizeOptions options = read_options(c, request);
-  const RobustOptions robust = read_robust_options(request);
-  SceneFile file = load_scene(c);
-  set_calibration(file, request.calibration);
-  Searching searching(c, request, options);
-  RobustResult result = robust_optimize(file, options, robust);
+// A search on its way to the result that is reported; of several the best.
+struct Asked {
+  const Common& c;
+  PlannedSearch& search;
+  const std::optional<KnownSearch>& known;
+  SearchPlaces* places = nullptr;         // of a study of seeds
+  std::optional<ResultSeeds> seeds = {};  // that are done
+};
+
+int run_robust(const Asked& asked) {
+  const Common& c = asked.c;
+  OptimizeOptions& options = asked.search.options;
+  const RobustOptions& robust = *asked.search.robust;
+  SearchRun run(c, asked.search, asked.known, asked.places);
+  RobustResult result = robust_optimize(asked.search.scene, options, robust);
   std::optional<RobustnessReport> report;
   if (result.verdict) {
     report.emplace(RobustnessReport{.nominal = *result.found.best_scene,
@@ -235,43 +127,93 @@ int robust_optimize_verb(const Common& given, const OptimizeRequest& request) {
     add_details(*report, false, {.stop = c.stop, .progress = options.on_preparation});
     if (report->interrupted) result.found.search.termination = Termination::interrupted;
   }
-  searching.close();
+  run.close();
 
   Result found = result_of(result, options, robust, {.command = c.command});
+  found.seeds = asked.seeds;
   const bool interrupted = result.found.search.termination == Termination::interrupted;
-  const fs::path place = searching.folder().destination(interrupted);
-  std::vector<std::string> left = write_found(searching, result.found, found, place);
+  const fs::path place = run.folder().destination(interrupted);
+  std::vector<std::string> left = write_found(run, result.found, found, place);
   std::string text;
   if (report) {
-    write_robustness(searching.folder(), *report);
+    write_robustness(run.folder(), *report);
     left.insert(left.end(), robustness_files.begin(), robustness_files.end());
     text = "\n" + robustness_text(*report);
   }
-  searching.folder().publish(interrupted);
+  run.folder().publish(interrupted);
   print_result(c, found, text + left_in(place, left));
   return status_of(result.found);
 }
 
-int optimize_verb(const Common& given, const OptimizeRequest& request) {
-  if (!request.robust.empty()) return robust_optimize_verb(given, request);
-  for (const bool is_given : {!request.conditions.empty(), !request.calibration.empty(), request.samples.has_value()})
-    require(!is_given,
-            "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
-  const Common c = with_defaults(given);
-  OptimizeOptions options = read_options(c, request);
-  const SceneFile file = load_scene(c);
-  Searching searching(c, request, options);
-  const OptimizeResult result = optimize(file, options);
-  searching.close();
+int run_nominal(const Asked& asked) {
+  const Common& c = asked.c;
+  OptimizeOptions& options = asked.search.options;
+  SearchRun run(c, asked.search, asked.known, asked.places);
+  const OptimizeResult result = optimize(asked.search.scene, options);
+  run.close();
 
   Result found = result_of(result, options, {.command = c.command});
+  found.seeds = asked.seeds;
   const bool interrupted = result.search.termination == Termination::interrupted;
-  const fs::path place = searching.folder().destination(interrupted);
-  const std::vector<std::string> left = write_found(searching, result, found, place);
-  searching.folder().publish(interrupted);
+  const fs::path place = run.folder().destination(interrupted);
+  const std::vector<std::string> left = write_found(run, result, found, place);
+  run.folder().publish(interrupted);
   const bool judged = result.best_scene && !interrupted && c.json != "-";
   print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
   return status_of(result);
+}
+
+int run_search(const Asked& asked) { return asked.search.robust ? run_robust(asked) : run_nominal(asked); }
+
+// What there is of searches from several seeds that were asked to stop: --resume goes on with it.
+int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const ResultSeeds& seeds) {
+  const fs::path stores = places.store(evaluations_file).parent_path();
+  std::string left = left_in(stores, {evaluations_file, seeds_file});
+  if (const std::string best = study.best_scene(seeds); !best.empty()) {
+    places.folder().write("best.toml", best);
+    left += left_in(places.folder().place("best.toml").parent_path(), {"best.toml (of the best that is done)"});
+  }
+  const json j{{"status", "interrupted"},
+               {"seeds", seeds_json(seeds)},
+               {"version", version},
+               {"command", c.command},
+               {"made_with", made_with_json()}};
+  print_json_or(c, j,
+                internal::seeds_text(seeds) + left + "\n" +
+                    wrapped(fmt::format("--resume goes on with the {} that are missing.", study.missing())) + "\n");
+  return exit_interrupted;
+}
+
+int run_seeds(const Common& c, PlannedSearch& search, const std::optional<KnownSearch>& known) {
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const SearchedParameters searched = searched_parameters(search.scene, search.options, search.robust.has_value(), work->watch());
+  work.reset();
+  SearchPlaces places(c, search, known, searched.names);
+  if (!c.quiet) {
+    say(search_words(c, search) +
+        fmt::format(", from seeds {} to {}; results go to {}", search.seed(0), search.seed(search.seeds - 1), c.out));
+  }
+  SeedStudy study(c, search, places, searched.names);
+  study.run();
+  study.close();
+  const ResultSeeds seeds = study.found(searched.significant_rebound);
+  if (study.missing() > 0) {
+    places.evaluations().close();
+    return tell_of_part(c, places, study, seeds);
+  }
+  // The best once more, all of whose evaluations are known, for the report.
+  search.options.seed = seeds.searches.at(seeds.best).seed;
+  return run_search({.c = c, .search = search, .known = known, .places = &places, .seeds = seeds});
+}
+
+int optimize_verb(const Common& given, const OptimizeRequest& request) {
+  Common c = given;
+  if (c.out.empty()) c.out = "softland-out";
+  if (c.scene.empty() && !request.resume) c.scene = shipped_scene("mem-gold-pzt.toml").string();
+  std::optional<KnownSearch> known;
+  PlannedSearch search = planned_or_known(c, request, known);
+  if (known && !c.quiet) tell_of_other_programs((known->place / evaluations_file).string());
+  return search.seeds > 1 ? run_seeds(c, search, known) : run_search({.c = c, .search = search, .known = known});
 }
 
 // "settling, impact and energy"
@@ -320,6 +262,9 @@ void add_optimize(Verb& verb) {
       "not even what [calibration] says");
   verb.with_samples(request->samples, "devices that a robust search looks at (default: 128)");
   verb.option("--optimizer", request->optimizer, "NAME", "auto (default), or another of the names below");
+  verb.repeated("--start", request->starts, "FILE",
+                "begin with the waveform of this scene or result, which must be of the searched drives and family; it stays the "
+                "best unless a better one is found, and without --robust the search never ends worse; may be repeated");
   verb.optional(
       "--budget", request->budget, "N|TIME",
       fmt::format(
@@ -327,6 +272,12 @@ void add_optimize(Verb& verb) {
           "{}; with --robust closings of devices, 60000",
           targets_with_own_cost()));
   verb.with_seed(request->seed, "same result, whatever --jobs is");
+  verb.optional("--seeds", request->seeds, "N",
+                "search from N seeds, --seed and those after it, as one study: the best is reported, and how the others spread");
+  verb.flag(
+      "--resume", request->resume,
+      "go on with the search in the folder of --out that was interrupted, or ended by its budget; what it has evaluated is not "
+      "simulated again, and options that are not given are those it began with");
   verb.with_jobs(request->jobs, "threads (default: one per core)");
   verb.with_out("folder for the report, the waveform found and all data (default: softland-out)");
   verb.footer(
@@ -335,6 +286,9 @@ void add_optimize(Verb& verb) {
       "worse.\n" +
       optimizer_help() +
       "\nExamples:\n  softland optimize --target bounce --actuator pzt\n"
+      "  softland optimize scenes/mem-gold.toml --seeds 8 --out seeds\n"
+      "  softland optimize --resume --out seeds --budget 5000\n"
+      "  softland optimize my.toml --start run1/best.toml --out run2\n"
       "  softland optimize scenes/mem-gold.toml --actuator electrostatic --waveform pulse --seed 3 --out run3\n"
       "  softland optimize scenes/mem-gold.toml --robust cvar:0.9 --constrain \"initial_contact_time < 65 us\"\n"
       "  softland optimize scenes/mem-gold.toml --robust cvar:0.9 --waveform catch --calibrate \"Vdp:1 %,frequency:0.5 %\"");

@@ -9,6 +9,7 @@
 
 #include "apps/exit_status.h"
 #include "apps/shell_word.h"
+#include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
@@ -30,10 +31,12 @@ struct SlurmRequest {
 };
 
 Plan plan_of(const std::string& file) {
-  const bool of_store = is_store(file);
-  const SceneFile text = of_store ? SceneFile::parse(StudyReader(file).plan().text, file + " (plan)") : SceneFile::load(file);
-  require(is_plan(text), [&] { return fmt::format("{}: is neither a plan, which has a section [plan], nor a store", file); });
-  PlanRequest request = read_plan(text);
+  const auto of_file = [&] {
+    const SceneFile text = SceneFile::load(file);
+    require(is_plan(text), [&] { return fmt::format("{}: is neither a plan, which has a section [plan], nor a store", file); });
+    return read_plan(text);
+  };
+  PlanRequest request = is_store(file) ? exploration_in(StudyReader(file)) : of_file();
   complete(request);
   return Plan(request);
 }

@@ -60,8 +60,6 @@ State state_of(const std::string& file) {
   return state;
 }
 
-std::string whole(std::int64_t count) { return internal::whole(static_cast<double>(count)); }
-
 std::string text_of(const State& s) {
   std::string text = fmt::format("{}: {} of {} points", printable_line(s.file), whole(s.done), whole(s.points));
   if (s.plan.shard.count > 1) text += fmt::format(", part {} of {}", s.part(), whole(s.plan.points));

@@ -702,11 +702,12 @@
     let active = 0;
     const most = 3000;
     const place = {};
-    const view = canvas(holder, "Parallel coordinates: a line for every point", (width) => (width < 560 ? Math.max(200, 52 * shownColumns().length + 60) : 400), (ctx, {width, height}) => {
-      const narrow = width < 560;  // the axes lie there, one below the other
+    const view = canvas(holder, "Parallel coordinates: a line for every point", (width) => (width < 560 ? Math.max(200, 72 * shownColumns().length) : 400), (ctx, {width, height}) => {
+      const narrow = width < 560;  // the axes lie there, one below the other, each with a strip for its words, which no line crosses
+      const strip = narrow ? 31 : 0;
       const list = shownColumns();
       tintRange = colourRange(tint, tint.values);
-      Object.assign(place, narrow ? {from: 12, to: width - 12, first: 38, last: height - 34} : {from: height - 26, to: 52, first: 54, last: width - 54});
+      Object.assign(place, narrow ? {from: 12, to: width - 12, first: 14, last: height - 36} : {from: height - 26, to: 52, first: 54, last: width - 54});
       axes = list.map((c, k) => ({column: c, at: list.length > 1 ? place.first + ((place.last - place.first) * k) / (list.length - 1) : place.first, axis: scale(c.log, c.low, c.high, place.from, place.to)}));
       active = Math.min(active, Math.max(0, axes.length - 1));
       const spot = (axis, value) => (narrow ? [axis.axis(value), axis.at] : [axis.at, axis.axis(value)]);
@@ -725,7 +726,7 @@
             }
             const [a, b] = spot(axis, value);
             if (pen) ctx.lineTo(a, b);
-            else ctx.moveTo(a, b);
+            if (!pen || narrow) ctx.moveTo(a, b + strip);
             pen = true;
           }
           ctx.stroke();
@@ -746,9 +747,9 @@
         ctx.stroke();
         const room = narrow ? width - 24 : axes.length > 1 ? (place.last - place.first) / (axes.length - 1) - 8 : width;
         if (narrow) {
-          write(ctx, fitted(ctx, column.name, room - 130), 12, axis.at - 8, {fill: "ink", halo: true});
-          write(ctx, words(column, axis.axis.low, 3), 12, axis.at + 15, {halo: true, size: 11});
-          write(ctx, words(column, axis.axis.high, 3), width - 12, axis.at + 15, {align: "right", halo: true, size: 11});
+          write(ctx, fitted(ctx, column.name, room), width / 2, axis.at + 14, {align: "center", fill: "ink"});
+          write(ctx, words(column, axis.axis.low, 3), 12, axis.at + 28, {size: 11});
+          write(ctx, words(column, axis.axis.high, 3), width - 12, axis.at + 28, {align: "right", size: 11});
         } else {
           // The words of the outer axes end where the picture does.
           const name = fitted(ctx, column.name, 1.9 * room);
@@ -763,7 +764,7 @@
           const [low, high] = [Math.min(...ends), Math.max(...ends)];
           ctx.fillStyle = colour("best");
           ctx.globalAlpha = 0.3;
-          if (narrow) ctx.fillRect(low, axis.at - 6, Math.max(2, high - low), 12);
+          if (narrow) ctx.fillRect(low, axis.at - 9, Math.max(2, high - low), 9);
           else ctx.fillRect(axis.at - 7, low, 14, Math.max(2, high - low));
           ctx.globalAlpha = 1;
         }

@@ -183,7 +183,7 @@ TEST_F(Search, EndsWithFourWhenNoWaveformCanCloseAndLeavesNothingOfAnEarlierSear
   EXPECT_EQ(result(*here, "open")["status"], "no_contact");
   std::set<std::string> left;
   for (const auto& entry : fs::directory_iterator(here->path() / "open")) left.insert(entry.path().filename());
-  EXPECT_EQ(left, (std::set<std::string>{"report.html", "gap.svg", "result.json", "evaluations.csv"}));
+  EXPECT_EQ(left, (std::set<std::string>{"report.html", "gap.svg", "result.json", "evaluations.csv", "evaluations.sqlite"}));
 }
 
 TEST(InterruptedSearch, WritesTheBestSoFarAndEndsWith130) {
@@ -247,6 +247,7 @@ TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn) {
   for (const auto& entry : fs::directory_iterator(here.path() / "out")) left.insert(entry.path().filename());
   std::set<std::string> expected = earlier;
   expected.insert("gap.svg");
+  expected.insert("evaluations.sqlite");
   EXPECT_EQ(left, expected);
 }
 

@@ -42,6 +42,35 @@ using Table = Stores;
 using StatusVerb = Stores;
 using MergeVerb = Stores;
 
+// The example of docs/scale.md, as it stands there.
+TEST_F(Table, IsNotNeededByPandas) {
+  std::string python;
+  for (const char* name : {"python3", "/usr/bin/python3"}) {
+    if (python.empty() && std::system(fmt::format("{} -c 'import pandas' >/dev/null 2>&1", name).c_str()) == 0) python = name;
+  }
+  if (python.empty()) GTEST_SKIP() << "pandas is not installed (apt-get install python3-pandas)";
+  make_store(at("map.sqlite"), 300);
+  const std::string document = read(fs::path(SOFTLAND_SOURCE_DIR) / "docs/scale.md"), begin = "```python\n";
+  const std::size_t first = document.find(begin) + begin.size();
+  write(at("example.py"), document.substr(first, document.find("```", first) - first) +
+                              "for p, v in zip(frame.point, frame.impact_velocity_m_s): print('row', p, float(v).hex())\n");
+  ASSERT_EQ(std::system(fmt::format("cd '{}' && {} example.py > read.txt", here.path().string(), python).c_str()), 0);
+  std::istringstream lines(read(at("read.txt")));
+  int rows = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("row ")) continue;
+    std::istringstream cells(line.substr(4));
+    int point = 0;
+    std::string number;
+    cells >> point >> number;
+    const double value = row_of(point).values[1];
+    const double number_read = std::strtod(number.c_str(), nullptr);
+    EXPECT_TRUE(std::isnan(value) ? std::isnan(number_read) : number_read == value) << point << ": " << number;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 300);
+}
+
 TEST_F(Table, AsCsvIsReadByOthersToTheBit) {
   if (std::system("command -v python3 >/dev/null 2>&1") != 0) GTEST_SKIP() << "python3 is not installed";
   make_store(at("a b.sqlite"), 300);

@@ -1,0 +1,77 @@
+#include "apps/overview.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/stores.h"
+#include "base/printable.h"
+#include "base/shortened.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
+
+namespace softland::apps {
+namespace {
+
+using internal::left_aligned;
+using internal::quantity;
+using internal::right_aligned;
+using nlohmann::json;
+
+}  // namespace
+
+Overview overview_of(const StudyReader& store) {
+  const std::vector<StoredColumn>& columns = store.plan().columns;
+  Overview all{.by_status = store.by_status(), .first_reasons = {}, .extents = {}};
+  all.extents.resize(columns.size());
+  store.read([&](const StoredRow& row) {
+    if (!row.reason.empty()) all.first_reasons.try_emplace(row.status, fmt::format("point {}: {}", row.point, row.reason));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const double value = row.values[i];
+      if (!std::isfinite(value)) continue;
+      all.has_figures = all.has_figures || columns[i].kind == ColumnKind::figure;
+      Overview::Extent& extent = all.extents[i];
+      if (value < extent.least) extent.least = value, extent.least_at = row.point;
+      if (value > extent.most) extent.most = value, extent.most_at = row.point;
+    }
+  });
+  return all;
+}
+
+json overview_json(const StoredPlan& plan, const Overview& found) {
+  json figures = json::object(), variables = json::array();
+  for (std::size_t i = 0; i < plan.columns.size(); ++i) {
+    const StoredColumn& column = plan.columns[i];
+    if (column.kind == ColumnKind::variable) {
+      variables.push_back({{"name", column.name}, {"unit", column.unit}, {"column", column.key}});
+      continue;
+    }
+    const Overview::Extent& e = found.extents[i];
+    if (!(e.least <= e.most)) continue;
+    figures[column.key] = {{"least", e.least}, {"least_at", e.least_at}, {"most", e.most}, {"most_at", e.most_at}};
+  }
+  return {{"variables", variables}, {"figures", figures}, {"by_status", found.by_status}};
+}
+
+std::string overview_text(const StoredPlan& plan, const Overview& found) {
+  std::string text;
+  for (const auto& [status, count] : found.by_status) {
+    text += fmt::format("  {:<20} {:>9}", status, whole(count));
+    const auto reason = found.first_reasons.find(status);
+    text += reason == found.first_reasons.end() ? "\n" : fmt::format("   {}\n", shortened(printable_line(reason->second), 140));
+  }
+  text += fmt::format("\n{:<44} {:>12} {:>9}   {:>12} {:>9}\n", "", "least", "at point", "most", "at point");
+  for (std::size_t i = 0; i < plan.columns.size(); ++i) {
+    const StoredColumn& column = plan.columns[i];
+    const Overview::Extent& e = found.extents[i];
+    if (column.kind == ColumnKind::variable || !(e.least <= e.most)) continue;
+    const auto cell = [&](double value, std::int64_t at) {
+      return right_aligned(quantity(value, column.unit), 12) + " " + right_aligned(std::to_string(at), 9);
+    };
+    text +=
+        left_aligned(shortened(column.name, 43), 44) + " " + cell(e.least, e.least_at) + "   " + cell(e.most, e.most_at) + "\n";
+  }
+  return text;
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,263 @@
+#include "apps/search_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "apps/scenes.h"
+#include "apps/values.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "base/shortened.h"
+#include "config/units.h"
+#include "studies/prepared.h"
+
+namespace softland::apps {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kind = "search";
+
+// "2500" evaluations or "90 s".
+void read_budget(const std::string& text, OptimizeOptions& options) {
+  const auto rule = [&](bool ok) {
+    require(ok, fmt::format("--budget {}: must be a whole number of evaluations such as 2500, or a time such as \"90 s\"",
+                            shown(text)));
+  };
+  Quantity q;
+  try {
+    q = parse_quantity(text);
+  } catch (const InvalidInput&) {
+    rule(false);
+  }
+  if (q.dimension == dimension::time) {
+    rule(q.value > 0);
+    options.max_seconds = q.value;
+    options.max_evaluations = 1'000'000'000;
+  } else {
+    rule(q.dimension == dimension::none && q.value >= 1 && q.value <= 1e9 && q.value == std::floor(q.value));
+    options.max_evaluations = static_cast<long>(q.value);
+  }
+}
+
+std::string budget_words(const OptimizeOptions& options) {
+  return std::isfinite(options.max_seconds) ? fmt::format("{} s", options.max_seconds) : std::to_string(options.max_evaluations);
+}
+
+// A word of the plan that is gone on with, or `otherwise`.
+std::string word_of(const json& known, const char* key, const std::string& otherwise) {
+  const auto found = known.find(key);
+  return known.is_object() && found != known.end() && found->is_string() ? found->get<std::string>() : otherwise;
+}
+
+// The request with the words of the plan where none were given.
+OptimizeRequest with_known(OptimizeRequest r, const json& known) {
+  const auto fill = [&](std::string& value, const char* key, const char* otherwise) {
+    if (value.empty()) value = word_of(known, key, otherwise);
+  };
+  fill(r.target, "target", "bounce");
+  fill(r.actuator, "actuator", "electrostatic");
+  fill(r.waveform, "waveform", "pulse");
+  fill(r.optimizer, "optimizer", "auto");
+  fill(r.robust, "robust", "");
+  fill(r.calibration, "calibrate", "");
+  if (!known.is_object()) return r;
+  if (r.conditions.empty() && known.contains("constrain")) known.at("constrain").get_to(r.conditions);
+  const auto fill_given = [&](std::optional<std::string>& value, const char* key) {
+    if (const std::string word = word_of(known, key, ""); !value && !word.empty()) value = word;
+  };
+  fill_given(r.samples, "samples");
+  fill_given(r.budget, "budget");
+  fill_given(r.seed, "seed");
+  fill_given(r.seeds, "seeds");
+  return r;
+}
+
+OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
+  const TargetRow* target = find_named(targets, request.target);
+  require(target != nullptr, [&] { return fmt::format("--target {}: must be {}", request.target, listed(targets)); });
+  const Named<Actuator>* actuator = find_named(actuators, request.actuator);
+  require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
+  OptimizeOptions options{.target = target->value,
+                          .actuator = actuator->value,
+                          .family = request.waveform,
+                          .optimizer = request.optimizer,
+                          .stop = c.stop};
+  options.jobs = job_count(request.jobs);
+  options.seed = seed_of(request.seed, options.seed);
+  options.max_evaluations = request.robust.empty() ? default_budget(options.target, options.actuator) : default_closings;
+  if (request.budget) read_budget(*request.budget, options);
+  return options;
+}
+
+RobustOptions read_robust_options(const OptimizeRequest& request) {
+  const std::vector<FigureName> figures = conditioned_figures();
+  const auto read = [](const std::string& option, const auto& parse) {
+    try {
+      return parse();
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{}: {}", option, error.what()));
+    }
+  };
+  RobustOptions robust;
+  robust.aim.measure = read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
+  for (const std::string& text : request.conditions)
+    robust.aim.conditions.push_back(read("--constrain", [&] { return parse_criterion(text, figures); }));
+  robust.samples = sample_count(request.samples, robust.samples, 8, most_searched);
+  require(request.optimizer == "auto",
+          [&] { return fmt::format("--optimizer {}: a robust search has a method of its own", request.optimizer); });
+  return robust;
+}
+
+std::uint64_t seed_count(const OptimizeRequest& request, const OptimizeOptions& options) {
+  if (!request.seeds) return 1;
+  const auto count = whole_number<std::uint64_t>("--seeds", *request.seeds, 1);
+  require(count <= most_seeds, [&] { return fmt::format("--seeds {}: must be at most {}", count, most_seeds); });
+  require(count - 1 <= std::numeric_limits<std::uint64_t>::max() - options.seed,
+          [&] { return fmt::format("--seeds {}: from --seed {} on there are not so many", count, options.seed); });
+  require(count == 1 || !std::isfinite(options.max_seconds), [&] {
+    return fmt::format(
+        "--budget {}: searches from several seeds are compared at equal effort, so their budget is a number of evaluations",
+        request.budget.value_or(""));
+  });
+  return count;
+}
+
+// The scenes that --start names, or those of the plan that is gone on with.
+std::vector<StartingScene> starting_scenes(const OptimizeRequest& request, const json& known) {
+  std::vector<StartingScene> all;
+  for (const std::string& name : request.starts) {
+    require(!name.empty(), "--start: must not be empty");
+    all.push_back({.name = name, .scene = canonical(scene_of_result(name), name)});
+  }
+  if (!all.empty() || !known.is_object() || !known.contains("start")) return all;
+  for (const json& one : known.at("start")) {
+    const std::string name = one.at("name").get<std::string>();
+    all.push_back({.name = name, .scene = SceneFile::parse(one.at("scene_toml").get<std::string>(), name)});
+  }
+  return all;
+}
+
+// The scene as it was given, with what its name and its lines are in messages, or as the plan has it that is gone on with.
+json given_scene(const Common& c, const json& known) {
+  json given = c.scene.empty() ? known.at("given")
+                               : json{{"file", c.scene},
+                                      {"folder", std::filesystem::absolute(c.scene).parent_path().string()},
+                                      {"text", read_file(c.scene)},
+                                      {"set", json::array()}};
+  for (const std::string& assignment : c.set) given.at("set").push_back(assignment);
+  return given;
+}
+
+SceneFile scene_of(const json& given) {
+  SceneFile scene = SceneFile::parse(given.at("text").get<std::string>(), given.at("file").get<std::string>(),
+                                     given.at("folder").get<std::string>());
+  for (const json& assignment : given.at("set")) scene.set(assignment.get<std::string>());
+  return scene;
+}
+
+json plan_of(const PlannedSearch& search, const OptimizeRequest& request, const json& given) {
+  json starts = json::array();
+  for (const StartingScene& start : search.starts) starts.push_back({{"name", start.name}, {"scene_toml", start.scene.text()}});
+  json plan{{"kind", kind},
+            {"given", given},
+            {"scene_toml", canonical(search.scene, "scene").text()},
+            {"target", request.target},
+            {"actuator", request.actuator},
+            {"waveform", request.waveform},
+            {"optimizer", request.optimizer},
+            {"start", starts},
+            {"budget", budget_words(search.options)},
+            {"seed", std::to_string(search.options.seed)},
+            {"seeds", std::to_string(search.seeds)}};
+  if (!search.robust) return plan;
+  plan["robust"] = request.robust;
+  plan["constrain"] = request.conditions;
+  plan["calibrate"] = request.calibration;
+  plan["samples"] = std::to_string(search.robust->samples);
+  return plan;
+}
+
+// The first key that two scenes do not share, with what each says.
+std::string scene_difference(const std::string& there, const std::string& asked) {
+  const auto keys = [](const std::string& text) { return SceneFile::parse(text, "scene").json().flatten(); };
+  const json before = keys(there), now = keys(asked);
+  const auto value = [](const json& scene, const std::string& key) {
+    return scene.contains(key) ? scene.at(key).dump() : std::string("none");
+  };
+  for (const json& scene : {before, now}) {
+    for (const auto& [key, ignored] : scene.items()) {
+      if (value(before, key) == value(now, key)) continue;
+      std::string path = key.substr(1);
+      std::replace(path.begin(), path.end(), '/', '.');
+      return fmt::format("its scene has {} = {}, not {}", path, shortened(value(before, key)), shortened(value(now, key)));
+    }
+  }
+  return "its scene is another";
+}
+
+std::string start_names(const json& plan) {
+  std::string names;
+  for (const json& one : plan.at("start")) names += (names.empty() ? "" : ", ") + one.at("name").get<std::string>();
+  return names.empty() ? "none" : names;
+}
+
+}  // namespace
+
+PlannedSearch planned(const Common& c, const OptimizeRequest& given, const json& known) {
+  const OptimizeRequest request = with_known(given, known);
+  const bool is_robust = !request.robust.empty();
+  for (const bool of_devices : {!request.conditions.empty(), !request.calibration.empty(), request.samples.has_value()})
+    require(is_robust || !of_devices,
+            "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
+  OptimizeOptions options = read_options(c, request);
+  std::optional<RobustOptions> robust;
+  if (is_robust) robust = read_robust_options(request);
+  const std::uint64_t seeds = seed_count(request, options);
+  const json as_given = given_scene(c, known);
+  SceneFile scene = c.scene.empty() ? scene_of(as_given) : load_scene(c);
+  if (is_robust) set_calibration(scene, request.calibration);
+  PlannedSearch search{.scene = std::move(scene),
+                       .options = std::move(options),
+                       .robust = std::move(robust),
+                       .conditions = request.conditions,
+                       .starts = starting_scenes(request, known),
+                       .seeds = seeds,
+                       .plan = {}};
+  search.plan = plan_of(search, request, as_given);
+  for (const StartingScene& start : search.starts)
+    search.options.starts.push_back(
+        {.name = "--start " + start.name, .waveforms = prepare(start.scene, false, {.stop = c.stop}).drives.waveforms});
+  return search;
+}
+
+std::string difference(const json& there, const json& asked) {
+  if (there.value("kind", "") != kind) return "it holds no search";
+  if (there.at("scene_toml") != asked.at("scene_toml"))
+    return scene_difference(there.at("scene_toml").get<std::string>(), asked.at("scene_toml").get<std::string>());
+  for (const char* key : {"target", "actuator", "waveform", "optimizer", "robust", "constrain", "samples", "seed"}) {
+    const json before = there.value(key, json()), now = asked.value(key, json());
+    const auto words = [](const json& value) {
+      return value.is_null() ? std::string("none") : value.is_string() ? value.get<std::string>() : value.dump();
+    };
+    if (before != now) return fmt::format("it is for --{} {}, not {}", key, words(before), words(now));
+  }
+  if (there.at("start") != asked.at("start"))
+    return fmt::format("it began with --start {}, not {}", start_names(there), start_names(asked));
+  const auto seeds = [](const json& plan) { return std::stoull(plan.at("seeds").get<std::string>()); };
+  return seeds(asked) < seeds(there) ? fmt::format("it has {} seeds, not {}", seeds(there), seeds(asked)) : std::string();
+}
+
+json plan_of_seed(const json& plan, std::uint64_t seed) {
+  json one = plan;
+  one["seed"] = std::to_string(seed);
+  for (const char* key : {"seeds", "given"}) one.erase(key);  // neither decides what is found
+  return one;
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,203 @@
+#include "reports/seeds_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "reports/escape.h"
+#include "reports/figure_text.h"
+#include "reports/json_number.h"
+#include "reports/page.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
+#include "sampling/statistics.h"
+
+namespace softland {
+namespace {
+
+using namespace internal;
+using nlohmann::json;
+
+constexpr double worst = std::numeric_limits<double>::infinity();
+constexpr std::array shown_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::permanent_contact_time),
+                                   figure_of(&Metrics::bounce_count), figure_of(&Metrics::major_bounce_height),
+                                   figure_of(&Metrics::impact_velocity)};
+
+double or_none(double value) { return std::isfinite(value) ? value : worst; }
+
+// Least, quartiles and most.
+using FiveNumbers = std::array<double, 5>;
+FiveNumbers five_numbers(const std::vector<double>& sample) {
+  FiveNumbers all;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    all[k] = sample.empty() ? Metrics::unset : sample_quantile(sample, 0.25 * static_cast<double>(k));
+  return all;
+}
+
+FiveNumbers spread_of_cost(const ResultSeeds& seeds) {
+  std::vector<double> costs;
+  for (const ResultSeeds::Search& one : seeds.searches) costs.push_back(or_none(one.cost));
+  return five_numbers(costs);
+}
+
+FiveNumbers spread_of(const ResultSeeds& seeds, const Figure& figure) {
+  std::vector<double> values;
+  for (const ResultSeeds::Search& one : seeds.searches) {
+    if (const double value = one.figures[figure]; std::isfinite(value)) values.push_back(value);
+  }
+  return five_numbers(values);
+}
+
+json five_json(const FiveNumbers& n) {
+  return {{"least", json_number(n[0])},
+          {"lower_quartile", json_number(n[1])},
+          {"median", json_number(n[2])},
+          {"upper_quartile", json_number(n[3])},
+          {"most", json_number(n[4])}};
+}
+
+// Why a search has failed; empty where it has not.
+std::string failure(const ResultSeeds::Search& one) {
+  if (!std::isfinite(one.cost)) return "no feasible waveform";
+  if (!one.better_than_baseline) return "no better than the plain step";
+  return one.goal_met ? "" : "goal not met";
+}
+
+std::string outcome(const ResultSeeds::Search& one) {
+  const std::string failed = failure(one);
+  return !failed.empty() ? failed : one.confirmed ? "goal met, confirmed" : "goal met";
+}
+
+std::vector<std::string> cells(const ResultSeeds::Search& one) {
+  std::vector<std::string> all{std::to_string(one.seed), outcome(one), quantity(one.cost, "", 4)};
+  for (const Figure& f : shown_figures) all.push_back(figure_text(f, one.figures[f], Metrics::unset, Metrics::unset));
+  all.push_back(std::isfinite(one.evaluations) ? whole(one.evaluations) : "—");
+  std::string ended = one.termination;
+  std::replace(ended.begin(), ended.end(), '_', ' ');
+  all.push_back(ended);
+  return all;
+}
+
+std::vector<std::string> heads() {
+  std::vector<std::string> all{"Seed", "Outcome", "Cost"};
+  for (const Figure& f : shown_figures) all.emplace_back(f.name);
+  all.insert(all.end(), {"Evaluations", "Ended by"});
+  return all;
+}
+
+}  // namespace
+
+void rank(ResultSeeds& seeds, Target target, double significant, bool over_devices) {
+  const Figure& own = figure_of(target);
+  const bool is_height = target == Target::bounce || target == Target::rebound;
+  const auto key = [&](const ResultSeeds::Search& one) {
+    const double settled = one.figures[figure_of(&Metrics::settled)];
+    const int belief = over_devices ? (one.goal_met ? 1 : 0) : one.confirmed ? 3 : one.goal_met ? 2 : settled == 1 ? 1 : 0;
+    double figure = over_devices ? 0 : or_none(one.figures[own]);
+    if (is_height && !over_devices) figure = std::max(figure, significant);
+    return std::tuple(-belief, figure, or_none(one.cost), one.seed);
+  };
+  const auto best = std::min_element(seeds.searches.begin(), seeds.searches.end(),
+                                     [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  seeds.best = static_cast<std::size_t>(best - seeds.searches.begin());
+}
+
+json seeds_json(const ResultSeeds& seeds) {
+  json searches = json::array(), failed = json::array(), figures = json::object();
+  std::size_t met = 0, confirmed = 0;
+  for (const ResultSeeds::Search& one : seeds.searches) {
+    json values = json::object();
+    for (const Figure& f : all_figures) values[std::string(f.key)] = json_number(one.figures[f]);
+    searches.push_back({{"seed", one.seed},
+                        {"status", one.status},
+                        {"cost", json_number(one.cost)},
+                        {"evaluations", json_number(one.evaluations)},
+                        {"termination", one.termination},
+                        {"goal_met", one.goal_met},
+                        {"confirmed", one.confirmed},
+                        {"better_than_baseline", one.better_than_baseline},
+                        {"metrics", std::move(values)}});
+    met += one.goal_met ? 1 : 0;
+    confirmed += one.confirmed ? 1 : 0;
+    if (const std::string why = failure(one); !why.empty()) failed.push_back({{"seed", one.seed}, {"reason", why}});
+  }
+  for (const Figure& f : shown_figures) figures[std::string(f.key)] = five_json(spread_of(seeds, f));
+  return {{"planned", seeds.planned},
+          {"searches", std::move(searches)},
+          {"best_seed", seeds.searches.empty() ? json() : json(seeds.searches.at(seeds.best).seed)},
+          {"goal_met", met},
+          {"confirmed", confirmed},
+          {"failed", std::move(failed)},
+          {"cost", five_json(spread_of_cost(seeds))},
+          {"metrics", std::move(figures)}};
+}
+
+namespace internal {
+
+std::string seeds_caption(const ResultSeeds& seeds) {
+  const std::size_t count = seeds.searches.size();
+  if (count == 0) return fmt::format("None of {} searches is done.", seeds.planned);
+  std::string words = count < seeds.planned ? fmt::format("{} of {} searches are done.", count, seeds.planned)
+                                            : fmt::format("{} searches that differ in their seeds.", count);
+  const ResultSeeds::Search& best = seeds.searches.at(seeds.best);
+  if (!std::isfinite(best.cost)) return words + " None of them found a feasible waveform.";
+  words += fmt::format(" The best is that of seed {}, with cost {}.", best.seed, quantity(best.cost, "", 4));
+  const FiveNumbers cost = spread_of_cost(seeds);
+  const auto number = [](double value) { return value == worst ? std::string("none") : quantity(value, "", 4); };
+  words += fmt::format(" Cost: median {}, quartiles {} and {}, from {} to {}.", number(cost[2]), number(cost[1]), number(cost[3]),
+                       number(cost[0]), number(cost[4]));
+  std::string failed;
+  std::size_t failures = 0;
+  constexpr std::size_t most_named = 12;
+  for (const ResultSeeds::Search& one : seeds.searches) {
+    const std::string why = failure(one);
+    if (why.empty()) continue;
+    if (++failures <= most_named) failed += fmt::format("{}{} ({})", failed.empty() ? "" : ", ", one.seed, why);
+  }
+  if (failures == 0) return words + (count == 1 ? " It meets the goal." : " All of them meet the goal.");
+  if (failures > most_named) failed += fmt::format(" and {} more", failures - most_named);
+  return words + fmt::format(" {} of {} fail: {}.", failures, count, failed);
+}
+
+std::string seeds_text(const std::optional<ResultSeeds>& seeds) {
+  if (!seeds) return {};
+  std::vector<std::vector<std::string>> rows{heads()};
+  for (const ResultSeeds::Search& one : seeds->searches) rows.push_back(cells(one));
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], columns_of(row[i]));
+  }
+  std::string out = wrapped(seeds_caption(*seeds)) + "\n\n";
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool is_word = i == 1 || i + 1 == row.size();
+      line += (i == 0 ? "" : "  ") + (is_word ? left_aligned(row[i], widths[i]) : right_aligned(row[i], widths[i]));
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string seeds_section(const std::optional<ResultSeeds>& seeds) {
+  if (!seeds) return {};
+  const auto row_of = [](const std::vector<std::string>& words, bool is_best) {
+    TableRow row;
+    for (const std::string& word : words) row.emplace_back(escaped(word), is_best ? "own" : "");
+    return row;
+  };
+  std::vector<TableRow> rows;
+  for (std::size_t k = 0; k < seeds->searches.size(); ++k) rows.push_back(row_of(cells(seeds->searches[k]), k == seeds->best));
+  return section("seeds", "Searches from other seeds",
+                 "<p>" + escaped(seeds_caption(*seeds)) + "</p>\n" + table_html(row_of(heads(), false), rows));
+}
+
+}  // namespace internal
+
+}  // namespace softland

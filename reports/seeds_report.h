@@ -1,0 +1,32 @@
+// Several searches that differ in their seeds alone, side by side: their spread says how far one search can be relied on.
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "objectives/cost.h"
+#include "reports/result.h"
+
+namespace softland {
+
+/// Orders the searches and sets which is the best. On the nominal device goes first what is confirmed, then what meets the goal,
+/// then what settles, each by the target's own figure, a rebound below `significant` [m] counting as one, and then by cost; over
+/// devices that differ what fulfils its conditions, by cost. Of equals the first seed.
+void rank(ResultSeeds& seeds, Target target, double significant, bool over_devices);
+
+[[nodiscard]] nlohmann::json seeds_json(const ResultSeeds& seeds);
+
+namespace internal {
+
+/// What the searches came to together, in sentences.
+[[nodiscard]] std::string seeds_caption(const ResultSeeds& seeds);
+/// The caption and a table for a terminal; empty where there was one search.
+[[nodiscard]] std::string seeds_text(const std::optional<ResultSeeds>& seeds);
+/// The same as a section of a page.
+[[nodiscard]] std::string seeds_section(const std::optional<ResultSeeds>& seeds);
+
+}  // namespace internal
+
+}  // namespace softland

@@ -1,0 +1,81 @@
+#include "reports/seeds_report.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "reports/html.h"
+#include "reports/result_json.h"
+#include "reports/result_reader.h"
+#include "sample_result.h"
+
+namespace softland {
+namespace {
+
+ResultSeeds::Search search(std::uint64_t seed, double cost, bool goal_met = true, bool confirmed = true) {
+  ResultSeeds::Search one{.seed = seed,
+                          .status = "done",
+                          .termination = "evaluation_budget",
+                          .cost = cost,
+                          .evaluations = 100,
+                          .goal_met = goal_met,
+                          .confirmed = confirmed,
+                          .better_than_baseline = true};
+  one.figures[&Metrics::settled] = 1;
+  one.figures[&Metrics::initial_contact_time] = 40e-6;
+  return one;
+}
+
+std::uint64_t best_seed(std::vector<ResultSeeds::Search> searches, Target target = Target::bounce, bool over_devices = false) {
+  ResultSeeds seeds{.planned = searches.size(), .searches = std::move(searches)};
+  rank(seeds, target, 1e-9, over_devices);
+  return seeds.searches.at(seeds.best).seed;
+}
+
+TEST(SeedsReport, PrefersWhatIsConfirmedThenWhatMeetsTheGoalThenTheFigureThenTheCost) {
+  EXPECT_EQ(best_seed({search(1, 0.1, true, false), search(2, 0.2), search(3, 0.05, false, false)}), 2U);
+  EXPECT_EQ(best_seed({search(1, 0.3, false, false), search(2, 0.4, true, false)}), 2U);
+  auto high = search(1, 0.1), low = search(2, 0.2);
+  high.figures[&Metrics::major_bounce_height] = 3e-9;
+  low.figures[&Metrics::major_bounce_height] = 2e-9;
+  EXPECT_EQ(best_seed({high, low}), 2U);
+  high.figures[&Metrics::major_bounce_height] = 0.9e-9;
+  low.figures[&Metrics::major_bounce_height] = 0.1e-9;
+  EXPECT_EQ(best_seed({high, low}), 1U) << "neither counts as a rebound";
+  EXPECT_EQ(best_seed({search(7, 0.1), search(8, 0.1)}), 7U);
+  EXPECT_EQ(best_seed({search(1, 0.1, false, false), search(2, 0.3)}, Target::bounce, true), 2U) << "the conditions hold";
+  EXPECT_EQ(best_seed({search(1, 0.3), search(2, 0.1, true, false)}, Target::bounce, true), 2U);
+}
+
+TEST(SeedsReport, TellsTheSpreadAndWhatFails) {
+  ResultSeeds seeds{.planned = 5, .searches = {search(1, 0.1), search(2, 0.2), search(3, 0.4, false), search(4, 0.3)}};
+  seeds.searches.back().better_than_baseline = false;
+  rank(seeds, Target::bounce, 1e-9, false);
+  EXPECT_EQ(internal::seeds_caption(seeds),
+            "4 of 5 searches are done. The best is that of seed 1, with cost 0.1. Cost: median 0.25, quartiles 0.175 and 0.325, "
+            "from 0.1 to 0.4. 2 of 4 fail: 3 (goal not met), 4 (no better than the plain step).");
+  const nlohmann::json j = seeds_json(seeds);
+  EXPECT_EQ(j["best_seed"], 1);
+  EXPECT_EQ(j["goal_met"], 3);
+  EXPECT_DOUBLE_EQ(j["cost"]["upper_quartile"].get<double>(), 0.325);
+  // One that found nothing is worse than all.
+  seeds.searches[2].cost = Metrics::unset;
+  EXPECT_TRUE(seeds_json(seeds)["cost"]["most"].is_null());
+  EXPECT_EQ(internal::seeds_caption(ResultSeeds{.planned = 3}), "None of 3 searches is done.");
+}
+
+TEST(SeedsReport, OfAResultIsReadBackAndStandsInEveryReport) {
+  Result result = read_result(test::sample_optimize_result(10));
+  EXPECT_EQ(html_report(result).find("id=\"seeds\""), std::string::npos);
+  result.seeds = ResultSeeds{.planned = 2, .searches = {search(1, 0.1), search(2, 0.2)}, .best = 1};
+  const Result again = read_result(result_json(result));
+  ASSERT_TRUE(again.seeds);
+  EXPECT_EQ(seeds_json(*again.seeds), seeds_json(*result.seeds));
+  EXPECT_EQ(again.seeds->best, 1U);
+  EXPECT_NE(html_report(again).find("Searches from other seeds"), std::string::npos);
+  EXPECT_NE(internal::seeds_text(again.seeds).find("\n   2  goal met, confirmed"), std::string::npos)
+      << internal::seeds_text(again.seeds);
+}
+
+}  // namespace
+}  // namespace softland
