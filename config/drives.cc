@@ -74,8 +74,7 @@ struct References {
 };
 
 /// Volts, or a percentage of the base or, for the piezo, of the main hold level.
-double swing(const SectionReader& in, std::string_view key, const References& to, double base) {
-  const Quantity& given = in.quantities(key).front();
+double swing(const SectionReader& in, std::string_view key, const Quantity& given, const References& to, double base) {
   if (given.dimension != dimension::none || to.drive == dispersion_drive) return volts(given, to.pull_in);
   if (to.drive != piezo_drive) {
     in.require(base != 0, key, "is a percentage of the base, which is 0 V");
@@ -98,8 +97,13 @@ Waveform read_rows(const SectionReader& in, std::string_view drive) {
   }
 }
 
-void read_list(const SectionReader& in, std::string_view key, Meaning meaning, const References& to, std::vector<double>& list) {
-  list = meaning == Meaning::level ? volts(in.quantities(key), to.pull_in) : in.numbers(key);
+void read_list(const SectionReader& in, std::string_view key, Meaning meaning, const References& to, double base,
+               std::vector<double>& list) {
+  if (meaning == Meaning::swing) {
+    for (const Quantity& given : in.quantities(key)) list.push_back(swing(in, key, given, to, base));
+  } else {
+    list = meaning == Meaning::level ? volts(in.quantities(key), to.pull_in) : in.numbers(key);
+  }
 }
 
 template <class Family>
@@ -109,14 +113,14 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
   for (const Parameter<Family>& p : FamilyOf<Family>::parameters) {
     const auto* one = std::get_if<double Family::*>(&p.member);
     if (one == nullptr) {
-      read_list(in, p.name, p.meaning, to, waveform.*std::get<std::vector<double> Family::*>(p.member));
+      read_list(in, p.name, p.meaning, to, base, waveform.*std::get<std::vector<double> Family::*>(p.member));
       continue;
     }
     double& value = waveform.*(*one);
     if (p.meaning == Meaning::level) {
       value = base = volts(in.quantities(p.name).front(), to.pull_in);
     } else if (p.meaning == Meaning::swing) {
-      value = swing(in, p.name, to, base);
+      value = swing(in, p.name, in.quantities(p.name).front(), to, base);
     } else if (p.meaning == Meaning::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
     } else if (in.has_value(p.name)) {
@@ -171,6 +175,26 @@ std::optional<DriverLimits> read_limits(const SectionReader& in, std::string_vie
   return limits;
 }
 
+/// What the source makes of a waveform; its load is that of the switch, which is not known here.
+DriverModel read_model(const SectionReader& in, std::string_view drive) {
+  DriverModel model;
+  if (!in.is_present()) return model;
+  const auto read = [&](std::string_view key, std::optional<double>& to) {
+    if (in.is_given(key)) to = in.number(key);
+  };
+  read("sample_rate", model.sample_rate);
+  read("bandwidth", model.bandwidth);
+  read("source_resistance", model.source_resistance);
+  if (in.is_given("bits")) {
+    model.bits = in.integer("bits");
+    in.require(model.sample_rate.has_value(), "bits", "needs a sample_rate: samples are what is rounded");
+    in.require(in.is_given("max_voltage"), "bits", "needs max_voltage: it divides the voltages from min_voltage to max_voltage");
+  }
+  in.require(!model.source_resistance || drive != piezo_drive, "source_resistance",
+             "charges an electrode; the capacitance of the piezo layer is not described by a scene");
+  return model;
+}
+
 void check_order(const SectionReader& in, const DriverLimits& limits) {
   if (limits.min_voltage < limits.max_voltage) return;
   const std::string_view key = in.is_given("min_voltage") ? "min_voltage" : "max_voltage";
@@ -201,6 +225,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     const bool check_limits = limits && (checks == LimitChecks::all || driver.keys_in_pull_in_units().empty());
     if (check_limits) check_order(driver, *limits);
     if (limits) drives.limits[name] = *limits;
+    if (const DriverModel model = read_model(driver, drive); !model.is_ideal()) drives.models[name] = model;
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
@@ -237,6 +262,8 @@ Dimension dimension_of(Meaning meaning) {
       return dimension::angular_frequency;
     case Meaning::angle:
       return dimension::angle;
+    case Meaning::ratio:
+      return dimension::none;
   }
   return dimension::voltage;
 }

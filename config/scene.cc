@@ -179,6 +179,13 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
     insert("min_voltage", limits.min_voltage, dimension::voltage);
     insert("max_voltage", limits.max_voltage, dimension::voltage);
     insert("max_slew", limits.max_slew, dimension::slew_rate);
+    if (const auto found = drives.models.find(name); found != drives.models.end()) {
+      const DriverModel& model = found->second;
+      if (model.bandwidth) insert("bandwidth", *model.bandwidth, dimension::frequency);
+      if (model.source_resistance) insert("source_resistance", *model.source_resistance, dimension::resistance);
+      if (model.sample_rate) insert("sample_rate", *model.sample_rate, dimension::frequency);
+      if (model.bits) keys.insert("bits", *model.bits);
+    }
     drivers.insert(name, std::move(keys));
   }
   if (!drivers.empty()) root.insert("driver", std::move(drivers));

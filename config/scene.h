@@ -15,6 +15,7 @@
 #include "config/units.h"
 #include "model/device.h"
 #include "objectives/metrics.h"
+#include "waveforms/driver.h"
 #include "waveforms/limits.h"
 #include "waveforms/waveform.h"
 
@@ -82,6 +83,7 @@ struct PullInVoltages {
 struct Drives {
   std::map<std::string, Waveform> waveforms;
   std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])
+  std::map<std::string, DriverModel> models;   ///< only sources that are not ideal
 };
 
 struct SimulateOptions {

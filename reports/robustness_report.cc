@@ -57,10 +57,12 @@ json device_json(const Ensemble& ensemble, const DriveRobustness& drive, std::si
   return one;
 }
 
-json waveforms_json(const DriveRobustness& drive, double duration) {
+json waveforms_json(const Prepared& nominal, const DriveRobustness& drive, double duration) {
   json all = json::object();
+  const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {
-    const Signal s = signal(waveform);
+    const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    const Signal s = nominal.driven(k, signal(waveform));
     const bool is_factor = name == dispersion_drive;
     json points = json::array();
     for (const auto& [t, v] : polyline(s, duration, 1e-3 * (s.maximum(duration) - s.minimum(duration)), 0))
@@ -136,7 +138,7 @@ json robustness_json(const RobustnessReport& report) {
     return json{{"name", d.name},
                 {"calibration", calibration_json(d.known.calibration())},
                 {"classes", classes_json(d.known.classes())},
-                {"waveforms", waveforms_json(d, found.duration)},
+                {"waveforms", waveforms_json(nominal, d, found.duration)},
                 {"closing", yield_json(d.closing)},
                 {"bounce_free", yield_json(d.bounce_free)},
                 {"figures", std::move(figures)},

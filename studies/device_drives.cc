@@ -111,7 +111,7 @@ std::vector<Signal> DeviceDrives::signals(const std::vector<Waveform>& nominal, 
                                           const std::vector<double>& values) const {
   const Driven all = driven(nominal, units, values);
   std::vector<Signal> own;
-  for (std::size_t k = 0; k < all.signals.size(); ++k) own.push_back(all.signal(k));
+  for (std::size_t k = 0; k < all.signals.size(); ++k) own.push_back(nominal_->driven(k, all.signal(k)));
   return own;
 }
 

@@ -29,8 +29,8 @@ class DeviceDrives {
 
   /// Whether a device of these units has other drives than the nominal one.
   [[nodiscard]] bool differ(const DeviceUnits& units) const { return has_errors_ || units.volts != 1 || units.time != 1; }
-  /// What a device gets, whose varying quantities have these values; `nominal` are the waveforms of the nominal device, in the
-  /// order of Switch::drives() [V].
+  /// What a device gets from its sources, whose varying quantities have these values; `nominal` are the waveforms of the nominal
+  /// device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
   /// The same as waveforms: of the given family where that can express them, else a table, which is exact but for a sine,

@@ -107,7 +107,7 @@ Arrival arrival(const Prepared& prepared, const std::map<std::string, Waveform>&
   all.insert(plain.begin(), plain.end());
   all.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
   const ClosingOptions options{.duration = window, .tolerance = std::min(prepared.tolerance, 1e-8), .after_contact = 0};
-  const Trajectory run = simulate_closing(prepared.model, signals_of(prepared.in_drive_order(all)), options);
+  const Trajectory run = simulate_closing(prepared.model, prepared.driven(signals_of(prepared.in_drive_order(all))), options);
   const Metrics m = metrics(run);
   return {m.initial_contact_time, m.impact_velocity};
 }
@@ -229,7 +229,8 @@ double best_catch(const Prepared& prepared, const FreeFlight& flight, const Leas
     all.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
     const ClosingOptions options{.duration = (1 + k * step) * found.time + period, .tolerance = search_tolerance};
     const Metrics m =
-        metrics(simulate_closing(prepared.model, signals_of(prepared.in_drive_order(all)), options), prepared.scene.metrics);
+        metrics(simulate_closing(prepared.model, prepared.driven(signals_of(prepared.in_drive_order(all))), options),
+                prepared.scene.metrics);
     if (!(m.major_bounce_height < least)) continue;
     least = m.major_bounce_height;
     best = k * step * found.time;

@@ -172,6 +172,7 @@ Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects
   p.scene.warnings = prepared.scene.warnings;
   p.pull_in = prepared.pull_in;
   p.drives = prepared.drives;
+  p.loads = prepared.loads;
   p.duration = prepared.duration;
   p.tolerance = prepared.tolerance;
   return p;

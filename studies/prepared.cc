@@ -29,7 +29,23 @@ std::vector<Waveform> Prepared::in_drive_order(const std::map<std::string, Wavef
   return result;
 }
 
-std::vector<Signal> Prepared::signals() const { return signals_of(in_drive_order(drives.waveforms)); }
+std::vector<Signal> Prepared::signals() const { return driven(signals_of(in_drive_order(drives.waveforms))); }
+
+Signal Prepared::driven(std::size_t k, Signal told) const {
+  if (drives.models.empty()) return told;
+  const std::string name = drive_names()[k];
+  const auto found = drives.models.find(name);
+  if (found == drives.models.end()) return told;
+  const auto limits = drives.limits.find(name);
+  DriverModel source = found->second;
+  if (const auto load = loads.find(name); load != loads.end()) source.load = load->second;
+  return softland::driven(told, source, limits == drives.limits.end() ? DriverLimits{} : limits->second, duration);
+}
+
+std::vector<Signal> Prepared::driven(std::vector<Signal> told) const {
+  for (std::size_t k = 0; k < told.size(); ++k) told[k] = driven(k, std::move(told[k]));
+  return told;
+}
 
 std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
   std::map<std::string, PullInVoltages> units;
@@ -49,6 +65,17 @@ SwitchOptions quadrature_for(double accuracy, int modes) {
 
 namespace {
 
+/// At most, of a waveform's sine in the window.
+double periods_of(const Waveform& waveform, double window) {
+  const auto lasts = [&](const auto& sine) { return std::min(sine.end, window) - sine.start; };
+  if (const auto* sine = std::get_if<Harmonic>(&waveform))
+    return sine->amplitude == 0 ? 0 : sine->angular_frequency / (2 * pi) * lasts(*sine);
+  if (const auto* chirp = std::get_if<Chirp>(&waveform))
+    return chirp->amplitude == 0 ? 0
+                                 : chirp->angular_frequency * std::max(1.0, chirp->frequency_ratio) / (2 * pi) * lasts(*chirp);
+  return 0;
+}
+
 /// Windows and waveforms that no computer would see the end of.
 void check_window(const Prepared& p) {
   constexpr double longest = 1e3;  // [s], as the longest simulate.duration
@@ -61,15 +88,39 @@ void check_window(const Prepared& p) {
   }
   constexpr double most_periods = 1e5;
   for (const auto& [name, waveform] : p.drives.waveforms) {
-    const auto* sine = std::get_if<Harmonic>(&waveform);
-    if (sine == nullptr || sine->amplitude == 0) continue;
-    const double periods = sine->angular_frequency / (2 * pi) * (std::min(sine->end, p.duration) - sine->start);
+    const double periods = periods_of(waveform, p.duration);
     if (!(periods > most_periods)) continue;
     const std::string section = "waveform." + name + ".";
     const bool in_hertz = file.json()["waveform"][name].contains("frequency");
     file.refuse(section + (in_hertz ? "frequency" : "angular_frequency"),
                 fmt::format("makes {} periods in the window of {}; there may be {}", engineering(periods, "", 3),
                             engineering(p.duration, "s"), engineering(most_periods, "")));
+  }
+}
+
+/// Every source charges its electrode on the open switch.
+void load_sources(Prepared& p) {
+  const Switch& model = p.model;
+  std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
+  if (model.rest()) std::copy_n(model.rest()->data(), open.size(), open.begin());
+  Switch::Workspace work = model.workspace();
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto found = p.drives.models.find(names[k]);
+    if (found == p.drives.models.end() || !found->second.source_resistance) continue;
+    p.loads[names[k]] = model.capacitance(k, open.data(), work);
+  }
+}
+
+/// Sources that take more samples than a run can follow.
+void check_sources(const Prepared& p) {
+  constexpr double most_samples = 1e5;
+  for (const auto& [name, model] : p.drives.models) {
+    if (!model.sample_rate || *model.sample_rate * p.duration <= most_samples) continue;
+    p.scene.file.refuse(
+        "driver." + name + ".sample_rate",
+        fmt::format("takes {} samples in the window of {}; there may be {}", engineering(*model.sample_rate * p.duration, "", 3),
+                    engineering(p.duration, "s"), engineering(most_samples, "")));
   }
 }
 
@@ -103,8 +154,10 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch,
     if (ok) p.pull_in.emplace(name, found);
   }
   p.drives = scene.drives(p.voltage_units());
+  load_sources(p);
   p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.model.angular_frequencies()[0];
   check_window(p);
+  check_sources(p);
   p.tolerance =
       scene.simulate.tolerance > 0 ? scene.simulate.tolerance : tolerance_for(scene.simulate.accuracy, p.model.film_states() > 0);
   return p;

@@ -34,6 +34,7 @@ struct Prepared {
   Switch model;
   std::map<std::string, ElectrodePullIn> pull_in;  ///< electrodes whose pull-in was needed
   Drives drives;                                   ///< in volts
+  std::map<std::string, double> loads = {};        ///< capacitance of the open switch, where a source has a resistance [F]
   double duration = 0;                             ///< window [s]
   double tolerance = 0;                            ///< of the integrator
   SwitchOptions quadrature = {};
@@ -44,8 +45,12 @@ struct Prepared {
   [[nodiscard]] std::vector<std::string> drive_names() const;
   /// One waveform per drive in that order; what has none stays at 0 V.
   [[nodiscard]] std::vector<Waveform> in_drive_order(const std::map<std::string, Waveform>& waveforms) const;
-  /// One signal per drive in that order; what is not driven stays at 0 V.
+  /// One signal per drive in that order, as its source gives it; what is not driven stays at 0 V.
   [[nodiscard]] std::vector<Signal> signals() const;
+  /// What the sources make of signals that they are told to give, one per drive in that order.
+  [[nodiscard]] std::vector<Signal> driven(std::vector<Signal> told) const;
+  /// What the source of drive k makes of a signal.
+  [[nodiscard]] Signal driven(std::size_t k, Signal told) const;
   /// The pull-in voltages as units.
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
 };

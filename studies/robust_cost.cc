@@ -20,12 +20,6 @@ constexpr double most_violation = 10;
 // A step that lands softly by itself must not turn the ratios into infinities.
 double over(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
 
-double last_breakpoint(const std::vector<Signal>& signals) {
-  double last = 0;
-  for (const Signal& signal : signals) last = std::max(last, signal.pieces().back().begin);
-  return last;
-}
-
 double value_of(const DeviceOutcome& outcome, const Criterion& condition) {
   return ensemble_figures()[condition.figure].value(outcome);
 }
@@ -83,7 +77,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              int jobs) const {
   constexpr std::size_t together = 64;  // devices of one task
-  const std::vector<Signal> nominal = signals_of(waveforms);
+  const std::vector<Signal> nominal = setting_.given.driven(signals_of(waveforms));
   std::vector<DeviceOutcome> outcomes(last - first);
   run_tasks((outcomes.size() + together - 1) / together, jobs, [&](std::size_t task) {
     const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);

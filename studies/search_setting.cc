@@ -31,6 +31,12 @@ CostFigures imagined_step(const Prepared& given, double period) {
 
 }  // namespace
 
+double last_breakpoint(const std::vector<Signal>& signals) {
+  double last = 0;
+  for (const Signal& signal : signals) last = std::max(last, signal.pieces().back().begin);
+  return last;
+}
+
 SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms) {
   SceneFile file = resolved(prepared.scene, prepared.voltage_units());
   for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
@@ -60,7 +66,11 @@ bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) 
 
 Prices SearchSetting::price(const std::vector<Signal>& signals) const {
   CostObserver observer(scale.contact_gap, given.scene.metrics);
-  const Trajectory end = observe_closing(given.model, signals, run, observer);
+  // A drive that still changes after the score would open the switch again unseen.
+  ClosingOptions own = run;
+  own.no_end_before = last_breakpoint(signals) + given.model.in_contact_period();
+  own.duration = std::max(run.duration, own.no_end_before);
+  const Trajectory end = observe_closing(given.model, signals, own, observer);
   const CostFigures figures = observer.figures(end.landing_excess);
   const auto by = [&](Target one) { return cost(one, end.status, figures, scale, given.scene.metrics); };
   const double leading = by(Target::bounce);
@@ -74,7 +84,7 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
   if (memory != nullptr) {
     if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost};
   }
-  Prices found = price(signals_of(drives(searched)));
+  Prices found = price(given.driven(signals_of(drives(searched))));
   found = {.leading = found.leading + 0.0, .own = found.own + 0.0};  // of zeros a memory need not keep the sign
   if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading});
   return found;

@@ -3,8 +3,8 @@
 //
 // Baseline: a step of the searched electrode to the scene's hold level, without rise time unless the driver's slew limit asks for
 // one, piezo 0 V unless it is the only drive, which then steps to its hold level. Every candidate is scored over a fixed time
-// after its own first contact, must touch within 2.5 times the baseline's first-touch time, stays inside the driver's limits, and
-// is infeasible if the beam comes near the electrode.
+// after its own first contact and until one period in contact after its last breakpoint, must touch within 2.5 times the
+// baseline's first-touch time, stays inside the driver's limits, and is infeasible if the beam comes near the electrode.
 #pragma once
 
 #include <map>
@@ -51,6 +51,9 @@ struct SearchSetting {
 /// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.
 [[nodiscard]] SearchSetting search_setting(const SceneFile& file, Target target, Actuator actuator, const std::string& family,
                                            const Watch& watch);
+
+/// When the last piece of any of these drives begins [s].
+[[nodiscard]] double last_breakpoint(const std::vector<Signal>& signals);
 
 /// The scene of `prepared` in volts, with other waveforms on some drives.
 [[nodiscard]] SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms);

@@ -19,6 +19,54 @@ double hold_level(const Prepared& p, const std::string& drive) {
   return found == p.drives.waveforms.end() ? 0 : signal(found->second).hold_level();
 }
 
+/// The families that "pulse" or "main=step,pzt=pulse" names for the drives.
+class FamilyOfDrives {
+ public:
+  explicit FamilyOfDrives(const std::string& text) : text_(text) {
+    if (text.find('=') == std::string::npos) {
+      for_others_ = text;
+      return;
+    }
+    for (std::size_t begin = 0; begin <= text.size();) {
+      const std::size_t end = std::min(text.find(',', begin), text.size());
+      const std::string part = text.substr(begin, end - begin);
+      const std::size_t equals = part.find('=');
+      if (equals == std::string::npos) {
+        require(for_others_.empty() && !part.empty(),
+                fmt::format("--waveform {}: '{}' is not of the form DRIVE=FAMILY, or a second family for all other drives", text,
+                            part));
+        for_others_ = part;
+      } else {
+        const std::string drive = part.substr(0, equals) == "pzt" ? std::string(piezo_drive) : part.substr(0, equals);
+        require(named_.emplace(drive, part.substr(equals + 1)).second,
+                fmt::format("--waveform {}: drive '{}' has two families", text, drive));
+      }
+      begin = end + 1;
+    }
+    if (for_others_.empty()) for_others_ = "pulse";
+  }
+
+  [[nodiscard]] const std::string& of(const std::string& drive) const {
+    const auto found = named_.find(drive);
+    return found == named_.end() ? for_others_ : found->second;
+  }
+
+  void check_all_used(const std::vector<DriveSearch>& drives) const {
+    for (const auto& [name, family] : named_) {
+      const auto is_it = [&](const DriveSearch& drive) { return drive.drive == name; };
+      require(std::any_of(drives.begin(), drives.end(), is_it), [&] {
+        std::string searched;
+        for (const DriveSearch& drive : drives) searched += (searched.empty() ? "" : ", ") + drive.drive;
+        return fmt::format("--waveform {}: drive '{}' is not searched (searched: {})", text_, name, searched);
+      });
+    }
+  }
+
+ private:
+  std::string text_, for_others_;
+  std::map<std::string, std::string> named_;
+};
+
 }  // namespace
 
 bool has_pulling_electrode(const Device& device) {
@@ -93,6 +141,7 @@ std::string DriveSearch::searched_name() const {
 }
 
 SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch) {
+  FamilyOfDrives families(family);
   const auto add = [&](const std::string& drive, bool brakes) {
     const auto limits = prepared.drives.limits.find(drive);
     require(
@@ -106,8 +155,11 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
                   .starts = {}};
     require(s.limits.max_voltage > s.limits.min_voltage,
             fmt::format("driver.{}: max_voltage must exceed min_voltage to search between them", drive));
-    choose_family(s, family);
+    choose_family(s, families.of(drive));
     s.family->add(s, prepared, first_touch);
+    for (std::vector<double>& start : s.starts) {
+      for (std::size_t k = 0; k < start.size(); ++k) start[k] = std::clamp(start[k], s.variables[k].lower, s.variables[k].upper);
+    }
     drives_.push_back(std::move(s));
   };
   if (actuator != Actuator::pzt) {
@@ -118,6 +170,7 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
     require(prepared.model.has_piezo(), "optimize --actuator pzt|both needs a [piezo] section, and the scene has none");
     add(std::string(piezo_drive), false);
   }
+  families.check_all_used(drives_);
 }
 
 std::vector<Variable> SearchSpace::variables() const {

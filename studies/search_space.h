@@ -14,6 +14,16 @@
 //   staircase N levels with durations in [0.05, 3] T0 each, edge in [0.005, 1] T1
 //   knots     a broken line: a jump to level_1, straight lines to level_2 ... level_N and the hold level, all in total_time in
 //             [0.5, 10] T0, of which the lines take shares in proportion to part_1 ... part_N in [0.05, 1]
+//   coast     level_1 for duration_1, then no voltage for coast_1, both in [0.05, 1.6] T0, and an edge as of a pulse
+//   pulses    N pulses: level_k for duration_k (the first in [0.05, 1.6] T0, the others in [0.05, 4] T0), between them no voltage
+//             for coast_k in [0.05, 1.6] T0, and an edge as of a pulse; dual-pulse: two of them
+//   s-curve   a smooth rise to level_1, dwell_1 in [0.01, 3] T0 there, a smooth rise to the hold level; edge in [0.01, 3] T0
+//   dither    a harmonic that decays: decay_time in [0.05, 5] T0
+//   chirp     a harmonic whose frequency at its end is frequency_ratio in [0.25, 4] times that at its start
+//   bspline   a cubic B-spline drawn by N levels and twice the hold level, with a duration in [0.5, 10] T0
+//   sines     the hold level and N sines of 1 ... N half waves, with amplitudes up to the range of the driver, in a duration in
+//             [0.5, 4] T0; what leaves the limits is made smaller as a whole
+// An electrode on the far side, which brakes, waits before its pulses instead of coasting after them.
 // The hold level is the scene's own and never varied. A slew limit lengthens edges, rise times and fades, lets a sine begin when
 // its base has risen, and caps its amplitude.
 #pragma once
@@ -39,14 +49,14 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
 static_assert(is_complete<actuators>());
 
 struct SearchedFamily;
-/// "step, pulse, ..., staircase:N or knots:N"
+/// "step, pulse, ..., bspline:N or sines:N"
 [[nodiscard]] std::string listed_searched_families();
 
 /// The waveform parameters of one drive.
 struct DriveSearch {
   std::string drive;
   const SearchedFamily* family = nullptr;
-  std::size_t count = 0;  ///< of levels or knots, where the family has any number of them
+  std::size_t count = 0;  ///< of levels, knots, pulses or sines, where the family has any number of them
   double hold = 0;        ///< [V]
   bool brakes = false;    ///< an electrode on the far side
   DriverLimits limits;
@@ -68,6 +78,7 @@ struct DriveSearch {
 
 class SearchSpace {
  public:
+  /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse where it says nothing);
   /// `first_touch` of the plain step [s]. Throws InvalidInput when the scene lacks the drive, a piezo limit, or the family cannot
   /// be searched.
   SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch);

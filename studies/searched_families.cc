@@ -9,19 +9,14 @@
 #include <limits>
 #include <numeric>
 
-#include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
+#include "studies/searched_shapes.h"
 
 namespace softland {
 namespace {
 
-// Voltage whose static effect on the contact point alone is `lift` away from the contact [m].
-double lifting_voltage(const Prepared& p, double lift) {
-  const Eigen::VectorXd squares = p.model.angular_frequencies().cwiseAbs2();
-  const double per_volt = p.model.contact_shape().dot(p.model.piezo_shape().cwiseQuotient(squares));
-  return -lift / per_volt;
-}
+using internal::first_period, internal::lifting_voltage, internal::Parameters, internal::pulse_of;
 
 void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
   const double period = 2 * pi / p.model.angular_frequencies()[0];
@@ -48,18 +43,12 @@ void add_pulse(DriveSearch& s, const Prepared& p, double t0) {
       s.starts.push_back({inside(throwing * s.hold), inside(0.6 * s.hold), 0.85 * t0, 0.5 * t0, 0.01 * period});
     }
   }
+  if (const auto landing = internal::throw_and_coast(s, p))
+    s.starts.push_back({landing->pulling, landing->coasting, landing->driven_time, landing->coasting_time, 0.005 * period});
 }
 
 void add_harmonic(DriveSearch& s, const Prepared& p, double t0) {
-  const double room = std::min(s.limits.max_voltage - s.hold, s.hold - s.limits.min_voltage);
-  require(room > 0, fmt::format("driver.{}: the hold level {} stands at the driver's limit, which leaves no room for a dither",
-                                s.drive, engineering(s.hold, "V", 5)));
-  const Eigen::VectorXd& omega = p.model.angular_frequencies();
-  const Eigen::Index mode = std::min<Eigen::Index>(s.drive == piezo_drive ? 2 : 1, omega.size() - 1);
-  const double upper = omega.size() > 1 ? omega[mode] : 6 * omega[0];
-  s.variables = {{"amplitude_V", 0, room},           {"angular_frequency_rad_s", 0.2 * omega[0], upper},
-                 {"phase_rad", 0, 2 * pi},           {"start_s", 0, t0},
-                 {"duration_s", 0.1 * t0, 2.5 * t0}, {"fade", 0, 0.5}};
+  const double upper = internal::add_dither_variables(s, p, t0), room = s.variables[0].upper;
   for (const double frequency : {0.15, 0.45}) s.starts.push_back({room / 2, frequency * upper, pi, 0, 1.5 * t0, 0.2});
 }
 
@@ -80,8 +69,6 @@ void add_levels(DriveSearch& s, const std::vector<double>& longest, double longe
   s.variables.push_back({"edge_s", 0.005 * period, longest_edge * period});
 }
 
-double first_period(const Prepared& p) { return 2 * pi / p.model.angular_frequencies()[0]; }
-
 void add_catch(DriveSearch& s, const Prepared& p, double t0) {
   const double period = first_period(p), low = s.limits.min_voltage, high = s.limits.max_voltage;
   add_levels(s, {1.6, 1.6, 4}, 0.1, t0, period);
@@ -96,6 +83,9 @@ void add_catch(DriveSearch& s, const Prepared& p, double t0) {
     // Throw, coast, hold fast.
     s.starts.push_back({high, low, high, 0.8 * t0, 0.5 * t0, 1.7 * t0, 0.01 * period});
     s.starts.push_back({inside(s.hold), inside(0.6 * s.hold), inside(s.hold), 0.85 * t0, 0.5 * t0, t0, 0.01 * period});
+    if (const auto landing = internal::throw_and_coast(s, p))
+      s.starts.push_back(
+          {landing->pulling, landing->coasting, high, landing->driven_time, landing->coasting_time, 1.7 * t0, 0.005 * period});
   }
 }
 
@@ -166,38 +156,22 @@ Waveform step_at(const DriveSearch& s, std::span<const double> x) {
   return Step{.level = s.hold, .rise_time = std::max(x[0], std::abs(s.hold) / s.limits.max_slew)};
 }
 
-Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations, double edge) {
-  Pulse pulse{.levels = {levels.begin(), levels.end()}, .times = {}, .edge = edge};
-  pulse.levels.push_back(s.hold);
-  double steps = std::abs(levels[0]);
-  for (std::size_t k = 0; k < levels.size(); ++k) steps = std::max(steps, std::abs(pulse.levels[k + 1] - pulse.levels[k]));
-  pulse.edge = std::max(edge, steps / s.limits.max_slew);
-  double time = 0;
-  for (const double duration : durations) pulse.times.push_back(time += std::max(duration, pulse.edge));
-  return pulse;
-}
-
 Waveform pulse_at(const DriveSearch& s, std::span<const double> x) {
   const std::size_t levels = (x.size() - 1) / 2;
   return pulse_of(s, x.first(levels), x.subspan(levels, levels), x.back());
 }
 
 Waveform harmonic_at(const DriveSearch& s, std::span<const double> x) {
-  // Under a slew limit the sine waits for the base, and fades for as long as its amplitude needs: the slope of the envelope
-  // adds to that of the sine. Half the duration is the longest fade; what is too steep even then is made smaller.
-  const double slew = s.limits.max_slew;  // infinite where there is no limit
-  const double omega = x[1], duration = x[4], rise = std::abs(s.hold) / slew, start = std::max(x[3], rise);
-  const double needed = x[0] * omega < slew ? x[0] / (slew - x[0] * omega) : std::numeric_limits<double>::infinity();
-  const double fade = std::min(std::max(x[5] * duration, needed), duration / 2);
-  const double steepest = omega + (fade > 0 ? 1 / fade : 0);
+  const internal::SlewedDither d =
+      internal::slewed_dither(s, x[0], x[1], std::numeric_limits<double>::infinity(), x[3], x[4], x[5]);
   return Harmonic{.base = s.hold,
-                  .rise_time = rise,
-                  .amplitude = std::min(x[0], slew / steepest),
-                  .angular_frequency = omega,
+                  .rise_time = d.rise_time,
+                  .amplitude = d.amplitude,
+                  .angular_frequency = x[1],
                   .phase = x[2],
-                  .start = start,
-                  .end = start + duration,
-                  .fade = fade};
+                  .start = d.start,
+                  .end = d.start + x[4],
+                  .fade = d.fade};
 }
 
 // Straight lines through these voltages, each of a duration that may be 0, as slow as the driver asks for.
@@ -223,8 +197,6 @@ Waveform knots_at(const DriveSearch& s, std::span<const double> x) {
 Waveform ramp_at(const DriveSearch& s, std::span<const double> x) {
   return broken_line(s, std::array{x[0], x[1], s.hold}, std::array{0.0, x[2], x[3]});
 }
-
-using Parameters = std::optional<std::vector<double>>;
 
 Parameters of_step(const DriveSearch&, const Waveform& waveform) {
   return std::vector<double>{std::get<Step>(waveform).rise_time};
@@ -279,9 +251,17 @@ constexpr auto searched_families = std::to_array<SearchedFamily>(
      {"catch", FamilyOf<Pulse>::name, 0, add_catch, pulse_at, of_pulse},
      {"ramp", FamilyOf<Table>::name, 0, add_ramp, ramp_at, of_ramp},
      {"staircase", FamilyOf<Pulse>::name, 4, add_staircase, pulse_at, of_pulse},
-     {"knots", FamilyOf<Table>::name, 6, add_knots, knots_at, of_knots}});
+     {"knots", FamilyOf<Table>::name, 6, add_knots, knots_at, of_knots},
+     {"coast", FamilyOf<Pulse>::name, 0, internal::add_coast, internal::coast_at, internal::of_coast},
+     {"dual-pulse", FamilyOf<Pulse>::name, 0, internal::add_dual_pulse, internal::pulses_at, internal::of_pulses},
+     {"pulses", FamilyOf<Pulse>::name, 3, internal::add_pulses, internal::pulses_at, internal::of_pulses},
+     {"s-curve", FamilyOf<SCurve>::name, 0, internal::add_s_curve, internal::s_curve_at, internal::of_s_curve},
+     {"dither", FamilyOf<Chirp>::name, 0, internal::add_dither, internal::dither_at, internal::of_dither},
+     {"chirp", FamilyOf<Chirp>::name, 0, internal::add_chirp, internal::chirp_at, internal::of_chirp},
+     {"bspline", FamilyOf<BSpline>::name, 6, internal::add_bspline, internal::bspline_at, internal::of_bspline},
+     {"sines", FamilyOf<Sines>::name, 4, internal::add_sines, internal::sines_at, internal::of_sines}});
 
-constexpr std::size_t fewest = 2, most = 20;  // levels or knots
+constexpr std::size_t fewest = 2, most = 20;  // of levels, knots, pulses or sines
 
 }  // namespace
 
@@ -301,7 +281,7 @@ void choose_family(DriveSearch& s, const std::string& text) {
       found->count > 0 && error == std::errc() && end == number.data() + number.size() && s.count >= fewest && s.count <= most,
       [&] {
         return found->count == 0
-                   ? fmt::format("--waveform {}: {} has no number of levels or knots", text, name)
+                   ? fmt::format("--waveform {}: {} has no number", text, name)
                    : fmt::format("--waveform {}: the number after {} must be from {} to {}", text, name, fewest, most);
       });
 }

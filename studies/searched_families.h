@@ -17,13 +17,14 @@ namespace softland {
 struct SearchedFamily {
   std::string_view name;
   std::string_view waveform;  ///< the family of a scene that it makes
-  std::size_t count;          ///< of levels or knots, where there is a choice, if it is not given
+  std::size_t count;          ///< of levels, knots, pulses or sines, where there is a choice, if it is not given
   void (*add)(DriveSearch&, const Prepared&, double first_touch);
   Waveform (*at)(const DriveSearch&, std::span<const double> x);
   std::optional<std::vector<double>> (*parameters)(const DriveSearch&, const Waveform&);
 };
 
-/// Sets the family of a drive, and its number of levels or knots: "pulse", "knots:8". Throws InvalidInput where there is none.
+/// Sets the family of a drive, and its number of levels, knots, pulses or sines: "pulse", "knots:8". Throws InvalidInput where
+/// there is none.
 void choose_family(DriveSearch& drive, const std::string& text);
 
 }  // namespace softland

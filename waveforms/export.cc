@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/require.h"
+#include "waveforms/bounds.h"
 
 namespace softland {
 namespace {
@@ -25,19 +26,45 @@ void require_end(double end) {
           fmt::format("the end of an exported waveform is {} s; it must be finite and >= 0", end));
 }
 
-/// Appends the points of an oscillating piece strictly inside (begin, end): a chord of length h is at most h^2 max|V''| / 8 off.
+constexpr double most_chords = 1e7;
+
+void require_few(double chords, double tolerance) {
+  require(chords <= most_chords, fmt::format("a polyline within {} V of this waveform needs {} points; it may have at most {}",
+                                             tolerance, chords, most_chords));
+}
+
+/// The same for a piece with terms, whose curvature may change along it: intervals are halved until chords are near enough.
+void append_halved(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
+                   double tolerance) {
+  std::vector<double> ends{end};
+  double count = 0;
+  for (double from = begin; !ends.empty();) {
+    const double to = ends.back(), length = to - from, middle = from + 0.5 * length;
+    const bool near = length * length / 8 * internal::derivative_bound(piece, 2, from, to) <= tolerance;
+    if (!near && middle > from && middle < to) {
+      ends.push_back(middle);
+      require_few(++count, tolerance);
+      continue;
+    }
+    ends.pop_back();
+    from = to;
+    if (to < end) points.emplace_back(to, piece.voltage(to));
+  }
+}
+
+/// Appends the points of a piece that is not straight strictly inside (begin, end): a chord of length h is at most
+/// h^2 max|V''| / 8 off.
 void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
-  if (!piece.oscillates() || !(end > begin)) return;
+  if (piece.is_straight() || !(end > begin)) return;
+  require(tolerance > 0, fmt::format("the tolerance of the polyline of a curve is {} V; it must be > 0", tolerance));
+  if (!piece.terms.empty()) return append_halved(points, piece, begin, end, tolerance);
   const double w = piece.angular_frequency;
   const double envelope = std::max(std::abs(piece.amplitude + piece.amplitude_slope * (begin - piece.begin)),
                                    std::abs(piece.amplitude + piece.amplitude_slope * (end - piece.begin)));
   const double curvature = envelope * w * w + 2 * std::abs(piece.amplitude_slope) * w;
-  require(tolerance > 0, fmt::format("the tolerance of the polyline of a sine is {} V; it must be > 0", tolerance));
   const double chords = std::ceil((end - begin) * std::sqrt(curvature / (8 * tolerance)));
-  constexpr double most_chords = 1e7;
-  require(chords <= most_chords, fmt::format("a polyline within {} V of this waveform needs {} points; it may have at most {}",
-                                             tolerance, chords, most_chords));
+  require_few(chords, tolerance);
   for (double i = 1; i < chords; ++i) {
     const double time = begin + (end - begin) * (i / chords);
     points.emplace_back(time, piece.voltage(time));

@@ -14,20 +14,20 @@ namespace softland {
 /// exact. A jump at t becomes points at t and at t + jump_time [s], or a thousandth of the interval after t if that is shorter;
 /// with jump_time = 0 both have the time t. The 0 V before t = 0 count: a signal that starts above them starts with a jump. The
 /// last point is at `end`, or one jump_time later. Throws InvalidInput unless end and jump_time are finite and >= 0, the
-/// tolerance of a sine > 0, and the points of a piece at most 1e7.
+/// tolerance of a curve > 0, and the points of a piece at most 1e7.
 [[nodiscard]] std::vector<std::pair<double, double>> polyline(const Signal& signal, double end, double tolerance,
                                                               double jump_time);
 
 /// CSV with a header `time_s,<drive>,<drive>...` on the union of all breakpoints; readable by the table family. A jump of any
-/// drive is two rows of the same time; sines are sampled so that straight lines stay within 1e-4 of the drive's peak. A step,
-/// pulse or table that ends before `end` and stands alone reads back to the same signal bit for bit; together with other drives
-/// its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no signal, a name does not fit into a
-/// header, or `end` is not finite and >= 0.
+/// drive is two rows of the same time; sines and other curves are sampled so that straight lines stay within 1e-4 of the drive's
+/// peak. A step, pulse or table that ends before `end` and stands alone reads back to the same signal bit for bit; together with
+/// other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no signal, a name does
+/// not fit into a header, or `end` is not finite and >= 0.
 [[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end);
 
 /// A SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable with
-/// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a thousandth of the interval after them if that is shorter; sines as
-/// in csv(). Letters of a name become lower case and what is neither letter nor digit an underscore. Throws InvalidInput as
+/// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a thousandth of the interval after them if that is shorter; curves
+/// as in csv(). Letters of a name become lower case and what is neither letter nor digit an underscore. Throws InvalidInput as
 /// csv(), and when two drives get the same name.
 [[nodiscard]] std::string spice_pwl(const std::map<std::string, Signal>& signals, double end);
 

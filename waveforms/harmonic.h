@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "waveforms/parameter.h"
@@ -95,5 +96,12 @@ template <class P>
 }
 /// Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Harmonic& harmonic);
+
+namespace internal {
+
+/// The rules of what a harmonic has; `what` it is stands in messages. Throws InvalidParameter.
+void require_dither(std::string_view what, const Harmonic& harmonic);
+
+}  // namespace internal
 
 }  // namespace softland

@@ -17,9 +17,10 @@ enum class Meaning {
   end_time,           ///< [s], after 0; absent from a scene: never
   angular_frequency,  ///< [rad/s]; a scene may give the frequency instead
   angle,              ///< [rad]
+  ratio,              ///< of two quantities of the signal, above 0; 1 where a scene says nothing
 };
 
-/// One parameter of a family: a number or, for levels and times, several. One that is not required has the family's default.
+/// One parameter of a family: a number, or several levels, swings or times. One that is not required has the family's default.
 template <class Family>
 struct Parameter {
   std::string_view name;

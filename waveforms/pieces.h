@@ -1,11 +1,14 @@
 // The smooth pieces that a signal is made of, over the scalar of its levels and times: a double, a dual number whose slopes are
 // those of a waveform's parameters, or a lane with one device to a number.
 //
-//   V(t) = value + slope (t - begin) + [amplitude + amplitude_slope (t - begin)] sin(angular_frequency t + phase)
+//   V(t) = value + slope s + [amplitude + amplitude_slope s] sin(angular_frequency t + phase) + terms,  s = t - begin
 //
-// on [begin, begin of the next piece); the last piece lasts for ever.
+// on [begin, begin of the next piece); the last piece lasts for ever. Few pieces have terms: polynomials, exponentials, sines
+// that decay or whose frequency changes.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
@@ -31,32 +34,91 @@ template <class P>
 
 }  // namespace internal
 
+/// One smooth part of a piece:
+///
+///   exp(-decay s) [C(s) cos a + S(s) sin a],  a = angular_frequency s + sweep s^2 / 2,  s = t - begin of its piece
+///
+/// with cubic polynomials C and S, their coefficients in rising order. Without decay and angle it is the polynomial C.
+template <class P>
+struct TermOf {
+  using Cubic = std::array<P, 4>;
+
+  Cubic cosine = {};        ///< [V], [V/s], [V/s^2], [V/s^3]
+  Cubic sine = {};          ///< the same
+  P decay = 0;              ///< [1/s]
+  P angular_frequency = 0;  ///< at the beginning of the piece [rad/s]
+  P sweep = 0;              ///< [rad/s^2]
+
+  [[nodiscard]] bool turns() const { return !internal::vanishes(angular_frequency) || !internal::vanishes(sweep); }
+  /// [V], s after the piece began
+  [[nodiscard]] P voltage(const P& s) const {
+    using std::cos, std::exp, std::sin;
+    P sum = at(cosine, s);
+    if (turns()) {
+      const P angle = (angular_frequency + P(0.5) * sweep * s) * s;
+      sum = sum * cos(angle) + at(sine, s) * sin(angle);
+    }
+    return internal::vanishes(decay) ? sum : sum * exp(P(0) - decay * s);
+  }
+  /// [V/s]
+  [[nodiscard]] P rate(const P& s) const {
+    using std::cos, std::exp, std::sin;
+    const P c = at(cosine, s);
+    P sum = slope(cosine, s) - decay * c;
+    if (turns()) {
+      const P angle = (angular_frequency + P(0.5) * sweep * s) * s, turning = angular_frequency + sweep * s, d = at(sine, s);
+      sum = (sum + turning * d) * cos(angle) + (slope(sine, s) - decay * d - turning * c) * sin(angle);
+    }
+    return internal::vanishes(decay) ? sum : sum * exp(P(0) - decay * s);
+  }
+  bool operator==(const TermOf&) const = default;
+
+ private:
+  [[nodiscard]] static P at(const Cubic& c, const P& s) { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
+  [[nodiscard]] static P slope(const Cubic& c, const P& s) { return c[1] + s * (P(2) * c[2] + s * (P(3) * c[3])); }
+};
+
 template <class P>
 struct SignalPieceOf {
-  P begin = 0;              ///< [s]
-  P value = 0;              ///< [V] at begin
-  P slope = 0;              ///< [V/s]
-  P amplitude = 0;          ///< [V] at begin
-  P amplitude_slope = 0;    ///< [V/s]
-  P angular_frequency = 0;  ///< [rad/s]
-  P phase = 0;              ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
+  P begin = 0;                        ///< [s]
+  P value = 0;                        ///< [V] at begin
+  P slope = 0;                        ///< [V/s]
+  P amplitude = 0;                    ///< [V] at begin
+  P amplitude_slope = 0;              ///< [V/s]
+  P angular_frequency = 0;            ///< [rad/s]
+  P phase = 0;                        ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
+  std::vector<TermOf<P>> terms = {};  ///< their times count from begin
 
   [[nodiscard]] bool oscillates() const { return !internal::vanishes(amplitude) || !internal::vanishes(amplitude_slope); }
+  /// Whether it is a straight line and nothing else.
+  [[nodiscard]] bool is_straight() const { return !oscillates() && terms.empty(); }
+  /// Whether it stays at its value.
+  [[nodiscard]] bool is_level() const { return internal::vanishes(slope) && is_straight(); }
   /// [V]. The formula goes on past both ends of the piece, so that an integrator may look a little beyond a breakpoint.
   [[nodiscard]] P voltage(P time) const {
     using std::sin;
     const P elapsed = time - begin;
     const P straight = value + slope * elapsed;
-    if (!oscillates()) return straight;
-    return straight + (amplitude + amplitude_slope * elapsed) * sin(angular_frequency * time + phase);
+    if (terms.empty()) [[likely]] {
+      if (!oscillates()) return straight;
+      return straight + (amplitude + amplitude_slope * elapsed) * sin(angular_frequency * time + phase);
+    }
+    P sum = straight;
+    if (oscillates()) sum = sum + (amplitude + amplitude_slope * elapsed) * sin(angular_frequency * time + phase);
+    for (const TermOf<P>& term : terms) sum = sum + term.voltage(elapsed);
+    return sum;
   }
   /// dV/dt [V/s]
   [[nodiscard]] P rate(P time) const {
     using std::cos, std::sin;
-    if (!oscillates()) return slope;
-    const P angle = angular_frequency * time + phase;
-    const P envelope = amplitude + amplitude_slope * (time - begin);
-    return slope + amplitude_slope * sin(angle) + envelope * angular_frequency * cos(angle);
+    const auto swinging = [&] {
+      const P angle = angular_frequency * time + phase;
+      const P envelope = amplitude + amplitude_slope * (time - begin);
+      return slope + amplitude_slope * sin(angle) + envelope * angular_frequency * cos(angle);
+    };
+    P sum = oscillates() ? swinging() : slope;
+    for (const TermOf<P>& term : terms) sum = sum + term.rate(time - begin);
+    return sum;
   }
   bool operator==(const SignalPieceOf&) const = default;
 };

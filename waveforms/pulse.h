@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -50,5 +51,14 @@ template <class P>
 }
 /// Throws InvalidParameter.
 [[nodiscard]] Signal signal(const Pulse& pulse);
+
+namespace internal {
+
+/// The rules of a waveform of n levels, n - 1 times and one duration of all edges; `what` it is stands in messages. Throws
+/// InvalidParameter.
+void require_levels_and_edges(std::string_view what, const std::vector<double>& levels, const std::vector<double>& times,
+                              double edge);
+
+}  // namespace internal
 
 }  // namespace softland

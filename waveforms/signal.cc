@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/require.h"
+#include "waveforms/bounds.h"
 
 namespace softland {
 namespace {
@@ -43,7 +44,14 @@ double rounding_at_end(const SignalPiece& piece, double end) {
   const double duration = end - piece.begin;
   const double straight = std::abs(piece.value) + std::abs(piece.slope * duration);
   const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope * duration);
-  return roundings * epsilon * (straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)));
+  double of_terms = 0;  // as large as they would be without decay: what is left of an exponential is no jump
+  for (const SignalTerm& term : piece.terms) {
+    double power = 1, size = 0;
+    for (std::size_t k = 0; k < term.cosine.size(); ++k, power *= duration)
+      size += (std::abs(term.cosine[k]) + std::abs(term.sine[k])) * power;
+    of_terms += size * (1 + std::abs(term.angular_frequency) * duration + std::abs(term.sweep) * duration * duration);
+  }
+  return roundings * epsilon * (straight + swing * (1 + piece.angular_frequency * end + std::abs(piece.phase)) + of_terms);
 }
 
 /// Where `function` changes sign in (low, high): bisection to the last bit that matters, nothing if it does not change sign.
@@ -93,13 +101,23 @@ void append_extrema(std::vector<double>& times, const SignalPiece& piece, double
   times.insert(times.end(), inflections.begin(), inflections.end());
 }
 
-/// Times in [piece.begin, end] among which are those of the extreme voltages and the extreme rates.
+enum class Of { voltage, rate };
+
+/// Times in [piece.begin, end] among which are those of the extreme voltages or of the extreme rates.
 ///
 /// At a fixed angle of the sine, V and V' are linear in the number of the period: no period between the first and the last can
 /// exceed both.
-std::vector<double> extreme_times(const SignalPiece& piece, double end) {
+std::vector<double> extreme_times(const SignalPiece& piece, double end, Of what) {
   std::vector<double> times{piece.begin};
   if (std::isfinite(end)) times.push_back(end);
+  if (!piece.terms.empty()) {
+    // Of the last piece the terms decay: a sine that goes on reaches its own extremes within a period.
+    const double over = internal::duration_of_terms(piece);
+    const double last =
+        std::isfinite(end) ? end : piece.begin + over + (piece.oscillates() ? 2 * std::numbers::pi / piece.angular_frequency : 0);
+    internal::append_extrema_of_terms(times, piece, what == Of::rate, piece.begin, last);
+    return times;
+  }
   if (!piece.oscillates()) return times;
   const double period = 2 * std::numbers::pi / piece.angular_frequency;
   append_extrema(times, piece, piece.begin, std::min(end, piece.begin + period));
@@ -109,12 +127,22 @@ std::vector<double> extreme_times(const SignalPiece& piece, double end) {
 
 /// Calls `see(piece, time)` at the extreme times of every piece on [0, end].
 template <typename See>
-void for_each_extreme(const std::vector<SignalPiece>& pieces, double end, See see) {
+void for_each_extreme(const std::vector<SignalPiece>& pieces, double end, Of what, See see) {
   require(end >= 0, fmt::format("the end of the time span is {} s; it must be >= 0", end));
   for (std::size_t i = 0; i < pieces.size() && pieces[i].begin <= end; ++i) {
     const double next = i + 1 < pieces.size() ? pieces[i + 1].begin : std::numeric_limits<double>::infinity();
-    for (const double time : extreme_times(pieces[i], std::min(next, end))) see(pieces[i], time);
+    for (const double time : extreme_times(pieces[i], std::min(next, end), what)) see(pieces[i], time);
   }
+}
+
+/// Throws InvalidInput unless all of it is finite and it does not grow.
+void check_term(const SignalTerm& term, std::size_t piece) {
+  bool is_finite = std::isfinite(term.decay) && std::isfinite(term.angular_frequency) && std::isfinite(term.sweep);
+  for (const double coefficient : term.cosine) is_finite = is_finite && std::isfinite(coefficient);
+  for (const double coefficient : term.sine) is_finite = is_finite && std::isfinite(coefficient);
+  if (!is_finite) throw InvalidInput(fmt::format("a term of piece {} of a signal is not finite", piece));
+  if (!(term.decay >= 0))
+    throw InvalidInput(fmt::format("the decay of a term of piece {} of a signal is {} 1/s; it must be >= 0", piece, term.decay));
 }
 
 }  // namespace
@@ -134,6 +162,7 @@ Signal::Signal(std::vector<SignalPiece> pieces) : pieces_(std::move(pieces)) {
         throw InvalidInput(fmt::format("{} of piece {} of a signal is {}; it must be finite", name, i + 1, number));
       }
     }
+    for (const SignalTerm& term : piece.terms) check_term(term, i + 1);
     if (!(i == 0 || piece.begin > pieces_[i - 1].begin)) {
       throw InvalidInput(
           fmt::format("piece {} of a signal begins at {} s; it must begin after the piece before it", i + 1, piece.begin));
@@ -149,6 +178,13 @@ Signal::Signal(std::vector<SignalPiece> pieces) : pieces_(std::move(pieces)) {
   require(last.amplitude_slope == 0,
           fmt::format("amplitude_slope of the last piece of a signal is {} V/s; it lasts for ever and must be 0",
                       last.amplitude_slope));
+  for (const SignalTerm& term : last.terms) {
+    require(
+        term.decay > 0 && term.sweep == 0,
+        fmt::format("a term of the last piece of a signal has the decay {} 1/s and the sweep {} rad/s^2; it lasts for ever, and "
+                    "must decay without sweep",
+                    term.decay, term.sweep));
+  }
 }
 
 Signal Signal::constant(double voltage) { return Signal({SignalPiece{.value = voltage}}); }
@@ -180,8 +216,8 @@ double Signal::left_limit(std::size_t next) const {
   const SignalPiece piece = next > 0 ? pieces_[next - 1] : SignalPiece{};
   const double end = pieces_[next].begin;
   const double continuous = pieces_[next].voltage(end);
-  const double computed = piece.oscillates() ? piece.voltage(end) : end_of_straight(piece, end, continuous);
-  if (piece.oscillates() || pieces_[next].oscillates()) {
+  const double computed = piece.is_straight() ? end_of_straight(piece, end, continuous) : piece.voltage(end);
+  if (!piece.is_straight() || !pieces_[next].is_straight()) {
     const double rounding = rounding_at_end(piece, end) + rounding_at_end(pieces_[next], end);
     if (std::abs(computed - continuous) <= rounding) return continuous;
   }
@@ -205,19 +241,19 @@ double Signal::hold_level() const { return pieces_.back().value; }
 
 bool Signal::is_zero() const {
   return std::all_of(pieces_.begin(), pieces_.end(),
-                     [](const SignalPiece& piece) { return piece.value == 0 && piece.slope == 0 && !piece.oscillates(); });
+                     [](const SignalPiece& piece) { return piece.value == 0 && piece.is_level(); });
 }
 
 double Signal::maximum(double end) const {
   double largest = 0;
-  for_each_extreme(pieces_, end,
+  for_each_extreme(pieces_, end, Of::voltage,
                    [&](const SignalPiece& piece, double time) { largest = std::max(largest, piece.voltage(time)); });
   return largest;
 }
 
 double Signal::minimum(double end) const {
   double smallest = 0;
-  for_each_extreme(pieces_, end,
+  for_each_extreme(pieces_, end, Of::voltage,
                    [&](const SignalPiece& piece, double time) { smallest = std::min(smallest, piece.voltage(time)); });
   return smallest;
 }
@@ -226,7 +262,7 @@ double Signal::peak(double end) const { return std::max(maximum(end), -minimum(e
 
 double Signal::peak_slew(double end) const {
   double largest = 0;
-  for_each_extreme(pieces_, end,
+  for_each_extreme(pieces_, end, Of::rate,
                    [&](const SignalPiece& piece, double time) { largest = std::max(largest, std::abs(piece.rate(time))); });
   for (const SignalPiece& piece : pieces_) {
     if (piece.begin <= end && voltage_before(piece.begin) != piece.voltage(piece.begin))
@@ -238,9 +274,17 @@ double Signal::peak_slew(double end) const {
 double Signal::resolving_step(double time) const {
   // Fine enough for a controller of order 2 and more to see every swing, coarse enough to leave the step to its error test.
   constexpr double steps_per_period = 20;
-  const SignalPiece& piece = pieces_[piece_at(time)];
-  if (!piece.oscillates()) return std::numeric_limits<double>::infinity();
-  return 2 * std::numbers::pi / piece.angular_frequency / steps_per_period;
+  const std::size_t at = piece_at(time);
+  const SignalPiece& piece = pieces_[at];
+  double step = std::numeric_limits<double>::infinity();
+  if (piece.oscillates()) step = 2 * std::numbers::pi / piece.angular_frequency / steps_per_period;
+  for (const SignalTerm& term : piece.terms) {
+    const double later = at + 1 < pieces_.size() ? pieces_[at + 1].begin - piece.begin : 0;
+    const double fastest = std::max(std::abs(term.angular_frequency), std::abs(term.angular_frequency + term.sweep * later));
+    if (fastest > 0) step = std::min(step, 2 * std::numbers::pi / fastest / steps_per_period);
+    if (term.decay > 0) step = std::min(step, 1 / term.decay);
+  }
+  return step;
 }
 
 Signal scaled(const Signal& signal, double factor) {
@@ -249,6 +293,10 @@ Signal scaled(const Signal& signal, double factor) {
     for (double SignalPiece::*level :
          {&SignalPiece::value, &SignalPiece::slope, &SignalPiece::amplitude, &SignalPiece::amplitude_slope}) {
       piece.*level *= factor;
+    }
+    for (SignalTerm& term : piece.terms) {
+      for (double& coefficient : term.cosine) coefficient *= factor;
+      for (double& coefficient : term.sine) coefficient *= factor;
     }
   }
   return Signal(std::move(pieces));

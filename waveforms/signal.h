@@ -14,13 +14,15 @@
 namespace softland {
 
 using SignalPiece = SignalPieceOf<double>;
+using SignalTerm = TermOf<double>;
 
 class Signal {
  public:
   /// 0 V for ever.
   Signal() : pieces_{SignalPiece{}} {}
   /// Throws InvalidInput unless the pieces start at 0, begins strictly increase, every number is finite, the angular frequency is
-  /// positive where there is an amplitude, and the last piece, which lasts for ever, has no slope and no amplitude_slope.
+  /// positive where there is an amplitude, no term grows, and the last piece, which lasts for ever, has no slope, no
+  /// amplitude_slope, and only terms that decay without a sweep.
   explicit Signal(std::vector<SignalPiece> pieces);
   /// A constant voltage [V] from t = 0 on.
   static Signal constant(double voltage);
@@ -40,11 +42,12 @@ class Signal {
   [[nodiscard]] double voltage_before(double time) const;
   /// [s] beginnings of all pieces, 0 included.
   [[nodiscard]] std::vector<double> breakpoints() const;
-  /// The value the signal ends on [V]; for a sine that never ends, the value it swings about.
+  /// The value the signal ends on or tends to [V]; for a sine that never ends, the value it swings about.
   [[nodiscard]] double hold_level() const;
   [[nodiscard]] bool is_zero() const;
 
-  /// Largest and smallest voltage on [0, end] [V], the starting 0 V included, sines to 1e-9 of their amplitude.
+  /// Largest and smallest voltage on [0, end] [V], the starting 0 V included, sines to 1e-9 of their amplitude and terms to 1e-9
+  /// of their size.
   /// These four throw InvalidInput unless end >= 0.
   [[nodiscard]] double maximum(double end = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] double minimum(double end = std::numeric_limits<double>::infinity()) const;
@@ -52,7 +55,8 @@ class Signal {
   [[nodiscard]] double peak(double end = std::numeric_limits<double>::infinity()) const;
   /// Largest |dV/dt| on [0, end] [V/s]; infinity if there is a jump (one at t = 0 counts).
   [[nodiscard]] double peak_slew(double end = std::numeric_limits<double>::infinity()) const;
-  /// A step length that resolves the signal after `time`: a fraction of the sine's period, infinity where there is none [s].
+  /// A step length that resolves the signal after `time`: a fraction of the shortest period, at most the shortest time constant
+  /// of its piece; infinity where there is neither [s].
   [[nodiscard]] double resolving_step(double time) const;
 
  private:

@@ -18,13 +18,14 @@ struct Edge {
 };
 
 /// Whether nothing but a carrier moves.
-bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0; }
+bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0 && piece.terms.empty(); }
 
 std::vector<Edge> edges_of(const std::vector<SignalPiece>& pieces) {
   const bool begins_at_rest = is_level(pieces[0]) && pieces[0].value == 0 && !pieces[0].oscillates();
   std::vector<Edge> edges;
   for (std::size_t i = begins_at_rest ? 1 : 0; i < pieces.size(); ++i) {
-    const bool is_ramp_between_levels = !is_level(pieces[i]) && is_level(pieces[i + 1]) && (i == 0 || is_level(pieces[i - 1]));
+    const bool is_ramp_between_levels =
+        !is_level(pieces[i]) && i + 1 < pieces.size() && is_level(pieces[i + 1]) && (i == 0 || is_level(pieces[i - 1]));
     edges.push_back({.first = i, .last = is_ramp_between_levels ? i + 1 : i});
     i = edges.back().last;
   }
@@ -44,19 +45,27 @@ std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::ve
   return all;
 }
 
-/// The piece between other times, with the straight line and the envelope from and to the same values, and the carrier late by
-/// `late`.
+/// The piece between other times, with the straight line and the envelope from and to the same values, the carrier late by
+/// `late`, and the terms stretched with it.
 SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end, double offset, double late) {
   const SignalPiece& piece = signal.pieces()[i];
   SignalPiece own = piece;
   own.begin = begin;
   own.value += offset;
   if (piece.oscillates()) own.phase -= piece.angular_frequency * late;
-  if (is_level(piece)) return own;
+  if (is_level(piece) || i + 1 == signal.pieces().size()) return own;
   const double old_end = signal.pieces()[i + 1].begin, old_duration = old_end - piece.begin, duration = end - begin;
-  const double last = piece.oscillates() ? piece.value + piece.slope * old_duration : signal.voltage_before(old_end);
+  const double last = !piece.is_straight() ? piece.value + piece.slope * old_duration : signal.voltage_before(old_end);
   own.slope = (last + offset - own.value) / duration;
-  own.amplitude_slope *= old_duration / duration;
+  const double quicker = old_duration / duration;
+  own.amplitude_slope *= quicker;
+  for (SignalTerm& term : own.terms) {
+    double power = quicker;
+    for (std::size_t k = 1; k < term.cosine.size(); ++k, power *= quicker) term.cosine[k] *= power, term.sine[k] *= power;
+    term.decay *= quicker;
+    term.angular_frequency *= quicker;
+    term.sweep *= quicker * quicker;
+  }
   return own;
 }
 

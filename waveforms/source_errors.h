@@ -3,9 +3,10 @@
 //   V(t) = f(t - delay) + offset for t >= 0, 0 V before, with every edge of f late by a time of its own
 //
 // (An error of the gain is scaled(), waveform.h.) An edge is a jump, a ramp between two levels, which moves as a whole, or a
-// corner where ramps meet. Of a sine it is where the sine begins, ends or fades: the carrier keeps its phase. f begins with its
-// first edge; before it, only the offset is there. An edge moves towards a neighbour by at most 0.49 of the time between them,
-// so that edges keep their order and pulses their levels; before the first and after the last there is room without end.
+// corner where ramps or curves meet; a curve between two edges is stretched with them. Of the sine of a harmonic it is where the
+// sine begins, ends or fades: the carrier keeps its phase. f begins with its first edge; before it, only the offset is there. An
+// edge moves towards a neighbour by at most 0.49 of the time between them, so that edges keep their order and pulses their
+// levels; before the first and after the last there is room without end.
 //
 // A run begins at t = 0 at rest under 0 V. Where a delay or an edge is early by more than there is before it, nothing is cut off:
 // the clock begins at the first edge instead. It is then to be the same clock for all drives of a device.

@@ -16,6 +16,7 @@ double factor_of(Meaning meaning, double volts, double time) {
     case Meaning::angular_frequency:
       return 1 / time;
     case Meaning::angle:
+    case Meaning::ratio:
       break;
   }
   return 1;

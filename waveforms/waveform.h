@@ -8,22 +8,26 @@
 #include <variant>
 #include <vector>
 
+#include "waveforms/bspline.h"
+#include "waveforms/chirp.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
+#include "waveforms/s_curve.h"
 #include "waveforms/signal.h"
+#include "waveforms/sines.h"
 #include "waveforms/step.h"
 #include "waveforms/table.h"
 
 namespace softland {
 
-using Waveform = std::variant<Step, Harmonic, Pulse, Table>;
+using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines>;
 
 /// Throws InvalidInput naming the parameter, its value and the rule.
 [[nodiscard]] Signal signal(const Waveform& waveform);
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
 /// The waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
 [[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);
-/// step | harmonic | pulse | table
+/// step | harmonic | pulse | table | s-curve | chirp | bspline | sines
 [[nodiscard]] std::string_view family(const Waveform& waveform);
 
 /// Calls f with a default waveform of every family, in the order of the variant.

@@ -246,10 +246,11 @@ void add_optimize(Verb& verb) {
               first_is_default(listed(targets)) + "; the goal of each asks for no significant rebound");
   verb.option("--actuator", request->actuator, "NAME",
               "drives that the search may shape: " + first_is_default(listed(actuators)));
-  verb.option(
-      "--waveform", request->waveform, "NAME",
-      "family to search: pulse (default), step, harmonic, catch, ramp, staircase or knots; with a number of levels or knots: "
-      "knots:8");
+  verb.option("--waveform", request->waveform, "NAME",
+              "family to search: pulse (default), step, harmonic, catch, ramp, staircase, knots, coast, dual-pulse, pulses, "
+              "s-curve, dither, "
+              "chirp, bspline or sines; with a number of levels, knots, pulses or sines: knots:8; for each drive its own: "
+              "main=step,pzt=pulse");
   verb.option("--robust", request->robust, "MEASURE",
               "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
               "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");

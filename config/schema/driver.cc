@@ -3,12 +3,21 @@
 namespace softland::internal {
 
 Section driver_section() {
+  Key bits{.name = "bits",
+           .type = KeyType::integer,
+           .range = {.least = 1, .most = 24},
+           .about = "of the samples: 2^bits voltages from min_voltage to max_voltage; absent: samples are not rounded"};
   return {.name = "driver",
           .is_named = true,
           .keys = {number("min_voltage", drive_voltage, any, "default for an electrode: 0 V"),
                    number("max_voltage", drive_voltage, any, "default for an electrode: 1.5 Vdp"),
-                   number("max_slew", {dimension::slew_rate}, positive, "absent: unlimited")},
-          .about = "limits of the source: hard bounds of every search"};
+                   number("max_slew", {dimension::slew_rate}, positive, "absent: unlimited"),
+                   number("bandwidth", {dimension::frequency}, positive, "of the source, of first order; absent: unlimited"),
+                   number("source_resistance", {dimension::resistance}, positive,
+                          "through which it charges the open switch; absent: none"),
+                   number("sample_rate", {dimension::frequency}, positive, "samples are held; absent: none are taken"),
+                   std::move(bits)},
+          .about = "limits of the source, hard bounds of every search, and what it makes of a waveform"};
 }
 
 }  // namespace softland::internal

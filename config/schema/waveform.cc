@@ -34,6 +34,9 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
     case Meaning::angle:
       take(dimension::angle, any, "'0 rad'");
       break;
+    case Meaning::ratio:
+      take(dimension::none, positive, "1.0");
+      break;
     case Meaning::angular_frequency: {
       take(dimension::angular_frequency, positive, {});
       Key other = std::move(Key(key)).instead(key.name);

@@ -53,7 +53,7 @@ void EnergyAudit::step(const Knot& here, const Knot& next, double dissipation_at
   }
   for (std::size_t k = 0; k < drives_.size(); ++k) {
     const SignalPiece& piece = drives_.piece(k);
-    if (piece.slope == 0 && piece.amplitude == 0 && piece.amplitude_slope == 0) continue;
+    if (piece.is_level()) continue;
     const auto flow = [&](double t, const std::vector<double>& state) {
       return piece.rate(t) * charge(k, piece.voltage(t), state.data());
     };

@@ -172,6 +172,14 @@ std::string why_not_in_lanes(const Switch& model) {
   return {};
 }
 
+/// Whether a drive is more than straight lines and sines.
+bool has_terms(std::span<const Signal> drives) {
+  return std::any_of(drives.begin(), drives.end(), [](const Signal& drive) {
+    return std::any_of(drive.pieces().begin(), drive.pieces().end(),
+                       [](const SignalPiece& piece) { return !piece.terms.empty(); });
+  });
+}
+
 std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, double tolerance, Vectors vectors) {
   std::vector<FleetEnd> ends(closings.size());
   const fleet::LaneRunner run = runner(vectors);
@@ -180,7 +188,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   std::optional<LaneLayout> layout;
   std::vector<std::size_t> places;  // of those that run
   for (std::size_t i = 0; i < closings.size(); ++i) {
-    if (!why_not_in_lanes(*closings[i].model).empty()) continue;
+    if (!why_not_in_lanes(*closings[i].model).empty() || has_terms(closings[i].drives)) continue;
     const LaneLayout own = layout_of(*closings[i].model);
     if (!layout) layout = own;
     if (*layout == own) places.push_back(i);

@@ -177,8 +177,14 @@ TEST_F(BadInput, Searches) {
   expect_refused({
       {search({"--target", "softness"}), "--target softness: must be bounce, settling, rebound, count, impact or energy"},
       {search({"--actuator", "magnetic"}), "--actuator magnetic: must be electrostatic, pzt or both"},
-      {search({"--waveform", "table"}), "--waveform table: must be step, pulse, harmonic, catch, ramp, staircase:N or knots:N"},
-      {search({"--waveform", "spline"}), "--waveform spline: must be step, pulse, harmonic, catch, ramp, staircase:N or knots:N"},
+      {search({"--waveform", "table"}),
+       "--waveform table: must be step, pulse, harmonic, catch, ramp, staircase:N, knots:N, coast, dual-pulse, pulses:N, "
+       "s-curve, dither, "
+       "chirp, bspline:N or sines:N"},
+      {search({"--waveform", "spline"}),
+       "--waveform spline: must be step, pulse, harmonic, catch, ramp, staircase:N, knots:N, coast, dual-pulse, pulses:N, "
+       "s-curve, dither, "
+       "chirp, bspline:N or sines:N"},
       {search({"--budget", "0"}), "--budget 0" + budget},
       {search({"--budget", "-5"}), "--budget -5" + budget},
       {search({"--budget", "1.5"}), "--budget 1.5" + budget},

@@ -60,6 +60,70 @@ TEST(Drives, HarmonicTakesEitherFrequency) {
   EXPECT_EQ(cyclic.fade, 2e-6);
 }
 
+TEST(Drives, CurvesInVoltsAndInPullInVoltages) {
+  const auto curve =
+      main_drive<SCurve>("family = \"s-curve\"\nlevels = [\"1 Vdp\", \"20 V\"]\ntimes = [\"9 us\"]\nedge = \"3 us\"\n");
+  EXPECT_EQ(curve.levels, (std::vector<double>{40, 20}));
+  EXPECT_EQ(curve.edge, 3e-6);
+  const std::string dither = "family = \"chirp\"\nbase = \"1 Vdp\"\namplitude = \"15 %\"\nfrequency = \"30 kHz\"\n";
+  const auto chirp = main_drive<Chirp>(dither + "frequency_ratio = 2.0\nend = \"90 us\"\n");
+  EXPECT_EQ(chirp.amplitude, 0.15 * 40);
+  EXPECT_EQ(chirp.angular_frequency, 2 * std::numbers::pi * 30e3);
+  EXPECT_EQ(chirp.frequency_ratio, 2);
+  EXPECT_TRUE(std::isinf(chirp.decay_time));
+  EXPECT_EQ(main_drive<Chirp>(dither + "decay_time = \"9 us\"\n").decay_time, 9e-6);
+  EXPECT_EQ(main_drive<Chirp>(dither + "decay_time = \"9 us\"\n").frequency_ratio, 1);
+  const auto spline =
+      main_drive<BSpline>("family = \"bspline\"\nlevels = [\"0 V\", \"1 Vdp\", \"0.5 Vsp\", \"20 V\"]\nduration = \"50 us\"\n");
+  EXPECT_EQ(spline.levels, (std::vector<double>{0, 40, 25, 20}));
+  const auto sines = main_drive<Sines>(
+      "family = \"sines\"\nbase = \"1 Vdp\"\namplitudes = [\"-10 %\", \"3 V\", \"0.1 Vsp\"]\nduration = \"50 us\"\n");
+  EXPECT_THAT(sines.amplitudes, testing::ElementsAre(-4, 3, 5));
+}
+
+TEST(Drives, SourcesAreReadAndWrittenBack) {
+  const auto with_driver = [](const std::string& keys) {
+    return read_scene(SceneFile::parse(std::string(small_scene) + "[driver.main]\nmax_voltage = \"60 V\"\n" + keys, "x.toml"));
+  };
+  EXPECT_TRUE(with_driver("").drives(pull_in).models.empty());
+  const Scene scene = with_driver("sample_rate = \"5 MHz\"\nbits = 10\nbandwidth = \"2 MHz\"\nsource_resistance = \"1 Mohm\"\n");
+  for (const Scene& one : {scene, read_scene(resolved(scene, pull_in))}) {
+    const Drives drives = one.drives(pull_in);
+    ASSERT_TRUE(drives.models.contains("main"));
+    const DriverModel& model = drives.models.at("main");
+    EXPECT_EQ(model.sample_rate, 5e6);
+    EXPECT_EQ(model.bits, 10);
+    EXPECT_EQ(model.bandwidth, 2e6);
+    EXPECT_EQ(model.source_resistance, 1e6);
+    EXPECT_FALSE(drives.models.contains("piezo"));
+  }
+  EXPECT_EQ(resolved(scene, pull_in).json()["driver"]["main"]["bits"], 10);
+}
+
+TEST(Drives, SourcesThatMakeNoSenseAreRefused) {
+  const auto message = [](const std::string& drive, const std::string& keys) -> std::string {
+    try {
+      const std::string text = drive == "piezo" ? edited(small_scene, "[driver.piezo]\n", "[driver.piezo]\n" + keys)
+                                                : std::string(small_scene) + "[driver.main]\n" + keys;
+      static_cast<void>(read_scene(SceneFile::parse(text, "x.toml")));
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("main", "max_voltage = \"60 V\"\nbits = 10\n"),
+            "x.toml:42: driver.main.bits = 10: needs a sample_rate: samples are what is rounded");
+  EXPECT_EQ(message("main", "sample_rate = \"1 MHz\"\nbits = 10\n"),
+            "x.toml:42: driver.main.bits = 10: needs max_voltage: it divides the voltages from min_voltage to max_voltage");
+  EXPECT_EQ(
+      message("piezo", "source_resistance = \"1 kohm\"\n"),
+      "x.toml:36: driver.piezo.source_resistance = \"1 kohm\": charges an electrode; the capacitance of the piezo layer is not "
+      "described by a scene");
+  EXPECT_EQ(message("main", "sample_rate = \"1 MHz\"\n"), "");
+  EXPECT_THAT(message("main", "max_voltage = \"60 V\"\nbits = 25\n"), testing::HasSubstr("must be in [1, 24]"));
+  EXPECT_THAT(message("main", "sample_rate = \"1 us\"\n"), testing::HasSubstr("frequency"));
+}
+
 TEST(Drives, APercentageForThePiezoIsOfTheMainHoldLevel) {
   const Scene scene = with_piezo("family = \"harmonic\"\namplitude = \"1 %\"\nfrequency = \"30 kHz\"\n");
   const auto harmonic = std::get<Harmonic>(scene.drives(pull_in).waveforms.at("piezo"));

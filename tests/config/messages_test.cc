@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     Edit{R"(thickness = "4 um")", "", R"(x.toml:2: [structure]: missing key 'thickness' (a length such as "2 um"))"},
-    Edit{R"(family = "step")", "", "x.toml:27: [waveform.main]: missing key 'family' (one of step, harmonic, pulse, table)"},
+    Edit{R"(family = "step")", "", "x.toml:27: [waveform.main]: missing key 'family' (one of step, harmonic, pulse, table, s-curve, chirp, bspline, sines)"},
     Edit{"[gap]\nelectrode = \"3.5 um\"\ncontact = \"2 um\"\n", "", "x.toml: section [gap] is missing"},
     Edit{"title =", "metrics = 3\ntitle =", "x.toml:1: metrics = 3: expected a section [metrics]"},
     structure_line("modes = 21", "x.toml:9: structure.modes = 21: must be in [1, 20]"),

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scenes.h"
 
 namespace softland {
@@ -63,6 +65,34 @@ TEST(Prepare, GivesEveryElectrodeItsOwnSignal) {
   EXPECT_DOUBLE_EQ(signals[0].hold_level(), 30);
   EXPECT_TRUE(signals[1].is_zero());
   EXPECT_DOUBLE_EQ(signals[2].hold_level(), 0.5);
+}
+
+TEST(Prepare, DrivesTheSwitchWithWhatItsSourceGives) {
+  const SceneFile file = gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V", "driver.main.bandwidth=1 MHz"});
+  const double tau = 1 / (2 * 3.14159265358979 * 1e6);
+  EXPECT_NEAR(prepare(file).signals()[0].voltage(tau), 30 * (1 - std::exp(-1.0)), 1e-6);
+  EXPECT_EQ(prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"})).signals()[0].pieces(),
+            Signal::constant(30).pieces());
+}
+
+TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
+  // Of two plates without fringing: eps A / d.
+  const SceneFile file = gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V",
+                               "driver.main.source_resistance=10 Mohm", "electrode.main.fringing=none"});
+  const Prepared p = prepare(file);
+  const Device& device = p.scene.device;
+  const double area = (device.electrodes[0].end - device.electrodes[0].begin) * device.structure.width;
+  const double capacitance = 8.8541878128e-12 * area / device.gap.electrode;
+  ASSERT_TRUE(p.loads.contains("main"));
+  EXPECT_NEAR(p.loads.at("main"), capacitance, 1e-9 * capacitance);
+  EXPECT_NEAR(p.signals()[0].voltage(10e6 * capacitance), 30 * (1 - std::exp(-1.0)), 1e-6);
+}
+
+TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {
+  EXPECT_EQ(refusal([] {
+              (void)prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V", "driver.main.sample_rate=1 GHz"}));
+            }),
+            "--set driver.main.sample_rate=1 GHz: takes 600000 samples in the window of 600 us; there may be 100000");
 }
 
 TEST(Prepare, TakesWindowAndToleranceFromTheScene) {

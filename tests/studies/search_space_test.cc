@@ -15,7 +15,9 @@ namespace {
 using testing::ElementsAre;
 
 constexpr double first_touch = 25e-6;
-constexpr std::array every_family{"step", "pulse", "harmonic", "catch", "ramp", "staircase", "staircase:2", "knots", "knots:20"};
+constexpr std::array every_family{"step",   "pulse",    "harmonic", "catch",      "ramp",       "staircase", "staircase:2",
+                                  "knots",  "knots:20", "coast",    "dual-pulse", "pulses",     "pulses:5",  "s-curve",
+                                  "dither", "chirp",    "bspline",  "bspline:2",  "bspline:20", "sines",     "sines:9"};
 
 std::vector<std::string> names(const SearchSpace& space) {
   std::vector<std::string> all;
@@ -159,6 +161,100 @@ TEST(SearchSpace, RampsObeyASlewLimit) { expect_within_limits(slow_drivers(), Ac
 TEST(SearchSpace, StaircasesObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "staircase"); }
 TEST(SearchSpace, KnotsObeyASlewLimit) { expect_within_limits(slow_drivers(), Actuator::both, "knots"); }
 
+class CurvesAndTrains : public testing::TestWithParam<const char*> {};
+TEST_P(CurvesAndTrains, StayInsideTheLimits) { expect_within_limits(plain(), Actuator::both, GetParam()); }
+TEST_P(CurvesAndTrains, ObeyASlewLimit) {
+  // The hold level of the electrode is so near its limit that a dither cannot be slewed.
+  const bool is_dither = std::string(GetParam()) == "dither" || std::string(GetParam()) == "chirp";
+  expect_within_limits(slow_drivers(), is_dither ? Actuator::pzt : Actuator::both, GetParam());
+}
+TEST_P(CurvesAndTrains, BrakeInsideTheLimits) {
+  static const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  const bool is_dither = std::string(GetParam()) == "dither" || std::string(GetParam()) == "chirp";
+  if (!is_dither) expect_within_limits(p, Actuator::electrostatic, GetParam());
+}
+INSTANTIATE_TEST_SUITE_P(SearchSpace, CurvesAndTrains,
+                         testing::Values("coast", "dual-pulse", "pulses:4", "s-curve", "dither", "chirp", "bspline:5",
+                                         "sines:3"));
+
+TEST(SearchSpace, OfPulsesCoastsBetweenThem) {
+  const SearchSpace space(plain(), Actuator::electrostatic, "pulses:2", first_touch);
+  EXPECT_THAT(names(space), ElementsAre("main.level_1_V", "main.level_2_V", "main.duration_1_s", "main.duration_2_s",
+                                        "main.coast_1_s", "main.edge_s"));
+  const auto waveforms = space.waveforms(std::vector<double>{20, 15, 20e-6, 40e-6, 10e-6, 1e-6});
+  const Pulse& pulse = std::get<Pulse>(waveforms.at("main"));
+  EXPECT_THAT(pulse.levels, ElementsAre(20, 0, 15, signal(plain().drives.waveforms.at("main")).hold_level()));
+  EXPECT_THAT(pulse.times, ElementsAre(20e-6, testing::DoubleEq(30e-6), testing::DoubleEq(70e-6)));
+  const SearchSpace dual(plain(), Actuator::electrostatic, "dual-pulse", first_touch);
+  EXPECT_EQ(names(dual), names(space));
+}
+
+TEST(SearchSpace, OfACoastEndsItsOnlyPulseBeforeTheHoldLevel) {
+  const SearchSpace space(plain(), Actuator::electrostatic, "coast", first_touch);
+  const auto waveforms = space.waveforms(std::vector<double>{20, 18e-6, 12e-6, 1e-6});
+  const Pulse& pulse = std::get<Pulse>(waveforms.at("main"));
+  EXPECT_THAT(pulse.levels, ElementsAre(20, 0, signal(plain().drives.waveforms.at("main")).hold_level()));
+  EXPECT_THAT(pulse.times, ElementsAre(18e-6, testing::DoubleEq(30e-6)));
+}
+
+TEST(SearchSpace, WaitsBeforeAPulseThatBrakes) {
+  const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  const SearchSpace space(p, Actuator::electrostatic, "coast", first_touch);
+  std::vector<double> x = space.starts().front();
+  ASSERT_EQ(x.size(), 8U);
+  x[4] = 20, x[5] = 7e-6, x[6] = 11e-6;  // level, duration, wait
+  const auto waveforms = space.waveforms(x);
+  const Pulse& brake = std::get<Pulse>(waveforms.at("upper"));
+  EXPECT_THAT(brake.levels, ElementsAre(0, 20, 0));
+  EXPECT_THAT(brake.times, ElementsAre(11e-6, testing::DoubleEq(18e-6)));
+  EXPECT_THAT(*space.parameters(waveforms), testing::Pointwise(testing::DoubleNear(1e-12), x));
+}
+
+TEST(SearchSpace, BeginsWithTheLandingOfTheUndampedSwitch) {
+  // Full voltage, none, hold: among the starts of every family that can say so, with the same times.
+  const double high = plain().drives.limits.at("main").max_voltage;
+  const auto thrown = [&](const char* family, std::size_t level, std::size_t driven, std::size_t coasting) {
+    const SearchSpace space(plain(), Actuator::electrostatic, family, first_touch);
+    const std::vector<double> x = space.starts().back();
+    EXPECT_EQ(x[level], high) << family;
+    return std::pair(x[driven], x[coasting]);
+  };
+  const auto times = thrown("pulse", 0, 2, 3);
+  EXPECT_EQ(thrown("catch", 0, 3, 4), times);
+  EXPECT_EQ(thrown("coast", 0, 1, 2), times);
+  EXPECT_EQ(thrown("dual-pulse", 0, 2, 4), times);
+  EXPECT_GT(times.first, 10e-6);
+  EXPECT_LT(times.first + times.second, 60e-6);
+}
+
+TEST(SearchSpace, GivesEveryDriveTheFamilyThatIsNamedForIt) {
+  const SearchSpace space(plain(), Actuator::both, "main=step,pzt=coast", first_touch);
+  EXPECT_THAT(names(space),
+              ElementsAre("main.rise_time_s", "piezo.level_1_V", "piezo.duration_1_s", "piezo.coast_1_s", "piezo.edge_s"));
+  EXPECT_EQ(names(SearchSpace(plain(), Actuator::both, "piezo=coast,step", first_touch)), names(space));
+  EXPECT_THAT(names(SearchSpace(plain(), Actuator::both, "main=step", first_touch)), testing::Contains("piezo.level_2_V"))
+      << "a pulse where nothing else is said";
+  const auto refused = [&](const char* family, Actuator actuator) {
+    return refusal([&] { SearchSpace(plain(), actuator, family, first_touch); });
+  };
+  EXPECT_EQ(refused("main=step,pzt=coast", Actuator::electrostatic),
+            "--waveform main=step,pzt=coast: drive 'piezo' is not searched (searched: main)");
+  EXPECT_EQ(refused("main=step,main=coast", Actuator::both), "--waveform main=step,main=coast: drive 'main' has two families");
+  EXPECT_EQ(refused("main=step,coast,ramp", Actuator::both),
+            "--waveform main=step,coast,ramp: 'ramp' is not of the form DRIVE=FAMILY, or a second family for all other drives");
+  EXPECT_EQ(refused("main=stop", Actuator::electrostatic).substr(0, 31), "--waveform stop: must be step, ");
+}
+
+TEST(SearchSpace, OfSinesKeepsTheirRatiosInsideTheLimits) {
+  const SearchSpace space(plain(), Actuator::electrostatic, "sines:2", first_touch);
+  const double hold = signal(plain().drives.waveforms.at("main")).hold_level(),
+               high = plain().drives.limits.at("main").max_voltage;
+  const auto waveforms = space.waveforms(std::vector<double>{5 * hold, -2.5 * hold, 40e-6});
+  const Sines& sines = std::get<Sines>(waveforms.at("main"));
+  EXPECT_NEAR(sines.amplitudes[0] / sines.amplitudes[1], -2, 1e-12);
+  EXPECT_NEAR(signal(sines).maximum(), high, 1e-6 * high) << "as large as the limit lets them be";
+}
+
 TEST(SearchSpace, OfKnotsIsALineThroughThemToTheHoldLevel) {
   const SearchSpace space(plain(), Actuator::electrostatic, "knots:3", first_touch);
   EXPECT_THAT(names(space), ElementsAre("main.level_1_V", "main.level_2_V", "main.level_3_V", "main.total_time_s", "main.part_1",
@@ -200,13 +296,16 @@ TEST(SearchSpace, RefusesThePiezoOfASceneThatHasNone) {
 
 TEST(SearchSpace, RefusesFamiliesWithoutParameters) {
   for (const std::string family : {"table", "spline", ""})
-    EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
-              "--waveform " + family + ": must be step, pulse, harmonic, catch, ramp, staircase:N or knots:N");
+    EXPECT_EQ(
+        refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
+        "--waveform " + family +
+            ": must be step, pulse, harmonic, catch, ramp, staircase:N, knots:N, coast, dual-pulse, pulses:N, s-curve, dither, "
+            "chirp, bspline:N or sines:N");
   for (const std::string family : {"knots:1", "knots:21", "knots:", "knots:3x", "staircase:-2"})
     EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
               "--waveform " + family + ": the number after " + family.substr(0, family.find(':')) + " must be from 2 to 20");
   EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, "pulse:3", first_touch); }),
-            "--waveform pulse:3: pulse has no number of levels or knots");
+            "--waveform pulse:3: pulse has no number");
 }
 
 TEST(SearchSpace, RefusesADitherWithoutRoomAboutTheHoldLevel) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -217,7 +218,7 @@ void vary_contact(SceneFile& file, Dice& dice) {
 
 Waveform waveform(Dice& dice, double level, double period) {
   const auto edge = [&](double longest) { return dice.chance(0.5) ? 0 : period * dice.log_between(1e-4 * longest, longest); };
-  switch (dice.whole(0, 2)) {
+  switch (dice.whole(0, 6)) {
     case 0:
       return Step{.level = level, .rise_time = edge(3)};
     case 1: {
@@ -231,6 +232,38 @@ Waveform waveform(Dice& dice, double level, double period) {
       }
       pulse.levels.back() = dice.chance(0.2) ? 0 : level;
       return pulse;
+    }
+    case 2: {
+      SCurve curve{.levels = {level * dice.between(0, 1.2), level}, .edge = period * dice.log_between(1e-3, 1)};
+      curve.times.push_back(curve.edge + period * dice.log_between(0.01, 1));
+      return curve;
+    }
+    case 3: {
+      const double start = period * dice.between(0, 1), lasts = period * dice.log_between(0.3, 5);
+      const bool ends = dice.chance(0.7);
+      return Chirp{
+          .base = level,
+          .rise_time = edge(1),
+          .amplitude = level * dice.log_between(0.02, 0.3),
+          .angular_frequency = 2 * pi / period * dice.log_between(0.2, 10),
+          .frequency_ratio = ends ? dice.log_between(0.3, 3) : 1,
+          .phase = dice.between(0, 2 * pi),
+          .start = start,
+          .end = ends ? start + lasts : std::numeric_limits<double>::infinity(),
+          .fade = ends && dice.chance(0.5) ? lasts * dice.between(0, 0.5) : 0,
+          .decay_time = ends && dice.chance(0.5) ? std::numeric_limits<double>::infinity() : period * dice.log_between(0.1, 3)};
+    }
+    case 4: {
+      BSpline spline{.levels = {}, .duration = period * dice.log_between(0.2, 5)};
+      for (int more = dice.whole(3, 8); more > 0; --more) spline.levels.push_back(level * dice.between(0, 1.2));
+      spline.levels.push_back(level);
+      return spline;
+    }
+    case 5: {
+      Sines sines{
+          .base = level, .rise_time = edge(1), .amplitudes = {}, .start = 0, .duration = period * dice.log_between(0.3, 5)};
+      for (int more = dice.whole(1, 5); more > 0; --more) sines.amplitudes.push_back(level * dice.between(-0.2, 0.2));
+      return sines;
     }
     default: {
       const double start = period * dice.between(0, 1), lasts = period * dice.log_between(0.3, 10);

@@ -8,8 +8,12 @@
 #include <experimental/simd>
 
 #include "base/require.h"
+#include "waveforms/bspline.h"
+#include "waveforms/chirp.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
+#include "waveforms/s_curve.h"
+#include "waveforms/sines.h"
 #include "waveforms/step.h"
 #include "waveforms/table.h"
 
@@ -41,6 +45,7 @@ struct Sloped {
   }
   friend Sloped sin(const Sloped& a) { return of(std::sin(a.value), a, std::cos(a.value), a, 0); }
   friend Sloped cos(const Sloped& a) { return of(std::cos(a.value), a, -std::sin(a.value), a, 0); }
+  friend Sloped exp(const Sloped& a) { return of(std::exp(a.value), a, std::exp(a.value), a, 0); }
   friend Sloped abs(const Sloped& a) { return a.value < 0 ? Sloped(0) - a : a; }
   friend bool operator<(const Sloped& a, const Sloped& b) { return a.value < b.value; }
   friend bool operator>(const Sloped& a, const Sloped& b) { return a.value > b.value; }
@@ -114,11 +119,50 @@ struct ATable {
   }
 };
 
+struct ASCurve {
+  static constexpr std::array parameters{40.0, 0.0, 30.0, 20e-6, 45e-6, 4e-6};
+  template <class P>
+  static auto make(const std::array<P, 6>& p) {
+    return SCurveOf<P>{.levels = {p[0], p[1], p[2]}, .times = {p[3], p[4]}, .edge = p[5]};
+  }
+};
+struct AChirp {
+  static constexpr std::array parameters{40.0, 5e-6, 3.0, 2e5, 1.7, 0.3, 10e-6, 60e-6, 7e-6, 30e-6};
+  template <class P>
+  static auto make(const std::array<P, 10>& p) {
+    return ChirpOf<P>{.base = p[0],
+                      .rise_time = p[1],
+                      .amplitude = p[2],
+                      .angular_frequency = p[3],
+                      .frequency_ratio = p[4],
+                      .phase = p[5],
+                      .start = p[6],
+                      .end = p[7],
+                      .fade = p[8],
+                      .decay_time = p[9]};
+  }
+};
+struct ABSpline {
+  static constexpr std::array parameters{40.0, 0.0, 30.0, 35.0, 28.0, 64e-6};
+  template <class P>
+  static auto make(const std::array<P, 6>& p) {
+    return BSplineOf<P>{.levels = {p[0], p[1], p[2], p[3], p[4]}, .duration = p[5]};
+  }
+};
+struct SomeSines {
+  static constexpr std::array parameters{40.0, 5e-6, -20.0, 0.0, 5.0, 6e-6, 55e-6};
+  template <class P>
+  static auto make(const std::array<P, 7>& p) {
+    return SinesOf<P>{.base = p[0], .rise_time = p[1], .amplitudes = {p[2], p[3], p[4]}, .start = p[5], .duration = p[6]};
+  }
+};
+
 constexpr std::array times{1e-6, 3.3e-6, 12e-6, 21.5e-6, 30e-6, 46e-6, 58e-6, 80e-6};
 
 template <class Family>
 class ScalarsOf : public testing::Test {};
-using Families = testing::Types<AStep, APulse, AStaircase, AHarmonic, ASilentHarmonic, ATable>;
+using Families =
+    testing::Types<AStep, APulse, AStaircase, AHarmonic, ASilentHarmonic, ATable, ASCurve, AChirp, ABSpline, SomeSines>;
 TYPED_TEST_SUITE(ScalarsOf, Families);
 
 TYPED_TEST(ScalarsOf, EveryDeviceOfALaneHasItsOwnSignal) {

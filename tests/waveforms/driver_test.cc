@@ -1,0 +1,206 @@
+#include "waveforms/driver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/literals.h"
+#include "tests/support/not_finite.h"
+#include "tests/waveforms/expect_invalid.h"
+#include "waveforms/bspline.h"
+#include "waveforms/chirp.h"
+#include "waveforms/harmonic.h"
+#include "waveforms/pulse.h"
+#include "waveforms/s_curve.h"
+#include "waveforms/sines.h"
+#include "waveforms/step.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+const DriverLimits limits{.min_voltage = -10, .max_voltage = 50};
+constexpr double kRounding = 1e-12;  // relative to the voltages
+constexpr double tau = 2e-6;         // of the filters below [s]
+
+DriverModel of_time_constant(double seconds) { return {.bandwidth = 1 / (2 * std::numbers::pi * seconds)}; }
+
+/// T dV/dt + V = input by the trapezoidal rule with steps h: off by h^2 / 12 of second derivatives over the time.
+double integrated(const Signal& input, double time_constant, double time) {
+  double output = 0;
+  std::vector<double> stops = input.breakpoints();
+  stops.push_back(kInfinity);
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    const double begin = stops[i], end = std::min(stops[i + 1], time);
+    if (!(end > begin)) continue;
+    constexpr int steps = 20000;
+    const double h = (end - begin) / steps;
+    const SignalPiece& piece = input.pieces()[i];
+    for (int k = 0; k < steps; ++k) {
+      const double in = 0.5 * (piece.voltage(begin + k * h) + piece.voltage(begin + (k + 1) * h));
+      output = (output * (time_constant - h / 2) + h * in) / (time_constant + h / 2);
+    }
+  }
+  return output;
+}
+
+TEST(Driver, OfNoModelGivesWhatItIsTold) {
+  const Signal told = signal(Pulse{.levels = {40_V, 0_V}, .times = {20_us}, .edge = 1_us});
+  EXPECT_EQ(driven(told, {}, limits, 1).pieces(), told.pieces());
+  EXPECT_TRUE(driven(Signal(), {.sample_rate = 1e6, .bits = 3}, limits, 1).is_zero()) << "told nothing it gives nothing";
+}
+
+TEST(Driver, OfABandwidthAnswersAStepWithAnExponential) {
+  const Signal out = driven(Signal::constant(40_V), of_time_constant(tau), limits, 1);
+  for (const double t : {0.0, 0.1e-6, 1e-6, 5e-6, 30e-6})
+    EXPECT_NEAR(out.voltage(t), 40 * (1 - std::exp(-t / tau)), 40 * kRounding) << t;
+  EXPECT_EQ(out.voltage(1), 40);
+  EXPECT_EQ(out.hold_level(), 40);
+  EXPECT_NEAR(out.peak_slew(), 40 / tau, 1e-8 * out.peak_slew());
+  EXPECT_LE(out.maximum(), 40 * (1 + kRounding));
+}
+
+TEST(Driver, ChargesItsLoadThroughItsResistance) {
+  const Signal out = driven(Signal::constant(40_V), {.source_resistance = 1e7, .load = 2e-13}, limits, 1);
+  EXPECT_NEAR(out.voltage(2e-6), 40 * (1 - std::exp(-1.0)), 40 * kRounding);
+  EXPECT_EQ(driven(Signal::constant(40_V), {.source_resistance = 1e7, .load = 0}, limits, 1).pieces(),
+            Signal::constant(40_V).pieces());
+}
+
+TEST(Driver, OfABandwidthFollowsARampLateByItsTimeConstant) {
+  const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 40_us}), of_time_constant(tau), limits, 1);
+  const double slope = 40 / 40e-6;
+  for (const double t : {1e-6, 10e-6, 39e-6})
+    EXPECT_NEAR(out.voltage(t), slope * (t - tau * (1 - std::exp(-t / tau))), 40 * kRounding) << t;
+}
+
+TEST(Driver, OfABandwidthTakesThreeDecibelsOfASineOfThatFrequency) {
+  const double omega = 1 / tau;
+  const Signal told = signal(Harmonic{.base = 0, .amplitude = 6_V, .angular_frequency = omega});
+  const Signal out = driven(told, of_time_constant(tau), limits, 1);
+  for (double t = 200e-6; t < 230e-6; t += 1e-6)
+    EXPECT_NEAR(out.voltage(t), 6 / std::sqrt(2.0) * std::sin(omega * t - std::numbers::pi / 4), 600 * kRounding) << t;
+}
+
+TEST(Driver, FiltersEveryFamilyAsItsEquationDoes) {
+  const Harmonic faded{.base = 30_V,
+                       .rise_time = 3_us,
+                       .amplitude = 5_V,
+                       .angular_frequency = 6e5,
+                       .phase = 0.3,
+                       .start = 5_us,
+                       .end = 60_us,
+                       .fade = 10_us};
+  const Chirp ended{.base = 30_V, .amplitude = 5_V, .angular_frequency = 4e5, .start = 2_us, .end = 50_us, .decay_time = 20_us};
+  const Chirp endless{.base = 30_V, .amplitude = 5_V, .angular_frequency = 4e5, .start = 2_us, .decay_time = tau};
+  const Chirp sweeping{.base = 0, .amplitude = 5_V, .angular_frequency = 4e5, .frequency_ratio = 3, .start = 0, .end = 50_us};
+  const std::vector<Signal> inputs{signal(Pulse{.levels = {40_V, 3_V, 30_V}, .times = {20_us, 45_us}, .edge = 4_us}),
+                                   signal(faded),
+                                   signal(SCurve{.levels = {40_V, 20_V}, .times = {30_us}, .edge = 9_us}),
+                                   signal(BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us}),
+                                   signal(Sines{.base = 30_V, .amplitudes = {3, -5, 2}, .duration = 40_us}),
+                                   signal(ended),
+                                   signal(endless),
+                                   signal(sweeping)};
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Signal out = driven(inputs[i], of_time_constant(tau), limits, 1);
+    // The rule is off by 1e-6 V, and the cubics of what sweeps by as much.
+    for (const double t : {1e-6, 7e-6, 22e-6, 44e-6, 61e-6})
+      EXPECT_NEAR(out.voltage(t), integrated(inputs[i], tau, t), 1e-5) << i << " at " << t;
+    for (const double t : out.breakpoints())
+      EXPECT_EQ(out.voltage_before(t), out.voltage(t)) << i << " at " << t << ": a filter lets no jump through";
+  }
+}
+
+TEST(Driver, OfBandwidthAndResistanceHasTwoPoles) {
+  // The answer of 1 / ((1 + a p) (1 + b p)) to a step is 1 - (a exp(-t / a) - b exp(-t / b)) / (a - b), of equal ones
+  // 1 - (1 + t / a) exp(-t / a).
+  const double a = tau, b = 5e-6;
+  const auto out = [&](double second) {
+    DriverModel model = of_time_constant(a);
+    model.load = 1e-12;
+    model.source_resistance = second / model.load;
+    return driven(Signal::constant(1_V), model, limits, 1);
+  };
+  for (const double t : {0.3e-6, 2e-6, 9e-6, 40e-6, 85e-6}) {
+    EXPECT_NEAR(out(b).voltage(t), 1 - (a * std::exp(-t / a) - b * std::exp(-t / b)) / (a - b), kRounding) << t;
+    EXPECT_NEAR(out(a).voltage(t), 1 - (1 + t / a) * std::exp(-t / a), 1e-9) << t;
+    EXPECT_NEAR(out(a * (1 + 1e-7)).voltage(t), 1 - (1 + t / a) * std::exp(-t / a), 1e-6) << t;
+  }
+}
+
+TEST(Driver, HoldsEverySampleUntilTheNextOne) {
+  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
+  const Signal out = driven(told, {.sample_rate = 1e6}, limits, 1);
+  for (double t = 0.05e-6; t < 15e-6; t += 0.1e-6) EXPECT_EQ(out.voltage(t), told.voltage(std::floor(t * 1e6) / 1e6)) << t;
+  EXPECT_EQ(out.hold_level(), 40);
+}
+
+TEST(Driver, RoundsSamplesToHalfAStep) {
+  const Signal told = signal(Harmonic{.base = 20_V, .amplitude = 17_V, .angular_frequency = 1e5, .end = 80_us});
+  const Signal out = driven(told, {.sample_rate = 10e6, .bits = 6}, limits, 1);
+  const double step = 60.0 / 63;
+  double worst = 0;
+  for (int k = 0; k < 900; ++k) {
+    const double t = k / 10e6, volts = out.voltage(t), code = (volts + 10) / step;
+    EXPECT_NEAR(code, std::round(code), 1e-9) << t;
+    worst = std::max(worst, std::abs(volts - told.voltage(t)));
+  }
+  EXPECT_LE(worst, step / 2 * (1 + 1e-9));
+  EXPECT_GT(worst, step / 3);
+}
+
+TEST(Driver, WithSamplesAndBitsIsIdempotent) {
+  const DriverModel model{.sample_rate = 3e6, .bits = 8};
+  const Signal told = signal(BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us});
+  const Signal once = driven(told, model, limits, 1);
+  EXPECT_EQ(driven(once, model, limits, 1).pieces(), once.pieces());
+  EXPECT_GT(once.pieces().size(), 50U);
+}
+
+TEST(Driver, GoesFromSampleToSampleNoFasterThanItsSlewLimit) {
+  DriverLimits slow = limits;
+  slow.max_slew = 5e6;
+  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});  // 4 V/us
+  const Signal out = driven(told, {.sample_rate = 1e6}, slow, 1);
+  EXPECT_NEAR(out.peak_slew(), 5e6, 5e6 * 1e-9);
+  EXPECT_NEAR(out.voltage(3.5e-6), 8 + 5 * 0.5, 40 * kRounding);
+  EXPECT_NEAR(out.voltage(3.9e-6), 12, 40 * kRounding);
+  // A jump takes as long as it takes.
+  const Signal jump = driven(Signal::constant(40_V), {.sample_rate = 1e6}, slow, 1);
+  EXPECT_NEAR(jump.voltage(4e-6), 20, 40 * kRounding);
+  EXPECT_NEAR(jump.voltage(8e-6), 40, 40 * kRounding);
+  EXPECT_EQ(jump.hold_level(), 40);
+  const Signal two = driven(signal(Pulse{.levels = {40_V, 10_V}, .times = {3_us}}), {.sample_rate = 1e6}, slow, 1);
+  EXPECT_NEAR(two.voltage(2.9e-6), 14.5, 40 * kRounding);
+  EXPECT_NEAR(two.voltage(3.5e-6), 12.5, 40 * kRounding);
+  EXPECT_NEAR(two.voltage(4.1e-6), 10, 40 * kRounding);
+}
+
+TEST(Driver, FiltersHeldSamplesExactly) {
+  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
+  DriverModel model = of_time_constant(tau);
+  model.sample_rate = 1e6;
+  const Signal out = driven(told, model, limits, 1);
+  double expected = 0;
+  for (int k = 0; k < 10; ++k) {
+    const double input = told.voltage(k / 1e6);
+    expected = input + (expected - input) * std::exp(-1e-6 / tau);
+    EXPECT_NEAR(out.voltage((k + 1) / 1e6), expected, 40 * kRounding) << k;
+  }
+}
+
+TEST(Driver, SamplesASineThatNeverEndsUpToTheEnd) {
+  const Signal endless = signal(Harmonic{.base = 3_V, .amplitude = 2_V, .angular_frequency = 1e6});
+  const Signal out = driven(endless, {.sample_rate = 10e6}, limits, 50_us);
+  EXPECT_EQ(out.voltage(49.95_us), endless.voltage(499 / 10e6));
+  EXPECT_EQ(out.hold_level(), 3);
+  test::expect_invalid([&] { (void)driven(endless, {.sample_rate = 1e12}, limits, 1); },
+                       {"takes 1000000000000 samples", "it may take 10000000"});
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,122 @@
+#include "waveforms/bounds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace softland::internal {
+namespace {
+
+/// A term with polynomials of any degree that its first four derivatives have.
+struct Differentiated {
+  static constexpr std::size_t size = 8;  // a sweep raises the degree by one each time
+  std::array<double, size> cosine = {}, sine = {};
+  double decay = 0, angular_frequency = 0, sweep = 0;
+
+  explicit Differentiated(const TermOf<double>& term)
+      : decay(term.decay), angular_frequency(term.angular_frequency), sweep(term.sweep) {
+    std::copy(term.cosine.begin(), term.cosine.end(), cosine.begin());
+    std::copy(term.sine.begin(), term.sine.end(), sine.begin());
+  }
+
+  void differentiate() {
+    std::array<double, size> c = {}, s = {};
+    for (std::size_t k = 0; k < size; ++k) {
+      c[k] += angular_frequency * sine[k] - decay * cosine[k];
+      s[k] -= angular_frequency * cosine[k] + decay * sine[k];
+      if (k + 1 == size) break;
+      c[k] += static_cast<double>(k + 1) * cosine[k + 1];
+      s[k] += static_cast<double>(k + 1) * sine[k + 1];
+      c[k + 1] += sweep * sine[k];
+      s[k + 1] -= sweep * cosine[k];
+    }
+    cosine = c, sine = s;
+  }
+
+  /// On times from `first` to `last` after the piece began.
+  [[nodiscard]] double bound(double first, double last) const {
+    const double longest = std::max(std::abs(first), std::abs(last));
+    double power = 1, sum = 0;
+    for (std::size_t k = 0; k < size; ++k, power *= longest) sum += (std::abs(cosine[k]) + std::abs(sine[k])) * power;
+    return sum * std::exp(-decay * (decay > 0 ? first : last));
+  }
+};
+
+/// What the voltage or the rate is made of, at most.
+double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, double to) {
+  double sum = 0;
+  for (const TermOf<double>& term : piece.terms) {
+    Differentiated d(term);
+    if (of_rate) d.differentiate();
+    sum += d.bound(from - piece.begin, to - piece.begin);
+  }
+  const double longest = std::max(std::abs(from - piece.begin), std::abs(to - piece.begin));
+  const double swing = std::abs(piece.amplitude) + std::abs(piece.amplitude_slope) * longest;
+  return sum + (of_rate ? std::abs(piece.slope) + std::abs(piece.amplitude_slope) + swing * piece.angular_frequency
+                        : std::abs(piece.value) + std::abs(piece.slope) * longest + swing);
+}
+
+/// A time in [from, to] at which the function is within `tolerance` of its maximum; `curvature(a, b)` bounds its second
+/// derivative between a and b. A chord of length h is at most h^2 / 8 of that below the function.
+template <typename Function, typename Curvature>
+double time_of_maximum(Function function, Curvature curvature, double from, double to, double tolerance) {
+  struct Interval {
+    double begin, end, at_begin, at_end;
+  };
+  std::vector<Interval> open{{from, to, function(from), function(to)}};
+  double place = open[0].at_begin >= open[0].at_end ? from : to, best = std::max(open[0].at_begin, open[0].at_end);
+  constexpr long most_values = 10'000'000;  // a waveform that needs more has no digit left in its angles
+  for (long values = 0; !open.empty() && values < most_values; ++values) {
+    const Interval i = open.back();
+    open.pop_back();
+    const double length = i.end - i.begin, middle = i.begin + 0.5 * length;
+    if (!(middle > i.begin && middle < i.end)) continue;
+    const double above = length * length / 8 * curvature(i.begin, i.end);
+    if (std::max(i.at_begin, i.at_end) + above <= best + tolerance) continue;
+    const double at_middle = function(middle);
+    if (at_middle > best) best = at_middle, place = middle;
+    open.push_back({i.begin, middle, i.at_begin, at_middle});
+    open.push_back({middle, i.end, at_middle, i.at_end});
+  }
+  return place;
+}
+
+}  // namespace
+
+double derivative_bound(const SignalPieceOf<double>& piece, int order, double from, double to) {
+  double sum = 0;
+  for (const TermOf<double>& term : piece.terms) {
+    Differentiated d(term);
+    for (int i = 0; i < order; ++i) d.differentiate();
+    sum += d.bound(from - piece.begin, to - piece.begin);
+  }
+  if (piece.oscillates()) {
+    const double w = piece.angular_frequency;
+    const double envelope = std::max(std::abs(piece.amplitude + piece.amplitude_slope * (from - piece.begin)),
+                                     std::abs(piece.amplitude + piece.amplitude_slope * (to - piece.begin)));
+    sum += (envelope * w + order * std::abs(piece.amplitude_slope)) * std::pow(w, order - 1);
+  }
+  return sum;
+}
+
+void append_extrema_of_terms(std::vector<double>& times, const SignalPieceOf<double>& piece, bool of_rate, double from,
+                             double to) {
+  constexpr double promised = 1e-9;
+  const double tolerance = promised * size_of(piece, of_rate, from, to);
+  const auto curvature = [&](double a, double b) { return derivative_bound(piece, of_rate ? 3 : 2, a, b); };
+  for (const double sign : {1.0, -1.0}) {
+    const auto function = [&](double time) { return sign * (of_rate ? piece.rate(time) : piece.voltage(time)); };
+    times.push_back(time_of_maximum(function, curvature, from, to, tolerance));
+  }
+}
+
+double duration_of_terms(const SignalPieceOf<double>& piece) {
+  constexpr double time_constants = 50;  // exp(-50) is 2e-22, and a cubic grows by 1e5 meanwhile
+  double longest = 0;
+  for (const TermOf<double>& term : piece.terms) longest = std::max(longest, time_constants / term.decay);
+  return longest;
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,71 @@
+// B-spline: a cubic spline whose curvature is continuous, drawn by levels that it need not reach: it stays between the smallest
+// and the largest of them. With n levels and knots at the n - 2 times that divide the duration evenly, fourfold at both ends:
+//
+//   V(t) = sum over i of levels_i B_i(t) on [0, duration], B_i the cubic B-splines of these knots (de Boor, A Practical Guide to
+//   Splines, 1978, chapter IX)
+//
+// It begins on the first level, with a jump where that is not 0 V, and ends on the last, which holds for ever.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "waveforms/parameter.h"
+#include "waveforms/signal.h"
+
+namespace softland {
+
+template <class P>
+struct BSplineOf {
+  std::vector<P> levels = {};  ///< [V], n >= 4
+  P duration = 0;              ///< [s], > 0
+};
+using BSpline = BSplineOf<double>;
+
+template <>
+struct FamilyOf<BSpline> {
+  static constexpr std::string_view name = "bspline";
+  static constexpr auto parameters = std::to_array<Parameter<BSpline>>({
+      {"levels", Meaning::level, &BSpline::levels, true, "four or more that draw the curve; the last is held for ever"},
+      {"duration", Meaning::time, &BSpline::duration, true, "of the curve"},
+  });
+};
+
+namespace internal {
+
+/// In span j of a spline of n levels, the four B-splines that are not 0: their cubic polynomials over the part of the span that
+/// is past, coefficients in rising order. The first one belongs to level j.
+[[nodiscard]] std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n);
+
+/// Knot `i` of the n + 4 knots of a spline of n levels, in spans.
+[[nodiscard]] double bspline_knot(std::size_t i, std::size_t n);
+
+}  // namespace internal
+
+/// The pieces of a valid spline.
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const BSplineOf<P>& spline) {
+  const std::size_t n = spline.levels.size(), spans = n - 3;
+  const P per_time = P(static_cast<double>(spans)) / spline.duration;
+  Pieces<P> all;
+  for (std::size_t j = 0; j < spans; ++j) {
+    const auto basis = internal::bsplines_of_span(j, n);
+    std::array<P, 4> cubic = {};
+    P power = P(1);
+    for (std::size_t k = 0; k < 4; ++k, power = power * per_time) {
+      P sum = P(0);
+      for (std::size_t i = 0; i < 4; ++i) sum = sum + P(basis[i][k]) * spline.levels[j + i];
+      cubic[k] = sum * power;
+    }
+    SignalPieceOf<P> piece{.begin = P(static_cast<double>(j)) / per_time, .value = cubic[0], .slope = cubic[1]};
+    piece.terms.push_back({.cosine = {P(0), P(0), cubic[2], cubic[3]}});
+    all.push_back(piece);
+  }
+  all.push_back({.begin = spline.duration, .value = spline.levels.back()});
+  return all;
+}
+/// Throws InvalidParameter.
+[[nodiscard]] Signal signal(const BSpline& spline);
+
+}  // namespace softland

@@ -1,0 +1,30 @@
+#include "waveforms/chirp.h"
+
+#include <fmt/format.h>
+
+namespace softland {
+
+Signal signal(const Chirp& chirp) {
+  internal::require_dither("a chirp", {.base = chirp.base,
+                                       .rise_time = chirp.rise_time,
+                                       .amplitude = chirp.amplitude,
+                                       .angular_frequency = chirp.angular_frequency,
+                                       .phase = chirp.phase,
+                                       .start = chirp.start,
+                                       .end = chirp.end,
+                                       .fade = chirp.fade});
+  const double ratio = chirp.frequency_ratio;
+  require_of("frequency_ratio", ratio > 0 && std::isfinite(ratio),
+             fmt::format("frequency_ratio of a chirp is {}; it must be finite and > 0", ratio));
+  require_of("decay_time", chirp.decay_time > 0, fmt::format("decay_time of a chirp is {} s; it must be > 0", chirp.decay_time));
+  if (!std::isfinite(chirp.end)) {
+    require_of("frequency_ratio", ratio == 1,
+               fmt::format("frequency_ratio of a chirp is {}; without an end the frequency must stay the same, 1", ratio));
+    require_of("decay_time", std::isfinite(chirp.decay_time),
+               "a chirp has neither an end nor a decay_time; it must have one of them (a harmonic goes on for ever)");
+  }
+  if (chirp.amplitude == 0) return Signal::piecewise_linear({{0, 0}, {chirp.rise_time, chirp.base}});
+  return Signal(pieces(chirp));
+}
+
+}  // namespace softland

@@ -1,0 +1,87 @@
+// Chirp: a dither on a step whose frequency changes steadily, or which dies away, or both.
+//
+//   V(t) = b(t) + amplitude e(t) exp(-s / decay_time) sin(phase + angular_frequency s + sweep s^2 / 2),  s = t - start
+//
+// for t in [start, end], b(t) elsewhere (t >= 0). b rises linearly from 0 to base on [0, rise_time]; the envelope e fades in
+// after start and out before end as that of a harmonic. At its end the frequency is frequency_ratio times that at its start:
+// sweep = (frequency_ratio - 1) angular_frequency / (end - start). A chirp that never ends keeps its frequency, and decays.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "waveforms/harmonic.h"
+#include "waveforms/parameter.h"
+#include "waveforms/signal.h"
+
+namespace softland {
+
+template <class P>
+struct ChirpOf {
+  P base = 0;                                              ///< [V]
+  P rise_time = 0;                                         ///< of the base [s], >= 0
+  P amplitude = 0;                                         ///< at the start [V]
+  P angular_frequency = 0;                                 ///< at the start [rad/s], > 0
+  P frequency_ratio = 1;                                   ///< of the frequency at the end to that at the start, > 0
+  P phase = 0;                                             ///< at the start [rad]
+  P start = 0;                                             ///< [s], >= 0
+  P end = std::numeric_limits<double>::infinity();         ///< [s], > start; a finite end needs end - start >= 2 fade
+  P fade = 0;                                              ///< [s], >= 0
+  P decay_time = std::numeric_limits<double>::infinity();  ///< in which the amplitude falls by 1/e [s], > 0
+};
+using Chirp = ChirpOf<double>;
+
+template <>
+struct FamilyOf<Chirp> {
+  static constexpr std::string_view name = "chirp";
+  static constexpr auto parameters = std::to_array<Parameter<Chirp>>({
+      {"base", Meaning::level, &Chirp::base, false, "what the sine swings about"},
+      {"rise_time", Meaning::time, &Chirp::rise_time, false, "linear rise of the base from 0 V"},
+      {"amplitude", Meaning::swing, &Chirp::amplitude, true,
+       "at the start; or a percentage of the base; for the piezo, of the main hold level"},
+      {"angular_frequency", Meaning::angular_frequency, &Chirp::angular_frequency, true, "of the sine at the start"},
+      {"frequency_ratio", Meaning::ratio, &Chirp::frequency_ratio, false, "frequency at the end over that at the start"},
+      {"phase", Meaning::angle, &Chirp::phase, false, "of the sine at the start"},
+      {"start", Meaning::time, &Chirp::start, false, "when the sine begins"},
+      {"end", Meaning::end_time, &Chirp::end, false, "when the sine ends; absent: never"},
+      {"fade", Meaning::time, &Chirp::fade, false, "linear fade in after start and out before end"},
+      {"decay_time", Meaning::end_time, &Chirp::decay_time, false, "in which the amplitude falls by 1/e; absent: it does not"},
+  });
+};
+
+/// The pieces of a valid chirp.
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp) {
+  using std::cos, std::exp, std::sin;
+  // Base and envelope are those of a harmonic, whose sine becomes a term.
+  Pieces<P> all = pieces(HarmonicOf<P>{.base = chirp.base,
+                                       .rise_time = chirp.rise_time,
+                                       .amplitude = chirp.amplitude,
+                                       .angular_frequency = chirp.angular_frequency,
+                                       .start = chirp.start,
+                                       .end = chirp.end,
+                                       .fade = chirp.fade});
+  const bool ends = internal::decided(chirp.end < P(std::numeric_limits<double>::infinity()));
+  const P sweep = ends ? (chirp.frequency_ratio - P(1)) * chirp.angular_frequency / (chirp.end - chirp.start) : P(0);
+  const P decay = P(1) / chirp.decay_time;
+  for (SignalPieceOf<P>& piece : all) {
+    const bool is_inside = !internal::decided(piece.begin < chirp.start) && internal::decided(piece.begin < chirp.end);
+    const P amplitude = piece.amplitude, amplitude_slope = piece.amplitude_slope;
+    piece.amplitude = piece.amplitude_slope = piece.angular_frequency = piece.phase = P(0);
+    if (!is_inside) continue;
+    const P since = piece.begin - chirp.start, left = exp(P(0) - decay * since);
+    const P angle = chirp.phase + (chirp.angular_frequency + P(0.5) * sweep * since) * since;
+    const P at_begin = amplitude * left, later = amplitude_slope * left;
+    piece.terms.push_back({.cosine = {at_begin * sin(angle), later * sin(angle), P(0), P(0)},
+                           .sine = {at_begin * cos(angle), later * cos(angle), P(0), P(0)},
+                           .decay = decay,
+                           .angular_frequency = chirp.angular_frequency + sweep * since,
+                           .sweep = sweep});
+  }
+  return all;
+}
+/// Throws InvalidParameter.
+[[nodiscard]] Signal signal(const Chirp& chirp);
+
+}  // namespace softland

@@ -1,0 +1,222 @@
+#include "waveforms/driver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "base/require.h"
+#include "waveforms/bounds.h"
+
+namespace softland {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Re[polynomial(s) exp(exponent s)], s after the piece began.
+struct Exponential {
+  std::array<Complex, 4> polynomial = {};
+  Complex exponent = {};
+
+  [[nodiscard]] bool is_polynomial() const { return exponent == Complex{}; }
+};
+
+Exponential exponential_of(const SignalTerm& term) {
+  Exponential e{.polynomial = {}, .exponent = {-term.decay, term.angular_frequency}};
+  for (std::size_t k = 0; k < term.cosine.size(); ++k) e.polynomial[k] = {term.cosine[k], -term.sine[k]};
+  return e;
+}
+
+/// Everything in a piece without a sweep.
+std::vector<Exponential> exponentials_of(const SignalPiece& piece) {
+  std::vector<Exponential> all{{.polynomial = {piece.value, piece.slope}}};
+  if (piece.oscillates()) {
+    const Complex turned = Complex(0, -1) * std::polar(1.0, piece.angular_frequency * piece.begin + piece.phase);
+    all.push_back(
+        {.polynomial = {piece.amplitude * turned, piece.amplitude_slope * turned}, .exponent = {0, piece.angular_frequency}});
+  }
+  for (const SignalTerm& term : piece.terms) all.push_back(exponential_of(term));
+  return all;
+}
+
+/// The steady answer of T dV/dt + V = input.
+Exponential answer(const Exponential& input, double time_constant) {
+  // Where the input decays as the filter does, it grows in proportion to time first.
+  constexpr double same = 1e-6;
+  const Complex factor = 1.0 + input.exponent * time_constant;
+  Exponential out{.polynomial = {}, .exponent = input.exponent};
+  if (std::abs(factor) > same) {
+    Complex above = 0;
+    for (std::size_t k = out.polynomial.size(); k-- > 0;) {
+      out.polynomial[k] = (input.polynomial[k] - time_constant * static_cast<double>(k + 1) * above) / factor;
+      above = out.polynomial[k];
+    }
+  } else {
+    for (std::size_t k = 0; k + 1 < out.polynomial.size(); ++k)
+      out.polynomial[k + 1] = input.polynomial[k] / (time_constant * static_cast<double>(k + 1));
+  }
+  return out;
+}
+
+/// The same course, counted from a later time.
+Exponential later(const Exponential& e, double by) {
+  Exponential moved{.polynomial = {}, .exponent = e.exponent};
+  const auto& p = e.polynomial;
+  moved.polynomial = {p[0] + by * (p[1] + by * (p[2] + by * p[3])), p[1] + by * (2.0 * p[2] + by * 3.0 * p[3]),
+                      p[2] + 3.0 * by * p[3], p[3]};
+  const Complex left = std::exp(e.exponent * by);
+  for (Complex& c : moved.polynomial) c *= left;
+  return moved;
+}
+
+SignalPiece piece_of(double begin, const std::vector<Exponential>& parts) {
+  SignalPiece piece{.begin = begin};
+  for (const Exponential& e : parts) {
+    const auto& p = e.polynomial;
+    const bool is_steady_sine = e.exponent.real() == 0 && p[1] == 0.0 && p[2] == 0.0 && p[3] == 0.0 && !piece.oscillates();
+    if (e.is_polynomial()) {
+      piece.value += p[0].real();
+      piece.slope += p[1].real();
+      if (p[2] != 0.0 || p[3] != 0.0) piece.terms.push_back({.cosine = {0, 0, p[2].real(), p[3].real()}});
+    } else if (is_steady_sine) {
+      piece.amplitude = std::abs(p[0]);
+      piece.angular_frequency = e.exponent.imag();
+      piece.phase = std::arg(p[0]) + std::numbers::pi / 2 - piece.angular_frequency * begin;
+    } else {
+      SignalTerm term{.decay = -e.exponent.real(), .angular_frequency = e.exponent.imag()};
+      for (std::size_t k = 0; k < p.size(); ++k) term.cosine[k] = p[k].real(), term.sine[k] = -p[k].imag();
+      piece.terms.push_back(term);
+    }
+  }
+  return piece;
+}
+
+/// Pieces with a sweep as cubics that meet them with their rates.
+std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) {
+  constexpr double tolerance = 1e-6;  // of what the terms are at the most
+  std::vector<SignalPiece> all;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const SignalPiece& piece = pieces[i];
+    if (std::none_of(piece.terms.begin(), piece.terms.end(), [](const SignalTerm& term) { return term.sweep != 0; })) {
+      all.push_back(piece);
+      continue;
+    }
+    // A cubic through values and rates is at most h^4 / 384 times the fourth derivative off.
+    const double end = pieces[i + 1].begin, size = internal::derivative_bound(piece, 0, piece.begin, end);
+    const double fourth = internal::derivative_bound(piece, 4, piece.begin, end);
+    const double count = std::max(1.0, std::ceil((end - piece.begin) * std::pow(fourth / (384 * tolerance * size), 0.25)));
+    constexpr double most = 1e6;
+    require(count <= most, fmt::format("a chirp takes {} cubics to be filtered; it may take {}", count, most));
+    for (double k = 0; k < count; ++k) {
+      const double from = piece.begin + (end - piece.begin) * (k / count),
+                   to = piece.begin + (end - piece.begin) * ((k + 1) / count);
+      const double h = to - from, v0 = piece.voltage(from), v1 = piece.voltage(to), r0 = piece.rate(from), r1 = piece.rate(to);
+      if (!(h > 0)) continue;
+      const double rise = (v1 - v0) / h;
+      SignalPiece cubic{.begin = from, .value = v0, .slope = r0};
+      cubic.terms.push_back({.cosine = {0, 0, (3 * rise - 2 * r0 - r1) / h, (r0 + r1 - 2 * rise) / (h * h)}});
+      all.push_back(cubic);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+namespace internal {
+
+Signal sampled(const Signal& told, double rate, std::optional<int> bits, const DriverLimits& limits, double end) {
+  const SignalPiece& last = told.pieces().back();
+  double until = last.begin + duration_of_terms(last);
+  if (last.oscillates()) until = std::max(until, end);
+  const auto rounded = [&](double voltage) {
+    if (!bits) return voltage;
+    const double step = (limits.max_voltage - limits.min_voltage) / (std::exp2(*bits) - 1);
+    const double inside = std::clamp(voltage, limits.min_voltage, limits.max_voltage);
+    return std::min(limits.min_voltage + step * std::round((inside - limits.min_voltage) / step), limits.max_voltage);
+  };
+  const double count = std::ceil(until * rate);
+  constexpr double most = 1e7;
+  require(count <= most, fmt::format("a waveform of {} s takes {} samples at {} Hz; it may take {}", until, count, rate, most));
+  std::vector<SignalPiece> pieces;
+  const auto hold = [&](double time, double voltage) {
+    if (pieces.empty() || pieces.back().value != voltage) pieces.push_back({.begin = time, .value = voltage});
+  };
+  for (double k = 0; k < count; ++k) hold(k / rate, rounded(told.voltage(k / rate)));
+  hold(count / rate, rounded(told.hold_level()));
+  return Signal(std::move(pieces));
+}
+
+Signal slewed(const Signal& held, double max_slew) {
+  const std::vector<SignalPiece>& pieces = held.pieces();
+  std::vector<SignalPiece> all;
+  double output = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double begin = pieces[i].begin, target = pieces[i].value;
+    const double next = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
+    const double reached = begin + std::abs(target - output) / max_slew;
+    const bool meets = std::isfinite(next) && coincide(reached, next);
+    if (reached > begin && (meets || reached >= next)) {
+      const double slope = meets ? (target - output) / (next - begin) : std::copysign(max_slew, target - output);
+      all.push_back({.begin = begin, .value = output, .slope = slope});
+      output = meets ? target : output + slope * (next - begin);
+      continue;
+    }
+    if (reached > begin) all.push_back({.begin = begin, .value = output, .slope = (target - output) / (reached - begin)});
+    all.push_back({.begin = std::max(reached, begin), .value = target});
+    output = target;
+  }
+  return Signal(std::move(all));
+}
+
+Signal filtered(const Signal& input, double time_constant) {
+  constexpr double over = 40;  // time constants after which nothing is left
+  const std::vector<SignalPiece> pieces = without_sweeps(input.pieces());
+  std::vector<SignalPiece> all;
+  double output = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
+    std::vector<Exponential> parts;
+    double steady = 0;
+    for (const Exponential& e : exponentials_of(pieces[i])) {
+      parts.push_back(answer(e, time_constant));
+      steady += parts.back().polynomial[0].real();
+    }
+    const double left = begin + over * time_constant;
+    const bool is_cut = left < end && left > begin;
+    std::vector<Exponential> with_tail = parts;
+    if (output != steady) with_tail.push_back({.polynomial = {output - steady}, .exponent = -1 / time_constant});
+    all.push_back(piece_of(begin, with_tail));
+    if (is_cut && output != steady) {
+      for (Exponential& e : parts) e = later(e, left - begin);
+      all.push_back(piece_of(left, parts));
+    }
+    if (std::isfinite(end)) output = all.back().voltage(end);
+  }
+  return Signal(std::move(all));
+}
+
+}  // namespace internal
+
+Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end) {
+  if (model.is_ideal() || told.is_zero()) return told;
+  Signal output = told;
+  if (model.sample_rate) {
+    output = internal::sampled(told, *model.sample_rate, model.bits, limits, end);
+    if (std::isfinite(limits.max_slew)) output = internal::slewed(output, limits.max_slew);
+  }
+  if (model.bandwidth) output = internal::filtered(output, 1 / (2 * std::numbers::pi * *model.bandwidth));
+  if (const double rc = model.source_resistance.value_or(0) * model.load; rc > 0) output = internal::filtered(output, rc);
+  return output;
+}
+
+}  // namespace softland

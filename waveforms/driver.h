@@ -1,0 +1,46 @@
+// What a voltage source makes of the signal that it is told to give: a digital-to-analogue converter, an amplifier, and a
+// resistance before the capacitance of the switch.
+//
+//   sample_rate f      the signal is sampled at k / f, and every sample is held until the next one
+//   bits n             samples are rounded to the nearest of 2^n voltages that divide [min_voltage, max_voltage] evenly
+//   max_slew           where samples are held, the output goes from one to the next no faster
+//   bandwidth f_b      T dV/dt + V = input, T = 1 / (2 pi f_b): the amplitude of a sine of this frequency falls by 3 dB
+//   source_resistance  the same with T = R C, C the load
+//
+// in this order, each where it is given. All of them are exact: held samples through a filter are exponentials. What changes its
+// frequency (a chirp) is filtered as cubics within 1e-6 of its amplitude. The output stays between the smallest and the largest
+// input and 0 V, and what is left of an exponential after 40 time constants, 4e-18 of it, is dropped.
+#pragma once
+
+#include <optional>
+
+#include "waveforms/limits.h"
+#include "waveforms/signal.h"
+
+namespace softland {
+
+struct DriverModel {
+  std::optional<double> sample_rate = {};        ///< [Hz], > 0
+  std::optional<int> bits = {};                  ///< > 0; only with a sample_rate and finite limits of the voltage
+  std::optional<double> bandwidth = {};          ///< [Hz], > 0
+  std::optional<double> source_resistance = {};  ///< [ohm], > 0
+  double load = 0;                               ///< capacitance that the source charges [F], >= 0
+
+  /// Whether the output is what the source is told.
+  [[nodiscard]] bool is_ideal() const { return !sample_rate && !bandwidth && !source_resistance; }
+};
+
+/// The output of the source. One that is told 0 V for ever gives 0 V. A sine that never ends is sampled up to `end` [s], when the
+/// value that it swings about takes over. Throws InvalidInput when it would take more than 1e7 samples.
+[[nodiscard]] Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
+
+namespace internal {
+
+/// The parts of driven().
+[[nodiscard]] Signal sampled(const Signal& told, double rate, std::optional<int> bits, const DriverLimits& limits, double end);
+[[nodiscard]] Signal slewed(const Signal& held, double max_slew);
+/// T dV/dt + V = input, from V = 0 at t = 0; `time_constant` T > 0 [s].
+[[nodiscard]] Signal filtered(const Signal& input, double time_constant);
+
+}  // namespace internal
+}  // namespace softland

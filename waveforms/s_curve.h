@@ -1,0 +1,64 @@
+// S-curve: a pulse whose edges are half cosines, which begin and end without a corner: n levels, n - 1 switching times. The first
+// edge runs from 0 V on [0, edge]; the edge from level k to level k + 1 runs on [t_k, t_k + edge]:
+//
+//   V(t) = (V_k + V_(k+1)) / 2 - (V_(k+1) - V_k) / 2 cos(pi (t - t_k) / edge)
+//
+// The last level holds for ever. One level alone is a smooth rise.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "waveforms/parameter.h"
+#include "waveforms/signal.h"
+
+namespace softland {
+
+template <class P>
+struct SCurveOf {
+  std::vector<P> levels = {};  ///< [V], n >= 1
+  std::vector<P> times = {};   ///< [s], n - 1, increasing by at least edge; the first at least edge
+  P edge = 0;                  ///< [s], >= 0
+};
+using SCurve = SCurveOf<double>;
+
+template <>
+struct FamilyOf<SCurve> {
+  static constexpr std::string_view name = "s-curve";
+  static constexpr auto parameters = std::to_array<Parameter<SCurve>>({
+      {"levels", Meaning::level, &SCurve::levels, true, "n levels; the last is held for ever"},
+      {"times", Meaning::time, &SCurve::times, false, "n - 1 times at which the edge to the next level begins"},
+      {"edge", Meaning::time, &SCurve::edge, false, "duration of every edge, half a cosine"},
+  });
+};
+
+/// The pieces of a valid S-curve.
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const SCurveOf<P>& curve) {
+  const bool has_edges = internal::decided(curve.edge > P(0));
+  Pieces<P> all;
+  P time = P(0), level = P(0), edge_end = P(0);
+  for (std::size_t k = 0; k < curve.levels.size(); ++k) {
+    if (k > 0) {
+      time = curve.times[k - 1];
+      if (!internal::coincide(edge_end, time)) all.push_back({.begin = edge_end, .value = level});
+    }
+    const P next = curve.levels[k];
+    if (has_edges) {
+      SignalPieceOf<P> piece{.begin = time, .value = P(0.5) * (level + next)};
+      piece.terms.push_back(
+          {.cosine = {P(0.5) * (level - next), P(0), P(0), P(0)}, .angular_frequency = P(std::numbers::pi) / curve.edge});
+      all.push_back(piece);
+    }
+    level = next;
+    edge_end = time + curve.edge;
+  }
+  all.push_back({.begin = edge_end, .value = level});
+  return all;
+}
+/// Throws InvalidParameter.
+[[nodiscard]] Signal signal(const SCurve& curve);
+
+}  // namespace softland

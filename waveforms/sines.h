@@ -1,0 +1,71 @@
+// Sines: a band-limited course about a step, a sum of sines that are all 0 where they begin and where they end.
+//
+//   V(t) = b(t) + sum over k = 1 ... N of amplitudes_k sin(k pi (t - start) / duration)
+//
+// for t in [start, start + duration], b(t) elsewhere (t >= 0). b rises linearly from 0 to base on [0, rise_time]. The highest
+// frequency is N / (2 duration).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "waveforms/harmonic.h"
+#include "waveforms/parameter.h"
+#include "waveforms/signal.h"
+
+namespace softland {
+
+template <class P>
+struct SinesOf {
+  P base = 0;                      ///< [V]
+  P rise_time = 0;                 ///< of the base [s], >= 0
+  std::vector<P> amplitudes = {};  ///< [V], at least one
+  P start = 0;                     ///< [s], >= 0
+  P duration = 0;                  ///< [s], > 0
+};
+using Sines = SinesOf<double>;
+
+template <>
+struct FamilyOf<Sines> {
+  static constexpr std::string_view name = "sines";
+  static constexpr auto parameters = std::to_array<Parameter<Sines>>({
+      {"base", Meaning::level, &Sines::base, false, "what the sines swing about"},
+      {"rise_time", Meaning::time, &Sines::rise_time, false, "linear rise of the base from 0 V"},
+      {"amplitudes", Meaning::swing, &Sines::amplitudes, true,
+       "of the sines of 1, 2, 3 ... half waves; or percentages of the base; for the piezo, of the main hold level"},
+      {"start", Meaning::time, &Sines::start, false, "when the sines begin"},
+      {"duration", Meaning::time, &Sines::duration, true, "of the sines"},
+  });
+};
+
+/// The pieces of valid sines.
+template <class P>
+[[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines) {
+  const P end = sines.start + sines.duration;
+  // The base is that of a harmonic.
+  Pieces<P> all = pieces(HarmonicOf<P>{.base = sines.base,
+                                       .rise_time = sines.rise_time,
+                                       .amplitude = P(1),
+                                       .angular_frequency = P(1),
+                                       .start = sines.start,
+                                       .end = end});
+  for (SignalPieceOf<P>& piece : all) {
+    piece.amplitude = piece.amplitude_slope = piece.angular_frequency = piece.phase = P(0);
+    if (internal::decided(piece.begin < sines.start) || !internal::decided(piece.begin < end)) continue;
+    for (std::size_t k = 0; k < sines.amplitudes.size(); ++k) {
+      using std::cos, std::sin;
+      const P omega = P(static_cast<double>(k + 1) * std::numbers::pi) / sines.duration;
+      const P angle = omega * (piece.begin - sines.start), amplitude = sines.amplitudes[k];
+      piece.terms.push_back({.cosine = {amplitude * sin(angle), P(0), P(0), P(0)},
+                             .sine = {amplitude * cos(angle), P(0), P(0), P(0)},
+                             .angular_frequency = omega});
+    }
+  }
+  return all;
+}
+/// Throws InvalidParameter.
+[[nodiscard]] Signal signal(const Sines& sines);
+
+}  // namespace softland
