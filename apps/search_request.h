@@ -28,6 +28,7 @@ struct OptimizeRequest {
   std::optional<std::string> seeds;     ///< how many searches; none: one
   std::optional<std::string> jobs;      ///< default: one per core
   bool resume = false;
+  bool limit = false;  ///< compare the winner with the least time of any waveform
 };
 
 /// The scene that a search begins with, as its plan keeps it.

@@ -26,6 +26,8 @@ struct Headline {
 [[nodiscard]] std::string checks_caption(const Result& result);
 /// What a search over devices that differ came to; empty for any other.
 [[nodiscard]] std::string robust_caption(const Result& result);
+/// How near the winner comes to the least time of any waveform; empty where that is not known.
+[[nodiscard]] std::string limit_words(const Result& result);
 /// False when the winner is free of rebounds but one of its confirmations is not.
 [[nodiscard]] bool checks_agree(const Result& result);
 

@@ -117,6 +117,7 @@ std::string figures_table(const Result& result) {
                                      [&](const Figure& one) { return std::isfinite(result.best.errors[one]); });
   std::string out;
   if (result.goal_met) out += fmt::format("<p>The goal is {}.</p>\n", *result.goal_met ? "met" : "not met");
+  if (const std::string words = limit_words(result); !words.empty()) out += "<p>" + escaped(words) + "</p>\n";
   TableRow head{"Figure"};
   if (pair) head.insert(head.end(), {"Plain step", "Goal", "Softland", "Change"});
   if (!pair) head.emplace_back("Value");

@@ -114,6 +114,11 @@ struct ResultRobust {
   std::vector<Condition> conditions;
 };
 
+/// The least time in which any waveform of the same drives and limits touches no faster than the winner.
+struct ResultLimit {
+  double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
+};
+
 /// Searches that differ in their seeds alone; the result is that of the best.
 struct ResultSeeds {
   struct Search {
@@ -142,6 +147,7 @@ struct Result {
   ResultSearch search;
   std::optional<ResultRobust> robust;
   std::optional<ResultSeeds> seeds;
+  std::optional<ResultLimit> limit;
   std::map<std::string, double> parameters;             ///< of the winner, by drive.name
   std::map<std::string, std::array<double, 2>> bounds;  ///< within which they were searched
   std::map<std::string, PullInVoltages> pull_in;        ///< by electrode

@@ -144,6 +144,10 @@ void add_search(json& j, const Result& r) {
   j["reproduce"] = r.reproduce;
   if (r.robust) j["robust"] = robust_json(*r.robust);
   if (r.seeds) j["seeds"] = seeds_json(*r.seeds);
+  if (r.limit) {
+    j["limit"] = {{"least_time_s", json_number(r.limit->least_time)},
+                  {"impact_velocity_m_s", json_number(r.limit->impact_velocity)}};
+  }
   if (!r.best.figures) return;
   j["best"]["parameters"] = r.parameters;
   j["best"]["bounds"] = r.bounds;

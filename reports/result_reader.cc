@@ -254,6 +254,15 @@ void require_reportable(const json& result, const std::string& name) {
   }
 }
 
+namespace {
+
+std::optional<ResultLimit> limit(const json& read) {
+  if (!read.is_object()) return std::nullopt;
+  return ResultLimit{.least_time = number(read, {"least_time_s"}), .impact_velocity = number(read, {"impact_velocity_m_s"})};
+}
+
+}  // namespace
+
 Result read_result(const json& result) {
   require(result.is_object(), "the result is not a JSON object");
   Result r{.is_search = is_search(result),
@@ -274,6 +283,7 @@ Result read_result(const json& result) {
                       .evaluations = points(at(result, {"search", "evaluations"}))},
            .robust = robust(at(result, {"robust"})),
            .seeds = seeds(at(result, {"seeds"})),
+           .limit = limit(at(result, {"limit"})),
            .pull_in = pull_in(at(result, {"pull_in"})),
            .natural_frequencies = numbers(at(result, {"natural_frequencies_rad_s"})),
            .work = work(at(result, {"work"})),

@@ -73,6 +73,7 @@ std::string text_report(const Result& result) {
   const bool lands_softly = result.is_search && internal::figure_of_run(best, &Metrics::bounce_count) == 0;
   if (const std::string checks = internal::checks_caption(result); lands_softly && !checks.empty())
     out += "\n" + wrapped(checks) + "\n";
+  if (const std::string words = internal::limit_words(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   if (const std::string words = internal::certificate_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   if (const std::string words = internal::robust_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   if (const std::string words = internal::seeds_text(result.seeds); !words.empty()) out += "\n" + words;

@@ -67,6 +67,10 @@ void FreeFlight::add_free(const Prepared& prepared, const std::string& name, dou
   const auto limits = prepared.drives.limits.find(name);
   require(limits != prepared.drives.limits.end(),
           fmt::format("the least time needs [driver.{}] with min_voltage and max_voltage", name));
+  require(!prepared.drives.models.contains(name),
+          fmt::format("the least time is not known of a source that samples or filters: driver.{}.sample_rate, bandwidth and "
+                      "source_resistance must be absent",
+                      name));
   const std::vector<std::string> names = prepared.drive_names();
   const auto drive = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   const double low = limits->second.min_voltage, high = limits->second.max_voltage;

@@ -32,6 +32,7 @@
 #include "reports/result_maker.h"
 #include "reports/seeds_report.h"
 #include "reports/text.h"
+#include "studies/limit.h"
 #include "studies/robust_optimize.h"
 #include "version.h"
 #include "waveforms/export.h"
@@ -110,7 +111,28 @@ struct Asked {
   const std::optional<KnownSearch>& known;
   SearchPlaces* places = nullptr;         // of a study of seeds
   std::optional<ResultSeeds> seeds = {};  // that are done
+  bool limit = false;                     // the least time is told too
 };
+
+// The least time of any waveform of the winner's drives at its impact speed; none where the scene does not fit the question.
+std::optional<ResultLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
+  if (!asked.limit || !result.best || result.search.termination == Termination::interrupted) return std::nullopt;
+  constexpr double softest = 1e-3;  // of the plain step's impact speed
+  const double own = result.best->metrics.impact_velocity, step = result.baseline.metrics.impact_velocity;
+  if (!std::isfinite(own)) return std::nullopt;
+  const double velocity = std::isfinite(step) ? std::max(own, softest * step) : own;
+  const WatchedWork work(asked.c.quiet, asked.c.stop);
+  work.watch().tell("least time", 0);
+  try {
+    const LeastTime least = least_time(
+        *result.best_scene, {.actuator = asked.search.options.actuator, .impact_velocity = velocity, .watch = work.watch()});
+    if (least.status != Status::done) return std::nullopt;
+    return ResultLimit{.least_time = least.time, .impact_velocity = velocity};
+  } catch (const InvalidInput& error) {
+    say(fmt::format("--limit: {}", error.what()));
+    return std::nullopt;
+  }
+}
 
 int run_robust(const Asked& asked) {
   const Common& c = asked.c;
@@ -130,6 +152,7 @@ int run_robust(const Asked& asked) {
   run.close();
 
   Result found = result_of(result, options, robust, {.command = c.command});
+  found.limit = limit_of(asked, result.found);
   found.seeds = asked.seeds;
   const bool interrupted = result.found.search.termination == Termination::interrupted;
   const fs::path place = run.folder().destination(interrupted);
@@ -153,6 +176,7 @@ int run_nominal(const Asked& asked) {
   run.close();
 
   Result found = result_of(result, options, {.command = c.command});
+  found.limit = limit_of(asked, result);
   found.seeds = asked.seeds;
   const bool interrupted = result.search.termination == Termination::interrupted;
   const fs::path place = run.folder().destination(interrupted);
@@ -184,7 +208,7 @@ int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, 
   return exit_interrupted;
 }
 
-int run_seeds(const Common& c, PlannedSearch& search, const std::optional<KnownSearch>& known) {
+int run_seeds(const Common& c, PlannedSearch& search, const std::optional<KnownSearch>& known, bool limit) {
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const SearchedParameters searched = searched_parameters(search.scene, search.options, search.robust.has_value(), work->watch());
   work.reset();
@@ -203,7 +227,7 @@ int run_seeds(const Common& c, PlannedSearch& search, const std::optional<KnownS
   }
   // The best once more, all of whose evaluations are known, for the report.
   search.options.seed = seeds.searches.at(seeds.best).seed;
-  return run_search({.c = c, .search = search, .known = known, .places = &places, .seeds = seeds});
+  return run_search({.c = c, .search = search, .known = known, .places = &places, .seeds = seeds, .limit = limit});
 }
 
 int optimize_verb(const Common& given, const OptimizeRequest& request) {
@@ -213,7 +237,8 @@ int optimize_verb(const Common& given, const OptimizeRequest& request) {
   std::optional<KnownSearch> known;
   PlannedSearch search = planned_or_known(c, request, known);
   if (known && !c.quiet) tell_of_other_programs((known->place / evaluations_file).string());
-  return search.seeds > 1 ? run_seeds(c, search, known) : run_search({.c = c, .search = search, .known = known});
+  return search.seeds > 1 ? run_seeds(c, search, known, request.limit)
+                          : run_search({.c = c, .search = search, .known = known, .limit = request.limit});
 }
 
 // "settling, impact and energy"
@@ -279,6 +304,8 @@ void add_optimize(Verb& verb) {
       "--resume", request->resume,
       "go on with the search in the folder of --out that was interrupted, or ended by its budget; what it has evaluated is not "
       "simulated again, and options that are not given are those it began with");
+  verb.flag("--limit", request->limit,
+            "tell how near the winner's touch comes to the least time of any waveform of these drives: a few seconds more");
   verb.with_jobs(request->jobs, "threads (default: one per core)");
   verb.with_out("folder for the report, the waveform found and all data (default: softland-out)");
   verb.footer(

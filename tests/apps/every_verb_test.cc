@@ -132,6 +132,17 @@ TEST_P(EveryVerb, Simulates) {
   exports({"export", "out"});
 }
 
+TEST_P(EveryVerb, FindsTheLimit) {
+  const std::vector<std::string> words = scene().quickly({"limit", scene().name, "--no-curves", "--quiet", "--out", "out"});
+  if (!scene().has("\\[contact\\]")) return refused(words, "limit needs a [contact]");
+  if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
+  EXPECT_NE(done(words).out.find("least time of a touch"), std::string::npos);
+  const json j = json::parse(read(here.path() / "out/limit.json"), nullptr, false);
+  EXPECT_GT(j["touch"]["least_time_s"], 0);
+  EXPECT_LE(j["touch"]["impact_velocity_m_s"], 1.0001 * j["permitted_impact_velocity_m_s"].get<double>());
+  EXPECT_GT(fs::file_size(here.path() / "out/limit.svg"), 100U);
+}
+
 TEST_P(EveryVerb, Compares) {
   (void)done(scene().quickly({"effects", scene().name, "--quiet", "--json", "effects.json"}));
   const std::string written = read(here.path() / "effects.json");

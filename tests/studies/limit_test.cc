@@ -115,6 +115,10 @@ TEST(LeastTime, RefusesWhatItDoesNotFit) {
             std::string::npos);
   EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(gold(), true), {.actuator = Actuator::pzt}); }).find("[piezo]"),
             std::string::npos);
+  EXPECT_NE(refusal([] {
+              (void)least_time(prepare_and_choose(gold({"driver.main.bandwidth=1 MHz"}), true), {});
+            }).find("driver.main.sample_rate"),
+            std::string::npos);
   EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(gold(), true), {.impact_velocity = 0}); }).find("positive"),
             std::string::npos);
 }
