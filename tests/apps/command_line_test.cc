@@ -46,9 +46,6 @@ TEST(Help, OfEveryVerbHasExamplesAndNamesNothingThatDoesNotExist) {
     EXPECT_THAT(o.out, HasSubstr("Usage: softland " + verb)) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("ubcommand"))) << verb;
     EXPECT_THAT(o.out, Not(HasSubstr("TEXT"))) << verb;
-    if (verb == "optimize") {
-      EXPECT_THAT(o.out, Not(HasSubstr("--resume")));
-    }
   }
 }
 
