@@ -58,7 +58,7 @@ struct Part {
   double weight;
 };
 
-struct Point {
+struct Place {
   Index piece, stage;
   double length;  // of the piece, a fraction of T
   double at;      // fraction of T
@@ -174,7 +174,7 @@ class Program final : public Ipopt::TNLP {
     look_at(x, is_new);
     Index row = 0;
     for (std::size_t p = 0; p < points_.size(); ++p) {
-      const Point& point = points_[p];
+      const Place& point = points_[p];
       VectorXd sum = -point.length * x[0] * rates_[p].value;
       for (Index j = 0; j <= stages; ++j) sum += radau().slopes(point.stage, j) * node_of(x, point.piece, j);
       std::copy(sum.begin(), sum.end(), g + row);
@@ -271,7 +271,7 @@ class Program final : public Ipopt::TNLP {
     const Index point = piece * stages + j - 1;
     return point < 0 ? problem_.start : state_of(x, point);
   }
-  [[nodiscard]] VectorXd control_of(const double* x, const Point& point) const {
+  [[nodiscard]] VectorXd control_of(const double* x, const Place& point) const {
     VectorXd value = VectorXd::Zero(nc_);
     for (const Part& part : point.parts) value += part.weight * Eigen::Map<const VectorXd>(x + control(part.column, 0), nc_);
     return value;
@@ -302,7 +302,7 @@ class Program final : public Ipopt::TNLP {
   void for_jacobian(const std::vector<ControlledSystem::Rates>& rates, const double* x, F&& entry) const {
     Index row = 0;
     for (std::size_t p = 0; p < points_.size(); ++p) {
-      const Point& point = points_[p];
+      const Place& point = points_[p];
       const double span = x == nullptr ? 0 : point.length * x[0];
       const auto slope = [&](Index r, Index k) { return rates.empty() ? 0.0 : -span * rates[p].slope(r, k); };
       for (Index r = 0; r < n_; ++r, ++row) {
@@ -350,7 +350,7 @@ class Program final : public Ipopt::TNLP {
     MatrixXd curvature = MatrixXd::Zero(n_ + nc_, n_ + nc_);
     VectorXd by_time = VectorXd::Zero(n_ + nc_);
     for (std::size_t p = 0; p < points_.size(); ++p) {
-      const Point& point = points_[p];
+      const Place& point = points_[p];
       const auto at = static_cast<Index>(p);
       if (x != nullptr) {
         const VectorXd own = -point.length * Eigen::Map<const VectorXd>(multipliers + at * n_, n_);
@@ -384,7 +384,7 @@ class Program final : public Ipopt::TNLP {
   Index n_, nc_;
   bool ramps_;
   Index columns_ = 0;
-  std::vector<Point> points_;
+  std::vector<Place> points_;
   std::vector<bool> depends_;
   std::vector<ControlledSystem::Rates> rates_;  // at the points
 };

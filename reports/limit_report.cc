@@ -67,10 +67,10 @@ std::string drives_of(Actuator actuator) {
   return "electrodes and piezo";
 }
 
-constexpr std::size_t name_width = 44, cell_width = 12;
+constexpr std::size_t label_width = 44, number_width = 12;
 
 std::string row(const std::string& name, const std::string& time, const std::string& velocity, const std::string& rest = {}) {
-  return "  " + left_aligned(name, name_width) + right_aligned(time, cell_width) + right_aligned(velocity, cell_width) +
+  return "  " + left_aligned(name, label_width) + right_aligned(time, number_width) + right_aligned(velocity, number_width) +
          (rest.empty() ? "" : "  " + rest) + "\n";
 }
 
