@@ -122,9 +122,11 @@ class Program final : public Ipopt::TNLP {
     for (Index column = 0; column < columns_; ++column) {
       for (Index k = 0; k < nc_; ++k) {
         const ControlBound& bound = problem_.bounds[static_cast<std::size_t>(k)];
-        const bool fixed = ramps_ && column == 0;
-        lower[control(column, k)] = fixed ? bound.before : bound.lower;
-        upper[control(column, k)] = fixed ? bound.before : bound.upper;
+        std::optional<double> fixed;
+        if (ramps_ && column + 1 == columns_) fixed = bound.after;
+        if (ramps_ && column == 0) fixed = bound.before;
+        lower[control(column, k)] = fixed.value_or(bound.lower);
+        upper[control(column, k)] = fixed.value_or(bound.upper);
       }
     }
     Index row = collocation_rows();

@@ -53,6 +53,8 @@ struct ControlBound {
   /// Largest |c'|: the control is linear between its knots and begins at `before`. Infinite: constant between them, with jumps.
   double slew = std::numeric_limits<double>::infinity();
   double before = 0;
+  /// What a control with a slew ends on, where that is given.
+  std::optional<double> after = {};
 };
 
 struct ControlProblem {

@@ -161,6 +161,12 @@ MatrixXd FreeFlight::curvature(const VectorXd& x, const VectorXd& c, const Vecto
   return result;
 }
 
+VectorXd FreeFlight::hold() const {
+  VectorXd c(controls());
+  for (std::size_t k = 0; k < free_.size(); ++k) c[static_cast<Index>(k)] = hold_[free_[k].drive] / free_[k].largest;
+  return c;
+}
+
 double FreeFlight::max_slew(const std::string& drive) const {
   return std::find_if(free_.begin(), free_.end(), [&](const Free& f) { return f.name == drive; })->max_slew;
 }

@@ -52,6 +52,8 @@ class FreeFlight final : public ControlledSystem {
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
   /// The free drives [V] at a control.
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
+  /// The controls that give the hold levels, where the slew is limited.
+  [[nodiscard]] Eigen::VectorXd hold() const;
   /// Of the driver of a free drive [V/s].
   [[nodiscard]] double max_slew(const std::string& drive) const;
   /// Controls that pull most, and that release most.

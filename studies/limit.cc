@@ -152,6 +152,9 @@ LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options, 
       .knots = uniform_knots(first_knots),
       .longest_piece = piece_angle / (fastest * guess->time),
       .stop = options.watch.stop};
+  // A beam at rest under the hold levels stays so where the drives have come to them.
+  for (Index k = 0; landed && flight.ramps() && k < flight.controls(); ++k)
+    problem.bounds[static_cast<std::size_t>(k)].after = flight.hold()[k];
   const double finest = 1.0 / (first_knots * std::exp2(options.refinements));
   // A failure leaves the last course.
   const auto improve = [&] {

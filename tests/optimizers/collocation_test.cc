@@ -136,6 +136,20 @@ TEST(Collocation, KeepsASlewLimit) {
   EXPECT_EQ(course.controls(0, 0), 0);
 }
 
+TEST(Collocation, EndsOnTheControlThatIsAskedFor) {
+  Mass mass;
+  const VectorXd end = VectorXd::Unit(2, 0);
+  ControlProblem problem = push_to(mass, end, 30);
+  problem.bounds[0].slew = 4;
+  const ControlledCourse any = solve(problem, line(VectorXd::Zero(2), end, 3, 0));
+  problem.bounds[0].after = 0;
+  const ControlledCourse course = solve(problem, line(VectorXd::Zero(2), end, 3, 0));
+  ASSERT_TRUE(any.converged && course.converged);
+  EXPECT_LT(any.controls(0, 30), -0.5);
+  EXPECT_EQ(course.controls(0, 30), 0);
+  EXPECT_GT(course.time, any.time);
+}
+
 TEST(Collocation, FindsTheBrachistochrone) {
   // The cycloid x = R (a - sin a), y = R (1 - cos a) to a = pi takes pi sqrt(R).
   Bead bead;
