@@ -15,7 +15,7 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-constexpr double kRounding = 1e-13;  // of a few sums of numbers of order ten
+constexpr double kBsplineRounding = 1e-13;  // of a few sums of numbers of order ten
 
 /// By de Boor's algorithm: means of neighbouring levels, three times.
 double de_boor(const std::vector<double>& levels, double u) {
@@ -43,7 +43,7 @@ TEST(BSpline, IsWhatDeBoorsAlgorithmGives) {
     const double spans = static_cast<double>(n - 3);
     for (int i = 0; i < 300; ++i) {
       const double part = i / 300.0;
-      EXPECT_NEAR(spline.voltage(part * 30_us), de_boor(levels, part * spans), 12 * kRounding) << n << " at " << part;
+      EXPECT_NEAR(spline.voltage(part * 30_us), de_boor(levels, part * spans), 12 * kBsplineRounding) << n << " at " << part;
     }
   }
 }
@@ -58,7 +58,7 @@ TEST(BSpline, OfLevelsOnALineAtTheMeansOfTheKnotsIsThisLine) {
     levels.push_back(2 + 3 * mean);
   }
   const Signal spline = signal(BSpline{.levels = levels, .duration = 4});
-  for (double t = 0; t < 4; t += 0.1) EXPECT_NEAR(spline.voltage(t), 2 + 3 * t, 14 * kRounding) << t;
+  for (double t = 0; t < 4; t += 0.1) EXPECT_NEAR(spline.voltage(t), 2 + 3 * t, 14 * kBsplineRounding) << t;
 }
 
 TEST(BSpline, IsContinuousWithItsFirstTwoDerivatives) {
@@ -67,7 +67,7 @@ TEST(BSpline, IsContinuousWithItsFirstTwoDerivatives) {
   for (std::size_t i = 1; i + 1 < pieces.size(); ++i) {
     const double t = pieces[i].begin;
     EXPECT_EQ(spline.voltage_before(t), spline.voltage(t)) << t;
-    EXPECT_NEAR(pieces[i - 1].rate(t), pieces[i].rate(t), 1e3 * kRounding) << t;
+    EXPECT_NEAR(pieces[i - 1].rate(t), pieces[i].rate(t), 1e3 * kBsplineRounding) << t;
     constexpr double h = 1e-4;  // the second derivative of a cubic is linear: this difference is exact but for rounding over h
     const auto curvature = [&](const SignalPiece& piece) { return (piece.rate(t + h) - piece.rate(t - h)) / (2 * h); };
     EXPECT_NEAR(curvature(pieces[i - 1]), curvature(pieces[i]), 1e-6) << t;

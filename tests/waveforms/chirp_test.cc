@@ -16,7 +16,7 @@ using namespace literals;
 using test::expect_invalid;
 
 // Rounding of angles up to some hundred radians, relative to the voltages.
-constexpr double kSineRounding = 1e-12;
+constexpr double kChirpRounding = 1e-12;
 
 void expect_formula(const Chirp& c, double span) {
   const Signal compiled = signal(c);
@@ -28,7 +28,7 @@ void expect_formula(const Chirp& c, double span) {
     const double envelope = t < c.start || t >= c.end ? 0 : std::min({1.0, in, out}) * std::exp(-s / c.decay_time);
     const double sweep = std::isfinite(duration) ? (c.frequency_ratio - 1) * c.angular_frequency / duration : 0;
     const double expected = base + c.amplitude * envelope * std::sin(c.phase + c.angular_frequency * s + sweep * s * s / 2);
-    EXPECT_NEAR(compiled.voltage(t), expected, kSineRounding * (std::abs(c.base) + std::abs(c.amplitude))) << "t = " << t;
+    EXPECT_NEAR(compiled.voltage(t), expected, kChirpRounding * (std::abs(c.base) + std::abs(c.amplitude))) << "t = " << t;
   }
 }
 
@@ -68,7 +68,7 @@ TEST(Chirp, ReachesTheRatioOfItsFrequencies) {
   const double s = piece.begin - plain.start;
   ASSERT_EQ(piece.terms.size(), 1U);
   const double sweep = piece.terms[0].sweep;
-  EXPECT_NEAR(piece.terms[0].angular_frequency + sweep * (plain.end - plain.start - s), 3e6, 3e6 * kSineRounding);
+  EXPECT_NEAR(piece.terms[0].angular_frequency + sweep * (plain.end - plain.start - s), 3e6, 3e6 * kChirpRounding);
 }
 
 TEST(Chirp, OfOneFrequencyWithoutDecayIsAHarmonic) {
@@ -85,7 +85,7 @@ TEST(Chirp, OfOneFrequencyWithoutDecayIsAHarmonic) {
                                           .end = same.end,
                                           .fade = same.fade});
   EXPECT_EQ(chirp.breakpoints(), harmonic.breakpoints());
-  for (double t = 0; t < 100_us; t += 0.37_us) EXPECT_NEAR(chirp.voltage(t), harmonic.voltage(t), 46 * kSineRounding) << t;
+  for (double t = 0; t < 100_us; t += 0.37_us) EXPECT_NEAR(chirp.voltage(t), harmonic.voltage(t), 46 * kChirpRounding) << t;
 }
 
 TEST(Chirp, ThatNeverEndsDecaysToItsBase) {
@@ -94,7 +94,7 @@ TEST(Chirp, ThatNeverEndsDecaysToItsBase) {
   endless.end = kInfinity;
   const Signal compiled = signal(endless);
   EXPECT_EQ(compiled.hold_level(), 40);
-  EXPECT_NEAR(compiled.voltage(11_us + 100 * 30_us), 40, 40 * kSineRounding);
+  EXPECT_NEAR(compiled.voltage(11_us + 100 * 30_us), 40, 40 * kChirpRounding);
   EXPECT_LT(compiled.maximum(), 46);
   EXPECT_GT(compiled.maximum(), 40);
 }

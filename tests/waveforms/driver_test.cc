@@ -23,8 +23,8 @@ namespace {
 using namespace literals;
 
 const DriverLimits limits{.min_voltage = -10, .max_voltage = 50};
-constexpr double kRounding = 1e-12;  // relative to the voltages
-constexpr double tau = 2e-6;         // of the filters below [s]
+constexpr double kDriverRounding = 1e-12;  // relative to the voltages
+constexpr double tau = 2e-6;               // of the filters below [s]
 
 DriverModel of_time_constant(double seconds) { return {.bandwidth = 1 / (2 * std::numbers::pi * seconds)}; }
 
@@ -56,16 +56,16 @@ TEST(Driver, OfNoModelGivesWhatItIsTold) {
 TEST(Driver, OfABandwidthAnswersAStepWithAnExponential) {
   const Signal out = driven(Signal::constant(40_V), of_time_constant(tau), limits, 1);
   for (const double t : {0.0, 0.1e-6, 1e-6, 5e-6, 30e-6})
-    EXPECT_NEAR(out.voltage(t), 40 * (1 - std::exp(-t / tau)), 40 * kRounding) << t;
+    EXPECT_NEAR(out.voltage(t), 40 * (1 - std::exp(-t / tau)), 40 * kDriverRounding) << t;
   EXPECT_EQ(out.voltage(1), 40);
   EXPECT_EQ(out.hold_level(), 40);
   EXPECT_NEAR(out.peak_slew(), 40 / tau, 1e-8 * out.peak_slew());
-  EXPECT_LE(out.maximum(), 40 * (1 + kRounding));
+  EXPECT_LE(out.maximum(), 40 * (1 + kDriverRounding));
 }
 
 TEST(Driver, ChargesItsLoadThroughItsResistance) {
   const Signal out = driven(Signal::constant(40_V), {.source_resistance = 1e7, .load = 2e-13}, limits, 1);
-  EXPECT_NEAR(out.voltage(2e-6), 40 * (1 - std::exp(-1.0)), 40 * kRounding);
+  EXPECT_NEAR(out.voltage(2e-6), 40 * (1 - std::exp(-1.0)), 40 * kDriverRounding);
   EXPECT_EQ(driven(Signal::constant(40_V), {.source_resistance = 1e7, .load = 0}, limits, 1).pieces(),
             Signal::constant(40_V).pieces());
 }
@@ -74,7 +74,7 @@ TEST(Driver, OfABandwidthFollowsARampLateByItsTimeConstant) {
   const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 40_us}), of_time_constant(tau), limits, 1);
   const double slope = 40 / 40e-6;
   for (const double t : {1e-6, 10e-6, 39e-6})
-    EXPECT_NEAR(out.voltage(t), slope * (t - tau * (1 - std::exp(-t / tau))), 40 * kRounding) << t;
+    EXPECT_NEAR(out.voltage(t), slope * (t - tau * (1 - std::exp(-t / tau))), 40 * kDriverRounding) << t;
 }
 
 TEST(Driver, OfABandwidthTakesThreeDecibelsOfASineOfThatFrequency) {
@@ -82,7 +82,7 @@ TEST(Driver, OfABandwidthTakesThreeDecibelsOfASineOfThatFrequency) {
   const Signal told = signal(Harmonic{.base = 0, .amplitude = 6_V, .angular_frequency = omega});
   const Signal out = driven(told, of_time_constant(tau), limits, 1);
   for (double t = 200e-6; t < 230e-6; t += 1e-6)
-    EXPECT_NEAR(out.voltage(t), 6 / std::sqrt(2.0) * std::sin(omega * t - std::numbers::pi / 4), 600 * kRounding) << t;
+    EXPECT_NEAR(out.voltage(t), 6 / std::sqrt(2.0) * std::sin(omega * t - std::numbers::pi / 4), 600 * kDriverRounding) << t;
 }
 
 TEST(Driver, FiltersEveryFamilyAsItsEquationDoes) {
@@ -126,7 +126,7 @@ TEST(Driver, OfBandwidthAndResistanceHasTwoPoles) {
     return driven(Signal::constant(1_V), model, limits, 1);
   };
   for (const double t : {0.3e-6, 2e-6, 9e-6, 40e-6, 85e-6}) {
-    EXPECT_NEAR(out(b).voltage(t), 1 - (a * std::exp(-t / a) - b * std::exp(-t / b)) / (a - b), kRounding) << t;
+    EXPECT_NEAR(out(b).voltage(t), 1 - (a * std::exp(-t / a) - b * std::exp(-t / b)) / (a - b), kDriverRounding) << t;
     EXPECT_NEAR(out(a).voltage(t), 1 - (1 + t / a) * std::exp(-t / a), 1e-9) << t;
     EXPECT_NEAR(out(a * (1 + 1e-7)).voltage(t), 1 - (1 + t / a) * std::exp(-t / a), 1e-6) << t;
   }
@@ -167,17 +167,17 @@ TEST(Driver, GoesFromSampleToSampleNoFasterThanItsSlewLimit) {
   const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});  // 4 V/us
   const Signal out = driven(told, {.sample_rate = 1e6}, slow, 1);
   EXPECT_NEAR(out.peak_slew(), 5e6, 5e6 * 1e-9);
-  EXPECT_NEAR(out.voltage(3.5e-6), 8 + 5 * 0.5, 40 * kRounding);
-  EXPECT_NEAR(out.voltage(3.9e-6), 12, 40 * kRounding);
+  EXPECT_NEAR(out.voltage(3.5e-6), 8 + 5 * 0.5, 40 * kDriverRounding);
+  EXPECT_NEAR(out.voltage(3.9e-6), 12, 40 * kDriverRounding);
   // A jump takes as long as it takes.
   const Signal jump = driven(Signal::constant(40_V), {.sample_rate = 1e6}, slow, 1);
-  EXPECT_NEAR(jump.voltage(4e-6), 20, 40 * kRounding);
-  EXPECT_NEAR(jump.voltage(8e-6), 40, 40 * kRounding);
+  EXPECT_NEAR(jump.voltage(4e-6), 20, 40 * kDriverRounding);
+  EXPECT_NEAR(jump.voltage(8e-6), 40, 40 * kDriverRounding);
   EXPECT_EQ(jump.hold_level(), 40);
   const Signal two = driven(signal(Pulse{.levels = {40_V, 10_V}, .times = {3_us}}), {.sample_rate = 1e6}, slow, 1);
-  EXPECT_NEAR(two.voltage(2.9e-6), 14.5, 40 * kRounding);
-  EXPECT_NEAR(two.voltage(3.5e-6), 12.5, 40 * kRounding);
-  EXPECT_NEAR(two.voltage(4.1e-6), 10, 40 * kRounding);
+  EXPECT_NEAR(two.voltage(2.9e-6), 14.5, 40 * kDriverRounding);
+  EXPECT_NEAR(two.voltage(3.5e-6), 12.5, 40 * kDriverRounding);
+  EXPECT_NEAR(two.voltage(4.1e-6), 10, 40 * kDriverRounding);
 }
 
 TEST(Driver, FiltersHeldSamplesExactly) {
@@ -189,7 +189,7 @@ TEST(Driver, FiltersHeldSamplesExactly) {
   for (int k = 0; k < 10; ++k) {
     const double input = told.voltage(k / 1e6);
     expected = input + (expected - input) * std::exp(-1e-6 / tau);
-    EXPECT_NEAR(out.voltage((k + 1) / 1e6), expected, 40 * kRounding) << k;
+    EXPECT_NEAR(out.voltage((k + 1) / 1e6), expected, 40 * kDriverRounding) << k;
   }
 }
 

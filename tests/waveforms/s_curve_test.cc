@@ -16,12 +16,12 @@ using namespace literals;
 using test::expect_invalid;
 
 // Roundings of a sine of order one, relative to 6 V.
-constexpr double kRounding = 1e-14;
+constexpr double kSCurveRounding = 1e-14;
 
 TEST(SCurve, RisesAsHalfACosine) {
   const Signal curve = signal(SCurve{.levels = {6_V}, .edge = 8_us});
   for (const double part : {0.0, 0.1, 0.25, 0.5, 0.9, 1.0})
-    EXPECT_NEAR(curve.voltage(part * 8_us), 3 * (1 - std::cos(std::numbers::pi * part)), 6 * kRounding) << part;
+    EXPECT_NEAR(curve.voltage(part * 8_us), 3 * (1 - std::cos(std::numbers::pi * part)), 6 * kSCurveRounding) << part;
   EXPECT_EQ(curve.voltage(1), 6);
   EXPECT_EQ(curve.hold_level(), 6);
 }
@@ -42,7 +42,7 @@ TEST(SCurve, BeginsAndEndsEveryEdgeWithoutJumpOrCorner) {
   }
   EXPECT_NEAR(curve.voltage(12_us), 2, 0);
   EXPECT_NEAR(curve.voltage(30_us), 6, 0);
-  EXPECT_NEAR(curve.voltage(43.5_us), 2.5, 6 * kRounding);
+  EXPECT_NEAR(curve.voltage(43.5_us), 2.5, 6 * kSCurveRounding);
 }
 
 TEST(SCurve, WithoutAnEdgeJumps) {

@@ -15,7 +15,7 @@ namespace {
 using namespace literals;
 using test::expect_invalid;
 
-constexpr double kSineRounding = 1e-13;  // relative to the sum of the amplitudes
+constexpr double kSinesRounding = 1e-13;  // relative to the sum of the amplitudes
 
 TEST(Sines, FollowTheirFormula) {
   for (const double rise : {0_us, 3_us, 20_us, 90_us}) {
@@ -27,7 +27,7 @@ TEST(Sines, FollowTheirFormula) {
         for (std::size_t k = 1; k <= 4; ++k)
           expected += sines.amplitudes[k - 1] * std::sin(static_cast<double>(k) * std::numbers::pi * (t - 6_us) / 50_us);
       }
-      EXPECT_NEAR(compiled.voltage(t), expected, 45 * kSineRounding) << t << " rise " << rise;
+      EXPECT_NEAR(compiled.voltage(t), expected, 45 * kSinesRounding) << t << " rise " << rise;
     }
   }
 }
