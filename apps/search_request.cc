@@ -145,11 +145,17 @@ std::vector<StartingScene> starting_scenes(const OptimizeRequest& request, const
 
 // The scene as it was given, with what its name and its lines are in messages, or as the plan has it that is gone on with.
 json given_scene(const Common& c, const json& known) {
-  json given = c.scene.empty() ? known.at("given")
-                               : json{{"file", c.scene},
-                                      {"folder", std::filesystem::absolute(c.scene).parent_path().string()},
-                                      {"text", read_file(c.scene)},
-                                      {"set", json::array()}};
+  json given;
+  if (c.scene.empty()) {
+    given = known.at("given");
+  } else {
+    // Read before the braces: what throws within them leaves GCC 12 destroying elements that were never made.
+    const std::string text = read_file(c.scene);
+    given = {{"file", c.scene},
+             {"folder", std::filesystem::absolute(c.scene).parent_path().string()},
+             {"text", text},
+             {"set", json::array()}};
+  }
   for (const std::string& assignment : c.set) given.at("set").push_back(assignment);
   return given;
 }

@@ -75,7 +75,7 @@ void FreeFlight::add_free(const Prepared& prepared, const std::string& name, dou
   const auto drive = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   const double low = limits->second.min_voltage, high = limits->second.max_voltage;
   if (free_.empty()) ramps_ = std::isfinite(limits->second.max_slew);
-  Free f{.drive = drive, .name = name, .largest = 0, .max_slew = limits->second.max_slew};
+  Free f{.drive = drive, .name = name, .largest = 0, .sign = 1, .max_slew = limits->second.max_slew};
   ControlBound bound;
   double pull = 1, release = 0;
   if (model_.drive_kind(drive) == DriveKind::piezo) {
@@ -88,7 +88,8 @@ void FreeFlight::add_free(const Prepared& prepared, const std::string& name, dou
     const double most = std::min(std::max(std::abs(low), std::abs(high)), peak);
     require(most > 0, fmt::format("driver.{}: the least time needs a voltage above 0 V", name));
     f.largest = ramps_ ? most : most * most;
-    bound = {.lower = ramps_ ? std::max(0.0, low / most) : 0, .upper = 1};
+    f.sign = std::abs(low) > std::abs(high) ? -1 : 1;
+    bound = {.lower = 0, .upper = 1};
     if (brakes) std::swap(pull, release);
   }
   if (ramps_) bound.slew = limits->second.max_slew / f.largest * time_unit();
@@ -163,7 +164,8 @@ MatrixXd FreeFlight::curvature(const VectorXd& x, const VectorXd& c, const Vecto
 
 VectorXd FreeFlight::hold() const {
   VectorXd c(controls());
-  for (std::size_t k = 0; k < free_.size(); ++k) c[static_cast<Index>(k)] = hold_[free_[k].drive] / free_[k].largest;
+  for (std::size_t k = 0; k < free_.size(); ++k)
+    c[static_cast<Index>(k)] = free_[k].sign * hold_[free_[k].drive] / free_[k].largest;
   return c;
 }
 
@@ -176,7 +178,7 @@ std::map<std::string, double> FreeFlight::volts(const VectorXd& c) const {
   for (std::size_t k = 0; k < free_.size(); ++k) {
     const double value = c[static_cast<Index>(k)] * free_[k].largest;
     const bool squared = !ramps_ && model_.drive_kind(free_[k].drive) == DriveKind::electrode;
-    all[free_[k].name] = squared ? std::sqrt(std::max(value, 0.0)) : value;
+    all[free_[k].name] = free_[k].sign * (squared ? std::sqrt(std::max(value, 0.0)) : value);
   }
   return all;
 }

@@ -64,6 +64,7 @@ class FreeFlight final : public ControlledSystem {
     std::size_t drive;
     std::string name;
     double largest;   ///< strength, or voltage where its slew is limited
+    double sign;      ///< of the voltage of an electrode, which pulls with either
     double max_slew;  ///< [V/s]
   };
   [[nodiscard]] double strength(std::size_t drive, double value) const;

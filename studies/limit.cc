@@ -24,13 +24,13 @@ using Eigen::VectorXd;
 
 constexpr int first_knots = 48;       // intervals of the controls before they are refined
 constexpr double piece_angle = 0.75;  // of the fastest mode in a piece of the mesh
-constexpr double agreement =
-    1e-4;  // of the optimum and a simulation: relative of the time of the touch, or of the gap as far as one misses it
+// Of the optimum and a simulation: relative, of the time of the touch, or of the gap as far as one misses it.
+constexpr double agreement = 1e-4;
 constexpr double longest_swing = 3;        // periods of the first mode
-                                           // of the gap: how near every mode must be to its place in the closed equilibrium
 constexpr double grazing = 0.9;            // of the permitted speed: what a landing at rest touches with at least
 constexpr double softness = 0.2;           // of the permitted speed: how much faster a simulation may touch
 constexpr double search_tolerance = 1e-6;  // of the integrator, where catches are compared
+constexpr int refinements = 3;             // of the knots: each halves their shortest interval
 constexpr int most_meshes = 3;             // each half as wide as the one before
 
 // Of the gap: how near every mode comes to its place in the closed equilibrium.
@@ -97,24 +97,28 @@ std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const Least
   return caught;
 }
 
+// The drives under searched waveforms; what is not searched is that of the plain step, else of the scene.
+std::vector<Signal> driven(const Prepared& prepared, std::map<std::string, Waveform> searched,
+                           const std::map<std::string, Waveform>& plain) {
+  searched.insert(plain.begin(), plain.end());
+  searched.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
+  return prepared.driven(signals_of(prepared.in_drive_order(searched)));
+}
+
 struct Arrival {
   double time = std::numeric_limits<double>::quiet_NaN(), velocity = time;
 };
 
 Arrival arrival(const Prepared& prepared, const std::map<std::string, Waveform>& searched, Actuator actuator, double window) {
-  std::map<std::string, Waveform> all = searched;
-  const std::map<std::string, Waveform> plain = plain_step(prepared, actuator);
-  all.insert(plain.begin(), plain.end());
-  all.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
   const ClosingOptions options{.duration = window, .tolerance = std::min(prepared.tolerance, 1e-8), .after_contact = 0};
-  const Trajectory run = simulate_closing(prepared.model, prepared.driven(signals_of(prepared.in_drive_order(all))), options);
+  const Trajectory run = simulate_closing(prepared.model, driven(prepared, searched, plain_step(prepared, actuator)), options);
   const Metrics m = metrics(run);
   return {m.initial_contact_time, m.impact_velocity};
 }
 
 }  // namespace
 
-LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options, const ControlledCourse* from) {
+LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options) {
   require(options.impact_velocity > 0 && std::isfinite(options.impact_velocity),
           "the permitted impact velocity must be positive");
   FreeFlight flight(prepared, options.actuator, options.peak);
@@ -130,7 +134,7 @@ LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options, 
     result.peak = std::min(options.peak, std::max(std::abs(limits.max_voltage), std::abs(limits.min_voltage)));
   }
   const double longest = longest_swing * 2 * pi / prepared.model.angular_frequencies()[0];
-  std::optional<ControlledCourse> guess = from != nullptr ? *from : flight.swing(longest);
+  std::optional<ControlledCourse> guess = flight.swing(longest);
   if (!guess) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
   std::optional<VectorXd> landed;
   if (options.at_rest) {
@@ -155,7 +159,7 @@ LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options, 
   // A beam at rest under the hold levels stays so where the drives have come to them.
   for (Index k = 0; landed && flight.ramps() && k < flight.controls(); ++k)
     problem.bounds[static_cast<std::size_t>(k)].after = flight.hold()[k];
-  const double finest = 1.0 / (first_knots * std::exp2(options.refinements));
+  const double finest = 1.0 / (first_knots * std::exp2(refinements));
   // A failure leaves the last course.
   const auto improve = [&] {
     ControlledCourse course = solve(problem, *guess);
@@ -227,13 +231,9 @@ double best_catch(const Prepared& prepared, const FreeFlight& flight, const Leas
   const double period = 2 * pi / prepared.model.angular_frequencies()[0];
   double best = 0, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k * step <= longest_catch && !watch.stopped(); ++k) {
-    std::map<std::string, Waveform> all = with_catch(flight, found, (1 + k * step) * found.time, plain);
-    all.insert(plain.begin(), plain.end());
-    all.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
+    const std::vector<Signal> signals = driven(prepared, with_catch(flight, found, (1 + k * step) * found.time, plain), plain);
     const ClosingOptions options{.duration = (1 + k * step) * found.time + period, .tolerance = search_tolerance};
-    const Metrics m =
-        metrics(simulate_closing(prepared.model, prepared.driven(signals_of(prepared.in_drive_order(all))), options),
-                prepared.scene.metrics);
+    const Metrics m = metrics(simulate_closing(prepared.model, signals, options), prepared.scene.metrics);
     if (!(m.major_bounce_height < least)) continue;
     least = m.major_bounce_height;
     best = k * step * found.time;
@@ -285,14 +285,18 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
           "the plain step does not touch: give --impact-velocity");
   result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);
 
-  const auto with = [&](double velocity) {
-    return LeastTimeOptions{.actuator = options.actuator, .impact_velocity = velocity, .watch = watch};
+  const LeastTimeOptions usual{.actuator = options.actuator, .impact_velocity = result.impact_velocity, .watch = watch};
+  std::map<double, LeastTime> known;  // by the speed over the permitted one
+  const auto at_speed = [&](double share) -> const LeastTime& {
+    const auto found = known.find(share);
+    if (found != known.end()) return found->second;
+    LeastTimeOptions other = usual;
+    other.impact_velocity *= share;
+    return known.emplace(share, least_time(prepared, other)).first->second;
   };
-  LeastTimeOptions at_rest = with(result.impact_velocity);
-  at_rest.at_rest = true;
   constexpr std::array quicker = {10.0, 3.0};  // times the permitted speed
   constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
-  constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0};
+  constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
   const bool over_peaks = options.curves && options.actuator != Actuator::pzt;
   const auto parts =
       static_cast<double>(3 + quicker.size() + (options.curves ? speeds.size() : 0) + (over_peaks ? peaks.size() : 0));
@@ -306,28 +310,30 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
     LimitLanding landing = landing_of(prepared, way, options.actuator, catches, watch);
     if (is_better(landing, result.landing)) result.landing = std::move(landing);
   };
-  if (next("least time of a touch")) result.touch = least_time(prepared, with(result.impact_velocity));
+  if (next("least time of a touch")) result.touch = at_speed(1);
   if (next("a landing after it")) land(result.touch, true);
   for (const double more : quicker) {
-    if (next("quicker landings")) land(least_time(prepared, with(more * result.impact_velocity)), true);
+    if (next("quicker landings")) land(at_speed(more), true);
   }
   if (next("least time at rest")) {
+    LeastTimeOptions at_rest = usual;
+    at_rest.at_rest = true;
     result.rest = least_time(prepared, at_rest);
     land(result.rest, false);
   }
   if (options.curves) {
     for (const double share : speeds) {
-      if (next("over the permitted speed"))
-        result.over_velocity.push_back(least_time(prepared, with(share * result.impact_velocity)));
+      if (next("over the permitted speed")) result.over_velocity.push_back(at_speed(share));
     }
   }
   if (over_peaks) {
     for (const double share : peaks) {
       if (!next("over the peak voltage")) break;
-      LeastTimeOptions lower = with(result.impact_velocity);
+      LeastTimeOptions lower = usual;
       lower.peak = share * result.touch.peak;
       result.over_peak.push_back(least_time(prepared, lower));
     }
+    if (!watch.stopped()) result.over_peak.push_back(result.touch);
   }
   result.interrupted = watch.stopped();
   return result;

@@ -29,7 +29,6 @@ struct LeastTimeOptions {
   double impact_velocity = 1e-3;                          ///< of the first touch, at most [m/s]
   bool at_rest = false;                                   ///< all modes at the closed equilibrium, not the contact point alone
   double peak = std::numeric_limits<double>::infinity();  ///< of the electrode that pulls, where it is less than its driver's [V]
-  int refinements = 3;                                    ///< of the knots, where the controls change; each halves them
   Watch watch = {};
 };
 
@@ -50,10 +49,8 @@ struct LeastTime {
   ControlledCourse course = {};
 };
 
-/// The least time, warm from the course of a similar problem where there is one. Throws InvalidInput for a scene that the
-/// question does not fit (free_flight.h).
-[[nodiscard]] LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options,
-                                   const ControlledCourse* from = nullptr);
+/// Throws InvalidInput for a scene that the question does not fit (free_flight.h).
+[[nodiscard]] LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options);
 
 /// A landing under a waveform that begins as one of least time does. Then it goes on pulling, to keep the beam on its contact
 /// while its modes ring down (the catch), and ends on the hold levels.

@@ -74,9 +74,8 @@ bool has_pulling_electrode(const Device& device) {
 }
 
 std::string searched_electrode(const Device& device) {
-  require(!device.electrodes.empty(),
-          fmt::format("optimize --actuator electrostatic|both needs an electrode, and the scene has none{}",
-                      device.dispersion ? "; the factor of a dispersion force is not searched" : ""));
+  require(!device.electrodes.empty(), fmt::format("--actuator electrostatic|both needs an electrode, and the scene has none{}",
+                                                  device.dispersion ? "; the factor of a dispersion force is not searched" : ""));
   for (const Electrode& e : device.electrodes) {
     if (e.name == "main" && e.side != Side::far) return e.name;
   }

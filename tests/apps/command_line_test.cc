@@ -144,7 +144,7 @@ TEST(Simulate, GivesAForceFactorAsTheFactorItIsAndNeverAsAVoltage) {
   EXPECT_EQ(j["metrics"]["peak_voltage_V"], 0);
   EXPECT_THAT(read(here.path() / "run/gap.svg"), HasSubstr("Force factor"));
   EXPECT_EQ(here.run({"optimize", "casimir.toml"}).err,
-            "softland: optimize --actuator electrostatic|both needs an electrode, and the scene has none; the factor of a "
+            "softland: --actuator electrostatic|both needs an electrode, and the scene has none; the factor of a "
             "dispersion force is not searched\n");
 }
 

@@ -96,6 +96,18 @@ TEST(LeastTime, GrowsWhereThereIsLessToPullWith) {
   EXPECT_FALSE(none.message.empty());
 }
 
+TEST(LeastTime, PullsWithTheSignThatTheDriverHas) {
+  SceneFile file = SceneFile::parse(plate, "plate.toml");
+  for (const char* change : {"driver.main.min_voltage=-120 V", "driver.main.max_voltage=5 V", "waveform.main.level=-100 V"})
+    file.set(change);
+  const Prepared negative = prepare_and_choose(file, true);
+  const LeastTime found = least_time(negative, {.impact_velocity = 0.01});
+  const LeastTime usual = least_time(prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true), {.impact_velocity = 0.01});
+  ASSERT_EQ(found.status, Status::done) << found.message;
+  EXPECT_NEAR(found.time / usual.time, 1, 1e-6);
+  EXPECT_EQ(violation(signal(found.waveforms.at("main")), negative.drives.limits.at("main")), "");
+}
+
 TEST(LeastTime, KeepsTheSlewOfTheDriver) {
   const Prepared jumps = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
   SceneFile file = SceneFile::parse(plate, "plate.toml");

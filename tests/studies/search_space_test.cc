@@ -318,7 +318,7 @@ TEST(SearchSpace, RefusesADitherWithoutRoomAboutTheHoldLevel) {
 TEST(SearchedElectrode, IsMainElseTheFirst) {
   Device device;
   EXPECT_EQ(refusal([&] { (void)searched_electrode(device); }),
-            "optimize --actuator electrostatic|both needs an electrode, and the scene has none");
+            "--actuator electrostatic|both needs an electrode, and the scene has none");
   device.electrodes = {{.name = "left"}, {.name = "right"}};
   EXPECT_EQ(searched_electrode(device), "left");
   device.electrodes.push_back({.name = "main"});
