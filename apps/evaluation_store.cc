@@ -12,7 +12,7 @@
 namespace softland::apps {
 namespace {
 
-constexpr std::size_t figures = 6;  // columns after the parameters: cost, leading cost, devices, limit, seed, closings
+constexpr std::size_t figures = 7;  // columns after the parameters: cost, leading cost, lands, devices, limit, seed, closings
 
 std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables) {
   std::vector<StoredColumn> columns;
@@ -20,7 +20,7 @@ std::vector<StoredColumn> columns_for(const std::vector<std::string>& variables)
     const PointFigure p = parameter_figure(variable);
     columns.push_back({.key = column_key(p.quantity, p.unit), .name = p.name, .unit = p.unit, .kind = ColumnKind::variable});
   }
-  for (const char* name : {"cost", "leading_cost", "devices", "given_up_above", "seed_of_devices", "closings"})
+  for (const char* name : {"cost", "leading_cost", "lands", "devices", "given_up_above", "seed_of_devices", "closings"})
     columns.push_back({.key = name, .name = name, .unit = {}, .kind = ColumnKind::figure});
   return columns;
 }
@@ -34,7 +34,7 @@ ContentKey content_of(const EvaluationKey& key) {
 
 EvaluationValues values_of(const StoredRow& row) {
   const double* figure = row.values.data() + row.values.size() - figures;
-  return {.cost = figure[0], .leading = figure[1], .closings = static_cast<long>(figure[5])};
+  return {.cost = figure[0], .leading = figure[1], .lands = figure[2] == 1, .closings = static_cast<long>(figure[6])};
 }
 
 StoredPlan stored_plan(const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
@@ -96,7 +96,7 @@ void EvaluationStore::add(const ContentKey& content, const EvaluationKey& key, c
     return key.devices > 0 && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
   };
   row.values.insert(row.values.end(),
-                    {values.cost, values.leading, or_none(static_cast<double>(key.devices)), or_none(key.hopeless),
+                    {values.cost, values.leading, values.lands ? 1.0 : 0.0, or_none(static_cast<double>(key.devices)), or_none(key.hopeless),
                      or_none(static_cast<double>(key.seed)), static_cast<double>(values.closings)});
   {
     const std::scoped_lock lock(mutex_);

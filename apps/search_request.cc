@@ -13,8 +13,11 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "config/aim.h"
+#include "config/criterion.h"
 #include "config/units.h"
 #include "studies/prepared.h"
+#include "studies/search_setting.h"
 
 namespace softland::apps {
 namespace {
@@ -22,6 +25,23 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kind = "search";
+
+// What `parse` gives; its complaints name the option.
+template <class Parse>
+auto read(const std::string& option, const Parse& parse) {
+  try {
+    return parse();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+std::vector<Criterion> read_conditions(const OptimizeRequest& request, const std::vector<FigureName>& figures) {
+  std::vector<Criterion> all;
+  for (const std::string& text : request.conditions)
+    all.push_back(read("--constrain", [&] { return parse_criterion(text, figures); }));
+  return all;
+}
 
 // "2500" evaluations or "90 s".
 void read_budget(const std::string& text, OptimizeOptions& options) {
@@ -43,10 +63,6 @@ void read_budget(const std::string& text, OptimizeOptions& options) {
     rule(q.dimension == dimension::none && q.value >= 1 && q.value <= 1e9 && q.value == std::floor(q.value));
     options.max_evaluations = static_cast<long>(q.value);
   }
-}
-
-std::string budget_words(const OptimizeOptions& options) {
-  return std::isfinite(options.max_seconds) ? fmt::format("{} s", options.max_seconds) : std::to_string(options.max_evaluations);
 }
 
 // A word of the plan that is gone on with, or `otherwise`.
@@ -79,11 +95,9 @@ OptimizeRequest with_known(OptimizeRequest r, const json& known) {
 }
 
 OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
-  const TargetRow* target = find_named(targets, request.target);
-  require(target != nullptr, [&] { return fmt::format("--target {}: must be {}", request.target, listed(targets)); });
   const Named<Actuator>* actuator = find_named(actuators, request.actuator);
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
-  OptimizeOptions options{.target = target->value,
+  OptimizeOptions options{.target = read("--target " + request.target, [&] { return parse_aim(request.target); }),
                           .actuator = actuator->value,
                           .family = request.waveform,
                           .optimizer = request.optimizer,
@@ -91,23 +105,17 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
   options.jobs = job_count(request.jobs);
   options.seed = seed_of(request.seed, options.seed);
   options.max_evaluations = request.robust.empty() ? default_budget(options.target, options.actuator) : default_closings;
+  if (request.robust.empty() && !request.budget) options.more_evaluations = options.max_evaluations / 2;
+  if (request.robust.empty()) options.conditions = read_conditions(request, figure_names());
   if (request.budget) read_budget(*request.budget, options);
   return options;
 }
 
 RobustOptions read_robust_options(const OptimizeRequest& request) {
   const std::vector<FigureName> figures = conditioned_figures();
-  const auto read = [](const std::string& option, const auto& parse) {
-    try {
-      return parse();
-    } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format("{}: {}", option, error.what()));
-    }
-  };
   RobustOptions robust;
   robust.aim.measure = read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
-  for (const std::string& text : request.conditions)
-    robust.aim.conditions.push_back(read("--constrain", [&] { return parse_criterion(text, figures); }));
+  robust.aim.conditions = read_conditions(request, figures);
   robust.samples = sample_count(request.samples, robust.samples, 8, most_searched);
   require(request.optimizer == "auto",
           [&] { return fmt::format("--optimizer {}: a robust search has a method of its own", request.optimizer); });
@@ -178,12 +186,12 @@ json plan_of(const PlannedSearch& search, const OptimizeRequest& request, const 
             {"waveform", request.waveform},
             {"optimizer", request.optimizer},
             {"start", starts},
-            {"budget", budget_words(search.options)},
+            {"budget", request.budget.value_or("")},
             {"seed", std::to_string(search.options.seed)},
             {"seeds", std::to_string(search.seeds)}};
+  if (!request.conditions.empty()) plan["constrain"] = request.conditions;
   if (!search.robust) return plan;
   plan["robust"] = request.robust;
-  plan["constrain"] = request.conditions;
   plan["calibrate"] = request.calibration;
   plan["samples"] = std::to_string(search.robust->samples);
   return plan;
@@ -218,9 +226,9 @@ std::string start_names(const json& plan) {
 PlannedSearch planned(const Common& c, const OptimizeRequest& given, const json& known) {
   const OptimizeRequest request = with_known(given, known);
   const bool is_robust = !request.robust.empty();
-  for (const bool of_devices : {!request.conditions.empty(), !request.calibration.empty(), request.samples.has_value()})
+  for (const bool of_devices : {!request.calibration.empty(), request.samples.has_value()})
     require(is_robust || !of_devices,
-            "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
+            "--calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
   OptimizeOptions options = read_options(c, request);
   std::optional<RobustOptions> robust;
   if (is_robust) robust = read_robust_options(request);

@@ -19,7 +19,7 @@ namespace softland::apps {
 struct OptimizeRequest {
   std::string target, actuator, waveform, optimizer;
   std::string robust;                   ///< the measure of a robust search; empty: the nominal device alone
-  std::vector<std::string> conditions;  ///< of a robust search
+  std::vector<std::string> conditions;  ///< of the winner, or of a robust search
   std::string calibration;              ///< what is measured on every device; empty: what the scene says
   std::optional<std::string> samples;   ///< devices of a robust search
   std::vector<std::string> starts;      ///< results and scenes to begin with
@@ -42,7 +42,7 @@ struct PlannedSearch {
   SceneFile scene;
   OptimizeOptions options;  ///< with the first of the seeds
   std::optional<RobustOptions> robust;
-  std::vector<std::string> conditions;  ///< of `robust`, in the words of the options
+  std::vector<std::string> conditions;  ///< in the words of the options
   std::vector<StartingScene> starts;
   std::uint64_t seeds = 1;
   nlohmann::json plan;  ///< all that decides what is found, see plan_of()

@@ -28,7 +28,7 @@ json plan_in(const fs::path& store) {
 // Evaluations that a search may ask for: of a robust one each takes eight devices at least, but for those of its scouting.
 std::int64_t most_evaluations(const PlannedSearch& search) {
   constexpr std::int64_t most = std::int64_t{1} << 24, scouting = 4096;
-  const std::int64_t budget = std::min<std::int64_t>(search.options.max_evaluations, most);
+  const std::int64_t budget = std::min<std::int64_t>(search.options.max_evaluations + search.options.more_evaluations, most);
   const std::int64_t each = search.robust ? budget / 8 + scouting : budget;
   const auto seeds = static_cast<std::int64_t>(search.seeds);
   return each > most / seeds ? most : each * seeds;
@@ -138,7 +138,7 @@ std::string search_words(const Common& c, const PlannedSearch& search) {
   const std::string devices =
       search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text) : std::string();
   return fmt::format("{}: searching a {} waveform, actuator {}, target {}{}", c.scene.empty() ? c.out : c.scene, o.family,
-                     name_of(actuators, o.actuator), to_string(o.target), devices);
+                     name_of(actuators, o.actuator), o.target.text(), devices);
 }
 
 }  // namespace softland::apps

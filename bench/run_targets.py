@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Every target of a search against every other: does a search for one figure win in that figure?
 
-    bench/run_targets.py BUILD/apps/softland [--seeds N] [--targets A,B] [--optimizer NAME] [--keep FILE] > results/targets.md
+    bench/run_targets.py BUILD/apps/softland [--seeds N] [--targets A,B] [--searches SCENE:ACTUATOR,...] [--optimizer NAME] [--keep FILE] > results/targets.md
 
 Runs `softland optimize` with the default budget for every shipped scene that allows a search, every target and the seeds 1 to N (default 3).
 With --keep the searches are kept in a file and not run again. Takes about ten minutes on two idle cores.
@@ -24,9 +24,11 @@ SEARCHES = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "electrost
             ("gap-closing-actuator.toml", "electrostatic")]
 # The figure of each target, its key and a unit to print it in.
 FIGURES = {"bounce": "major_bounce_height_m", "settling": "permanent_contact_time_s", "rebound": "major_bounce_height_m",
-           "count": "bounce_count", "impact": "impact_velocity_m_s", "energy": "impact_energy_J"}
+           "count": "bounce_count", "impact": "impact_velocity_m_s", "energy": "impact_energy_J", "force": "peak_contact_force_N",
+           "drive": "drive_energy_J"}
 UNITS = {"permanent_contact_time_s": ("t_p [us]", 1e6), "bounce_count": ("N_B", 1), "major_bounce_height_m": ("B_H [nm]", 1e9),
-         "impact_velocity_m_s": ("v_i [mm/s]", 1e3), "impact_energy_J": ("E_i [fJ]", 1e15)}
+         "impact_velocity_m_s": ("v_i [mm/s]", 1e3), "impact_energy_J": ("E_i [fJ]", 1e15),
+         "peak_contact_force_N": ("F [uN]", 1e6), "drive_energy_J": ("E_d [fJ]", 1e15)}
 TOLERATED = 0.05
 SIGNIFICANT = {"nem-tin.toml": 1e-11}  # [m]; the other scenes have the default, 1e-9
 
@@ -69,21 +71,26 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--targets", default=",".join(FIGURES))
+    parser.add_argument("--searches", default=",".join(":".join(one) for one in SEARCHES))
     parser.add_argument("--optimizer", default="auto")
     parser.add_argument("--keep", type=pathlib.Path)
     given = parser.parse_args()
     targets = given.targets.split(",")
+    searches = [tuple(one.split(":")) for one in given.searches.split(",")]
+    # The command that gives this table, so that a part of it says which part it is.
+    options = [f"--seeds {given.seeds}"] * (given.seeds != 3) + [f"--targets {given.targets}"] * (targets != list(FIGURES))
+    options += [f"--searches {given.searches}"] * (searches != SEARCHES)
     print(f"""# Every target against every other
 
 `softland optimize SCENE --target T --actuator A --seed N --optimizer {given.optimizer}` with the default budgets. The last column names the other targets whose winner,
 on the same scene with the same seed, is better in this target's own figure by more than {TOLERATED:.0%}, or has no significant rebound where this one has.
 
-- made by `bench/run_targets.py BUILD/apps/softland > results/targets.md`, {datetime.date.today().isoformat()}, revision {revision()}
+- made by `bench/run_targets.py {" ".join(["BUILD/apps/softland"] + options)} > results/targets.md`, {datetime.date.today().isoformat()}, revision {revision()}
 - machine: {machine()}
 """)
     kept = json.loads(given.keep.read_text()) if given.keep and given.keep.exists() else {}
     for seed in range(1, given.seeds + 1):
-        for scene, actuator in SEARCHES:
+        for scene, actuator in searches:
             for target in targets:
                 name = " ".join([scene, actuator, target, str(seed), given.optimizer])
                 if name not in kept:
@@ -91,7 +98,7 @@ on the same scene with the same seed, is better in this target's own figure by m
                     if given.keep:
                         given.keep.write_text(json.dumps(kept))
     runs = losers = goals = 0
-    for scene, actuator in SEARCHES:
+    for scene, actuator in searches:
         print(f"## {scene}, {actuator}\n")
         print(f"| target | seed | time [s] | t_i [us] | {' | '.join(name for name, _ in UNITS.values())} | goal | checks: N_B | beaten by |")
         print("|---|---|---|---|" + "---|" * (len(UNITS) + 3))

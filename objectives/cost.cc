@@ -1,8 +1,12 @@
 #include "objectives/cost.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "base/require.h"
 
 namespace softland {
 namespace {
@@ -11,6 +15,27 @@ namespace {
 double ratio(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
 
 }  // namespace
+
+Aim::Aim(std::vector<Part> parts) : parts_(std::move(parts)) {
+  require(!parts_.empty(), "a search needs a target");
+  for (auto part = parts_.begin(); part != parts_.end(); ++part) {
+    require(part->weight > 0 && std::isfinite(part->weight),
+            fmt::format("the weight of {} is {}; it must be finite and > 0", to_string(part->target), part->weight));
+    require(std::none_of(parts_.begin(), part, [&](const Part& other) { return other.target == part->target; }),
+            fmt::format("{} stands twice in a sum of targets", to_string(part->target)));
+  }
+}
+
+bool Aim::is_about(Target target) const {
+  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.target == target; });
+}
+
+std::string Aim::text() const {
+  if (!is_sum()) return std::string(to_string(parts_[0].target));
+  std::string text;
+  for (const Part& part : parts_) text += fmt::format("{}{} {}", text.empty() ? "" : " + ", part.weight, to_string(part.target));
+  return text;
+}
 
 void CostObserver::knot(const TrajectoryPoint& point) {
   if (!figures_.touched) figures_.closest = std::min(figures_.closest, contact_gap_ - point.position);
@@ -22,6 +47,7 @@ void CostObserver::touch(const Touch& touch) {
   figures_.touched = true;
   figures_.touch_speed = std::max(figures_.touch_speed, touch.impact_velocity);
   figures_.impact_energy += touch.peak_energy;
+  if (!(touch.peak_force <= figures_.peak_force)) figures_.peak_force = touch.peak_force;  // keeps what is not a number
 }
 
 void CostObserver::take(const Rebound& rebound, double until) {
@@ -30,7 +56,9 @@ void CostObserver::take(const Rebound& rebound, double until) {
   if (rebound.height > significant_rebound_) last_rebound_end_ = until;
 }
 
-CostFigures CostObserver::figures(double landing_excess) {
+CostFigures CostObserver::figures(const Trajectory& end) {
+  const double landing_excess = end.landing_excess;
+  figures_.drive_energy = end.energy.source_work;
   if (!figures_.touched) return figures_;
   if (rebounds_.under_way()) take(*rebounds_.under_way(), rebounds_.last_time());
   CostFigures f = figures_;
@@ -47,10 +75,10 @@ CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& opt
   CostObserver observer(trajectory.contact_gap, options);
   for (const TrajectoryPoint& point : trajectory.points) observer.knot(point);
   for (const Touch& touch : trajectory.touches) observer.touch(touch);
-  return observer.figures(trajectory.landing_excess);
+  return observer.figures(trajectory);
 }
 
-double cost(Target target, Status status, const CostFigures& f, const CostScale& scale, const MetricsOptions& options) {
+double cost(const Aim& aim, Status status, const CostFigures& f, const CostScale& scale, const MetricsOptions& options) {
   if (status != Status::done) return std::numeric_limits<double>::infinity();
   if (!f.touched) return 10 + f.closest / scale.contact_gap;
   const double h = ratio(f.rebound_height, scale.step.rebound_height);
@@ -66,19 +94,28 @@ double cost(Target target, Status status, const CostFigures& f, const CostScale&
     const double ordered = own + bounce / 1000;
     return ordered / (1 + ordered);
   };
-  switch (target) {
-    case Target::bounce:
-    case Target::rebound:
-    case Target::count:
-      return bounce;
-    case Target::settling:
-      return judged_by(ratio(f.last_rebound_end, scale.step.first_touch));
-    case Target::impact:
-      return judged_by(v);
-    case Target::energy:
-      break;
-  }
-  return judged_by(ratio(f.impact_energy, scale.step.impact_energy));
+  const auto own = [&](Target target) {
+    switch (target) {
+      case Target::bounce:
+      case Target::rebound:
+      case Target::count:
+        return bounce;
+      case Target::settling:
+        return ratio(f.last_rebound_end, scale.step.first_touch);
+      case Target::impact:
+        return v;
+      case Target::energy:
+        return ratio(f.impact_energy, scale.step.impact_energy);
+      case Target::force:
+        return ratio(f.peak_force, scale.step.peak_force);
+      case Target::drive:
+        break;
+    }
+    return ratio(f.drive_energy, scale.step.drive_energy);
+  };
+  if (!aim.has_own_cost()) return bounce;
+  const double cost = judged_by(aim.mean(own));
+  return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
 }  // namespace softland

@@ -13,10 +13,12 @@
 //   T  first touch, over that of the step               L  T + 10 max(0, T - T_free): lateness
 //
 //   bounce, rebound, count     B = 0.2 H + 0.15 V^2 + 0.45 K + 0.1 S^2 + 0.05 P + 0.02 L
-//   settling, impact, energy   f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 where the closing
-//   rebounds
-//                              higher; F is the target's own figure over that of the step. settling: end of the last significant
-//                              rebound, first touch if none, over first touch of the step; impact: V; energy: impact energy
+//   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 where the closing
+//   force, drive               rebounds higher; F is the target's own figure over that of the step. settling: end of the last
+//                              significant rebound, first touch if none, over first touch of the step; impact: V; energy: impact
+//                              energy; force: largest contact force; drive: energy that the drives give within the score
+//
+// A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B.
 //
 // K leads B: it is smooth where the rebounds are a chaotic sequence, and where it is small there are none. Squares make the sum
 // flat and well-conditioned near a soft landing. Lateness costs little up to T_free and much beyond: the softest landing is a
@@ -27,7 +29,9 @@
 
 #include <array>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/choice.h"
 #include "model/closing/observer.h"
@@ -36,7 +40,7 @@
 
 namespace softland {
 
-enum class Target { bounce, settling, rebound, count, impact, energy };
+enum class Target { bounce, settling, rebound, count, impact, energy, force, drive };
 struct TargetRow {
   Target value;
   std::string_view name;
@@ -49,10 +53,43 @@ inline constexpr auto targets = std::to_array<TargetRow>({{Target::bounce, "boun
                                                           {Target::rebound, "rebound", false},
                                                           {Target::count, "count", false},
                                                           {Target::impact, "impact", true},
-                                                          {Target::energy, "energy", true}});
+                                                          {Target::energy, "energy", true},
+                                                          {Target::force, "force", true},
+                                                          {Target::drive, "drive", true}});
 static_assert(is_complete<targets>());
 [[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }
 [[nodiscard]] constexpr bool has_own_cost(Target target) { return row_of(targets, target).has_own_cost; }
+
+/// What a search minimises: one target, or a sum of several with weights.
+class Aim {
+ public:
+  struct Part {
+    Target target;
+    double weight = 1;
+  };
+  Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a target is an aim
+  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target stands twice.
+  explicit Aim(std::vector<Part> parts);
+
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  [[nodiscard]] bool is_sum() const { return parts_.size() > 1; }
+  /// Of one target its own; a sum always has one.
+  [[nodiscard]] bool has_own_cost() const { return is_sum() || softland::has_own_cost(parts_[0].target); }
+  [[nodiscard]] bool is_about(Target target) const;
+  /// "bounce", "0.7 bounce + 0.3 energy"
+  [[nodiscard]] std::string text() const;
+  /// The sum of value(target) with these weights, over the sum of the weights.
+  template <class Value>
+  [[nodiscard]] double mean(const Value& value) const {
+    if (!is_sum()) return value(parts_[0].target);
+    double sum = 0, weights = 0;
+    for (const Part& part : parts_) sum += part.weight * value(part.target), weights += part.weight;
+    return sum / weights;
+  }
+
+ private:
+  std::vector<Part> parts_;
+};
 
 /// The raw figures behind the costs, over a run that ends a fixed time after first contact.
 struct CostFigures {
@@ -65,6 +102,8 @@ struct CostFigures {
   double last_rebound_end = 0;  ///< of those above the significant height; first_touch if none [s]
   double impact_energy = 0;     ///< [J]
   double landing_excess = 0;    ///< [J]; 0 when it was not measured
+  double peak_force = 0;        ///< [N]; NaN on a rigid contact
+  double drive_energy = 0;      ///< [J]; NaN when it was not measured
 };
 [[nodiscard]] CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options);
 
@@ -78,8 +117,8 @@ class CostObserver final : public ClosingObserver {
   }
   void knot(const TrajectoryPoint& point) override;
   void touch(const Touch& touch) override;
-  /// Of the run, once it has ended; `landing_excess` is the Trajectory's [J].
-  [[nodiscard]] CostFigures figures(double landing_excess);
+  /// Of the run, once it has ended.
+  [[nodiscard]] CostFigures figures(const Trajectory& end);
 
  private:
   void take(const Rebound& rebound, double until);
@@ -97,11 +136,11 @@ struct CostScale {
   double free_touch = 0;    ///< T_free, over first touch of the step
 };
 /// Infinite for a run that is not done.
-[[nodiscard]] double cost(Target target, Status status, const CostFigures& figures, const CostScale& scale,
+[[nodiscard]] double cost(const Aim& aim, Status status, const CostFigures& figures, const CostScale& scale,
                           const MetricsOptions& options);
-[[nodiscard]] inline double cost(Target target, const Trajectory& trajectory, const CostScale& scale,
+[[nodiscard]] inline double cost(const Aim& aim, const Trajectory& trajectory, const CostScale& scale,
                                  const MetricsOptions& options) {
-  return cost(target, trajectory.status, cost_figures(trajectory, options), scale, options);
+  return cost(aim, trajectory.status, cost_figures(trajectory, options), scale, options);
 }
 
 }  // namespace softland

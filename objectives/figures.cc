@@ -33,6 +33,10 @@ const Figure& figure_of(Target target) {
       return figure_of(&Metrics::impact_energy);
     case Target::count:
       return figure_of(&Metrics::bounce_count);
+    case Target::force:
+      return figure_of(&Metrics::peak_contact_force);
+    case Target::drive:
+      return figure_of(&Metrics::drive_energy);
     case Target::bounce:
     case Target::rebound:
       break;

@@ -7,6 +7,7 @@
 
 #include "reports/course.h"
 #include "reports/quantity.h"
+#include "studies/optimize.h"
 
 namespace softland::internal {
 namespace {
@@ -97,6 +98,10 @@ std::string goal_text(const Result& result, const Figure& figure) {
   if (!target) return {};
   if (figure.is_count()) return target->has_own_cost ? "" : "0";
   const double step = figure_of_run(result.baseline, figure.member);
+  if (target->value == Target::settling && figure.member == Figure::Member(&Metrics::permanent_contact_time)) {
+    const double touch = figure_of_run(result.baseline, &Metrics::initial_contact_time);
+    if (std::isfinite(touch)) return "at most " + quantity(settling_goal * touch, figure.unit, 4);
+  }
   const bool wanted = target->has_own_cost && figure_of(target->value).member == figure.member && std::isfinite(step);
   return wanted ? "below " + quantity(step, figure.unit, 4) : "";
 }

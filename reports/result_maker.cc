@@ -120,7 +120,7 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
   r.status = interrupted  ? std::string_view("interrupted")
              : found.best ? to_string(found.best->metrics.status)
                           : to_string(Status::no_contact);
-  r.target = to_string(options.target);
+  r.target = options.target.text();
   r.actuator = name_of(actuators, options.actuator);
   r.waveform = options.family;
   r.seed = options.seed;

@@ -92,14 +92,15 @@ std::vector<std::string> heads() {
 
 }  // namespace
 
-void rank(ResultSeeds& seeds, Target target, double significant, bool over_devices) {
-  const Figure& own = figure_of(target);
-  const bool is_height = target == Target::bounce || target == Target::rebound;
+void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_devices) {
+  const bool by_figure = !over_devices && !target.is_sum();
+  const Figure& own = figure_of(target.parts()[0].target);
+  const bool is_height = target.is_about(Target::bounce) || target.is_about(Target::rebound);
   const auto key = [&](const ResultSeeds::Search& one) {
     const double settled = one.figures[figure_of(&Metrics::settled)];
     const int belief = over_devices ? (one.goal_met ? 1 : 0) : one.confirmed ? 3 : one.goal_met ? 2 : settled == 1 ? 1 : 0;
-    double figure = over_devices ? 0 : or_none(one.figures[own]);
-    if (is_height && !over_devices) figure = std::max(figure, significant);
+    double figure = by_figure ? or_none(one.figures[own]) : 0;
+    if (is_height && by_figure) figure = std::max(figure, significant);
     return std::tuple(-belief, figure, or_none(one.cost), one.seed);
   };
   const auto best = std::min_element(seeds.searches.begin(), seeds.searches.end(),

@@ -26,6 +26,7 @@ struct EvaluationKey {
 struct EvaluationValues {
   double cost = std::numeric_limits<double>::infinity();     ///< the search's own; infinite where it is infeasible
   double leading = std::numeric_limits<double>::infinity();  ///< the cost that leads the first stage of a search; see TwoStages
+  bool lands = false;                                        ///< without a significant rebound
   long closings = 1;                                         ///< that it took
 };
 

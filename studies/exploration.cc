@@ -12,6 +12,7 @@
 
 #include "base/require.h"
 #include "base/shortened.h"
+#include "config/aim.h"
 #include "model/pull_in.h"
 #include "objectives/figures.h"
 #include "studies/certify.h"
@@ -53,12 +54,12 @@ void complete_search(std::map<std::string, std::string>& given, const auto& chec
   given.try_emplace("actuator", name_of(actuators, Actuator::electrostatic));
   given.try_emplace("waveform", "pulse");
   given.try_emplace("optimizer", "auto");
-  const auto* target = find_named(targets, given["target"]);
-  checked("target", [&] { require(target != nullptr, [] { return fmt::format("must be {}", listed(targets)); }); });
+  Aim target = Target::bounce;
+  checked("target", [&] { target = parse_aim(given["target"]); });
   const auto* actuator = find_named(actuators, given["actuator"]);
   checked("actuator", [&] { require(actuator != nullptr, [] { return fmt::format("must be {}", listed(actuators)); }); });
   checked("optimizer", [&] { static_cast<void>(optimizer_description(given["optimizer"])); });
-  given.try_emplace("budget", std::to_string(default_budget(target->value, actuator->value)));
+  given.try_emplace("budget", std::to_string(default_budget(target, actuator->value)));
   checked("budget", [&] {
     constexpr std::uint64_t most = 1'000'000'000;
     try {
@@ -334,7 +335,7 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& 
 
 PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& watch) {
   const std::map<std::string, std::string>& asked = plan_.options();
-  OptimizeOptions search{.target = find_named(targets, asked.at("target"))->value,
+  OptimizeOptions search{.target = parse_aim(asked.at("target")),
                          .actuator = find_named(actuators, asked.at("actuator"))->value,
                          .family = asked.at("waveform"),
                          .optimizer = asked.at("optimizer"),

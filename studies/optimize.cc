@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/engineering.h"
+#include "objectives/figures.h"
 #include "studies/plain_step.h"
 #include "studies/search_setting.h"
 
@@ -16,16 +17,22 @@ namespace {
 constexpr double tight_tolerance = 1e-9;    // of the confirming run
 constexpr int more_modes = 2;               // of the confirming run
 constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
+constexpr std::size_t most_sure = 4;        // more, where those did not stand up
 constexpr double distinct = 1.01;           // ratio of the costs of two candidates
 
-// The target's own figure, infinite where the closing has none.
-double figure(Target target, const Metrics& m) {
-  const double value = figure_of(target).value(m);
+// The target's own figure, infinite where the closing has none; of a sum, the mean of figures over those of the baseline, of
+// settling over its first touch: it may not settle at all.
+double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
+  const double value = aim.mean([&](Target target) {
+    const double own = figure_of(target).value(m);
+    const double unit = target == Target::settling ? baseline.initial_contact_time : figure_of(target).value(baseline);
+    return aim.is_sum() && unit > 0 ? own / unit : own;
+  });
   return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
 }
 
 // How far a candidate is believed.
-enum class Belief { touches, settles, meets_goal, confirmed };
+enum class Belief { touches, settles, lands, meets_goal, confirmed };
 
 // A candidate after its run over the whole window, as its file says, at the accuracy the scene asks for.
 struct Verified {
@@ -35,11 +42,12 @@ struct Verified {
   std::map<std::string, double> parameters;
   double cost = 0;
   double figure = 0;  // the target's own; rebounds that are not significant are equal
+  double broken = 0;  // by how much it breaks the conditions
   Belief belief = Belief::touches;
 
   [[nodiscard]] bool better_than(const Verified& other) const {
-    return std::tuple(-static_cast<int>(belief), figure, cost) <
-           std::tuple(-static_cast<int>(other.belief), other.figure, other.cost);
+    return std::tuple(-static_cast<int>(belief), broken, figure, cost) <
+           std::tuple(-static_cast<int>(other.belief), other.broken, other.figure, other.cost);
   }
 };
 
@@ -51,6 +59,7 @@ class Verification {
       : given_(setting.given),
         baseline_(setting.baseline.metrics),
         target_(options.target),
+        conditions_(options.conditions),
         watch_{.progress = options.on_preparation} {}
 
   void add(const SceneFile& text, double cost, std::map<std::string, double> parameters) {
@@ -62,11 +71,13 @@ class Verification {
                  .checks = {},
                  .parameters = std::move(parameters),
                  .cost = cost,
-                 .figure = figure(target_, m),
-                 .belief = met(m)      ? Belief::meets_goal
-                           : m.settled ? Belief::settles
-                                       : Belief::touches};
-    if (target_ == Target::bounce || target_ == Target::rebound)
+                 .figure = figure(target_, m, baseline_),
+                 .broken = broken(conditions_, m),
+                 .belief = met(m)                             ? Belief::meets_goal
+                           : m.settled && m.bounce_count == 0 ? Belief::lands
+                           : m.settled                        ? Belief::settles
+                                                              : Belief::touches};
+    if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))
       now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
     if (now.belief == Belief::meets_goal || !best_ || now.better_than(*best_)) now.checks = confirm(now.scene);
     if (now.belief == Belief::meets_goal &&
@@ -75,6 +86,8 @@ class Verification {
     if (!best_ || now.better_than(*best_)) best_ = std::move(now);
   }
 
+  /// The cost of the best so far; infinite where there is none.
+  [[nodiscard]] double best_cost() const { return best_ ? best_->cost : std::numeric_limits<double>::infinity(); }
   /// Whether no candidate that costs as much or more can be better.
   [[nodiscard]] bool decided(double cost) const { return best_ && best_->belief == Belief::confirmed && best_->cost <= cost; }
 
@@ -83,7 +96,11 @@ class Verification {
     if (!best_) return;
     result.goal_met = best_->belief >= Belief::meets_goal;
     result.confirmed = best_->belief == Belief::confirmed;
-    result.better_than_baseline = figure(target_, best_->closing.metrics) < figure(target_, baseline_);
+    const Metrics& m = best_->closing.metrics;
+    result.better_than_baseline = figure(target_, m, baseline_) < figure(target_, baseline_, baseline_);
+    for (const Criterion& one : conditions_) {
+      if (broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
+    }
     result.best_scene = std::move(best_->scene);
     result.best = std::move(best_->closing);
     result.checks = std::move(best_->checks);
@@ -92,11 +109,20 @@ class Verification {
   }
 
  private:
-  [[nodiscard]] bool met(const Metrics& m) const { return goal_met(target_, m, baseline_); }
+  // Of a confirming run nothing is known that is not of the motion: its hold force and drives are those of the winner.
+  [[nodiscard]] bool met(const Metrics& m) const { return goal_met(target_, m, baseline_) && !(broken(known(m), m) > 0); }
+  [[nodiscard]] std::vector<Criterion> known(const Metrics& m) const {
+    std::vector<Criterion> all;
+    for (const Criterion& one : conditions_) {
+      if (std::isfinite(all_figures[one.figure].value(m))) all.push_back(one);
+    }
+    return all;
+  }
 
   const Prepared& given_;
   const Metrics& baseline_;
-  Target target_;
+  Aim target_;
+  std::vector<Criterion> conditions_;
   Watch watch_;
   std::optional<Verified> best_;
 };
@@ -128,14 +154,19 @@ std::vector<ConfirmingRun> confirm(const Prepared& winner) {
   return runs;
 }
 
-long default_budget(Target target, Actuator actuator) {
+long default_budget(const Aim& target, Actuator actuator) {
   const long by_bounce = actuator == Actuator::electrostatic ? 2500 : 10000;
-  return has_own_cost(target) ? by_bounce + by_bounce / 2 : by_bounce;
+  return target.has_own_cost() ? by_bounce + by_bounce / 2 : by_bounce;
 }
 
-bool goal_met(Target target, const Metrics& best, const Metrics& baseline) {
+bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
   if (!best.settled || best.bounce_count > 0) return false;
-  return !has_own_cost(target) || figure(target, best) < figure(target, baseline);
+  if (!target.has_own_cost()) return true;
+  // The plain step bounces for many times its closing: what counts is how soon contact can begin for good.
+  const bool is_settling = !target.is_sum() && target.is_about(Target::settling);
+  if (is_settling && std::isfinite(baseline.initial_contact_time))
+    return best.permanent_contact_time <= settling_goal * baseline.initial_contact_time;
+  return figure(target, best, baseline) < figure(target, baseline, baseline);
 }
 
 namespace {
@@ -147,7 +178,9 @@ class Search {
       : setting_(setting),
         options_(options),
         problem_{.variables = setting.space.variables(), .objective = {}, .starts = {}},
-        progress_{.baseline_cost = setting.baseline_cost} {
+        progress_{.baseline_cost = setting.baseline_cost},
+        stages_([this](std::span<const double> x) { return setting_.price_at(x, options_.memory); },
+                [this](const Evaluation& e) { evaluated(e); }) {
     for (const Variable& v : problem_.variables) names_.push_back(v.name);
     if (options.on_start) options.on_start(names_);
   }
@@ -166,25 +199,35 @@ class Search {
   }
 
   OptimizerResult run() {
-    TwoStages stages([&](std::span<const double> x) { return setting_.price_at(x, options_.memory); },
-                     [&](const Evaluation& e) { evaluated(e); });
-    return stages.run(std::move(problem_),
-                      {.optimizer = options_.optimizer,
-                       .max_evaluations = options_.max_evaluations,
-                       .max_seconds = options_.max_seconds,
-                       .seed = options_.seed,
-                       .jobs = options_.jobs,
-                       .stop = options_.stop},
-                      has_own_cost(options_.target));
+    return stages_.run(std::move(problem_),
+                       {.optimizer = options_.optimizer,
+                        .max_evaluations = options_.max_evaluations,
+                        .max_seconds = options_.max_seconds,
+                        .seed = options_.seed,
+                        .jobs = options_.jobs,
+                        .stop = options_.stop},
+                       options_.target.has_own_cost(), options_.more_evaluations);
   }
 
   // The best of the landings that were given and of what the search came upon, each verified.
   Verification verified(const std::vector<Evaluation>& improvements) const {
     Verification all(setting_, options_);
     for (const Landing& given : landings_) all.add(given.scene, given.cost, named(given.x));
+    std::vector<std::vector<double>> tried;
     for (const Evaluation& e : candidates(improvements)) {
+      tried.push_back(e.x);
       all.add(setting_.scene(setting_.space.waveforms(e.x)), e.value, named(e.x));
       if (all.decided(e.value)) break;
+    }
+    // Where the best by the own cost did not stand up to the full run, others that promise more than what did: the surest
+    // landings first, among which are the winners of a search for another target.
+    if (options_.target.has_own_cost()) {
+      for (std::size_t k = 0; k < most_sure; ++k) {
+        const std::optional<Evaluation> e = stages_.surest_below(all.best_cost() / distinct, tried);
+        if (!e || !(e->value < never_touched)) break;
+        tried.push_back(e->x);
+        all.add(setting_.scene(setting_.space.waveforms(e->x)), e->value, named(e->x));
+      }
     }
     return all;
   }
@@ -228,6 +271,7 @@ class Search {
   std::vector<std::string> names_;
   std::vector<Landing> landings_;
   OptimizeProgress progress_;
+  TwoStages stages_;
 };
 
 }  // namespace
@@ -235,7 +279,7 @@ class Search {
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
   const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family,
-                                               {.stop = options.stop, .progress = options.on_preparation});
+                                               {.stop = options.stop, .progress = options.on_preparation}, options.conditions);
   setting.check_starts(options.starts);
   Search search(setting, options);
   search.begin();

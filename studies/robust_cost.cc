@@ -117,24 +117,30 @@ double RobustCost::score(const DeviceOutcome& outcome) const {
   const Metrics &m = outcome.metrics, &step = step_.metrics;
   const double speed = over(outcome.largest_impact_velocity, step_.largest_impact_velocity);
   const double height = over(m.major_bounce_height, step.major_bounce_height);
-  switch (setting_.target) {
-    case Target::bounce:
-      return (speed + height) / 2;
-    case Target::rebound:
-      return height;
-    case Target::count:
-      return over(m.bounce_count, step.bounce_count);
-    case Target::impact:
-      return speed;
-    case Target::settling: {
-      // Of one that bounces on, all that is known is that it comes later.
-      const double settled = m.settled ? m.permanent_contact_time : 2 * (m.initial_contact_time + window_);
-      return over(settled, step.initial_contact_time);
+  return setting_.target.mean([&](Target target) {
+    switch (target) {
+      case Target::bounce:
+        return (speed + height) / 2;
+      case Target::rebound:
+        return height;
+      case Target::count:
+        return over(m.bounce_count, step.bounce_count);
+      case Target::impact:
+        return speed;
+      case Target::settling: {
+        // Of one that bounces on, all that is known is that it comes later.
+        const double settled = m.settled ? m.permanent_contact_time : 2 * (m.initial_contact_time + window_);
+        return over(settled, step.initial_contact_time);
+      }
+      case Target::energy:
+        return over(m.impact_energy, step.impact_energy);
+      case Target::force:
+        return over(m.peak_contact_force, step.peak_contact_force);
+      case Target::drive:
+        break;
     }
-    case Target::energy:
-      break;
-  }
-  return over(m.impact_energy, step.impact_energy);
+    return over(m.drive_energy, step.drive_energy);
+  });
 }
 
 double RobustCost::value(std::span<const DeviceOutcome> outcomes) const {

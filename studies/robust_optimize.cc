@@ -439,7 +439,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
 SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
                                        const Watch& watch) {
   static_cast<void>(optimizer_description(options.optimizer));
-  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
+  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch, options.conditions);
   setting.check_starts(options.starts);
   if (over_devices) {
     static_cast<void>(known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch));

@@ -8,6 +8,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
+#include "objectives/figures.h"
 #include "studies/choices.h"
 #include "studies/plain_step.h"
 
@@ -29,7 +30,38 @@ CostFigures imagined_step(const Prepared& given, double period) {
           .impact_energy = 0};
 }
 
+/// One run for the cost and for the figures of merit.
+struct PricedClosing final : ClosingObserver {
+  PricedClosing(double contact_gap, const MetricsOptions& options) : cost(contact_gap, options), metrics(contact_gap, options) {}
+  void knot(const TrajectoryPoint& point) override {
+    cost.knot(point);
+    metrics.knot(point);
+  }
+  void touch(const Touch& touch) override {
+    cost.touch(touch);
+    metrics.touch(touch);
+  }
+  CostObserver cost;
+  MetricsObserver metrics;
+};
+
 }  // namespace
+
+double broken(const std::vector<Criterion>& conditions, const Metrics& metrics) {
+  constexpr double most = 10;
+  double sum = 0;
+  for (const Criterion& one : conditions) sum += std::clamp(one.violation(all_figures[one.figure].value(metrics)), 0.0, most);
+  return sum;
+}
+
+std::vector<FigureName> figure_names() {
+  static_assert(all_figures.back().is_yes_or_no(), "numbers of conditions are those of all_figures");
+  std::vector<FigureName> names;
+  for (const Figure& figure : all_figures) {
+    if (!figure.is_yes_or_no()) names.push_back({.key = figure.key, .symbol = figure.symbol, .unit = figure.unit});
+  }
+  return names;
+}
 
 double last_breakpoint(const std::vector<Signal>& signals) {
   double last = 0;
@@ -65,16 +97,28 @@ bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) 
 }
 
 Prices SearchSetting::price(const std::vector<Signal>& signals) const {
-  CostObserver observer(scale.contact_gap, given.scene.metrics);
+  PricedClosing observer(scale.contact_gap, given.scene.metrics);
   // A drive that still changes after the score would open the switch again unseen.
   ClosingOptions own = run;
   own.no_end_before = last_breakpoint(signals) + given.model.in_contact_period();
   own.duration = std::max(run.duration, own.no_end_before);
   const Trajectory end = observe_closing(given.model, signals, own, observer);
-  const CostFigures figures = observer.figures(end.landing_excess);
-  const auto by = [&](Target one) { return cost(one, end.status, figures, scale, given.scene.metrics); };
-  const double leading = by(Target::bounce);
-  return {.leading = leading, .own = has_own_cost(target) ? by(target) : leading};
+  const CostFigures figures = observer.cost.figures(end);
+  const auto by = [&](const Aim& one) { return cost(one, end.status, figures, scale, given.scene.metrics); };
+  Prices prices{.leading = by(Target::bounce)};
+  prices.own = target.has_own_cost() ? by(target) : prices.leading;
+  prices.lands = prices.leading < never_touched && figures.rebound_height <= given.scene.metrics.significant_rebound;
+  if (conditions.empty() || !(prices.leading < never_touched)) return prices;
+  Metrics metrics = observer.metrics.metrics(end);
+  metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
+  set_drive_figures(metrics, given, signals);
+  const double violation = broken(conditions, metrics);
+  if (!(violation > 0)) return prices;
+  // Less than what separates a landing from none, and for the own cost more than any landing that fulfils them costs.
+  const double penalty = 3 * violation / (1 + violation);
+  prices.leading += penalty;
+  prices.own += target.has_own_cost() ? 1 + penalty : penalty;
+  return prices;
 }
 
 Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory) const {
@@ -82,11 +126,11 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
   if (!is_allowed(searched)) return {};
   const EvaluationKey key{.x = {x.begin(), x.end()}};
   if (memory != nullptr) {
-    if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost};
+    if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
   }
   Prices found = price(given.driven(signals_of(drives(searched))));
-  found = {.leading = found.leading + 0.0, .own = found.own + 0.0};  // of zeros a memory need not keep the sign
-  if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading});
+  found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
+  if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
   return found;
 }
 
@@ -97,10 +141,12 @@ void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) c
   }
 }
 
-SearchSetting search_setting(const SceneFile& file, Target target, Actuator actuator, const std::string& family,
-                             const Watch& watch) {
+SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
+                             const Watch& watch, std::vector<Criterion> conditions) {
   Prepared given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
+  require(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr),
+          "--target force: an impact on a rigid contact has an impulse, and no force to lower");
   Prepared baseline_scene = read_back(with_waveforms(given, plain_step(given, actuator)), "baseline.toml", given);
   Closing baseline = simulate(baseline_scene, true, watch);
   watch.throw_if_stopped();
@@ -127,6 +173,7 @@ SearchSetting search_setting(const SceneFile& file, Target target, Actuator actu
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
   SearchSpace space(given, actuator, family, scale.step.first_touch);
   return {.target = target,
+          .conditions = std::move(conditions),
           .given = std::move(given),
           .baseline_scene = std::move(baseline_scene),
           .baseline = std::move(baseline),

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "config/criterion.h"
 #include "objectives/cost.h"
 #include "studies/evaluation_memory.h"
 #include "studies/search_space.h"
@@ -25,9 +26,10 @@ namespace softland {
 inline constexpr double never_touched = 10;
 
 struct SearchSetting {
-  Target target;
-  Prepared given;           ///< the scene
-  Prepared baseline_scene;  ///< under the plain step
+  Aim target;
+  std::vector<Criterion> conditions;  ///< that a landing has to fulfil, on figures of all_figures
+  Prepared given;                     ///< the scene
+  Prepared baseline_scene;            ///< under the plain step
   Closing baseline;
   CostScale scale;
   double baseline_cost = 0;
@@ -49,8 +51,13 @@ struct SearchSetting {
 };
 
 /// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.
-[[nodiscard]] SearchSetting search_setting(const SceneFile& file, Target target, Actuator actuator, const std::string& family,
-                                           const Watch& watch);
+[[nodiscard]] SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
+                                           const Watch& watch, std::vector<Criterion> conditions = {});
+
+/// By how much a closing breaks the conditions, added up; each by at most 10.
+[[nodiscard]] double broken(const std::vector<Criterion>& conditions, const Metrics& metrics);
+/// What conditions on the nominal device may be about: all_figures.
+[[nodiscard]] std::vector<FigureName> figure_names();
 
 /// When the last piece of any of these drives begins [s].
 [[nodiscard]] double last_breakpoint(const std::vector<Signal>& signals);

@@ -206,16 +206,20 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   }
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
-  c.metrics.peak_voltage = c.metrics.peak_slew = 0;
+  set_drive_figures(c.metrics, prepared, signals);
+  return c;
+}
+
+void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals) {
+  metrics.peak_voltage = metrics.peak_slew = 0;
   const bool piezo_only = prepared.scene.device.electrodes.empty();
   for (std::size_t k = 0; k < signals.size(); ++k) {
     const DriveKind kind = prepared.model.drive_kind(k);
     if (kind == DriveKind::dispersion) continue;  // a force factor is no voltage
     if (kind == DriveKind::electrode || piezo_only)
-      c.metrics.peak_voltage = std::max(c.metrics.peak_voltage, signals[k].peak(prepared.duration));
-    c.metrics.peak_slew = std::max(c.metrics.peak_slew, signals[k].peak_slew(prepared.duration));
+      metrics.peak_voltage = std::max(metrics.peak_voltage, signals[k].peak(prepared.duration));
+    metrics.peak_slew = std::max(metrics.peak_slew, signals[k].peak_slew(prepared.duration));
   }
-  return c;
 }
 
 }  // namespace softland

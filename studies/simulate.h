@@ -42,6 +42,9 @@ struct Closing {
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const Prepared& prepared);
 
+/// Peak voltage and peak slew of these drives in the window.
+void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);
+
 /// Runs the scene's own waveforms. With `estimate_errors` a second, tighter run measures the error of each figure; where a scene
 /// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
 /// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer

@@ -62,7 +62,18 @@ std::vector<std::vector<double>> TwoStages::promising_points(const std::vector<V
   return chosen;
 }
 
-OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool own_cost_differs) {
+std::optional<Evaluation> TwoStages::surest_below(double own, const std::vector<std::vector<double>>& others) const {
+  const Evaluation* surest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [index, e] : log_) {
+    if (!(e.value < own) || std::find(others.begin(), others.end(), e.x) != others.end()) continue;
+    const double leading = known_.at(e.x).leading;
+    if (leading < least) least = leading, surest = &e;
+  }
+  return surest ? std::optional(*surest) : std::nullopt;
+}
+
+OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more) {
   const auto begin = std::chrono::steady_clock::now();
   options.on_improvement = {};
   OptimizerOptions first = options;
@@ -75,13 +86,17 @@ OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool o
   OptimizerOptions second = options;
   second.seed = ~options.seed;  // other points than the first stage sampled
   second.max_evaluations -= result.evaluations;
+  const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.lands; });
+  if (!own_cost_differs) second.max_evaluations = lands || result.termination != Termination::evaluation_budget ? 0 : more;
   second.max_seconds -= std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (own_cost_differs && goes_on && second.max_evaluations > 0 && second.max_seconds > 0) {
+  if (goes_on && second.max_evaluations > 0 && second.max_seconds > 0) {
     if (!log_.empty()) first_index_ = log_.rbegin()->first + 1;
     problem.starts = promising_points(problem.variables);
     OptimizerResult own = stage(problem, second, false);
     own.evaluations += result.evaluations;
-    own.message = fmt::format("first by the cost of bounce: {}; then by the target's own: {}", result.message, own.message);
+    own.message = own_cost_differs
+                      ? fmt::format("first by the cost of bounce: {}; then by the target's own: {}", result.message, own.message)
+                      : fmt::format("without a landing: {}; then from the best points: {}", result.message, own.message);
     if (own.first_exception.empty()) own.first_exception = result.first_exception;
     result = std::move(own);
   }

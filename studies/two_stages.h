@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@ namespace softland {
 struct Prices {
   double leading = std::numeric_limits<double>::infinity();
   double own = std::numeric_limits<double>::infinity();
+  bool lands = false;  ///< without a significant rebound
 };
 
 class TwoStages {
@@ -28,8 +30,11 @@ class TwoStages {
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)) {}
 
   /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
-  /// Throws as minimize() does. Result, improvements and indices are those of one search by the own cost.
-  [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, bool own_cost_differs);
+  /// Throws as minimize() does. Result, improvements and indices are those of one search by the own cost. Where both costs are
+  /// the same and no point lands, a second stage of `more` evaluations goes on from the best points.
+  [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more = 0);
+  /// Of the points whose own cost is below `own`, and that differ from the `others`, the one of the least leading cost.
+  [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<std::vector<double>>& others) const;
 
  private:
   [[nodiscard]] OptimizerResult stage(Problem problem, OptimizerOptions options, bool leading);

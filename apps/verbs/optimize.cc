@@ -182,7 +182,13 @@ int run_nominal(const Asked& asked) {
   const fs::path place = run.folder().destination(interrupted);
   const std::vector<std::string> left = write_found(run, result, found, place);
   run.folder().publish(interrupted);
+  if (!c.quiet) {
+    for (const std::string& broken : result.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
+  }
   const bool judged = result.best_scene && !interrupted && c.json != "-";
+  if (!c.quiet) {
+    for (const std::string& broken : result.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
+  }
   print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
   return status_of(result);
 }
@@ -268,7 +274,8 @@ void add_optimize(Verb& verb) {
   verb.with_scene(false);
   verb.with_json();
   verb.option("--target", request->target, "NAME",
-              first_is_default(listed(targets)) + "; the goal of each asks for no significant rebound");
+              first_is_default(listed(targets)) +
+                  ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"; the goal of each asks for no significant rebound");
   verb.option("--actuator", request->actuator, "NAME",
               "drives that the search may shape: " + first_is_default(listed(actuators)));
   verb.option("--waveform", request->waveform, "NAME",
@@ -279,8 +286,10 @@ void add_optimize(Verb& verb) {
   verb.option("--robust", request->robust, "MEASURE",
               "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
               "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");
-  verb.repeated("--constrain", request->conditions, "CONDITION",
-                "condition that 95 % of the devices have to fulfil: \"permanent_contact_time < 60 us\"; may be repeated");
+  verb.repeated(
+      "--constrain", request->conditions, "CONDITION",
+      "condition that the winner, or with --robust 95 % of the devices, has to fulfil: \"permanent_contact_time < 60 us\"; "
+      "may be repeated");
   verb.option(
       "--calibrate", request->calibration, "LIST",
       "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "

@@ -108,7 +108,7 @@ TEST_F(BadInput, Options) {
       {{"optimize", "gold.toml", "--robust", "worst", "--optimizer", "bobyqa"},
        "--optimizer bobyqa: a robust search has a method of its own"},
       {{"optimize", "gold.toml", "--samples=3"},
-       "--constrain, --calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9"},
+       "--calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9"},
       {{"export", "gold.toml", "--device-vdp", "3 A"}, "--device-vdp 3 A: must be a voltage [V] above 0, such as \"45 V\""},
       {{"export", "gold.toml", "--device-frequency", "0 Hz"},
        "--device-frequency 0 Hz: must be a frequency [Hz] above 0, such as \"30 kHz\""},
@@ -176,7 +176,11 @@ TEST_F(BadInput, Searches) {
   };
   const std::string budget = ": must be a whole number of evaluations such as 2500, or a time such as \"90 s\"";
   expect_refused({
-      {search({"--target", "softness"}), "--target softness: must be bounce, settling, rebound, count, impact or energy"},
+      {search({"--target", "softness"}),
+       "--target softness: must be bounce, settling, rebound, count, impact, energy, force or drive, or a weighted sum such as "
+       "\"0.7 "
+       "bounce + 0.3 energy\""},
+      {search({"--constrain", "t_i < 3 V"}), "--constrain: initial_contact_time in 't_i < 3 V' must be a time [s]"},
       {search({"--actuator", "magnetic"}), "--actuator magnetic: must be electrostatic, pzt or both"},
       {search({"--waveform", "table"}),
        "--waveform table: must be step, pulse, harmonic, catch, ramp, staircase:N, knots:N, coast, dual-pulse, pulses:N, "

@@ -24,6 +24,7 @@ Trajectory landing(double at, double speed, double height, double flight, double
   t.status = Status::done;
   t.contact_gap = gap;
   t.landing_excess = excess;
+  t.energy.source_work = 1e-11 * speed;
   const double dip = 1e-9, dwell = 2e-6, end = at + score_window;
   const auto add = [&](double time, double position, double velocity, double acceleration = 0) {
     t.points.push_back({time, position, velocity, acceleration, 0});
@@ -31,7 +32,8 @@ Trajectory landing(double at, double speed, double height, double flight, double
   add(0, 0, 0);
   add(at, gap, speed);
   add(at + dwell / 2, gap + dip, 0);
-  const Touch first{.begin = at, .end = at + dwell, .impact_velocity = speed, .peak_force = 1e-5, .peak_energy = 1e-12 * speed};
+  const Touch first{
+      .begin = at, .end = at + dwell, .impact_velocity = speed, .peak_force = 1e-5 * speed, .peak_energy = 1e-12 * speed};
   if (height > 0) {
     const double g = 8 * height / (flight * flight), leave = at + dwell;
     add(leave, gap, -g * flight / 2, g);
@@ -91,6 +93,39 @@ TEST(Cost, BelowOneIsThatOfALandingWithoutSignificantReboundByItsOwnFigureAlone)
   EXPECT_FALSE(prefers_early(Target::energy));
 }
 
+TEST(Cost, OfForceAndDriveFollowTheirFigures) {
+  Trajectory one = landing(20e-6, 0.1, 0, 0, 0), other = one;
+  other.touches[0].peak_force *= 0.99;
+  EXPECT_LT(cost(Target::force, other, scale(), options), cost(Target::force, one, scale(), options));
+  EXPECT_EQ(cost(Target::drive, other, scale(), options), cost(Target::drive, one, scale(), options));
+  other = one;
+  other.energy.source_work *= 0.99;
+  EXPECT_LT(cost(Target::drive, other, scale(), options), cost(Target::drive, one, scale(), options));
+  EXPECT_EQ(cost(Target::force, other, scale(), options), cost(Target::force, one, scale(), options));
+}
+
+TEST(Cost, OfASumLiesBetweenThoseOfItsPartsAndKnowsOnlyTheRatiosOfItsWeights) {
+  const Trajectory t = landing(24e-6, 0.1, 0, 0, 1e-14);
+  const double settling = cost(Target::settling, t, scale(), options), energy = cost(Target::energy, t, scale(), options);
+  ASSERT_LT(energy, settling);
+  double before = settling;
+  for (const double weight : {0.1, 0.5, 0.9}) {
+    const Aim sum({{Target::settling, 1 - weight}, {Target::energy, weight}});
+    const double between = cost(sum, t, scale(), options);
+    EXPECT_LT(between, before) << weight;
+    EXPECT_GT(between, energy) << weight;
+    EXPECT_NEAR(cost(Aim({{Target::settling, 7 * (1 - weight)}, {Target::energy, 7 * weight}}), t, scale(), options), between,
+                1e-15);
+    before = between;
+  }
+  EXPECT_EQ(Aim({{Target::bounce, 0.7}, {Target::energy, 0.3}}).text(), "0.7 bounce + 0.3 energy");
+  EXPECT_EQ(refusal([] { Aim({{Target::bounce, 1}, {Target::bounce, 2}}); }), "bounce stands twice in a sum of targets");
+  EXPECT_EQ(refusal([] {
+              Aim({{Target::bounce, 0}, {Target::drive, 2}});
+            }),
+            "the weight of bounce is 0; it must be finite and > 0");
+}
+
 TEST(Cost, OfWhatNeverTouchesIsTenAndThePartOfTheGapItLeft) {
   Trajectory open;
   open.status = Status::done;
@@ -146,7 +181,7 @@ TEST(CostObserver, GathersTheFiguresThatATrajectoryHas) {
       const Trajectory end = observe_closing(p.model, p.signals(), run, observer);
       EXPECT_TRUE(end.points.empty() && end.touches.empty());
       EXPECT_EQ(end.status, t.status);
-      const CostFigures own = observer.figures(end.landing_excess);
+      const CostFigures own = observer.figures(end);
       SCOPED_TRACE(fmt::format("{} {}", level, window));
       EXPECT_EQ(own.touched, expected.touched);
       EXPECT_EQ(own.closest, expected.closest);
@@ -154,6 +189,10 @@ TEST(CostObserver, GathersTheFiguresThatATrajectoryHas) {
       EXPECT_EQ(own.touch_speed, expected.touch_speed);
       EXPECT_EQ(own.impact_energy, expected.impact_energy);
       EXPECT_EQ(own.landing_excess, expected.landing_excess);
+      EXPECT_EQ(own.drive_energy, t.energy.source_work);
+      double force = 0;
+      for (const Touch& touch : t.touches) force = std::max(force, touch.peak_force);
+      EXPECT_EQ(own.peak_force, force);
       // And what a trajectory says of its own rebounds.
       double separated = 0, height = 0, last_end = expected.first_touch;
       for (const Rebound& r : rebounds(t)) {

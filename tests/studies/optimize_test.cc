@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "scenes.h"
+#include "studies/search_setting.h"
 
 namespace softland {
 namespace {
@@ -100,6 +101,46 @@ TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel) {
   EXPECT_DOUBLE_EQ(piezo.rise_time, 3e-6);
   EXPECT_GT(log.result.baseline.metrics.initial_contact_time, 0) << "it closes the switch";
   EXPECT_LT(log.result.baseline_cost, 4);
+}
+
+TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks) {
+  const std::vector<FigureName> figures = figure_names();
+  const auto with = [&](const char* condition, long budget) {
+    return search(quick(), {.conditions = {parse_criterion(condition, figures)}}, budget).result;
+  };
+  const OptimizeResult impossible = with("t_i < 1 us", 30);
+  EXPECT_THAT(impossible.broken_conditions, testing::ElementsAre("t_i < 1 us"));
+  EXPECT_FALSE(impossible.goal_met);
+  // The plain step touches at 24 us, the unconstrained winner later than this.
+  const OptimizeResult early = with("t_i < 32 us", 300);
+  ASSERT_TRUE(early.best);
+  EXPECT_TRUE(early.broken_conditions.empty());
+  EXPECT_LT(early.best->metrics.initial_contact_time, 32e-6);
+  EXPECT_GT(search(quick(), {}, 300).result.best->metrics.initial_contact_time, 32e-6);
+  // It holds at 17.8 V, and may give 21.3 V.
+  const OptimizeResult gentle = with("peak_voltage < 18 V", 100);
+  ASSERT_TRUE(gentle.best);
+  EXPECT_LT(gentle.best->metrics.peak_voltage, 18);
+}
+
+TEST(Optimize, MinimisesASumByTheMeanOfItsFigures) {
+  const Aim sum({{Target::settling, 1}, {Target::energy, 2}});
+  const Log log = search(quick(), {.target = sum}, 90);
+  EXPECT_EQ(log.evaluations.size(), 90U);
+  Metrics step;
+  step.settled = true;
+  step.bounce_count = 5;
+  step.initial_contact_time = 20e-6;
+  step.permanent_contact_time = 40e-6;
+  step.impact_energy = 1e-12;  // (40 / 20 + 2 * 1) / 3 = 1.33
+  Metrics better = step, worse = step;
+  better.bounce_count = worse.bounce_count = 0;
+  better.permanent_contact_time = 56e-6;
+  better.impact_energy = 0.5e-12;  // (56 / 20 + 2 * 0.5) / 3 = 1.27
+  worse.permanent_contact_time = 64e-6;
+  worse.impact_energy = 0.5e-12;  // (64 / 20 + 2 * 0.5) / 3 = 1.40
+  EXPECT_TRUE(goal_met(sum, better, step));
+  EXPECT_FALSE(goal_met(sum, worse, step));
 }
 
 TEST(Optimize, PricesTheBaselineAtAboutOne) {

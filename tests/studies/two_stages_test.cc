@@ -76,6 +76,36 @@ TEST(TwoStages, AreOneWhereTheCostsAreTheSame) {
   EXPECT_EQ(log.result.improvements.size(), alone.improvements.size());
 }
 
+TEST(TwoStages, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
+  for (const bool lands : {true, false}) {
+    const auto bowl = [&](std::span<const double> x) {
+      const double cost = x[0] * x[0] + x[1] * x[1];
+      return Prices{.leading = cost, .own = cost, .lands = lands};
+    };
+    std::map<long, Evaluation> seen;
+    TwoStages stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
+    const OptimizerResult result =
+        stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, {.max_evaluations = 40}, false, 25);
+    EXPECT_EQ(result.evaluations, lands ? 40 : 65);
+    EXPECT_EQ(seen.size(), lands ? 40U : 65U);
+  }
+}
+
+TEST(TwoStages, KnowTheSurestOfThePromisingPoints) {
+  TwoStages stages(prices, [](const Evaluation&) {});
+  const OptimizerResult result =
+      stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, {.max_evaluations = 300}, true);
+  const double below = result.value + 0.3;
+  const auto surest = stages.surest_below(below, {});
+  ASSERT_TRUE(surest);
+  EXPECT_LT(surest->value, below);
+  const auto next = stages.surest_below(below, {surest->x});
+  ASSERT_TRUE(next);
+  EXPECT_NE(next->x, surest->x);
+  EXPECT_LE(prices(surest->x).leading, prices(next->x).leading);
+  EXPECT_FALSE(stages.surest_below(result.value, {}));
+}
+
 TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
   std::atomic<bool> stop = false;
   std::atomic<long> calls = 0;

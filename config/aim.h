@@ -1,0 +1,13 @@
+// What a search minimises, from text: a target ("bounce"), or a weighted sum of several ("0.7 bounce + 0.3 energy").
+#pragma once
+
+#include <string_view>
+
+#include "objectives/cost.h"
+
+namespace softland {
+
+/// Throws InvalidInput with the broken rule.
+[[nodiscard]] Aim parse_aim(std::string_view text);
+
+}  // namespace softland
