@@ -96,8 +96,8 @@ void EvaluationStore::add(const ContentKey& content, const EvaluationKey& key, c
     return key.devices > 0 && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
   };
   row.values.insert(row.values.end(),
-                    {values.cost, values.leading, values.lands ? 1.0 : 0.0, or_none(static_cast<double>(key.devices)), or_none(key.hopeless),
-                     or_none(static_cast<double>(key.seed)), static_cast<double>(values.closings)});
+                    {values.cost, values.leading, values.lands ? 1.0 : 0.0, or_none(static_cast<double>(key.devices)),
+                     or_none(key.hopeless), or_none(static_cast<double>(key.seed)), static_cast<double>(values.closings)});
   {
     const std::scoped_lock lock(mutex_);
     if (next_ == points_ || !known_.emplace(content, values).second) return;

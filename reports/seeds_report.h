@@ -12,8 +12,8 @@
 namespace softland {
 
 /// Orders the searches and sets which is the best. On the nominal device goes first what is confirmed, then what meets the goal,
-/// then what settles, each by the target's own figure, a rebound below `significant` [m] counting as one, and then by cost, a sum of targets by cost alone; over
-/// devices that differ what fulfils its conditions, by cost. Of equals the first seed.
+/// then what settles, each by the target's own figure, a rebound below `significant` [m] counting as one, and then by cost, a sum
+/// of targets by cost alone; over devices that differ what fulfils its conditions, by cost. Of equals the first seed.
 void rank(ResultSeeds& seeds, const Aim& target, double significant, bool over_devices);
 
 [[nodiscard]] nlohmann::json seeds_json(const ResultSeeds& seeds);
