@@ -56,6 +56,7 @@ class Run {
       restart();
       parts_.course.push(parts_.point(here()));
       parts_.course.hand_over();
+      measure_landing();
       while (!ended_ && here().time < stop_) advance();
     }
     if (!ended_) out_.status = Status::done;
@@ -93,12 +94,18 @@ class Run {
       }
       if (model_.rigid_contact() != nullptr) return strike();
     }
+    PhaseChange change{.before = parts_.phase.law(), .after = {}};
     if (event.edge) {
+      change.kind = parts_.phase.phase() == Phase::rest ? PhaseChange::Kind::leaves : PhaseChange::Kind::edge;
+      change.level = event.edge->level;
       parts_.phase.enter(event.edge->next, event.edge->zone);
     } else {
+      change.kind = PhaseChange::Kind::turn;
       // What is left of the velocity still carries it this much deeper.
       parts_.phase.turn(p.position - plane_ - (p.acceleration < 0 ? p.velocity * p.velocity / (2 * p.acceleration) : 0));
     }
+    change.after = parts_.phase.law();
+    parts_.observer.pass(here(), change);
     restart();
   }
 
@@ -109,6 +116,10 @@ class Run {
     touch.peak_force = std::numeric_limits<double>::quiet_NaN();
     touch.peak_energy = impact.energy;
     if (!impact.rests) parts_.touches.end(here().time);
+    parts_.observer.pass(here(), {.kind = impact.rests ? PhaseChange::Kind::rests : PhaseChange::Kind::impact,
+                                  .level = plane_,
+                                  .before = parts_.phase.law(),
+                                  .after = {}});
     parts_.phase.enter(impact.rests ? Phase::rest : Phase::flight);
     audit_.impact(impact.lost, model_.damped() ? parts_.equations.dissipation(here().state.data()) : 0);
     restart();
@@ -140,15 +151,20 @@ class Run {
     if (options_.observer && options_.observer(now.time, now.state.data(), now.state.data() + model_.modes())) {
       return end(Status::done);
     }
+    measure_landing();
     const bool touched = parts_.touches.count() > 0;
-    if (touched && std::isfinite(options_.closed_potential) && !std::isfinite(out_.landing_excess) && parts_.drives.at_hold()) {
-      out_.landing_excess = audit_.above_rest(now) - options_.closed_potential;
-    }
     const double over = touched ? std::max(parts_.touches.first_begin() + options_.after_contact, options_.no_end_before)
                                 : options_.no_contact_before;
     if (now.time >= over) {
       return end(Status::done);
     }
+  }
+
+  // At the first touch under the hold levels, or when they are reached after it.
+  void measure_landing() {
+    if (ended_ || parts_.touches.count() == 0 || std::isfinite(out_.landing_excess)) return;
+    if (!std::isfinite(options_.closed_potential) || !parts_.drives.at_hold()) return;
+    out_.landing_excess = audit_.above_rest(here()) - options_.closed_potential;
   }
 
   void end(Status status) {

@@ -385,6 +385,15 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
   if (stretching_) stretching_->add_derivative(q, by_q);
 }
 
+void Switch::drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_strength) const {
+  for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
+    work.load.setZero();
+    driven_laws_[k]->add_load(work.field, 1, work.load.data());
+    by_strength.col(static_cast<Eigen::Index>(k)) = weighted_shapes_.transpose() * work.load.matrix();
+  }
+  if (device_.piezo) by_strength.rightCols<1>() = piezo_shape_;
+}
+
 void Switch::add_film_derivatives(const double* state, const Workspace& work, Eigen::Ref<Eigen::MatrixXd> derivatives) const {
   constexpr int nodes = ReynoldsFilm::nodes;
   const Eigen::Index n = modes();

@@ -116,6 +116,9 @@ class Switch {
     accelerations(state, state + modes(), volts, contact, work, result, film);
     if (film_) film_->rates(work.field, film, result + modes());
   }
+  /// Modal forces of the drives at unit strength (of the piezo: per volt) in the field last computed with `work`, whose load they
+  /// overwrite: modes x drives.
+  void drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_strength) const;
   /// Their derivatives with respect to q and v: modes x modes each.
   void jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact, Workspace& work,
                 Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const;

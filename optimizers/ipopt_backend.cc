@@ -1,4 +1,4 @@
-// Ipopt 3.11.9 as a bounded quasi-Newton method with differenced gradients. Ipopt answers an objective it cannot evaluate by
+// Ipopt 3.11.9 as a bounded quasi-Newton method. Ipopt answers an objective it cannot evaluate by
 // shortening steps, thousands of times; the Strand counts, and its Cut passes through Ipopt, which catches whatever callbacks
 // throw and returns NonIpopt_Exception_Thrown.
 #include <IpIpoptApplication.hpp>
@@ -102,7 +102,7 @@ RunReport run_ipopt(const Run& run, Strand& strand) {
   options->SetNumericValue("mu_init", 1e-4);
   options->SetNumericValue("bound_push", 1e-6);
   options->SetNumericValue("bound_frac", 1e-6);
-  options->SetNumericValue("tol", 1e-6);  // of gradients that are no better than that
+  options->SetNumericValue("tol", 1e-6);  // of gradients that may be differences
   options->SetIntegerValue("max_iter", 1000);
   // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);

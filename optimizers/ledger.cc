@@ -48,7 +48,10 @@ Strand::Strand(Ledger& ledger, std::size_t task, long budget, long first_index)
       best_seen_(ledger.best_seen_),
       worst_seen_(ledger.worst_seen_) {}
 
-bool Strand::over() const { return cut_ || evaluations() >= budget_ || ledger_.cut_off(task_); }
+bool Strand::over() const {
+  const long spent = evaluations() + evaluations_of_gradient * static_cast<long>(gradients_.size());
+  return cut_ || spent >= budget_ || ledger_.cut_off(task_);
+}
 
 Answer Strand::operator()(std::span<const double> point) {
   if (cut_) throw Cut{};
@@ -109,10 +112,31 @@ double Strand::penalty() const {
   return worst_seen_ + (spread > 0 ? std::max(spread, 1e-3 * std::abs(worst_seen_)) : std::max(1.0, std::abs(worst_seen_)));
 }
 
+// False where there is none; its parts are NaN where they are not known.
+bool Strand::known_gradient(const Point& point, std::span<double> gradient) {
+  if (!ledger_.problem_.gradient) return false;
+  const auto recall = [&](const Gradients& gradients) {
+    const auto found = gradients.find(point);
+    if (found == gradients.end()) return false;
+    std::copy(found->second.begin(), found->second.end(), gradient.begin());
+    return true;
+  };
+  if (recall(ledger_.gradients_) || recall(gradients_)) return true;
+  if (over()) {
+    cut_ = true;
+    throw Cut{};
+  }
+  gradients_.emplace(point, ledger_.gradient(*this, point));
+  return recall(gradients_);
+}
+
 void Strand::gradient(std::span<const double> point, std::span<double> gradient) {
   const Answer here = (*this)(point);
   Point moved(point.begin(), point.end());
+  for (double& coordinate : moved) coordinate = std::clamp(coordinate, 0.0, 1.0) + 0.0;
+  const bool is_known = here.feasible && known_gradient(moved, gradient);
   for (std::size_t i = 0; i < point.size(); ++i) {
+    if (is_known && std::isfinite(gradient[i])) continue;
     // Two offsets from here; both to the same side next to a bound.
     double a = -difference_step;
     double b = difference_step;
@@ -256,11 +280,27 @@ long Ledger::run(const std::vector<Task>& tasks) {
   return evaluations_ - before;
 }
 
+// By the point of the search. An exception leaves it to differences.
+std::vector<double> Ledger::gradient(Strand& strand, const Point& point) const {
+  std::vector<double> scaled(free_.size(), std::numeric_limits<double>::quiet_NaN());
+  try {
+    const std::vector<double> x = to_user(point), by_x = problem_.gradient(x);
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const Variable& variable = problem_.variables[free_[i]];
+      scaled[i] = by_x.at(free_[i]) * (variable.upper - variable.lower);
+    }
+  } catch (const std::exception& error) {
+    if (!strand.first_exception_) strand.first_exception_ = error.what();
+  }
+  return scaled;
+}
+
 void Ledger::settle(const std::vector<Strand>& strands) {
   const std::size_t last = target_task_;
   for (const Strand& strand : strands) {
     if (strand.task_ > last) break;
     if (strand.first_exception_ && best_.first_exception.empty()) best_.first_exception = *strand.first_exception_;
+    gradients_.insert(strand.gradients_.begin(), strand.gradients_.end());
     for (std::size_t k = 0; k < strand.records_.size(); ++k) {
       const Strand::Record& record = strand.records_[k];
       ++evaluations_;

@@ -37,6 +37,9 @@ struct PointHash {
   std::size_t operator()(const Point& point) const noexcept;
 };
 using Memory = std::unordered_map<Point, Answer, PointHash>;
+using Gradients = std::unordered_map<Point, std::vector<double>, PointHash>;
+/// What a gradient of the problem counts as, in evaluations.
+inline constexpr long evaluations_of_gradient = 3;
 
 class Ledger;
 
@@ -46,7 +49,8 @@ class Strand {
   /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles (many times only
   /// points it knows). A point that was seen before is answered from memory and costs nothing.
   Answer operator()(std::span<const double> point);
-  /// Central differences; one-sided at the bounds and next to infeasible points; 0 where nothing around is feasible. Throws Cut.
+  /// Of the problem where it has one, else central differences; these are one-sided at the bounds and next to infeasible points;
+  /// 0 where nothing around is feasible. Throws Cut.
   void gradient(std::span<const double> point, std::span<double> gradient);
 
   /// Whether a further evaluation would be refused for good.
@@ -68,6 +72,7 @@ class Strand {
   Strand(Ledger& ledger, std::size_t task, long budget, long first_index);
 
   Answer remember(const Point& point, double value);
+  [[nodiscard]] bool known_gradient(const Point& point, std::span<double> gradient);
   [[nodiscard]] double penalty() const;
 
   Ledger& ledger_;
@@ -82,6 +87,7 @@ class Strand {
   Point best_point_of_task_;
   Memory memory_;
   std::vector<Record> records_;
+  Gradients gradients_;  ///< of the problem
   std::optional<std::string> first_exception_;
 };
 
@@ -104,7 +110,9 @@ class Ledger {
   [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
   /// Runs the tasks, with budgets cut from the end to what remains. Returns the number of new evaluations.
   long run(const std::vector<Task>& tasks);
-  [[nodiscard]] long remaining() const { return options_.max_evaluations - evaluations_; }
+  [[nodiscard]] long remaining() const {
+    return options_.max_evaluations - evaluations_ - evaluations_of_gradient * static_cast<long>(gradients_.size());
+  }
   [[nodiscard]] bool over() const { return remaining() <= 0 || target_reached_ || outside_ != Termination::not_run; }
   /// Everything evaluated in the rounds so far, in order.
   [[nodiscard]] const std::vector<Known>& known() const { return known_; }
@@ -117,6 +125,7 @@ class Ledger {
  private:
   friend class Strand;
   double evaluate(Strand& strand, const Point& point);
+  [[nodiscard]] std::vector<double> gradient(Strand& strand, const Point& point) const;
   [[nodiscard]] std::vector<double> to_user(const Point& point) const;
   [[nodiscard]] Point to_point(std::span<const double> x) const;
   void report(long index, double value, const std::vector<double>& x);
@@ -133,6 +142,7 @@ class Ledger {
   // Between rounds only.
   std::vector<Known> known_;
   Memory memory_;
+  Gradients gradients_;
   double best_seen_ = std::numeric_limits<double>::infinity();
   double worst_seen_ = -std::numeric_limits<double>::infinity();
   long evaluations_ = 0;

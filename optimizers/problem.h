@@ -26,6 +26,9 @@ struct Problem {
   /// return a non-finite value or throw: such a point counts as infeasible; the first exception is kept in the result. It must
   /// give the same value for the same x: a point that comes back is answered from memory.
   std::function<double(std::span<const double>)> objective = {};
+  /// Its derivatives by x, where they are known; may be null. NaN where there is none: differences then take its place. Like the
+  /// objective it may be called from several threads.
+  std::function<std::vector<double>(std::span<const double>)> gradient = {};
   /// Starting points worth trying first; may be empty. Points outside the bounds are moved to them. Every optimizer evaluates all
   /// of them, as given to the last digit; local methods search from each in turn, `auto` and those with a gradient from the most
   /// promising.
@@ -98,9 +101,10 @@ struct OptimizerResult {
 /// `auto` samples the box, runs local searches from well separated good points, lets the promising ones continue and polishes the
 /// best; it uses several jobs. So do the methods with a gradient, which go on from the best points of such a search after its
 /// first two fifths. Another local method runs from the starts in turn and then from points drawn from the seed, each time until
-/// it converges, as long as the budget lasts; infeasible points are passed over. A global method runs once. Gradients are central
-/// differences, which count as evaluations. Ipopt solves one problem at a time in a process; others wait, so an objective must
-/// not itself minimize with ipopt while ipopt calls it.
+/// it converges, as long as the budget lasts; infeasible points are passed over. A global method runs once. Where the
+/// problem has no gradient it is taken by central differences, which count as evaluations; one that it has counts as three. Ipopt
+/// solves one problem at a time in a process; others wait, so an objective must not itself minimize with ipopt while ipopt calls
+/// it.
 [[nodiscard]] OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options);
 
 }  // namespace softland

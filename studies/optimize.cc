@@ -180,7 +180,7 @@ class Search {
         problem_{.variables = setting.space.variables(), .objective = {}, .starts = {}},
         progress_{.baseline_cost = setting.baseline_cost},
         stages_([this](std::span<const double> x) { return setting_.price_at(x, options_.memory); },
-                [this](const Evaluation& e) { evaluated(e); }) {
+                [this](const Evaluation& e) { evaluated(e); }, slopes_of(setting)) {
     for (const Variable& v : problem_.variables) names_.push_back(v.name);
     if (options.on_start) options.on_start(names_);
   }
@@ -233,6 +233,12 @@ class Search {
   }
 
  private:
+  // Null where the costs have no gradient.
+  [[nodiscard]] static TwoStages::Slopes slopes_of(const SearchSetting& setting) {
+    if (!setting.gradient_refusal().empty()) return {};
+    return [&setting](std::span<const double> x) { return setting.gradient_at(x); };
+  }
+
   // A landing to begin with. Its parameters are empty where the search cannot describe it.
   struct Landing {
     SceneFile scene;

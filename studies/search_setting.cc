@@ -8,6 +8,7 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/constants.h"
+#include "objectives/cost_slope.h"
 #include "objectives/figures.h"
 #include "studies/choices.h"
 #include "studies/plain_step.h"
@@ -96,13 +97,17 @@ bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) 
                      [&](const auto& one) { return violation(signal(one.second), given.drives.limits.at(one.first)).empty(); });
 }
 
-Prices SearchSetting::price(const std::vector<Signal>& signals) const {
-  PricedClosing observer(scale.contact_gap, given.scene.metrics);
-  // A drive that still changes after the score would open the switch again unseen.
+// A drive that still changes after the score would open the switch again unseen.
+ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   ClosingOptions own = run;
   own.no_end_before = last_breakpoint(signals) + given.model.in_contact_period();
   own.duration = std::max(run.duration, own.no_end_before);
-  const Trajectory end = observe_closing(given.model, signals, own, observer);
+  return own;
+}
+
+Prices SearchSetting::price(const std::vector<Signal>& signals) const {
+  PricedClosing observer(scale.contact_gap, given.scene.metrics);
+  const Trajectory end = observe_closing(given.model, signals, run_of(signals), observer);
   const CostFigures figures = observer.cost.figures(end);
   const auto by = [&](const Aim& one) { return cost(one, end.status, figures, scale, given.scene.metrics); };
   Prices prices{.leading = by(Target::bounce)};
@@ -131,6 +136,40 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
   Prices found = price(given.driven(signals_of(drives(searched))));
   found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
   if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
+  return found;
+}
+
+std::string SearchSetting::gradient_refusal() const {
+  if (target.is_about(Target::drive)) return "the energy of the drives has no gradient";
+  if (!conditions.empty()) return "conditions on figures have no gradient";
+  return LinearizedClosing::refusal(given.model);
+}
+
+PriceSlopes SearchSetting::gradient_at(std::span<const double> x) const {
+  const std::vector<double> unknown(x.size(), std::numeric_limits<double>::quiet_NaN());
+  PriceSlopes found{.leading = unknown, .own = unknown};
+  if (!is_allowed(space.waveforms(x))) return found;
+  const auto signals_at = [&](std::span<const double> at) { return given.driven(signals_of(drives(space.waveforms(at)))); };
+  const std::vector<Signal> signals = signals_at(x);
+  CostObserver observer(scale.contact_gap, given.scene.metrics);
+  MotionTape tape(observer);
+  const Trajectory end = observe_closing(given.model, signals, run_of(signals), tape);
+  const CostFigures figures = observer.figures(end);
+  const LinearizedClosing motion(given.model, signals, tape);
+  const CostSlopes slopes = cost_slopes(given.model, signals, motion, given.scene.metrics);
+  std::vector<double> lower, upper;
+  for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
+  const SignalSlopes by_parameters(signals_at, x, lower, upper);
+  const auto gradient = [&](const Aim& aim) {
+    const auto slope = cost_slope(aim, end.status, figures, scale, given.scene.metrics, slopes);
+    if (!slope) return unknown;
+    const Eigen::MatrixXd row = motion.backward({*slope}, by_parameters);
+    std::vector<double> by_x(row.data(), row.data() + row.size());
+    for (const std::size_t k : by_parameters.kinks()) by_x[k] = unknown[k];
+    return by_x;
+  };
+  found.leading = gradient(Target::bounce);
+  found.own = target.has_own_cost() ? gradient(target) : found.leading;
   return found;
 }
 

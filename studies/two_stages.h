@@ -23,11 +23,19 @@ struct Prices {
   bool lands = false;  ///< without a significant rebound
 };
 
+/// Gradients of both costs by the parameters.
+struct PriceSlopes {
+  std::vector<double> leading, own;
+};
+
 class TwoStages {
  public:
-  /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
-  TwoStages(std::function<Prices(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation)
-      : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)) {}
+  using Slopes = std::function<PriceSlopes(std::span<const double>)>;
+  /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value; `slopes` as
+  /// Problem::gradient.
+  TwoStages(std::function<Prices(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation,
+            Slopes slopes = {})
+      : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
   /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
   /// Throws as minimize() does. Result, improvements and indices are those of one search by the own cost. Where both costs are
@@ -42,6 +50,7 @@ class TwoStages {
 
   std::function<Prices(std::span<const double>)> price_;
   std::function<void(const Evaluation&)> on_evaluation_;
+  Slopes slopes_;
   std::mutex mutex_;
   std::map<std::vector<double>, Prices> known_;
   std::map<long, Evaluation> log_;  ///< by index

@@ -1,9 +1,25 @@
 // Who receives the course of a closing: all of it, or only what figures are made of.
 #pragma once
 
+#include "model/closing/knot.h"
+#include "model/contact/contact_law.h"
 #include "model/trajectory.h"
 
 namespace softland {
+
+/// What happens to the contact point between two steps.
+struct PhaseChange {
+  enum class Kind {
+    edge,    ///< it crosses `level`
+    turn,    ///< it turns back while it loads a contact with memory
+    impact,  ///< on a rigid contact, from which it rebounds
+    rests,   ///< an impact after which it stays
+    leaves   ///< the rigid contact that it has rested on
+  };
+  Kind kind = Kind::edge;
+  double level = 0;  ///< of the edge [m]
+  ContactState before, after;
+};
 
 class ClosingObserver {
  public:
@@ -12,6 +28,13 @@ class ClosingObserver {
   virtual void knot(const TrajectoryPoint&) {}
   /// A touch that is over, or at the end of the run the one that holds, whose end is NaN.
   virtual void touch(const Touch&) {}
+  /// Whether the observer follows the motion of all modes; then it is told every step and what happens between steps, in order
+  /// of time.
+  [[nodiscard]] virtual bool follows_motion() const { return false; }
+  /// A step under a contact law in this state.
+  virtual void step(const Knot& /*begin*/, const Knot& /*end*/, const ContactState& /*contact*/) {}
+  /// At the knot that the next step starts from.
+  virtual void pass(const Knot& /*here*/, const PhaseChange& /*change*/) {}
 
  protected:
   ClosingObserver() = default;

@@ -114,6 +114,7 @@ std::optional<Stepping::Step> Stepping::advance(double stop, EnergyAudit& audit)
   }
   step.field = parts_.equations.field(next_.state.data());
   account(step.field, audit);
+  if (parts_.observer.follows_motion() && next_.time > here_.time) parts_.observer.step(here_, next_, parts_.phase.law());
   std::swap(here_.state, next_.state);
   std::swap(here_.rates, next_.rates);
   here_.time = next_.time;

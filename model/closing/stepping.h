@@ -29,17 +29,19 @@ struct ClosingParts {
   RestingPlate plate;
   TouchRecord touches;
   Course course;
+  ClosingObserver& observer;
 
   ClosingParts(const Switch& switch_model, std::span<const Signal> signals, const ClosingOptions& closing_options,
-               ClosingObserver& observer)
+               ClosingObserver& closing_observer)
       : model(switch_model),
         options(closing_options),
         drives(signals),
         phase(model),
         equations(model, drives, phase, options.restart_at_contact),
         plate(model, drives, equations),
-        touches(model, phase, observer),
-        course(model.device(), observer) {}
+        touches(model, phase, closing_observer),
+        course(model.device(), closing_observer),
+        observer(closing_observer) {}
   ClosingParts(const ClosingParts&) = delete;
   ClosingParts& operator=(const ClosingParts&) = delete;
 

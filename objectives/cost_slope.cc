@@ -1,0 +1,252 @@
+#include "objectives/cost_slope.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace softland {
+namespace {
+
+using Eigen::VectorXd;
+
+void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
+  for (FigureSlope::Weights w : from.weights) {
+    w.by_q *= factor;
+    w.by_v *= factor;
+    to.weights.push_back(std::move(w));
+  }
+  for (FigureSlope::Moved m : from.moved) {
+    m.rate *= factor;
+    to.moved.push_back(m);
+  }
+}
+
+// Goes along the motion of the contact point as CostObserver does.
+class SlopeFinder {
+ public:
+  SlopeFinder(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
+              const MetricsOptions& options)
+      : model_(model),
+        signals_(signals),
+        motion_(motion),
+        options_(options),
+        shape_(model.contact_shape()),
+        plane_(model.device().gap.contact),
+        zero_(VectorXd::Zero(model.modes())),
+        work_(model.workspace()) {}
+
+  CostSlopes find() {
+    slopes_.has_peak_force = model_.has_contact() && !model_.has_damped_contact() && !model_.has_pad_contact();
+    auto passage = motion_.passages().begin();
+    for (std::size_t i = 0; i < motion_.arcs().size(); ++i) {
+      consider(i);
+      bool begins_to_touch = false;
+      for (; passage != motion_.passages().end() && passage->arcs <= i + 1; ++passage)
+        begins_to_touch = (passage->arcs == i + 1 && cross(i, passage->change)) || begins_to_touch;
+      measure_landing(i, begins_to_touch);
+    }
+    if (touches_ > 0 && touching_) end_touch();
+    if (touches_ > 0 && !touching_) {
+      end_rebound(motion_.arcs().size() - 1, false);
+      slopes_.ends_above = true;
+    }
+    return std::move(slopes_);
+  }
+
+ private:
+  using Arc = LinearizedClosing::Arc;
+
+  [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
+  // Of the contact point's position at a fixed time [m].
+  [[nodiscard]] FigureSlope position(std::size_t i, double factor) const {
+    return {.weights = {{.arc = i, .by_q = factor * shape_, .by_v = zero_}}, .moved = {}};
+  }
+  // Of the time at which the contact point crosses a level at the end of an arc.
+  [[nodiscard]] FigureSlope crossing_time(std::size_t i) const { return position(i, -1 / shape_.dot(arc(i).v)); }
+
+  // Turning points, and the ends of the run.
+  void consider(std::size_t i) {
+    const double at = shape_.dot(arc(i).q);
+    if (touches_ == 0) {
+      if (plane_ - at < closest_) {
+        closest_ = plane_ - at;
+        slopes_.closest = position(i, -1);
+      }
+    } else if (touching_) {
+      if (at - plane_ > (1 + 1e-9) * depth_ && (arc(i).turns || i + 1 == motion_.arcs().size())) deepen(i, at - plane_);
+    } else if (plane_ - at > height_) {
+      height_ = plane_ - at;
+      height_slope_ = position(i, -1);
+    }
+  }
+
+  void deepen(std::size_t i, double depth) {
+    depth_ = depth;
+    const ContactState& law = arc(i).contact;
+    if (!law.active || model_.has_pad_contact()) return;
+    const double step = 1e-5 * depth;
+    const auto slope = [&](auto&& of) { return (of(depth + step) - of(depth - step)) / (2 * step); };
+    force_ = contact_force(model_.contact(), depth, law, 0);
+    energy_slope_ = position(i, slope([&](double d) { return stored_energy(model_.contact(), d, law); }));
+    force_slope_ = position(i, slope([&](double d) { return contact_force(model_.contact(), d, law, 0); }));
+  }
+
+  // True where a touch begins.
+  bool cross(std::size_t i, const PhaseChange& change) {
+    using Kind = PhaseChange::Kind;
+    if (change.kind == Kind::turn || change.level != plane_) return false;
+    const Arc& at = arc(i);
+    const double speed = shape_.dot(at.v);
+    if (first_speed_ > 0) slopes_.grazing = std::min(slopes_.grazing, std::abs(speed) / first_speed_);
+    if (change.kind == Kind::leaves || (speed < 0 && touching_)) {
+      end_touch();
+      if (change.kind != Kind::leaves) add(slopes_.separated, crossing_time(i), -1);
+      return false;
+    }
+    if (!(speed > 0) || touching_) return false;
+    if (touches_ == 0) {
+      first_speed_ = speed;
+      slopes_.first_touch = slopes_.last_rebound_end = crossing_time(i);
+    } else {
+      end_rebound(i, true);
+    }
+    ++touches_;
+    touching_ = true;
+    depth_ = force_ = 0;
+    if (speed > fastest_) {
+      fastest_ = speed;
+      slopes_.touch_speed = {.weights = {{.arc = i, .by_q = -shape_.dot(at.accelerations) / speed * shape_, .by_v = shape_}},
+                             .moved = {}};
+    }
+    if (change.kind == Kind::impact || change.kind == Kind::rests) {
+      const FigureSlope energy{.weights = {{.arc = i, .by_q = -at.v.dot(at.accelerations) / speed * shape_, .by_v = at.v}},
+                               .moved = {}};
+      add(slopes_.impact_energy, energy);
+      if (change.kind == Kind::impact) {
+        touching_ = false;
+        height_ = 0;
+        add(slopes_.separated, crossing_time(i), -1);
+      }
+    }
+    return true;
+  }
+
+  void end_touch() {
+    add(slopes_.impact_energy, energy_slope_);
+    if (force_ > largest_force_) {
+      largest_force_ = force_;
+      slopes_.peak_force = force_slope_;
+    }
+    energy_slope_ = force_slope_ = {};
+    touching_ = false;
+    height_ = 0;
+    height_slope_ = {};
+  }
+
+  void end_rebound(std::size_t i, bool touches) {
+    if (touches) add(slopes_.separated, crossing_time(i));
+    if (height_ > highest_) {
+      highest_ = height_;
+      slopes_.rebound_height = height_slope_;
+    }
+    if (height_ > options_.significant_rebound && touches) slopes_.last_rebound_end = crossing_time(i);
+  }
+
+  [[nodiscard]] bool holds(const std::vector<std::size_t>& pieces) const {
+    for (std::size_t k = 0; k < signals_.size(); ++k) {
+      if (pieces[k] + 1 < signals_[k].pieces().size()) return false;
+    }
+    return true;
+  }
+
+  // The energy above the closed equilibrium at the first touch under the hold levels, or when they are reached after it.
+  void measure_landing(std::size_t i, bool begins_to_touch) {
+    if (measured_ || touches_ == 0) return;
+    const Arc& at = arc(i);
+    const bool reaches_hold = i + 1 < motion_.arcs().size() && !holds(at.pieces) && holds(arc(i + 1).pieces);
+    if (!reaches_hold && !(begins_to_touch && holds(at.pieces))) return;
+    measured_ = true;
+    const std::vector<std::size_t>& pieces = reaches_hold ? arc(i + 1).pieces : at.pieces;
+    std::vector<double> volts;
+    for (std::size_t k = 0; k < signals_.size(); ++k) volts.push_back(signals_[k].pieces()[pieces[k]].voltage(at.end));
+    VectorXd forces(model_.modes());
+    const ContactState law = begins_to_touch ? ContactState(true) : at.contact;
+    model_.accelerations(at.q.data(), zero_.data(), volts, law, work_, forces.data());
+    FigureSlope::Weights weights{.arc = i, .by_q = -forces, .by_v = at.v};
+    const double rate = weights.by_q.dot(at.v) + weights.by_v.dot(at.accelerations);
+    if (reaches_hold) {
+      std::size_t k = 0;
+      while (at.pieces[k] == pieces[k]) ++k;
+      slopes_.landing_excess.moved.push_back({.drive = k, .piece = pieces[k], .rate = rate});
+    } else {
+      weights.by_q -= rate / shape_.dot(at.v) * shape_;
+    }
+    slopes_.landing_excess.weights.push_back(std::move(weights));
+  }
+
+  const Switch& model_;
+  std::span<const Signal> signals_;
+  const LinearizedClosing& motion_;
+  const MetricsOptions& options_;
+  const VectorXd& shape_;
+  double plane_;  // [m]
+  VectorXd zero_;
+  Switch::Workspace work_;
+  CostSlopes slopes_;
+  long touches_ = 0;
+  bool touching_ = false, measured_ = false;
+  double first_speed_ = 0, fastest_ = 0;                      // [m/s]
+  double closest_ = std::numeric_limits<double>::infinity();  // [m]
+  double depth_ = 0, force_ = 0, largest_force_ = 0;          // of the touch under way [m], [N]; of all touches [N]
+  double height_ = 0, highest_ = 0;                           // of the rebound under way, of all [m]
+  FigureSlope energy_slope_, force_slope_, height_slope_;
+};
+
+}  // namespace
+
+CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
+                       const MetricsOptions& options) {
+  return SlopeFinder(model, signals, motion, options).find();
+}
+
+std::optional<FigureSlope> cost_slope(const Aim& aim, Status status, const CostFigures& figures, const CostScale& scale,
+                                      const MetricsOptions& options, const CostSlopes& slopes) {
+  if (aim.is_about(Target::drive) || (aim.is_about(Target::force) && !slopes.has_peak_force) ||
+      !std::isfinite(cost(aim, status, figures, scale, options)))
+    return std::nullopt;
+  struct Part {
+    double CostFigures::*figure;
+    const FigureSlope& slope;
+    double scale;
+  };
+  const CostFigures& step = scale.step;
+  const Part parts[] = {{&CostFigures::closest, slopes.closest, scale.contact_gap},
+                        {&CostFigures::first_touch, slopes.first_touch, step.first_touch},
+                        {&CostFigures::touch_speed, slopes.touch_speed, step.touch_speed},
+                        {&CostFigures::rebound_height, slopes.rebound_height, options.significant_rebound},
+                        {&CostFigures::separated, slopes.separated, scale.score_window},
+                        {&CostFigures::last_rebound_end, slopes.last_rebound_end, step.first_touch},
+                        {&CostFigures::impact_energy, slopes.impact_energy, step.impact_energy},
+                        {&CostFigures::landing_excess, slopes.landing_excess, step.landing_excess},
+                        {&CostFigures::peak_force, slopes.peak_force, step.peak_force}};
+  FigureSlope sum;
+  for (const Part& part : parts) {
+    const double value = figures.*part.figure;
+    if (!std::isfinite(value)) continue;
+    // The cost is a closed form of its figures, so that differences of it are good to about 1e-10.
+    const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
+    if (!(size > 0) || !std::isfinite(size)) continue;
+    const double h = 1e-6 * size;
+    CostFigures above = figures, below = figures;
+    above.*part.figure = value + h;
+    below.*part.figure = value > 0 ? value - h : value;
+    const double rate = (cost(aim, status, above, scale, options) - cost(aim, status, below, scale, options)) /
+                        (above.*part.figure - below.*part.figure);
+    if (rate != 0 && std::isfinite(rate)) add(sum, part.slope, rate);
+  }
+  return sum;
+}
+
+}  // namespace softland

@@ -1,0 +1,147 @@
+// Gradients of a search's costs, and of the figures behind them, against differences of tight closings.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "objectives/cost_slope.h"
+#include "studies/search_setting.h"
+
+namespace softland {
+namespace {
+
+SearchSetting setting_of(const std::string& scene, Actuator actuator, const std::string& family, Target target = Target::bounce,
+                         const std::vector<std::string>& changes = {}) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + scene);
+  for (const std::string& change : changes) file.set(change);
+  return search_setting(file, target, actuator, family, {});
+}
+
+constexpr double tight = 1e-11;
+
+struct Figures {
+  CostFigures values;
+  Status status;
+};
+
+Figures figures_at(const SearchSetting& s, std::span<const double> x) {
+  const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
+  CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+  ClosingOptions run = s.run_of(signals);
+  run.tolerance = tight;
+  const Trajectory end = observe_closing(s.given.model, signals, run, observer);
+  return {observer.figures(end), end.status};
+}
+
+struct Named {
+  const char* name;
+  double CostFigures::*figure;
+  FigureSlope CostSlopes::*slope;
+  double bound = 1e-5;  // of the error, over the largest slope
+};
+constexpr Named named[] = {{"first touch", &CostFigures::first_touch, &CostSlopes::first_touch},
+                           {"touch speed", &CostFigures::touch_speed, &CostSlopes::touch_speed},
+                           {"rebound height", &CostFigures::rebound_height, &CostSlopes::rebound_height},
+                           {"last rebound end", &CostFigures::last_rebound_end, &CostSlopes::last_rebound_end},
+                           {"impact energy", &CostFigures::impact_energy, &CostSlopes::impact_energy},
+                           {"landing excess", &CostFigures::landing_excess, &CostSlopes::landing_excess},
+                           {"peak force", &CostFigures::peak_force, &CostSlopes::peak_force}};
+
+struct Compared {
+  int cases = 0, slopes = 0;
+  double worst = 0;
+};
+
+// The energy of a landing is measured at the end of an integrator's step, whose length no derivative knows: gas takes a
+// thousandth of it in a step. Slopes of all figures at random points of a search's box against central differences. A case in
+// which a touch grazes, or comes or goes between the two points of a difference, is none.
+void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& all) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(0.05, 0.95);
+  const std::vector<Variable> variables = s.space.variables();
+  std::vector<double> lower, upper;
+  for (const Variable& v : variables) lower.push_back(v.lower), upper.push_back(v.upper);
+  const auto signals_at = [&](std::span<const double> at) { return s.given.driven(signals_of(s.drives(s.space.waveforms(at)))); };
+  for (int tried = 0, done = 0; done < wanted && tried < 40 * wanted; ++tried) {
+    std::vector<double> x;
+    for (const Variable& v : variables) x.push_back(std::lerp(v.lower, v.upper, uniform(random)));
+    if (!s.is_allowed(s.space.waveforms(x))) continue;
+    const std::vector<Signal> signals = signals_at(x);
+    MotionTape tape;
+    ClosingOptions run = s.run_of(signals);
+    run.tolerance = 1e-10;
+    const Trajectory end = observe_closing(s.given.model, signals, run, tape);
+    if (end.status != Status::done) continue;
+    const LinearizedClosing motion(s.given.model, signals, tape, 16);
+    const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
+    if (slopes.grazing < 0.1) continue;
+    const SignalSlopes by(signals_at, x, lower, upper);
+    if (!by.kinks().empty()) continue;
+    ++done;
+    ++all.cases;
+    std::vector<FigureSlope> wanted_slopes;
+    for (const Named& n : named) wanted_slopes.push_back(slopes.*n.slope);
+    const Eigen::MatrixXd backward = motion.backward(wanted_slopes, by), forward = motion.forward(wanted_slopes, by);
+    const double size = backward.cwiseAbs().maxCoeff();
+    for (Eigen::Index f = 0; f < backward.rows(); ++f)
+      EXPECT_LT((backward.row(f) - forward.row(f)).cwiseAbs().maxCoeff(), 1e-9 * backward.row(f).cwiseAbs().maxCoeff() + 1e-300)
+          << size;
+    const auto differences = [&](std::size_t k, double share) {
+      const double h = share * (upper[k] - lower[k]);
+      std::vector<double> up = x, down = x, all_figures;
+      up[k] += h, down[k] -= h;
+      const Figures a = figures_at(s, up), b = figures_at(s, down);
+      for (const Named& n : named) all_figures.push_back((a.values.*n.figure - b.values.*n.figure) / (2 * h));
+      return all_figures;
+    };
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const std::vector<double> coarse = differences(k, 2e-6), fine = differences(k, 1e-6);
+      for (std::size_t f = 0; f < std::size(named); ++f) {
+        if (named[f].figure == &CostFigures::peak_force && !slopes.has_peak_force) continue;
+        if (named[f].figure == &CostFigures::last_rebound_end && slopes.ends_above) continue;
+        double scale = 0;  // of the gradient, by this parameter's range
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          const double whole =
+              std::abs(backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(i))) * (upper[i] - lower[i]);
+          scale = std::max(scale, whole / (upper[k] - lower[k]));
+        }
+        // Where differences of two widths differ, they say nothing: another touch is the fastest, another rebound the highest.
+        if (!(std::abs(coarse[f] - fine[f]) <= 2e-6 * scale)) continue;
+        ++all.slopes;
+        const double slope = backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
+        const double error = scale > 0 ? std::abs(slope - fine[f]) / scale : std::abs(fine[f]) > 0 ? 1 : 0;
+        all.worst = std::max(all.worst, error / named[f].bound);
+        EXPECT_LT(error, named[f].bound) << named[f].name << " by " << variables[k].name << ": " << slope << ", differences "
+                                         << fine[f] << " (" << coarse[f] << ")";
+      }
+    }
+  }
+}
+
+void expect_agreement(const SearchSetting& s, int cases) {
+  Compared all;
+  compare(s, cases, 1, all);
+  EXPECT_EQ(all.cases, cases);
+  EXPECT_GT(all.slopes, 2 * cases);
+  std::printf("%d cases, %d slopes, the worst off by %.2g of its bound\n", all.cases, all.slopes, all.worst);
+}
+
+TEST(Gradient, OfPulsesOnTheGoldSwitch) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse"), 40); }
+TEST(Gradient, OfBothDrives) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::both, "pulse"), 15); }
+TEST(Gradient, OfDithers) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "dither"), 10); }
+TEST(Gradient, OfSplines) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "bspline:6"), 10); }
+TEST(Gradient, OfTwoElectrodes) { expect_agreement(setting_of("two-electrodes.toml", Actuator::electrostatic, "coast"), 10); }
+TEST(Gradient, OfANanometreSwitch) { expect_agreement(setting_of("nem-tin.toml", Actuator::electrostatic, "pulse"), 5); }
+TEST(Gradient, OfAPlasticContact) {
+  expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce,
+                              {"contact.model=elastic-plastic", "contact.hardness=1 GPa"}),
+                   5);
+}
+TEST(Gradient, OfADampedContact) {
+  expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce, {"contact.damping=0.5 s/m"}), 5);
+}
+
+}  // namespace
+}  // namespace softland
