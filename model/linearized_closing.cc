@@ -280,7 +280,7 @@ VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
   VectorXd all(size_ + 1);
   all.head(n_) = weights.by_q / fastest_;
   all.segment(n_, n_) = weights.by_v;
-  all[size_] = 0;
+  all[size_] = weights.by_shift;
   return all;
 }
 

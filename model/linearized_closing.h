@@ -31,6 +31,7 @@ struct FigureSlope {
   struct Weights {
     std::size_t arc = 0;  ///< of LinearizedClosing::arcs()
     Eigen::VectorXd by_q, by_v;
+    double by_shift = 0;  ///< of the dent of a contact with memory
   };
   struct Moved {
     std::size_t drive = 0, piece = 0;

@@ -15,6 +15,7 @@ void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
   for (FigureSlope::Weights w : from.weights) {
     w.by_q *= factor;
     w.by_v *= factor;
+    w.by_shift *= factor;
     to.weights.push_back(std::move(w));
   }
   for (FigureSlope::Moved m : from.moved) {
@@ -89,8 +90,13 @@ class SlopeFinder {
     const double step = 1e-5 * depth;
     const auto slope = [&](auto&& of) { return (of(depth + step) - of(depth - step)) / (2 * step); };
     force_ = contact_force(model_.contact(), depth, law, 0);
-    energy_slope_ = position(i, slope([&](double d) { return stored_energy(model_.contact(), d, law); }));
-    force_slope_ = position(i, slope([&](double d) { return contact_force(model_.contact(), d, law, 0); }));
+    const auto slope_of = [&](double by_depth) {
+      FigureSlope found = position(i, by_depth);
+      if (law.unloading) found.weights[0].by_shift = -by_depth;
+      return found;
+    };
+    energy_slope_ = slope_of(slope([&](double d) { return stored_energy(model_.contact(), d, law); }));
+    force_slope_ = slope_of(slope([&](double d) { return contact_force(model_.contact(), d, law, 0); }));
   }
 
   // True where a touch begins.

@@ -17,6 +17,7 @@ constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
 constexpr long longest_epoch = 5000;  // evaluations: beyond that, other starts promise more than longer searches
+constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
 constexpr long shortest_heat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
 
@@ -96,10 +97,14 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
     return Search{.method = &method, .run = {.start = start, .step = step, .seed = seed}, .best_point = start};
   };
   std::vector<Point> explored;
+  // With a gradient a search ends sooner, and more of them find more valleys.
+  const long longest = ledger.has_gradient()
+                           ? std::clamp(ledger.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
+                           : longest_epoch;
 
   while (!ledger.over()) {
     const long before = ledger.remaining();
-    const long budget = std::min(before, longest_epoch);
+    const long budget = std::min(before, longest);
     const auto samples = static_cast<std::size_t>(std::ceil(sampling * static_cast<double>(budget)));
     sample(ledger, points_sampled, samples);
     points_sampled += samples;
@@ -137,7 +142,9 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
 void search_auto(Ledger& ledger) {
   const Method& polisher = find_method("bobyqa");
   const Method& searcher = find_method("cma-es");
-  search(ledger, {&searcher, &polisher, &searcher, &searcher}, nullptr, polisher);
+  if (!ledger.has_gradient()) return search(ledger, {&searcher, &polisher, &searcher, &searcher}, nullptr, polisher);
+  const Method& finisher = find_method("slsqp");
+  search(ledger, {&searcher, &searcher, &searcher, &searcher}, &finisher, finisher);
 }
 
 void search_and_finish(Ledger& ledger, const Method& finisher) {

@@ -106,6 +106,7 @@ class Ledger {
   Ledger(const Problem& problem, const OptimizerOptions& options);
 
   [[nodiscard]] std::size_t dimension() const { return free_.size(); }
+  [[nodiscard]] bool has_gradient() const { return problem_.gradient != nullptr; }
   [[nodiscard]] std::uint64_t seed() const { return options_.seed; }
   [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
   /// Runs the tasks, with budgets cut from the end to what remains. Returns the number of new evaluations.

@@ -68,7 +68,8 @@ TEST(Program, CalledOptimizeIsThatVerb) {
   EXPECT_EQ(called.status, 0);
   EXPECT_EQ(called.out, here.run({"optimize", "--help"}).out);
   EXPECT_EQ(here.run({"gold.toml", "--target", "softness"}, link).err,
-            "softland: --target softness: must be bounce, settling, rebound, count, impact or energy\n");
+            "softland: --target softness: must be bounce, settling, rebound, count, impact, energy, force or drive, or a "
+            "weighted sum such as \"0.7 bounce + 0.3 energy\"\n");
 }
 
 TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
