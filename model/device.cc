@@ -51,6 +51,155 @@ void validate(const SurfacePressure& p, double contact_gap) {
   });
 }
 
+void check_between_clamps(const Device& d) {
+  const Structure& s = d.structure;
+  require(!s.biaxial || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
+          [&] { return fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio); });
+  const std::string buckled = d.surface ? std::string() : why_buckled(s);
+  require(buckled.empty() && s.residual_stress < 1e30, [&] {
+    return fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"),
+                       buckled.empty() ? "must be below 1e30 Pa" : buckled);
+  });
+  require(!d.piezo,
+          "piezo: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off "
+          "its middle line; a layer needs a cantilever");
+}
+
+void check_structure(const Device& d) {
+  const Structure& s = d.structure;
+  const bool plate = s.kind == StructureKind::plate;
+  positive(s.length, "m", "structure.length");
+  positive(s.width, "m", "structure.width");
+  if (plate) {
+    positive(s.mass, "kg", "structure.mass");
+    positive(s.stiffness, "N/m", "structure.stiffness");
+  } else {
+    positive(s.thickness, "m", "structure.thickness");
+    positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
+    positive(s.density, "kg/m^3", "structure.density");
+  }
+  require(s.modes >= 1 && s.modes <= most_modes,
+          [&] { return fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes); });
+  require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
+          [&] { return fmt::format("structure.damping_ratio = {}: must be in [0, 1000)", s.damping_ratio); });
+  require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5), [&] {
+    return fmt::format("structure.poissons_ratio = {}: plate_strain needs one between -1 and 0.5", s.poissons_ratio);
+  });
+  if (s.kind == StructureKind::clamped_clamped) check_between_clamps(d);
+}
+
+void check_gap_and_electrodes(const Device& d) {
+  const Structure& s = d.structure;
+  positive(d.gap.electrode, "m", "gap.electrode");
+  require(d.gap.contact > 0 && d.gap.contact < d.gap.electrode, [&] {
+    return fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
+                       engineering(d.gap.electrode, "m"));
+  });
+  for (const Electrode& e : d.electrodes) {
+    span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
+    if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
+    if (row_of(fringing_laws, e.fringing).needs_thickness) positive(s.thickness, "m", "structure.thickness");
+  }
+  if (const auto conflict = electrode_conflict(s, d.electrodes)) {
+    throw InvalidInput(fmt::format("electrode.{}: {}", d.electrodes[conflict->electrode].name, conflict->why));
+  }
+}
+
+void check_gas(const Gas& g, const Structure& s) {
+  const auto positive_if_given = [](double value, const char* unit, const char* name) {
+    if (!std::isnan(value)) positive(value, unit, name);
+  };
+  positive(g.pressure, "Pa", "gas.pressure");
+  positive(g.temperature, "K", "gas.temperature");
+  if (row_of(gas_laws, g.model).needs_thickness) positive(s.thickness, "m", "structure.thickness");
+  positive_if_given(g.viscosity, "Pa s", "gas.viscosity");
+  positive_if_given(g.mean_free_path, "m", "gas.mean_free_path");
+  positive_if_given(g.film_length, "m", "gas.film_length");
+  positive_if_given(g.far_gap, "m", "gas.far_gap");
+  require(std::isnan(g.far_gap) || !is_compressible(g.model), "gas.far_gap: not with gas.model = reynolds");
+  if (g.model == GasModel::strip_slit) {
+    positive(g.slit_height, "m", "gas.slit_height");
+    positive(g.slit_length, "m", "gas.slit_length");
+  }
+  positive_if_given(g.damping, "N s/m^2", "gas.damping");
+  positive_if_given(g.quality_factor, "", "gas.quality_factor");
+  require(g.model != GasModel::linear || std::isnan(g.damping) != std::isnan(g.quality_factor),
+          "gas.model = linear: needs either damping or quality_factor");
+}
+
+void check_contact_quantities(const Contact& c, const ContactRow& law) {
+  const auto positive_if_used = [&](const char* key, double value, const char* unit) {
+    if (law.keys.contain(key)) positive(value, unit, (std::string("contact.") + key).c_str());
+  };
+  positive_if_used("stiffness", c.stiffness, "N/m");
+  positive_if_used("asperity_radius", c.asperity_radius, "m");
+  positive_if_used("asperity_density", c.asperity_density, "1/m^2");
+  positive_if_used("effective_modulus", c.effective_modulus, "Pa");
+  positive_if_used("asperity_deviation", c.asperity_deviation, "m");
+  positive_if_used("asperity_height", c.asperity_height, "m");
+  positive_if_used("hardness", c.hardness, "Pa");
+  positive_if_used("adhesion_energy", c.adhesion_energy, "J/m^2");
+  if (law.keys.contain("unloading_stiffness")) {
+    require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30, [&] {
+      return fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}, and below 1e30 N/m",
+                         engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m"));
+    });
+  }
+  if (law.keys.contain("restitution")) {
+    require(c.restitution >= 0 && c.restitution < 1,
+            [&] { return fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution); });
+  }
+}
+
+void check_contact_damping(const Contact& c, const ContactRow& law) {
+  require(c.damping >= 0 && c.damping < 1e6,
+          [&] { return fmt::format("contact.damping = {}: must be in [0 s/m, 1e6 s/m)", engineering(c.damping, "s/m")); });
+  require(c.damping == 0 || law.keys.contain("damping"), [&] {
+    return fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), law.name);
+  });
+}
+
+void check_contact(const Device& d) {
+  const Contact& c = *d.contact;
+  const Structure& s = d.structure;
+  const bool plate = s.kind == StructureKind::plate;
+  const bool rigid = c.model == ContactModel::rigid;
+  require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
+  require(!rigid || !d.gas || !is_compressible(d.gas->model),
+          "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
+  const ContactRow& law = row_of(contact_laws, c.model);
+  const bool no_pad = plate && !law.per_area && c.pad_length == 0;  // only its area would count
+  require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
+    return fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
+                       engineering(c.pad_length, "m"), engineering(s.length, "m"));
+  });
+  check_contact_quantities(c, law);
+  if (law.keys.contain("reach")) validate(c.pressure, d.gap.contact);
+  if (c.distribution == ContactDistribution::pad) {
+    const std::string wrong = why_not_along_pad(s, c);
+    require(wrong.empty(), [&] { return "contact.distribution = pad: " + wrong; });
+  }
+  check_contact_damping(c, law);
+}
+
+void check_piezo(const Piezo& p, const Structure& s) {
+  require(s.kind != StructureKind::plate, "piezo: a rigid plate does not bend; a layer needs a beam");
+  span(p.begin, p.end, s.length, "piezo.span");
+  positive(p.thickness, "m", "piezo.thickness");
+  positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");
+  positive(p.density, "kg/m^3", "piezo.density");
+  require(p.d31 > -1 && p.d31 < 1,
+          [&] { return fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")); });
+}
+
+void check_dispersion(const Dispersion& v, const Gap& gap) {
+  positive(v.hamaker_constant, "J", "dispersion.hamaker_constant");
+  require(v.equilibrium_distance >= 0 && v.equilibrium_distance < gap.electrode - gap.contact, [&] {
+    return fmt::format("dispersion.equilibrium_distance = {}: must not be negative and lie below the closed gap of {}",
+                       engineering(v.equilibrium_distance, "m"), engineering(gap.electrode - gap.contact, "m"));
+  });
+}
+
 }  // namespace
 
 std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const std::vector<Electrode>& electrodes) {
@@ -102,139 +251,16 @@ std::string why_not_along_pad(const Structure& structure, const Contact& contact
 }
 
 void validate(const Device& d) {
-  const Structure& s = d.structure;
-  const bool plate = s.kind == StructureKind::plate;
-  positive(s.length, "m", "structure.length");
-  positive(s.width, "m", "structure.width");
-  if (plate) {
-    positive(s.mass, "kg", "structure.mass");
-    positive(s.stiffness, "N/m", "structure.stiffness");
-  } else {
-    positive(s.thickness, "m", "structure.thickness");
-    positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
-    positive(s.density, "kg/m^3", "structure.density");
-  }
-  require(s.modes >= 1 && s.modes <= most_modes,
-          [&] { return fmt::format("structure.modes = {}: must be from 1 to {}", s.modes, most_modes); });
-  require(s.damping_ratio >= 0 && s.damping_ratio < 1e3,
-          [&] { return fmt::format("structure.damping_ratio = {}: must be in [0, 1000)", s.damping_ratio); });
-  require(!s.plate_strain || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5), [&] {
-    return fmt::format("structure.poissons_ratio = {}: plate_strain needs one between -1 and 0.5", s.poissons_ratio);
-  });
-  if (s.kind == StructureKind::clamped_clamped) {
-    require(!s.biaxial || (s.poissons_ratio > -1 && s.poissons_ratio < 0.5),
-            [&] { return fmt::format("structure.poissons_ratio = {}: biaxial needs one between -1 and 0.5", s.poissons_ratio); });
-    const std::string buckled = d.surface ? std::string() : why_buckled(s);
-    require(buckled.empty() && s.residual_stress < 1e30, [&] {
-      return fmt::format("structure.residual_stress = {}: {}", engineering(s.residual_stress, "Pa"),
-                         buckled.empty() ? "must be below 1e30 Pa" : buckled);
-    });
-    require(
-        !d.piezo,
-        "piezo: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off "
-        "its middle line; a layer needs a cantilever");
-  }
-  positive(d.gap.electrode, "m", "gap.electrode");
-  require(d.gap.contact > 0 && d.gap.contact < d.gap.electrode, [&] {
-    return fmt::format("gap.contact = {}: must be positive and below gap.electrode = {}", engineering(d.gap.contact, "m"),
-                       engineering(d.gap.electrode, "m"));
-  });
-  for (const Electrode& e : d.electrodes) {
-    span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
-    if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
-    if (row_of(fringing_laws, e.fringing).needs_thickness) positive(s.thickness, "m", "structure.thickness");
-  }
-  if (const auto conflict = electrode_conflict(s, d.electrodes)) {
-    throw InvalidInput(fmt::format("electrode.{}: {}", d.electrodes[conflict->electrode].name, conflict->why));
-  }
-  if (d.gas) {
-    const Gas& g = *d.gas;
-    const auto positive_if_given = [](double value, const char* unit, const char* name) {
-      if (!std::isnan(value)) positive(value, unit, name);
-    };
-    positive(g.pressure, "Pa", "gas.pressure");
-    positive(g.temperature, "K", "gas.temperature");
-    if (row_of(gas_laws, g.model).needs_thickness) positive(s.thickness, "m", "structure.thickness");
-    positive_if_given(g.viscosity, "Pa s", "gas.viscosity");
-    positive_if_given(g.mean_free_path, "m", "gas.mean_free_path");
-    positive_if_given(g.film_length, "m", "gas.film_length");
-    positive_if_given(g.far_gap, "m", "gas.far_gap");
-    require(std::isnan(g.far_gap) || !is_compressible(g.model), "gas.far_gap: not with gas.model = reynolds");
-    if (g.model == GasModel::strip_slit) {
-      positive(g.slit_height, "m", "gas.slit_height");
-      positive(g.slit_length, "m", "gas.slit_length");
-    }
-    positive_if_given(g.damping, "N s/m^2", "gas.damping");
-    positive_if_given(g.quality_factor, "", "gas.quality_factor");
-    require(g.model != GasModel::linear || std::isnan(g.damping) != std::isnan(g.quality_factor),
-            "gas.model = linear: needs either damping or quality_factor");
-  }
-  if (d.contact) {
-    const Contact& c = *d.contact;
-    const bool rigid = c.model == ContactModel::rigid;
-    require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
-    require(!rigid || !d.gas || !is_compressible(d.gas->model),
-            "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
-    const ContactRow& law = row_of(contact_laws, c.model);
-    const bool no_pad = plate && !law.per_area && c.pad_length == 0;  // only its area would count
-    require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
-      return fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
-                         engineering(c.pad_length, "m"), engineering(s.length, "m"));
-    });
-    const auto positive_if_used = [&](const char* key, double value, const char* unit) {
-      if (law.keys.contain(key)) positive(value, unit, (std::string("contact.") + key).c_str());
-    };
-    positive_if_used("stiffness", c.stiffness, "N/m");
-    positive_if_used("asperity_radius", c.asperity_radius, "m");
-    positive_if_used("asperity_density", c.asperity_density, "1/m^2");
-    positive_if_used("effective_modulus", c.effective_modulus, "Pa");
-    positive_if_used("asperity_deviation", c.asperity_deviation, "m");
-    positive_if_used("asperity_height", c.asperity_height, "m");
-    positive_if_used("hardness", c.hardness, "Pa");
-    positive_if_used("adhesion_energy", c.adhesion_energy, "J/m^2");
-    if (law.keys.contain("unloading_stiffness")) {
-      require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30, [&] {
-        return fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}, and below 1e30 N/m",
-                           engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m"));
-      });
-    }
-    if (law.keys.contain("restitution")) {
-      require(c.restitution >= 0 && c.restitution < 1,
-              [&] { return fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution); });
-    }
-    if (law.keys.contain("reach")) validate(c.pressure, d.gap.contact);
-    if (c.distribution == ContactDistribution::pad) {
-      const std::string wrong = why_not_along_pad(s, c);
-      require(wrong.empty(), [&] { return "contact.distribution = pad: " + wrong; });
-    }
-    require(c.damping >= 0 && c.damping < 1e6,
-            [&] { return fmt::format("contact.damping = {}: must be in [0 s/m, 1e6 s/m)", engineering(c.damping, "s/m")); });
-    require(c.damping == 0 || law.keys.contain("damping"), [&] {
-      return fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), law.name);
-    });
-  }
-  if (d.piezo) {
-    const Piezo& p = *d.piezo;
-    require(!plate, "piezo: a rigid plate does not bend; a layer needs a beam");
-    span(p.begin, p.end, s.length, "piezo.span");
-    positive(p.thickness, "m", "piezo.thickness");
-    positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");
-    positive(p.density, "kg/m^3", "piezo.density");
-    require(p.d31 > -1 && p.d31 < 1,
-            [&] { return fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")); });
-  }
+  check_structure(d);
+  check_gap_and_electrodes(d);
+  if (d.gas) check_gas(*d.gas, d.structure);
+  if (d.contact) check_contact(d);
+  if (d.piezo) check_piezo(*d.piezo, d.structure);
   if (d.surface) {
     const std::string wrong = why_no_surface(d);
     require(wrong.empty(), [&] { return "surface: " + wrong; });
   }
-  if (d.dispersion && d.dispersion->model != DispersionModel::casimir) {
-    const Dispersion& v = *d.dispersion;
-    positive(v.hamaker_constant, "J", "dispersion.hamaker_constant");
-    require(v.equilibrium_distance >= 0 && v.equilibrium_distance < d.gap.electrode - d.gap.contact, [&] {
-      return fmt::format("dispersion.equilibrium_distance = {}: must not be negative and lie below the closed gap of {}",
-                         engineering(v.equilibrium_distance, "m"), engineering(d.gap.electrode - d.gap.contact, "m"));
-    });
-  }
+  if (d.dispersion && d.dispersion->model != DispersionModel::casimir) check_dispersion(*d.dispersion, d.gap);
 }
 
 }  // namespace softland
