@@ -155,9 +155,8 @@ std::optional<std::array<double, 2>> plane_band(const Result& result, const Curv
   return std::array{margin * lowest, margin * std::fmax(-2 * lowest, height)};
 }
 
-void add_time_charts(const Result& result, Picture& out) {
-  const double window = window_end(result);
-  if (!(window > 0)) return;
+/// Adds the tables of runs and drives to a picture; the names of the drives.
+std::set<std::string> add_time_tables(const Result& result, double window, Picture& out) {
   std::set<std::string> drives;
   for (const Drawn& drawn : runs) {
     const ResultRun& run = result.*drawn.run;
@@ -170,8 +169,79 @@ void add_time_charts(const Result& result, Picture& out) {
       drives.insert(drive);
     }
   }
-  const double landing = landing_end(result, out.tables, window);
-  const auto time_chart = [&](std::string id, std::string title, std::string caption) {
+  return drives;
+}
+
+/// Draws the charts over time of a picture that has their tables.
+class TimeCharts {
+ public:
+  TimeCharts(const Result& result, double window, Picture& out)
+      : result_(result), window_(window), landing_(landing_end(result, out.tables, window)), out_(out) {}
+
+  void add_gaps() {
+    Chart gap = over_time("gap", "Gap: the whole closing", gap_caption(result_));
+    gap.x_home = gap.x_whole;
+    gap.y_label = "Gap";
+    gap.y_unit = "m";
+    gap.zero_line = true;
+    gap.zero_label = "contact plane";
+    gap.marks = rebound_marks(result_);
+    gap.height = 320;
+    add_series(gap, "", "tip_gap_m");
+    Chart near = gap;
+    constexpr double readable = 0.05;  // of the gap: lower ones have no room for words
+    for (Mark& mark : gap.marks) {
+      if (mark.y < readable * largest(out_.tables, "tip_gap_m")) mark.text.clear();
+    }
+    keep(std::move(gap));
+
+    near.id = "landing";
+    near.zero_label_left = true;
+    near.title = "Gap: the landing, close to the contact plane";
+    near.caption = landing_caption(result_);
+    near.x_home = {0, landing_};
+    near.y_home = plane_band(result_, out_.tables, landing_);
+    if (near.y_home) keep(std::move(near));
+  }
+
+  void add_drive(const std::string& drive, int index) {
+    Chart drawn = over_time(fmt::format("drive-{}", index), fmt::format("Drive: {}", drive), waveform_caption(result_, drive));
+    drawn.y_label = drive_scale(drive).name;
+    drawn.y_unit = drive_scale(drive).unit;
+    drawn.height = 210;
+    add_series(drawn, "/" + drive, "level");
+    const DriveLimits limits = drive_limits(result_, drive);
+    for (const auto& [name, level] :
+         {std::pair{"most the driver gives", limits.highest}, {"least the driver gives", limits.lowest}}) {
+      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows 0
+      const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
+      add_columns(out_.tables[table], "time_s", "level", {{0, level}, {window_, level}});
+      drawn.series.push_back({table, "level", name, Role::limit});
+    }
+    keep(std::move(drawn));
+  }
+
+  void add_velocity() {
+    Chart velocity = over_time("velocity", "Tip velocity", velocity_caption(result_));
+    velocity.y_label = "Velocity";
+    velocity.y_unit = "m/s";
+    velocity.zero_line = true;
+    velocity.height = 230;
+    add_series(velocity, "", "tip_velocity_m_s");
+    keep(std::move(velocity));
+  }
+
+  void add_force() {
+    Chart force = over_time("force", "Contact force", force_caption(result_));
+    force.y_label = "Force";
+    force.y_unit = "N";
+    force.height = 230;
+    add_series(force, "", "contact_force_N");
+    if (largest(out_.tables, "contact_force_N") > 0) keep(std::move(force));
+  }
+
+ private:
+  [[nodiscard]] Chart over_time(std::string id, std::string title, std::string caption) const {
     Chart chart;
     chart.id = std::move(id);
     chart.title = std::move(title);
@@ -179,79 +249,40 @@ void add_time_charts(const Result& result, Picture& out) {
     chart.x_column = "time_s";
     chart.x_label = "Time";
     chart.x_unit = "s";
-    chart.x_whole = {0, window};
-    chart.x_home = {0, landing};
+    chart.x_whole = {0, window_};
+    chart.x_home = {0, landing_};
     chart.group = "time";
     return chart;
-  };
-  const auto add_series = [&](Chart& chart, const std::string& suffix, const char* column) {
+  }
+
+  void add_series(Chart& chart, const std::string& suffix, const char* column) const {
     for (const Drawn& drawn : runs) {
-      const auto table = out.tables.find(drawn.name + suffix);
-      if (table == out.tables.end() || !table->second.contains(column)) continue;
-      const std::string label = drawn.role == Role::best ? best_label(result) : baseline_label();
+      const auto table = out_.tables.find(drawn.name + suffix);
+      if (table == out_.tables.end() || !table->second.contains(column)) continue;
+      const std::string label = drawn.role == Role::best ? best_label(result_) : baseline_label();
       chart.series.push_back({table->first, column, label, drawn.role});
     }
-  };
-  const auto keep = [&](Chart chart) {
-    if (!chart.series.empty()) out.charts.push_back(std::move(chart));
-  };
-
-  Chart gap = time_chart("gap", "Gap: the whole closing", gap_caption(result));
-  gap.x_home = gap.x_whole;
-  gap.y_label = "Gap";
-  gap.y_unit = "m";
-  gap.zero_line = true;
-  gap.zero_label = "contact plane";
-  gap.marks = rebound_marks(result);
-  gap.height = 320;
-  add_series(gap, "", "tip_gap_m");
-  Chart near = gap;
-  constexpr double readable = 0.05;  // of the gap: lower ones have no room for words
-  for (Mark& mark : gap.marks) {
-    if (mark.y < readable * largest(out.tables, "tip_gap_m")) mark.text.clear();
   }
-  keep(std::move(gap));
 
-  near.id = "landing";
-  near.zero_label_left = true;
-  near.title = "Gap: the landing, close to the contact plane";
-  near.caption = landing_caption(result);
-  near.x_home = {0, landing};
-  near.y_home = plane_band(result, out.tables, landing);
-  if (near.y_home) keep(std::move(near));
+  void keep(Chart chart) {
+    if (!chart.series.empty()) out_.charts.push_back(std::move(chart));
+  }
 
+  const Result& result_;
+  double window_, landing_;  // ends of what is drawn [s]
+  Picture& out_;
+};
+
+void add_time_charts(const Result& result, Picture& out) {
+  const double window = window_end(result);
+  if (!(window > 0)) return;
+  const std::set<std::string> drives = add_time_tables(result, window, out);
+  TimeCharts charts(result, window, out);
+  charts.add_gaps();
   int index = 0;
-  for (const std::string& drive : drives) {
-    Chart chart = time_chart(fmt::format("drive-{}", index++), fmt::format("Drive: {}", drive), waveform_caption(result, drive));
-    chart.y_label = drive_scale(drive).name;
-    chart.y_unit = drive_scale(drive).unit;
-    chart.height = 210;
-    add_series(chart, "/" + drive, "level");
-    const DriveLimits limits = drive_limits(result, drive);
-    for (const auto& [name, level] :
-         {std::pair{"most the driver gives", limits.highest}, {"least the driver gives", limits.lowest}}) {
-      if (!std::isfinite(drawable(level)) || drawable(level) == 0) continue;  // the axis shows 0
-      const std::string table = fmt::format("driver/{}/{}", drive, level > limits.lowest ? "most" : "least");
-      add_columns(out.tables[table], "time_s", "level", {{0, level}, {window, level}});
-      chart.series.push_back({table, "level", name, Role::limit});
-    }
-    keep(std::move(chart));
-  }
-
-  Chart velocity = time_chart("velocity", "Tip velocity", velocity_caption(result));
-  velocity.y_label = "Velocity";
-  velocity.y_unit = "m/s";
-  velocity.zero_line = true;
-  velocity.height = 230;
-  add_series(velocity, "", "tip_velocity_m_s");
-  keep(std::move(velocity));
-
-  Chart force = time_chart("force", "Contact force", force_caption(result));
-  force.y_label = "Force";
-  force.y_unit = "N";
-  force.height = 230;
-  add_series(force, "", "contact_force_N");
-  if (largest(out.tables, "contact_force_N") > 0) keep(std::move(force));
+  for (const std::string& drive : drives) charts.add_drive(drive, index++);
+  charts.add_velocity();
+  charts.add_force();
 }
 
 void add_search_chart(const Result& result, Picture& out) {

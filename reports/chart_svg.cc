@@ -140,11 +140,12 @@ std::string axis_title(const std::string& name, const std::string& unit, const P
   return unit.empty() ? name : fmt::format("{} ({}{})", name, prefix.symbol, unit);
 }
 
-}  // namespace
+/// Both axes of a chart, in pixels.
+struct Axes {
+  Axis x, y;
+};
 
-double chart_svg_height(const Chart& chart) { return above + chart.height + below; }
-
-std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top) {
+Axes axes_of(const CurveTables& tables, const Chart& chart, double width, double top) {
   Axis x;
   x.scale = chart.x_scale;
   x.low = chart.x_home[0];
@@ -158,8 +159,11 @@ std::string chart_svg(const CurveTables& tables, const Chart& chart, double widt
   y.high = range[1];
   y.pixel_low = top + above + chart.height;
   y.pixel_high = top + above;
+  return {x, y};
+}
 
-  std::string out = label(0, top + 15, "start", ink, 15, chart.title, " font-weight=\"600\"");
+std::string chart_legend(const Chart& chart, double top) {
+  std::string out;
   double legend_x = left;
   for (const Series& one : chart.series) {
     if (one.label.empty()) continue;
@@ -173,7 +177,13 @@ std::string chart_svg(const CurveTables& tables, const Chart& chart, double widt
     out += label(legend_x + 33, top + 35, "start", ink, 12.5, one.label);
     legend_x += 33 + 7.2 * static_cast<double>(one.label.size()) + 26;
   }
+  return out;
+}
 
+/// Grid, tick labels and names of the axes.
+std::string chart_scales(const Chart& chart, const Axes& axes) {
+  const auto& [x, y] = axes;
+  std::string out;
   const Prefix x_prefix = chart.x_unit.empty() ? Prefix{} : prefix_for(std::max(std::abs(x.low), std::abs(x.high)));
   for (const double tick : ticks(x, 8)) {
     const double at_pixel = x.pixel(tick);
@@ -183,53 +193,71 @@ std::string chart_svg(const CurveTables& tables, const Chart& chart, double widt
   const Prefix y_prefix = chart.y_unit.empty() ? Prefix{} : prefix_for(std::max(std::abs(y.low), std::abs(y.high)) / 1.1);
   for (const double tick : ticks(y, std::max(3, chart.height / 45))) {
     const double at_pixel = y.pixel(tick);
-    out += line(left, at_pixel, width - right, at_pixel, grid);
+    out += line(left, at_pixel, x.pixel_high, at_pixel, grid);
     out += label(left - 8, at_pixel + 4, "end", muted, 12, tick_text(tick / y_prefix.factor));
   }
-  out += label((left + width - right) / 2, y.pixel_low + 36, "middle", muted, 12.5,
+  out += label((left + x.pixel_high) / 2, y.pixel_low + 36, "middle", muted, 12.5,
                axis_title(chart.x_label, chart.x_unit, x_prefix));
   const double middle = (y.pixel_low + y.pixel_high) / 2;
   out += label(16, middle, "middle", muted, 12.5, axis_title(chart.y_label, chart.y_unit, y_prefix),
                fmt::format(" transform=\"rotate(-90 16 {:.1f})\"", middle).c_str());
+  return out;
+}
 
-  if (chart.zero_line && y.low <= 0 && y.high >= 0) {
-    out += line(left, y.pixel(0), width - right, y.pixel(0), ink, " stroke-width=\"1\"");
-    const bool at_left = chart.zero_label_left;
-    if (!chart.zero_label.empty())
-      out += label(at_left ? left + 4 : width - right - 4, y.pixel(0) + 13, at_left ? "start" : "end", muted, 11.5,
-                   chart.zero_label, halo);
+std::string zero_line(const Chart& chart, const Axes& axes) {
+  const auto& [x, y] = axes;
+  if (!(chart.zero_line && y.low <= 0 && y.high >= 0)) return {};
+  std::string out = line(left, y.pixel(0), x.pixel_high, y.pixel(0), ink, " stroke-width=\"1\"");
+  const bool at_left = chart.zero_label_left;
+  if (!chart.zero_label.empty())
+    out += label(at_left ? left + 4 : x.pixel_high - 4, y.pixel(0) + 13, at_left ? "start" : "end", muted, 11.5, chart.zero_label,
+                 halo);
+  return out;
+}
+
+std::string chart_curve(const CurveTable& table, const Chart& chart, const Series& one, const Axes& axes) {
+  const Stroke pen = stroke(one.role);
+  const auto points = visible(axes.x, axes.y, table.at(chart.x_column), table.at(one.column));
+  if (points.empty()) return {};
+  std::string path;
+  if (dots(one.role)) {
+    for (const auto& [px, py] : points) path += fmt::format("M{:.1f} {:.1f}h0", px, py);
+    return fmt::format(
+        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-opacity=\"{}\"/>\n", path,
+        pen.colour, pen.width, one.role == Role::measured ? 1 : 0.55);
   }
+  for (const auto& [px, py] : points)
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : path.size() < 14 ? "L" : " ", px, py);
+  return fmt::format(
+      "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>\n",
+      path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
+}
+
+std::string chart_mark(const Mark& mark, const Axes& axes) {
+  const auto& [x, y] = axes;
+  if (mark.x < x.low || mark.x > x.high || mark.y < y.low || mark.y > y.high) return {};
+  const Stroke pen = stroke(mark.role);
+  std::string out =
+      fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x.pixel(mark.x), y.pixel(mark.y), pen.colour);
+  if (mark.text.empty()) return out;
+  out += label(std::clamp(x.pixel(mark.x), left + 26, x.pixel_high - 26), std::max(y.pixel(mark.y) - 6, y.pixel_high + 13),
+               "middle", pen.colour, 12.5, mark.text, (std::string(" font-weight=\"600\"") + halo).c_str());
+  return out;
+}
+
+}  // namespace
+
+double chart_svg_height(const Chart& chart) { return above + chart.height + below; }
+
+std::string chart_svg(const CurveTables& tables, const Chart& chart, double width, double top) {
+  const Axes axes = axes_of(tables, chart, width, top);
+  std::string out = label(0, top + 15, "start", ink, 15, chart.title, " font-weight=\"600\"");
+  out += chart_legend(chart, top) + chart_scales(chart, axes) + zero_line(chart, axes);
   out += fmt::format("<clipPath id=\"clip-{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\"/></clipPath>\n",
-                     chart.id, left, y.pixel_high, x.pixel_high - x.pixel_low, chart.height);
+                     chart.id, left, axes.y.pixel_high, axes.x.pixel_high - axes.x.pixel_low, chart.height);
   out += fmt::format("<g clip-path=\"url(#clip-{})\">\n", chart.id);
-  for (const Series& one : chart.series) {
-    const Stroke pen = stroke(one.role);
-    const CurveTable& table = tables.at(one.table);
-    const auto points = visible(x, y, table.at(chart.x_column), table.at(one.column));
-    if (points.empty()) continue;
-    std::string path;
-    if (dots(one.role)) {
-      for (const auto& [px, py] : points) path += fmt::format("M{:.1f} {:.1f}h0", px, py);
-      out += fmt::format(
-          "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linecap=\"round\" stroke-opacity=\"{}\"/>\n",
-          path, pen.colour, pen.width, one.role == Role::measured ? 1 : 0.55);
-      continue;
-    }
-    for (const auto& [px, py] : points)
-      path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : path.size() < 14 ? "L" : " ", px, py);
-    out += fmt::format(
-        "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-dasharray=\"{}\"/>\n",
-        path, pen.colour, pen.width, *pen.dash ? pen.dash : "none");
-  }
-  for (const Mark& mark : chart.marks) {
-    if (mark.x < x.low || mark.x > x.high || mark.y < y.low || mark.y > y.high) continue;
-    const Stroke pen = stroke(mark.role);
-    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.4\" fill=\"{}\"/>\n", x.pixel(mark.x), y.pixel(mark.y),
-                       pen.colour);
-    if (mark.text.empty()) continue;
-    out += label(std::clamp(x.pixel(mark.x), left + 26, width - right - 26), std::max(y.pixel(mark.y) - 6, y.pixel_high + 13),
-                 "middle", pen.colour, 12.5, mark.text, (std::string(" font-weight=\"600\"") + halo).c_str());
-  }
+  for (const Series& one : chart.series) out += chart_curve(tables.at(one.table), chart, one, axes);
+  for (const Mark& mark : chart.marks) out += chart_mark(mark, axes);
   return out + "</g>\n";
 }
 

@@ -193,6 +193,52 @@ struct Told {
   std::vector<DeviceUnits> units;
 };
 
+Told fitted(const MeasurementStudy& study, std::uint64_t seed, std::string name, std::vector<std::size_t> figures) {
+  Told told{.prediction = {.name = std::move(name), .figures = std::move(figures)}, .units = {}};
+  Prediction& p = told.prediction;
+  told.units = told_factors(regressors(study.figures, p.figures, seed), study.best);
+  std::tie(p.volts_miss, p.volts_unexplained) = misses(told.units, study.best, &DeviceUnits::volts);
+  std::tie(p.time_miss, p.time_unexplained) = misses(told.units, study.best, &DeviceUnits::time);
+  return told;
+}
+
+// What bounds the predictions from below and from above, and the units that recipes are given in.
+std::vector<Told> told_for_reference(const MeasurementStudy& study, std::uint64_t seed) {
+  std::vector<Told> all;
+  const auto given = [&](std::string name, std::vector<DeviceUnits> units) {
+    all.push_back({.prediction = {.name = std::move(name), .figures = {}}, .units = std::move(units)});
+  };
+  const auto number_of = [&](std::string_view name) {
+    const auto found = std::find_if(study.figures.begin(), study.figures.end(), [&](const auto& f) { return f.name == name; });
+    return static_cast<std::size_t>(found - study.figures.begin());
+  };
+  const std::size_t count = study.figures.size();
+  given("nothing", std::vector<DeviceUnits>(study.devices));
+  given("the best factors themselves", study.best);
+  std::vector<std::size_t> every(count);
+  std::iota(every.begin(), every.end(), std::size_t{0});
+  all.push_back(fitted(study, seed, "all of them", every));
+  if (const std::size_t v = number_of("Vdp"), f = number_of("frequency"); v < count && f < count) {
+    const Eigen::MatrixXd x = regressors(study.figures, {v, f}, seed);
+    std::vector<DeviceUnits> own;
+    for (Eigen::Index k = 0; k < x.rows(); ++k) own.push_back({.volts = std::exp(x(k, 1)), .time = std::exp(-x(k, 2))});
+    given("own units: Vdp, frequency", std::move(own));
+  }
+  return all;
+}
+
+// Every figure, and every two of them.
+std::vector<Told> told_by_figures(const MeasurementStudy& study, std::uint64_t seed) {
+  std::vector<Told> all;
+  const std::vector<MeasurableFigure>& figures = study.figures;
+  for (std::size_t a = 0; a < figures.size(); ++a) {
+    all.push_back(fitted(study, seed, figures[a].name, {a}));
+    for (std::size_t b = a + 1; b < figures.size(); ++b)
+      all.push_back(fitted(study, seed, figures[a].name + " and " + figures[b].name, {a, b}));
+  }
+  return all;
+}
+
 void judge_told(Told& told, const RobustCost& cost, const std::vector<Waveform>& recipe, int jobs, const Watch& watch) {
   std::vector<DeviceOutcome> outcomes(cost.devices());
   run_tasks(outcomes.size(), jobs, [&](std::size_t k) {
@@ -246,11 +292,6 @@ MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOpti
 
   MeasurementStudy study{.devices = cost.devices()};
   study.figures = measure(instruments(nominal, meter, options), nominal.model, cost, options.jobs, watch);
-  const auto number_of = [&](std::string_view name) {
-    const auto found = std::find_if(study.figures.begin(), study.figures.end(), [&](const auto& f) { return f.name == name; });
-    return static_cast<std::size_t>(found - study.figures.begin());
-  };
-
   study.best.assign(study.devices, {.volts = unknown, .time = unknown});
   over_devices(study.devices, options.jobs, "best factors of the devices", watch, [&](std::size_t k) {
     if (!cost.device(k).model) return;
@@ -260,34 +301,9 @@ MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOpti
   });
   watch.throw_if_stopped();
 
-  std::vector<Told> all;
-  const auto fitted = [&](std::string name, std::vector<std::size_t> figures) {
-    Told told{.prediction = {.name = std::move(name), .figures = std::move(figures)}, .units = {}};
-    told.units = told_factors(regressors(study.figures, told.prediction.figures, options.seed), study.best);
-    std::tie(told.prediction.volts_miss, told.prediction.volts_unexplained) = misses(told.units, study.best, &DeviceUnits::volts);
-    std::tie(told.prediction.time_miss, told.prediction.time_unexplained) = misses(told.units, study.best, &DeviceUnits::time);
-    all.push_back(std::move(told));
-  };
-  const auto given = [&](std::string name, std::vector<DeviceUnits> units) {
-    all.push_back({.prediction = {.name = std::move(name), .figures = {}}, .units = std::move(units)});
-  };
-  const std::size_t count = study.figures.size();
-  given("nothing", std::vector<DeviceUnits>(study.devices));
-  given("the best factors themselves", study.best);
-  std::vector<std::size_t> every(count);
-  std::iota(every.begin(), every.end(), std::size_t{0});
-  fitted("all of them", every);
-  if (const std::size_t v = number_of("Vdp"), f = number_of("frequency"); v < count && f < count) {
-    const Eigen::MatrixXd x = regressors(study.figures, {v, f}, options.seed);
-    std::vector<DeviceUnits> own;
-    for (Eigen::Index k = 0; k < x.rows(); ++k) own.push_back({.volts = std::exp(x(k, 1)), .time = std::exp(-x(k, 2))});
-    given("own units: Vdp, frequency", std::move(own));
-  }
+  std::vector<Told> all = told_for_reference(study, options.seed);
   const std::size_t references = all.size();
-  for (std::size_t a = 0; a < count; ++a) {
-    fitted(study.figures[a].name, {a});
-    for (std::size_t b = a + 1; b < count; ++b) fitted(study.figures[a].name + " and " + study.figures[b].name, {a, b});
-  }
+  for (Told& told : told_by_figures(study, options.seed)) all.push_back(std::move(told));
   for (std::size_t i = 0; i < all.size() && !watch.stopped(); ++i) {
     judge_told(all[i], cost, recipe, options.jobs, watch);
     watch.tell("judging what is told", static_cast<double>(i + 1) / static_cast<double>(all.size()));

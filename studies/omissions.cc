@@ -50,13 +50,9 @@ Metrics closing(const Prepared& p, const Watch& watch, double done = 0, double s
                  p.scene.metrics);
 }
 
-}  // namespace
-
-std::vector<Omissible> omissible_effects(const Prepared& prepared) {
+void add_omissible_structure(const Prepared& prepared, std::vector<Omissible>& list) {
   const Device& d = prepared.scene.device;
   const Structure& s = d.structure;
-  const double closed = d.gap.electrode - d.gap.contact;
-  std::vector<Omissible> list;
   if (s.kind != StructureKind::plate && s.modes > 1) {
     list.push_back(
         {.effect = "structure.modes",
@@ -94,6 +90,10 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
                     .group = {.name = "change of omega_1", .value = first_frequency(d) / first_frequency(without) - 1},
                     .instead = {}});
   }
+}
+
+void add_omissible_fringing(const Prepared& prepared, std::vector<Omissible>& list) {
+  const Device& d = prepared.scene.device;
   for (std::size_t k = 0; k < d.electrodes.size(); ++k) {
     const Electrode& e = d.electrodes[k];
     if (e.fringing == Fringing::none) continue;
@@ -101,46 +101,65 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
     without.electrodes[k].fringing = Fringing::none;
     list.push_back({.effect = "electrode." + e.name + ".fringing",
                     .magnitude = {.name = "force added, at rest", .value = force_at_rest(d, k) / force_at_rest(without, k) - 1},
-                    .group = {.name = "gap / width", .value = d.gap.electrode / s.width},
+                    .group = {.name = "gap / width", .value = d.gap.electrode / d.structure.width},
                     .instead = std::string(name_of(fringing_laws, Fringing::none))});
   }
-  if (d.gas) {
-    const double omega = prepared.model.angular_frequencies()[0];
-    list.push_back(
-        {.effect = "gas",
-         .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.model.gas(), closed)},
-         .group = {.name = "squeeze number, closed"},
-         .instead = {}});
-    if (d.gas->model != GasModel::linear) list.back().group.value = squeeze_number(*d.gas, s.width, closed, omega);
-    if (!std::isnan(d.gas->far_gap)) {
-      list.push_back({.effect = "gas.far_gap",
-                      .magnitude = {.name = "damping, at rest",
-                                    .unit = "N s/m^2",
-                                    .value = damping_per_length(*prepared.model.gas(), d.gas->far_gap)},
-                      .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / d.gas->far_gap, 3)},
-                      .instead = {}});
-    }
-    if (!std::isnan(d.gas->film_length)) {
-      list.push_back({.effect = "gas.film_length",
-                      .magnitude = {.name = "damping kept", .value = end_flow(s.width / d.gas->film_length)},
-                      .group = {.name = "width / length", .value = s.width / d.gas->film_length},
-                      .instead = {}});
-    }
+}
+
+void add_omissible_gas(const Prepared& prepared, std::vector<Omissible>& list) {
+  const Device& d = prepared.scene.device;
+  const double width = d.structure.width, closed = d.gap.electrode - d.gap.contact;
+  const double omega = prepared.model.angular_frequencies()[0];
+  list.push_back(
+      {.effect = "gas",
+       .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.model.gas(), closed)},
+       .group = {.name = "squeeze number, closed"},
+       .instead = {}});
+  if (d.gas->model != GasModel::linear) list.back().group.value = squeeze_number(*d.gas, width, closed, omega);
+  if (!std::isnan(d.gas->far_gap)) {
+    list.push_back({.effect = "gas.far_gap",
+                    .magnitude = {.name = "damping, at rest",
+                                  .unit = "N s/m^2",
+                                  .value = damping_per_length(*prepared.model.gas(), d.gas->far_gap)},
+                    .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / d.gas->far_gap, 3)},
+                    .instead = {}});
   }
-  if (d.contact && d.contact->distribution == ContactDistribution::pad) {
-    const double rise = 1.5 * d.gap.contact / s.length * d.contact->pad_length;  // of a uniform beam bent by its end
+  if (!std::isnan(d.gas->film_length)) {
+    list.push_back({.effect = "gas.film_length",
+                    .magnitude = {.name = "damping kept", .value = end_flow(width / d.gas->film_length)},
+                    .group = {.name = "width / length", .value = width / d.gas->film_length},
+                    .instead = {}});
+  }
+}
+
+void add_omissible_contact(const Prepared& prepared, std::vector<Omissible>& list) {
+  const Device& d = prepared.scene.device;
+  const Contact& contact = *d.contact;
+  if (contact.distribution == ContactDistribution::pad) {
+    const double rise = 1.5 * d.gap.contact / d.structure.length * contact.pad_length;  // of a uniform beam bent by its end
     list.push_back({.effect = "contact.distribution",
                     .magnitude = {.name = "tilt of the pad", .unit = "m", .value = rise},
                     .group = {.name = "over the interference", .value = rise / prepared.model.penetration_scale()},
                     .instead = std::string(name_of(contact_distributions, ContactDistribution::centre)),
                     .automatic = false});
   }
-  if (d.contact && d.contact->damping > 0) {
+  if (contact.damping > 0) {
     list.push_back({.effect = "contact.damping",
-                    .magnitude = {.name = "damping", .unit = "s/m", .value = d.contact->damping},
-                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * d.contact->damping},
+                    .magnitude = {.name = "damping", .unit = "s/m", .value = contact.damping},
+                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * contact.damping},
                     .instead = {}});
   }
+}
+
+}  // namespace
+
+std::vector<Omissible> omissible_effects(const Prepared& prepared) {
+  const Device& d = prepared.scene.device;
+  std::vector<Omissible> list;
+  add_omissible_structure(prepared, list);
+  add_omissible_fringing(prepared, list);
+  if (d.gas) add_omissible_gas(prepared, list);
+  if (d.contact) add_omissible_contact(prepared, list);
   if (d.dispersion && !prepared.drives.waveforms.contains(std::string(dispersion_drive))) {
     const double bent = prepared.model.rest() ? prepared.model.contact_deflection(prepared.model.rest()->data()) : d.gap.contact;
     list.push_back({.effect = "dispersion",

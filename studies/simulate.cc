@@ -94,6 +94,120 @@ constexpr long most_growth = 10, least_steps = 100;
 constexpr double helps = 1.0 / 3;  // a tighter run that leaves more than this of the error does not
 constexpr int most_in_vain = 2;    // in a row
 
+bool can_tighten(const Run& r) { return r.tolerance / tighter_by >= least_tolerance; }
+
+// Runs of a scene's closing, each told to the watch.
+class ClosingRuns {
+ public:
+  ClosingRuns(const Prepared& prepared, const Watch& watch) : prepared_(prepared), watch_(watch), signals_(prepared.signals()) {}
+
+  [[nodiscard]] const std::vector<Signal>& signals() const { return signals_; }
+  [[nodiscard]] bool was_interrupted() const { return was_interrupted_; }
+
+  Run as_asked() { return run(prepared_.model, prepared_.tolerance, prepared_.quadrature, ClosingOptions{}.max_steps); }
+
+  Run tighter_than(const Run& r) {
+    const SwitchOptions finer{.points_per_length = finer_by * r.quadrature.points_per_length};
+    return run(Switch(prepared_.scene.device, finer), r.tolerance / tighter_by, finer,
+               most_growth * (least_steps + r.trajectory.work.steps));
+  }
+
+  Run judge_of(const Run& r) {
+    if (!can_tighten(r)) return looser_than(r);
+    Run tighter = tighter_than(r);
+    return tighter.trajectory.status == Status::done || watch_.stopped() ? std::move(tighter) : looser_than(r);
+  }
+
+ private:
+  Run looser_than(const Run& r) {
+    const SwitchOptions coarser{.points_per_length = r.quadrature.points_per_length / finer_by};
+    return run(Switch(prepared_.scene.device, coarser), std::min(loosest_tolerance, r.tolerance * tighter_by), coarser,
+               ClosingOptions{}.max_steps);
+  }
+
+  Run run(const Switch& model, double tolerance, const SwitchOptions& quadrature, long max_steps) {
+    Run r{.tolerance = tolerance, .quadrature = quadrature};
+    const std::string what =
+        count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
+    r.trajectory = simulate_closing(model, signals_,
+                                    {.duration = prepared_.duration,
+                                     .tolerance = tolerance,
+                                     .max_steps = max_steps,
+                                     .stop = watch_.stop,
+                                     .observer = observer(watch_, what, prepared_.duration)});
+    was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
+    r.metrics = metrics(r.trajectory, prepared_.scene.metrics);
+    return r;
+  }
+
+  const Prepared& prepared_;
+  const Watch& watch_;
+  std::vector<Signal> signals_;
+  int count_ = 0;
+  bool was_interrupted_ = false;
+};
+
+// A run, the one that judges it, and the largest relative difference of the figures that `accuracy` is about.
+struct JudgedRun {
+  Run own, judge;
+  double error;
+};
+
+// Finds the judge of a run. Where runs may be tightened the judge takes the place of the run, and has one of its own, until the
+// error is within the accuracy asked for or that no longer helps.
+JudgedRun with_judge(Run own, ClosingRuns& runs, const Prepared& prepared, bool may_tighten) {
+  Run judge = runs.judge_of(own);
+  double e = error(own, judge, prepared);
+  for (int vain = 0; may_tighten && e > prepared.scene.simulate.accuracy && vain < most_in_vain &&
+                     judge.trajectory.status == Status::done && judge.tolerance < own.tolerance && can_tighten(judge);) {
+    Run next = runs.tighter_than(judge);
+    if (next.trajectory.status != Status::done) break;
+    const double less = error(judge, next, prepared);
+    vain = less < helps * e ? 0 : vain + 1;
+    e = less;
+    own = std::move(judge);
+    judge = std::move(next);
+  }
+  return {.own = std::move(own), .judge = std::move(judge), .error = e};
+}
+
+// The errors that a judge finds, and what is to be warned of.
+void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool may_tighten) {
+  const Run &own = run.own, &judge = run.judge;
+  const bool is_tighter = judge.tolerance < own.tolerance;
+  c.errors = difference(own.metrics, judge.metrics, own.tolerance, prepared.scene.device.gap.contact);
+  forget_what_is_chaotic(c.errors, own, judge, prepared.scene.metrics);
+  const double accuracy = prepared.scene.simulate.accuracy;
+  if (may_tighten && run.error > accuracy) {
+    c.warnings.push_back(fmt::format(
+        "accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is still known to {} "
+        "only, {}",
+        engineering(accuracy, ""), engineering(own.tolerance, "", 1), engineering(run.error, "", 1),
+        is_tighter         ? "for so small a change decides it"
+        : can_tighten(own) ? "and no tighter run comes to its end"
+                           : "and rounding forbids a tighter run"));
+  }
+  const double moved = std::abs(own.metrics.bounce_time - judge.metrics.bounce_time);
+  if (own.metrics.bounce_count != judge.metrics.bounce_count || moved > 0.01 * std::abs(own.metrics.bounce_time)) {
+    c.warnings.push_back(
+        fmt::format("bounce count and permanent contact time are ill-conditioned here: a hundredfold {} run gives {} "
+                    "rebounds instead of {}; past the first large rebound a closing is chaotic",
+                    is_tighter ? "tighter" : "looser", judge.metrics.bounce_count, own.metrics.bounce_count));
+  }
+}
+
+// Errors and warnings of a closing are not known where its runs were interrupted.
+void say_interrupted(Closing& c) {
+  const bool complete = c.trajectory.status != Status::interrupted;
+  c.metrics.status = Status::interrupted;
+  c.errors = {};
+  c.judge.reset();
+  c.warnings = {complete ? fmt::format("interrupted: the figures are those of a complete closing at tolerance {}, but how "
+                                       "far they are from the truth was not found out",
+                                       engineering(c.tolerance, "", 1))
+                         : std::string("interrupted: the figures are those of the part of the closing that was simulated")};
+}
+
 }  // namespace
 
 double least_peak_force(const Prepared& prepared) {
@@ -102,111 +216,43 @@ double least_peak_force(const Prepared& prepared) {
 }
 
 Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch) {
-  const std::vector<Signal> signals = prepared.signals();
-  int runs = 0;
-  bool interrupted = false;
-  const auto run = [&](const Switch& model, double tolerance, const SwitchOptions& quadrature, long max_steps) {
-    Run r{.tolerance = tolerance, .quadrature = quadrature};
-    const std::string what =
-        runs++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
-    r.trajectory = simulate_closing(model, signals,
-                                    {.duration = prepared.duration,
-                                     .tolerance = tolerance,
-                                     .max_steps = max_steps,
-                                     .stop = watch.stop,
-                                     .observer = observer(watch, what, prepared.duration)});
-    interrupted = interrupted || r.trajectory.status == Status::interrupted;
-    r.metrics = metrics(r.trajectory, prepared.scene.metrics);
-    return r;
-  };
-  const auto can_tighten = [](const Run& r) { return r.tolerance / tighter_by >= least_tolerance; };
-  const auto tighter_than = [&](const Run& r) {
-    const SwitchOptions finer{.points_per_length = finer_by * r.quadrature.points_per_length};
-    return run(Switch(prepared.scene.device, finer), r.tolerance / tighter_by, finer,
-               most_growth * (least_steps + r.trajectory.work.steps));
-  };
-  const auto looser_than = [&](const Run& r) {
-    const SwitchOptions coarser{.points_per_length = r.quadrature.points_per_length / finer_by};
-    return run(Switch(prepared.scene.device, coarser), std::min(loosest_tolerance, r.tolerance * tighter_by), coarser,
-               ClosingOptions{}.max_steps);
-  };
-  const auto judge_of = [&](const Run& r) {
-    if (!can_tighten(r)) return looser_than(r);
-    Run tighter = tighter_than(r);
-    return tighter.trajectory.status == Status::done || watch.stopped() ? std::move(tighter) : looser_than(r);
-  };
-  Run best = run(prepared.model, prepared.tolerance, prepared.quadrature, ClosingOptions{}.max_steps);
+  ClosingRuns runs(prepared, watch);
+  Run best = runs.as_asked();
   const SimulateOptions& asked = prepared.scene.simulate;
   const bool may_tighten = estimate_errors && asked.tolerance == 0;
-  if (may_tighten && best.trajectory.status == Status::numerical_failure && can_tighten(best)) best = tighter_than(best);
+  if (may_tighten && best.trajectory.status == Status::numerical_failure && can_tighten(best)) best = runs.tighter_than(best);
 
   Closing c;
   if (estimate_errors && best.trajectory.status == Status::done) {
-    Run other = judge_of(best);
-    double e = error(best, other, prepared);
-    for (int vain = 0; may_tighten && e > asked.accuracy && vain < most_in_vain && other.trajectory.status == Status::done &&
-                       other.tolerance < best.tolerance && can_tighten(other);) {
-      Run next = tighter_than(other);
-      if (next.trajectory.status != Status::done) break;
-      const double less = error(other, next, prepared);
-      vain = less < helps * e ? 0 : vain + 1;
-      e = less;
-      best = std::move(other);
-      other = std::move(next);
-    }
-    c.judge = {.status = other.trajectory.status,
-               .message = other.trajectory.message,
-               .metrics = other.metrics,
-               .tolerance = other.tolerance,
-               .quadrature = other.quadrature};
-    if (other.trajectory.status == Status::done) {
-      const char* how = other.tolerance < best.tolerance ? "tighter" : "looser";
-      c.errors = difference(best.metrics, other.metrics, best.tolerance, prepared.scene.device.gap.contact);
-      forget_what_is_chaotic(c.errors, best, other, prepared.scene.metrics);
-      if (may_tighten && e > asked.accuracy) {
-        c.warnings.push_back(fmt::format(
-            "accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is still known to {} "
-            "only, {}",
-            engineering(asked.accuracy, ""), engineering(best.tolerance, "", 1), engineering(e, "", 1),
-            other.tolerance < best.tolerance ? "for so small a change decides it"
-            : can_tighten(best)              ? "and no tighter run comes to its end"
-                                             : "and rounding forbids a tighter run"));
-      }
-      const double moved = std::abs(best.metrics.bounce_time - other.metrics.bounce_time);
-      if (best.metrics.bounce_count != other.metrics.bounce_count || moved > 0.01 * std::abs(best.metrics.bounce_time)) {
-        c.warnings.push_back(
-            fmt::format("bounce count and permanent contact time are ill-conditioned here: a hundredfold {} run gives {} "
-                        "rebounds instead of {}; past the first large rebound a closing is chaotic",
-                        how, other.metrics.bounce_count, best.metrics.bounce_count));
-      }
+    JudgedRun run = with_judge(std::move(best), runs, prepared, may_tighten);
+    const Run& judge = run.judge;
+    c.judge = {.status = judge.trajectory.status,
+               .message = judge.trajectory.message,
+               .metrics = judge.metrics,
+               .tolerance = judge.tolerance,
+               .quadrature = judge.quadrature};
+    if (judge.trajectory.status == Status::done) {
+      add_errors(c, run, prepared, may_tighten);
     } else if (!watch.stopped()) {
       c.warnings.push_back(fmt::format(
           "the errors are not known, nor whether accuracy {} is reached: no other run to compare with came to its end "
           "({}{}{})",
-          engineering(asked.accuracy, ""), to_string(other.trajectory.status), other.trajectory.message.empty() ? "" : ": ",
-          other.trajectory.message));
+          engineering(asked.accuracy, ""), to_string(judge.trajectory.status), judge.trajectory.message.empty() ? "" : ": ",
+          judge.trajectory.message));
     }
+    best = std::move(run.own);
   }
   c.trajectory = std::move(best.trajectory);
   c.tolerance = best.tolerance;
   c.quadrature = best.quadrature;
   std::vector<double> hold;
-  for (const Signal& signal : signals) hold.push_back(signal.hold_level());
+  for (const Signal& signal : runs.signals()) hold.push_back(signal.hold_level());
   if (const auto closed = closed_equilibrium(prepared.model, hold)) c.trajectory.hold_force = closed->contact_force;
   c.metrics = metrics(c.trajectory, prepared.scene.metrics);
-  if (interrupted) {
-    const bool complete = c.trajectory.status != Status::interrupted;
-    c.metrics.status = Status::interrupted;
-    c.errors = {};
-    c.judge.reset();
-    c.warnings = {complete ? fmt::format("interrupted: the figures are those of a complete closing at tolerance {}, but how "
-                                         "far they are from the truth was not found out",
-                                         engineering(c.tolerance, "", 1))
-                           : std::string("interrupted: the figures are those of the part of the closing that was simulated")};
-  }
+  if (runs.was_interrupted()) say_interrupted(c);
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
-  set_drive_figures(c.metrics, prepared, signals);
+  set_drive_figures(c.metrics, prepared, runs.signals());
   return c;
 }
 
