@@ -199,6 +199,68 @@ std::optional<Minimum> first_minimum(F&& f, double step) {
   return value < known ? Minimum{at * step, value} : Minimum{around->last, known};
 }
 
+// Steps of one drive, from rest.
+class StepTrial {
+ public:
+  StepTrial(const Switch& model, std::size_t drive, const StaticPullIn& static_result, double tolerance)
+      : model_(model),
+        drive_(drive),
+        static_(static_result),
+        tolerance_(tolerance),
+        statics_(model),
+        branch_(model, drive),
+        work_(model.workspace()) {}
+
+  // Whether a step reaches the contact plane. tell(part) is called now and then, with the part of the time that is over.
+  template <class Tell>
+  bool reaches(double value, const std::atomic<bool>* stop, Tell&& tell) {
+    std::vector<double> all(model_.drives(), 0.0);
+    all[drive_] = value;
+    const Pass barrier = pass(value, all);
+    if (model_.potential(model_.rest()->data(), all, false, work_) < barrier.potential) return false;
+    std::vector<Signal> signals(model_.drives());
+    signals[drive_] = Signal::constant(value);
+    ClosingOptions options{
+        .duration = 100 * 2 * pi / model_.angular_frequencies()[0], .tolerance = tolerance_, .after_contact = 0, .stop = stop};
+    int step = 0;
+    options.observer = [&](double time, const double* q, const double* v) {
+      if (++step % 8 != 0) return false;  // looking more often costs more than it saves
+      tell(time / options.duration);
+      return model_.contact_deflection(q) < barrier.deflection &&
+             model_.kinetic_energy(v) + model_.potential(q, all, model_.untouched(q), work_) + model_.film_energy(q, work_) <
+                 barrier.potential;
+    };
+    return !simulate_closing(model_, signals, options).touches.empty();
+  }
+
+ private:
+  struct Pass {
+    double deflection, potential;
+  };
+
+  // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane before it is over it never
+  // gets there. The pass is the unstable equilibrium, or the state held at the plane where that comes first. Where the contact
+  // point is on it no shape has less energy, so its deflection tells the two sides apart.
+  Pass pass(double value, std::span<const double> all) {
+    const double plane = model_.device().gap.contact, strength = model_.strength(drive_, value);
+    if (static_.kind == StaticKind::fold && branch_(plane) < strength) {
+      const double s = bracketed_zero([&](double x) { return branch_(x) - strength; }, static_.deflection, plane);
+      branch_(s);
+      return {s, statics_.potential(branch_.q(), all)};
+    }
+    const auto held = statics_.pinned(all, plane);
+    return {plane, held ? statics_.potential(held->q, all) : nan};
+  }
+
+  const Switch& model_;
+  std::size_t drive_;
+  const StaticPullIn& static_;
+  double tolerance_;
+  Statics statics_;
+  EquilibriumBranch branch_;
+  Switch::Workspace work_;
+};
+
 }  // namespace
 
 bool pulls_in(const Device& device, std::size_t drive) {
@@ -302,51 +364,12 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
                               double tolerance) {
   if (static_result.status != Status::done) return {.status = static_result.status};
   if (!model.rest()) return {.status = Status::collapsed_at_rest};
-  Statics statics(model);
-  EquilibriumBranch branch(model, drive);
-  const double plane = model.device().gap.contact;
-  const Eigen::VectorXd& rest = *model.rest();
-  Switch::Workspace work = model.workspace();
-
-  // Friction only takes energy: a run whose energy falls below the pass between rest and contact plane before it is over it never
-  // gets there. The pass is the unstable equilibrium, or the state held at the plane where that comes first. Where the contact
-  // point is on it no shape has less energy, so its deflection tells the two sides apart.
-  struct Pass {
-    double deflection, potential;
-  };
-  const auto pass = [&](double value, std::span<const double> all) -> Pass {
-    const double strength = model.strength(drive, value);
-    if (static_result.kind == StaticKind::fold && branch(plane) < strength) {
-      const double s = bracketed_zero([&](double x) { return branch(x) - strength; }, static_result.deflection, plane);
-      branch(s);
-      return {s, statics.potential(branch.q(), all)};
-    }
-    const auto held = statics.pinned(all, plane);
-    return {plane, held ? statics.potential(held->q, all) : nan};
-  };
-
+  StepTrial steps(model, drive, static_result, tolerance);
   const double halvings = std::log2(0.5 / dynamic_pull_in_precision);  // of the bracket
   double done = 0;
   const auto reaches = [&](double value) {
-    std::vector<double> all(model.drives(), 0.0);
-    all[drive] = value;
-    const Pass barrier = pass(value, all);
-    if (model.potential(rest.data(), all, false, work) < barrier.potential) return false;
-    std::vector<Signal> signals(model.drives());
-    signals[drive] = Signal::constant(value);
-    ClosingOptions options{.duration = 100 * 2 * pi / model.angular_frequencies()[0],
-                           .tolerance = tolerance,
-                           .after_contact = 0,
-                           .stop = watch.stop};
-    int step = 0;
-    options.observer = [&](double time, const double* q, const double* v) {
-      if (++step % 8 != 0) return false;  // looking more often costs more than it saves
-      watch.tell("dynamic pull-in voltage", std::min(1.0, (done + time / options.duration) / halvings));
-      return model.contact_deflection(q) < barrier.deflection &&
-             model.kinetic_energy(v) + model.potential(q, all, model.untouched(q), work) + model.film_energy(q, work) <
-                 barrier.potential;
-    };
-    return !simulate_closing(model, signals, options).touches.empty();
+    return steps.reaches(value, watch.stop,
+                         [&](double part) { watch.tell("dynamic pull-in voltage", std::min(1.0, (done + part) / halvings)); });
   };
 
   double low = 0.5 * static_result.voltage, high = static_result.voltage;

@@ -51,6 +51,15 @@ std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, doub
   return d.conductor == Conductor::gold ? with(GoldCasimir{}) : with(IdealCasimir{});
 }
 
+bool touches_along_pad(const Device& d) { return d.contact && d.contact->distribution == ContactDistribution::pad; }
+
+MidPlaneStretching stretching_of(const BeamModes& beam, const Structure& s) {
+  const Eigen::MatrixXd slopes = beam.slope_products();
+  return {.modes = static_cast<std::size_t>(slopes.rows()),
+          .slopes = std::vector<double>(slopes.data(), slopes.data() + slopes.size()),
+          .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};
+}
+
 }  // namespace
 
 // What switches of the same lengths share: where they are looked at, and their normalised modes there.
@@ -60,6 +69,20 @@ struct Switch::Frame {
     double contact = 0, piezo_begin = 0, piezo_end = 0;  // [m]
     double points_per_length = 0;
     int fewest_points = 0;  // of a panel
+
+    [[nodiscard]] static Places of(const Device& d) {
+      std::set<double> corners{0, d.structure.length};
+      for (const Electrode& e : d.electrodes) corners.insert({e.begin, std::min(e.end, d.structure.length)});
+      if (d.piezo) corners.insert({d.piezo->begin, d.piezo->end});
+      if (touches_along_pad(d)) {
+        const auto [begin, end] = d.pad();
+        corners.insert({begin, end});
+      }
+      return {.corners = {corners.begin(), corners.end()},
+              .contact = d.contact_position(),
+              .piezo_begin = d.piezo ? d.piezo->begin : 0,
+              .piezo_end = d.piezo ? d.piezo->end : 0};
+    }
     [[nodiscard]] bool operator==(const Places&) const = default;
   };
   Places places;
@@ -98,20 +121,9 @@ struct Switch::Frame {
 template <class Modes>
 void Switch::move_in(const Modes& structure, double points_per_length, int fewest_points, const Switch* like) {
   const Structure& s = device_.structure;
-  const bool along_pad = device_.contact && device_.contact->distribution == ContactDistribution::pad;
-  std::set<double> corners{0, s.length};
-  for (const Electrode& e : device_.electrodes) corners.insert({e.begin, std::min(e.end, s.length)});
-  if (device_.piezo) corners.insert({device_.piezo->begin, device_.piezo->end});
-  if (along_pad) {
-    const auto [begin, end] = device_.pad();
-    corners.insert({begin, end});
-  }
-  Frame::Places places{.corners = {corners.begin(), corners.end()},
-                       .contact = device_.contact_position(),
-                       .piezo_begin = device_.piezo ? device_.piezo->begin : 0,
-                       .piezo_end = device_.piezo ? device_.piezo->end : 0,
-                       .points_per_length = points_per_length,
-                       .fewest_points = fewest_points};
+  Frame::Places places = Frame::Places::of(device_);
+  places.points_per_length = points_per_length;
+  places.fewest_points = fewest_points;
   if constexpr (std::same_as<Modes, BeamModes>) {
     if (like != nullptr && like->frame_->modes == structure.normalised() && like->frame_->places == places) frame_ = like->frame_;
   }
@@ -126,7 +138,7 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
   squares_ = frequencies_.cwiseAbs2();
   contact_shape_ = scale * frame_->contact_shape;
   pad_slope_ = Eigen::VectorXd::Zero(modes());
-  if (along_pad) {
+  if (touches_along_pad(device_)) {
     pad_.emplace(device_.contact->pad_length);
     pad_slope_ = slope_scale * frame_->contact_slope;
   }
@@ -168,12 +180,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface),
                          like != nullptr ? like->frame_->modes : nullptr);
     move_in(beam, options.points_per_length, 3, like);
-    if (s.kind == StructureKind::clamped_clamped && s.stretching) {
-      const Eigen::MatrixXd slopes = beam.slope_products();
-      stretching_ = {.modes = static_cast<std::size_t>(slopes.rows()),
-                     .slopes = std::vector<double>(slopes.data(), slopes.data() + slopes.size()),
-                     .stiffness = s.youngs_modulus * s.width * s.thickness / (2 * s.length)};
-    }
+    if (s.kind == StructureKind::clamped_clamped && s.stretching) stretching_ = stretching_of(beam, s);
   }
   const Eigen::Index n = points();
 

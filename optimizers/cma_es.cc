@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "base/random.h"
@@ -32,73 +33,113 @@ VectorXd recombination_weights(Eigen::Index lambda) {
   return weights / weights.sum();
 }
 
+// The constants of the strategy, as the source names and chooses them.
+struct Strategy {
+  explicit Strategy(Eigen::Index n)
+      : dimension(static_cast<double>(n)),
+        lambda(4 + static_cast<Eigen::Index>(3 * std::log(dimension))),
+        weights(recombination_weights(lambda)),
+        mu_eff(1 / weights.squaredNorm()),
+        c_sigma((mu_eff + 2) / (dimension + mu_eff + 5)),
+        d_sigma(1 + 2 * std::max(0.0, std::sqrt((mu_eff - 1) / (dimension + 1)) - 1) + c_sigma),
+        c_c((4 + mu_eff / dimension) / (dimension + 4 + 2 * mu_eff / dimension)),
+        c_1(2 / ((dimension + 1.3) * (dimension + 1.3) + mu_eff)),
+        c_mu(std::min(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((dimension + 2) * (dimension + 2) + mu_eff))),
+        chi(std::sqrt(dimension) * (1 - 1 / (4 * dimension) + 1 / (21 * dimension * dimension))) {}
+
+  double dimension;
+  Eigen::Index lambda;
+  VectorXd weights;
+  double mu_eff, c_sigma, d_sigma, c_c, c_1, c_mu, chi;
+};
+
+struct Child {
+  VectorXd step;  // (point - mean) / sigma
+  double value;
+};
+
+// The points lie about the mean as sigma axes diag(lengths) z does, with z from the standard normal distribution. The covariance
+// without sigma is axes diag(lengths)^2 axes^T; its lower triangle is kept.
+class Distribution {
+ public:
+  Distribution(const Strategy& strategy, VectorXd mean, double sigma)
+      : strategy_(strategy),
+        mean_(std::move(mean)),
+        sigma_(sigma),
+        covariance_(MatrixXd::Identity(mean_.size(), mean_.size())),
+        axes_(covariance_),
+        lengths_(VectorXd::Ones(mean_.size())),
+        path_sigma_(VectorXd::Zero(mean_.size())),
+        path_c_(path_sigma_),
+        eigen_(mean_.size()) {}
+
+  [[nodiscard]] const VectorXd& mean() const { return mean_; }
+  [[nodiscard]] VectorXd point(const VectorXd& z) const {
+    return (mean_ + sigma_ * axes_ * lengths_.cwiseProduct(z)).unaryExpr(&mirror);
+  }
+  [[nodiscard]] VectorXd step_to(const VectorXd& point) const { return (point - mean_) / sigma_; }
+  [[nodiscard]] double spread() const { return sigma_ * lengths_.maxCoeff(); }
+  void shrink(double factor) { sigma_ *= factor; }
+
+  // Moves the mean to the weighted best children and learns from their steps; children are sorted, the best first.
+  void learn(const std::vector<Child>& children, long generation) {
+    const Strategy& s = strategy_;
+    VectorXd move = VectorXd::Zero(mean_.size());
+    for (Eigen::Index j = 0; j < s.weights.size(); ++j) move += s.weights[j] * children[static_cast<std::size_t>(j)].step;
+    mean_ = (mean_ + sigma_ * move).cwiseMax(0.0).cwiseMin(1.0);
+
+    const VectorXd whitened = axes_ * (axes_.transpose() * move).cwiseQuotient(lengths_);
+    path_sigma_ = (1 - s.c_sigma) * path_sigma_ + std::sqrt(s.c_sigma * (2 - s.c_sigma) * s.mu_eff) * whitened;
+    const double settled = std::sqrt(1 - std::pow(1 - s.c_sigma, 2.0 * static_cast<double>(generation)));
+    const bool stalled = path_sigma_.norm() / settled >= (1.4 + 2 / (s.dimension + 1)) * s.chi;
+    path_c_ = (1 - s.c_c) * path_c_ + (stalled ? 0.0 : std::sqrt(s.c_c * (2 - s.c_c) * s.mu_eff)) * move;
+
+    covariance_ *= 1 - s.c_1 - s.c_mu + (stalled ? s.c_1 * s.c_c * (2 - s.c_c) : 0.0);
+    auto lower = covariance_.selfadjointView<Eigen::Lower>();
+    lower.rankUpdate(path_c_, s.c_1);
+    for (Eigen::Index j = 0; j < s.weights.size(); ++j)
+      lower.rankUpdate(children[static_cast<std::size_t>(j)].step, s.c_mu * s.weights[j]);
+    eigen_.compute(covariance_);
+    axes_ = eigen_.eigenvectors();
+    // Eigenvalues that are smaller still are rounding errors of the largest.
+    const double smallest = std::numeric_limits<double>::epsilon() * eigen_.eigenvalues().maxCoeff();
+    lengths_ = eigen_.eigenvalues().cwiseMax(smallest).cwiseSqrt();
+
+    sigma_ *= std::exp(std::min(1.0, s.c_sigma / s.d_sigma * (path_sigma_.norm() / s.chi - 1)));
+  }
+
+ private:
+  const Strategy& strategy_;
+  VectorXd mean_;
+  double sigma_;
+  MatrixXd covariance_, axes_;
+  VectorXd lengths_, path_sigma_, path_c_;
+  Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_;
+};
+
 }  // namespace
 
 RunReport run_cma_es(const Run& run, Strand& strand) {
   const auto n = static_cast<Eigen::Index>(run.start.size());
-  const auto dimension = static_cast<double>(n);
-  const auto lambda = 4 + static_cast<Eigen::Index>(3 * std::log(dimension));
-  const VectorXd weights = recombination_weights(lambda);
-  const double mu_eff = 1 / weights.squaredNorm();
-  const double c_sigma = (mu_eff + 2) / (dimension + mu_eff + 5);
-  const double d_sigma = 1 + 2 * std::max(0.0, std::sqrt((mu_eff - 1) / (dimension + 1)) - 1) + c_sigma;
-  const double c_c = (4 + mu_eff / dimension) / (dimension + 4 + 2 * mu_eff / dimension);
-  const double c_1 = 2 / ((dimension + 1.3) * (dimension + 1.3) + mu_eff);
-  const double c_mu = std::min(1 - c_1, 2 * (0.25 + mu_eff + 1 / mu_eff - 2) / ((dimension + 2) * (dimension + 2) + mu_eff));
-  const double chi = std::sqrt(dimension) * (1 - 1 / (4 * dimension) + 1 / (21 * dimension * dimension));
-
+  const Strategy strategy(n);
+  Distribution points(strategy, VectorXd::Map(run.start.data(), n), run.step);
   const auto evaluate = [&](const VectorXd& point) { return strand({point.data(), run.start.size()}).value; };
   std::uint64_t drawn = 0;
   const auto normal = [&] { return random_normal(run.seed, Stream::normals, drawn++); };
-  VectorXd mean = VectorXd::Map(run.start.data(), n);
-  double sigma = run.step;
-  // The points lie about the mean as sigma axes diag(lengths) z does, with z from the standard normal distribution. The
-  // covariance without sigma is axes diag(lengths)^2 axes^T; its lower triangle is kept.
-  MatrixXd covariance = MatrixXd::Identity(n, n), axes = covariance;
-  VectorXd lengths = VectorXd::Ones(n), path_sigma = VectorXd::Zero(n), path_c = path_sigma;
-  Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(n);
-
-  struct Child {
-    VectorXd step;  // (point - mean) / sigma
-    double value;
-  };
-  std::vector<Child> children(static_cast<std::size_t>(lambda));
+  std::vector<Child> children(static_cast<std::size_t>(strategy.lambda));
   strand.begin_search();
   try {
-    evaluate(mean);
+    evaluate(points.mean());
     for (long generation = 1;; ++generation) {
       for (Child& child : children) {
-        const VectorXd z = VectorXd::NullaryExpr(n, normal);
-        const VectorXd point = (mean + sigma * axes * lengths.cwiseProduct(z)).unaryExpr(&mirror);
-        child = {.step = (point - mean) / sigma, .value = evaluate(point)};
+        const VectorXd point = points.point(VectorXd::NullaryExpr(n, normal));
+        child = {.step = points.step_to(point), .value = evaluate(point)};
       }
       std::stable_sort(children.begin(), children.end(), [](const Child& a, const Child& b) { return a.value < b.value; });
-
-      VectorXd move = VectorXd::Zero(n);
-      for (Eigen::Index j = 0; j < weights.size(); ++j) move += weights[j] * children[static_cast<std::size_t>(j)].step;
-      mean = (mean + sigma * move).cwiseMax(0.0).cwiseMin(1.0);
-
-      const VectorXd whitened = axes * (axes.transpose() * move).cwiseQuotient(lengths);
-      path_sigma = (1 - c_sigma) * path_sigma + std::sqrt(c_sigma * (2 - c_sigma) * mu_eff) * whitened;
-      const double settled = std::sqrt(1 - std::pow(1 - c_sigma, 2.0 * static_cast<double>(generation)));
-      const bool stalled = path_sigma.norm() / settled >= (1.4 + 2 / (dimension + 1)) * chi;
-      path_c = (1 - c_c) * path_c + (stalled ? 0.0 : std::sqrt(c_c * (2 - c_c) * mu_eff)) * move;
-
-      covariance *= 1 - c_1 - c_mu + (stalled ? c_1 * c_c * (2 - c_c) : 0.0);
-      auto lower = covariance.selfadjointView<Eigen::Lower>();
-      lower.rankUpdate(path_c, c_1);
-      for (Eigen::Index j = 0; j < weights.size(); ++j)
-        lower.rankUpdate(children[static_cast<std::size_t>(j)].step, c_mu * weights[j]);
-      eigen.compute(covariance);
-      axes = eigen.eigenvectors();
-      // Eigenvalues that are smaller still are rounding errors of the largest.
-      const double smallest = std::numeric_limits<double>::epsilon() * eigen.eigenvalues().maxCoeff();
-      lengths = eigen.eigenvalues().cwiseMax(smallest).cwiseSqrt();
-
-      sigma *= std::exp(std::min(1.0, c_sigma / d_sigma * (path_sigma.norm() / chi - 1)));
-      const double spread = sigma * lengths.maxCoeff();
+      points.learn(children, generation);
+      const double spread = points.spread();
       if (!(spread > smallest_spread)) return {.converged = true, .message = "CMA-ES: points have drawn together"};
-      if (spread > 2) sigma *= 2 / spread;
+      if (spread > 2) points.shrink(2 / spread);
     }
   } catch (const Cut&) {
     return {.converged = false, .message = "CMA-ES: stopped by us"};

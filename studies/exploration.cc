@@ -103,6 +103,37 @@ std::string without_file(std::string_view message) {
   return std::string(message);
 }
 
+std::vector<PointFigure> pull_in_figures(const Device& device) {
+  std::vector<PointFigure> figures;
+  const std::vector<std::size_t> drives = pulling_drives(device);
+  require(!drives.empty(), "study pull-in needs an electrode that pulls in, or a dispersion force");
+  for (const std::size_t k : drives) {
+    const bool is_electrode = k < device.electrodes.size();
+    const std::string of = drives.size() > 1 ? device.electrodes[k].name + "_" : "";
+    const std::string words = drives.size() > 1 ? " of " + device.electrodes[k].name : "";
+    const std::string unit = is_electrode ? "V" : "";
+    const char *what = is_electrode ? "pull_in" : "factor", *name = is_electrode ? "pull-in" : "factor";
+    figures.push_back({of + "static_" + what, std::string("Static ") + name + words, unit});
+    figures.push_back({of + "dynamic_" + what, std::string("Dynamic ") + name + words, unit});
+    if (is_electrode) figures.push_back({of + "release", "Release" + words, unit});
+  }
+  return figures;
+}
+
+std::vector<PointFigure> robustness_figures() {
+  std::vector<PointFigure> figures;
+  figures.push_back({"closing_yield", "Share that closes", ""});
+  figures.push_back({"bounce_free_yield", "Share without a rebound", ""});
+  for (const EnsembleFigure& figure : ensemble_figures()) {
+    const std::string_view quantity =
+        figure.key.substr(0, figure.key.size() - (figure.unit.empty() ? 0 : figure.unit.size() + 1));
+    for (const double p : shown_quantiles)
+      figures.push_back({fmt::format("{}_q{:g}", quantity, 100 * p),
+                         fmt::format("{}, {:g} % of devices below", figure.name, 100 * p), std::string(figure.unit)});
+  }
+  return figures;
+}
+
 }  // namespace
 
 PointFigure parameter_figure(const std::string& name) {
@@ -185,33 +216,12 @@ void Exploration::list_figures(const Watch& watch) {
                .unit = std::string(figure.unit)});
       }
       return;
-    case PointStudy::pull_in: {
-      const Device device = read_scene(plan_.base()).device;
-      const std::vector<std::size_t> drives = pulling_drives(device);
-      require(!drives.empty(), "study pull-in needs an electrode that pulls in, or a dispersion force");
-      for (const std::size_t k : drives) {
-        const bool is_electrode = k < device.electrodes.size();
-        const std::string of = drives.size() > 1 ? device.electrodes[k].name + "_" : "";
-        const std::string words = drives.size() > 1 ? " of " + device.electrodes[k].name : "";
-        const std::string unit = is_electrode ? "V" : "";
-        const char *what = is_electrode ? "pull_in" : "factor", *name = is_electrode ? "pull-in" : "factor";
-        add({of + "static_" + what, std::string("Static ") + name + words, unit});
-        add({of + "dynamic_" + what, std::string("Dynamic ") + name + words, unit});
-        if (is_electrode) add({of + "release", "Release" + words, unit});
-      }
+    case PointStudy::pull_in:
+      figures_ = pull_in_figures(read_scene(plan_.base()).device);
       return;
-    }
     case PointStudy::robustness:
       require(!read_scene(plan_.base()).spread.empty(), "study robustness needs a [spread] in the scene: how devices differ");
-      add({"closing_yield", "Share that closes", ""});
-      add({"bounce_free_yield", "Share without a rebound", ""});
-      for (const EnsembleFigure& figure : ensemble_figures()) {
-        const std::string_view quantity =
-            figure.key.substr(0, figure.key.size() - (figure.unit.empty() ? 0 : figure.unit.size() + 1));
-        for (const double p : shown_quantiles)
-          add({fmt::format("{}_q{:g}", quantity, 100 * p), fmt::format("{}, {:g} % of devices below", figure.name, 100 * p),
-               std::string(figure.unit)});
-      }
+      figures_ = robustness_figures();
       return;
     case PointStudy::optimize: {
       add_closing();
