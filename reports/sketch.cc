@@ -51,6 +51,96 @@ std::array<double, 2> shares(const ResultScene::Span& span, double length) {
   return share[0] >= 0 && share[1] <= 1.000001 && share[0] < share[1] ? share : std::array<double, 2>{0, 1};
 }
 
+// What the parameters of a waveform are, where a drawing can show them.
+struct Described {
+  struct Place {
+    std::string name;
+    double from, to;  // in time
+  };
+  std::vector<Place> spans;
+  std::vector<std::pair<std::string, double>> levels;  // name, time at which it holds
+};
+
+/// The parameters of a drive of a result, which moves until `moves`; empty where its family or its times are not known.
+Described described_parameters(const Result& result, const std::string& drive, double moves) {
+  const auto parameter = [&](const std::string& name) {
+    const auto found = result.parameters.find(drive + "." + name);
+    return found == result.parameters.end() ? Metrics::unset : found->second;
+  };
+  const auto found = result.scene.waveforms.find(drive);
+  const ResultScene::Waveform scene = found == result.scene.waveforms.end() ? ResultScene::Waveform{} : found->second;
+  Described d;
+  if (scene.family == "pulse" && scene.times.size() == 2 && std::isfinite(parameter("level_1_V"))) {
+    const double first = scene.times[0], second = scene.times[1];
+    d.spans = {{"edge", 0, scene.edge}, {"time_1", 0, first}, {"duration_2", first, second}};
+    d.levels = {{"level_1", (scene.edge + first) / 2}, {"level_2", (first + scene.edge + second) / 2}};
+  } else if (scene.family == "harmonic" && std::isfinite(parameter("start_s"))) {
+    d.spans = {{"start", 0, scene.start}, {"duration", scene.start, scene.end}};
+    d.levels = {{"amplitude, angular_frequency, phase", (scene.start + scene.end) / 2}};
+  } else if (std::isfinite(parameter("rise_time_s"))) {
+    d.spans = {{"rise_time", 0, moves}};
+  }
+  const bool known = std::all_of(d.spans.begin(), d.spans.end(),
+                                 [](const Described::Place& one) { return std::isfinite(one.from) && std::isfinite(one.to); });
+  return known ? d : Described{};
+}
+
+/// Where a sketch has what [px].
+struct SideView {
+  static constexpr double left = 60, right = 440, thick = 14, gap = 60, electrode = 10, layer = 7;
+  bool plate, both_ends;
+  double length, top, bottom = top + thick, floor = bottom + gap;
+
+  [[nodiscard]] double x_at(double share) const { return left + share * (right - left); }
+};
+
+/// The beam or plate, what holds it, and its layer.
+std::string drawn_beam(const ResultScene& scene, const SideView& view) {
+  constexpr double left = SideView::left, right = SideView::right, thick = SideView::thick, layer = SideView::layer;
+  const double top = view.top;
+  std::string out;
+  if (view.plate) {
+    out += spring(left - 40, left, top + thick / 2) + spring(right, right + 40, top + thick / 2);
+    out += rectangle(left - 50, top - 14, 10, thick + 28, "anchor") + rectangle(right + 40, top - 14, 10, thick + 28, "anchor");
+  } else {
+    out += rectangle(left - 40, top - 8, 40, view.floor - top + 18, "anchor");
+    if (view.both_ends) out += rectangle(right, top - 8, 40, view.floor - top + 18, "anchor");
+  }
+  out += rectangle(left, top, right - left, thick, "beam");
+  out += words((left + right) / 2, top + 11, "middle", view.plate ? "plate" : "beam");
+  if (!view.plate && scene.length > 0) {
+    const double above = top - (scene.piezo ? 22 : 12);
+    out += drawn_line(left, above, right, above, "measure") + drawn_line(left, above - 4, left, above + 4, "measure") +
+           drawn_line(right, above - 4, right, above + 4, "measure") +
+           words((left + right) / 2, above - 6, "middle", "length " + given_quantity(scene.length, "m"));
+  }
+  if (scene.piezo) {
+    const auto [begin, end] = shares(scene.piezo->span, view.length);
+    out += rectangle(view.x_at(begin), top - layer, view.x_at(end) - view.x_at(begin), layer, "piezo") +
+           words(view.x_at(end) + 6, top - 2, "start", "piezo layer");
+  }
+  return out;
+}
+
+std::string drawn_electrodes(const ResultScene& scene, const SideView& view) {
+  constexpr double left = SideView::left, right = SideView::right, electrode = SideView::electrode;
+  const double floor = view.floor;
+  std::string out;
+  for (const ResultScene::Electrode& one : scene.electrodes) {
+    const auto [begin, end] = shares(one.span, view.length);
+    const double y = one.far_side ? view.top - SideView::gap * 0.75 - electrode : floor;
+    out += rectangle(view.x_at(begin), y, view.x_at(end) - view.x_at(begin), electrode, "electrode");
+    const std::string note = one.far_side && one.gap > 0 ? ", gap " + given_quantity(one.gap, "m") : "";
+    out += words((view.x_at(begin) + view.x_at(end)) / 2, one.far_side ? y - 5 : floor + electrode + 14, "middle",
+                 "electrode " + one.name + note);
+  }
+  if (scene.electrodes.empty()) {
+    out += rectangle(left, floor, right - left, electrode, "electrode") +
+           words((left + right) / 2, floor + electrode + 14, "middle", "ground");
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string sketch(const ResultScene& scene) {
@@ -59,51 +149,20 @@ std::string sketch(const ResultScene& scene) {
     return {};
   const double length = scene.length > 0 ? scene.length : 1;
 
-  constexpr double left = 60, right = 440, thick = 14, gap = 60, electrode = 10, layer = 7;
+  constexpr double right = SideView::right, gap = SideView::gap, electrode = SideView::electrode;
   const bool far_side = std::any_of(scene.electrodes.begin(), scene.electrodes.end(),
                                     [](const ResultScene::Electrode& one) { return one.far_side; });
-  const double top = far_side ? 86 : 46, bottom = top + thick, floor = bottom + gap;
-  const auto x_at = [&](double share) { return left + share * (right - left); };
+  const SideView view{.plate = plate, .both_ends = both_ends, .length = length, .top = far_side ? 86.0 : 46.0};
+  const double bottom = view.bottom, floor = view.floor;
 
-  std::string out;
-  if (plate) {
-    out += spring(left - 40, left, top + thick / 2) + spring(right, right + 40, top + thick / 2);
-    out += rectangle(left - 50, top - 14, 10, thick + 28, "anchor") + rectangle(right + 40, top - 14, 10, thick + 28, "anchor");
-  } else {
-    out += rectangle(left - 40, top - 8, 40, floor - top + 18, "anchor");
-    if (both_ends) out += rectangle(right, top - 8, 40, floor - top + 18, "anchor");
-  }
-  out += rectangle(left, top, right - left, thick, "beam");
-  out += words((left + right) / 2, top + 11, "middle", plate ? "plate" : "beam");
-  if (!plate && scene.length > 0) {
-    const double above = top - (scene.piezo ? 22 : 12);
-    out += drawn_line(left, above, right, above, "measure") + drawn_line(left, above - 4, left, above + 4, "measure") +
-           drawn_line(right, above - 4, right, above + 4, "measure") +
-           words((left + right) / 2, above - 6, "middle", "length " + given_quantity(scene.length, "m"));
-  }
-  if (scene.piezo) {
-    const auto [begin, end] = shares(scene.piezo->span, length);
-    out += rectangle(x_at(begin), top - layer, x_at(end) - x_at(begin), layer, "piezo") +
-           words(x_at(end) + 6, top - 2, "start", "piezo layer");
-  }
+  std::string out = drawn_beam(scene, view) + drawn_electrodes(scene, view);
   // The contact stands at the centre of the pad, of a beam between two clamps and of a plate in the middle.
   const double pad = scene.pad_length;
   const double contact_at = plate || both_ends ? 0.5 : 1 - (pad > 0 ? std::min(1.0, pad / length) / 2 : 0);
   const double plane = bottom + gap * std::min(1.0, scene.contact_gap / scene.electrode_gap);
-  for (const ResultScene::Electrode& one : scene.electrodes) {
-    const auto [begin, end] = shares(one.span, length);
-    const double y = one.far_side ? top - gap * 0.75 - electrode : floor;
-    out += rectangle(x_at(begin), y, x_at(end) - x_at(begin), electrode, "electrode");
-    const std::string note = one.far_side && one.gap > 0 ? ", gap " + given_quantity(one.gap, "m") : "";
-    out += words((x_at(begin) + x_at(end)) / 2, one.far_side ? y - 5 : floor + electrode + 14, "middle",
-                 "electrode " + one.name + note);
-  }
-  if (scene.electrodes.empty()) {
-    out += rectangle(left, floor, right - left, electrode, "electrode") +
-           words((left + right) / 2, floor + electrode + 14, "middle", "ground");
-  }
   constexpr double contact_wide = 16;
-  const double contact_left = std::min(x_at(contact_at) - contact_wide / 2, plate || both_ends ? right : right - contact_wide);
+  const double contact_left =
+      std::min(view.x_at(contact_at) - contact_wide / 2, plate || both_ends ? right : right - contact_wide);
   out += rectangle(contact_left, plane, contact_wide, floor + electrode - plane, "contact");
   const double measure = both_ends || plate ? right + 64 : right + 16;
   out += drawn_line(contact_left + contact_wide, plane, measure + 6, plane, "guide") +
@@ -117,10 +176,6 @@ std::string sketch(const ResultScene& scene) {
 }
 
 std::string parameter_drawing(const Result& result, const std::string& drive) {
-  const auto parameter = [&](const std::string& name) {
-    const auto found = result.parameters.find(drive + "." + name);
-    return found == result.parameters.end() ? Metrics::unset : found->second;
-  };
   const Points points = drawable(waveform(result.best, drive));
   double lowest = 0, highest = 0, moves = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -131,27 +186,8 @@ std::string parameter_drawing(const Result& result, const std::string& drive) {
   }
   if (points.size() < 2 || !(moves > 0) || !(highest > lowest)) return {};
 
-  struct Place {
-    std::string name;
-    double from, to;  // in time
-  };
-  const auto described = result.scene.waveforms.find(drive);
-  const ResultScene::Waveform scene = described == result.scene.waveforms.end() ? ResultScene::Waveform{} : described->second;
-  std::vector<Place> spans;
-  std::vector<std::pair<std::string, double>> levels;  // name, time at which it holds
-  if (scene.family == "pulse" && scene.times.size() == 2 && std::isfinite(parameter("level_1_V"))) {
-    const double first = scene.times[0], second = scene.times[1];
-    spans = {{"edge", 0, scene.edge}, {"time_1", 0, first}, {"duration_2", first, second}};
-    levels = {{"level_1", (scene.edge + first) / 2}, {"level_2", (first + scene.edge + second) / 2}};
-  } else if (scene.family == "harmonic" && std::isfinite(parameter("start_s"))) {
-    spans = {{"start", 0, scene.start}, {"duration", scene.start, scene.end}};
-    levels = {{"amplitude, angular_frequency, phase", (scene.start + scene.end) / 2}};
-  } else if (std::isfinite(parameter("rise_time_s"))) {
-    spans = {{"rise_time", 0, moves}};
-  }
-  const bool known =
-      std::all_of(spans.begin(), spans.end(), [](const Place& one) { return std::isfinite(one.from) && std::isfinite(one.to); });
-  if (spans.empty() || !known) return {};
+  const auto [spans, levels] = described_parameters(result, drive, moves);
+  if (spans.empty()) return {};
 
   constexpr double left = 40, right = 600, top = 34, bottom = 150, row = 22;
   const double end = 1.2 * moves;
