@@ -100,6 +100,32 @@ double relative(double value, double truth, double least) {
   return std::isnan(e) ? std::numeric_limits<double>::infinity() : e;
 }
 
+/// What is known of a scene's figures.
+struct Truth {
+  Figures value, spread, least;
+};
+
+/// Counts the figures of a run at the accuracy with number a.
+void count(std::uint64_t index, std::size_t a, const Truth& truth, const Figures& found, double seconds, Result& result) {
+  for (std::size_t f = 0; f < names.size(); ++f) {
+    if (std::isnan(truth.value[f])) continue;
+    Tally& tally = result.tallies[a][f];
+    if (!(truth.spread[f] < accuracies[a] / 10)) {
+      ++tally.ill;
+      continue;
+    }
+    const double error = relative(found[f], truth.value[f], truth.least[f]);
+    ++tally.figures;
+    tally.seconds += seconds;
+    tally.share.push_back(error / accuracies[a]);
+    if (error <= accuracies[a]) {
+      ++tally.within;
+    } else {
+      result.misses.push_back({index, accuracies[a], names[f], error});
+    }
+  }
+}
+
 void judge(const Task& task, std::uint64_t index, Result& result) {
   const std::optional<SceneFile> file = task.scene(index);
   if (!file) {
@@ -129,7 +155,11 @@ void judge(const Task& task, std::uint64_t index, Result& result) {
   if (std::isnan(truth.figures[0])) return;
   const Outcome up = reference(task, p, imperceptible), down = reference(task, p, -imperceptible),
                 looser = reference(task, p, 0, looser_by);
-  const Figures least{0, 0, p.scene.metrics.significant_rebound, least_peak_force(p)};
+  Truth known{.value = truth.figures, .spread = {}, .least = {0, 0, p.scene.metrics.significant_rebound, least_peak_force(p)}};
+  for (std::size_t f = 0; f < names.size(); ++f) {
+    for (const Outcome* other : {&up, &down, &looser})
+      known.spread[f] = std::max(known.spread[f], relative(other->figures[f], truth.figures[f], known.least[f]));
+  }
   for (std::size_t a = 0; a < task.accuracies_asked(); ++a) {
     SceneFile asked = *file;
     asked.erase("simulate.tolerance");
@@ -138,49 +168,17 @@ void judge(const Task& task, std::uint64_t index, Result& result) {
     const auto start = std::chrono::steady_clock::now();
     const Closing closing = simulate(with, true);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const Figures found = figures(closing.metrics);
-    for (std::size_t f = 0; f < names.size(); ++f) {
-      Tally& tally = result.tallies[a][f];
-      const double spread =
-          std::max({relative(up.figures[f], truth.figures[f], least[f]), relative(down.figures[f], truth.figures[f], least[f]),
-                    relative(looser.figures[f], truth.figures[f], least[f])});
-      if (std::isnan(truth.figures[f])) continue;
-      if (!(spread < accuracies[a] / 10)) {
-        ++tally.ill;
-        continue;
-      }
-      const double error = relative(found[f], truth.figures[f], least[f]);
-      ++tally.figures;
-      tally.seconds += seconds;
-      tally.share.push_back(error / accuracies[a]);
-      if (error <= accuracies[a]) {
-        ++tally.within;
-      } else {
-        result.misses.push_back({index, accuracies[a], names[f], error});
-      }
-    }
+    count(index, a, known, figures(closing.metrics), seconds, result);
   }
 }
 
-void run(const Task& task) {
-  const auto workers = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<Result> parts(workers);
-  std::atomic<std::uint64_t> next{0};
-  std::vector<std::thread> threads;
-  for (Result& part : parts) {
-    threads.emplace_back([&] {
-      for (std::uint64_t i = next++; i < task.count; i = next++) {
-        judge(task, i, part);
-        if (i % 20 == 19) fmt::print(stderr, "{} of {} scenes\n", i + 1, task.count);
-      }
-    });
-  }
-  for (std::thread& t : threads) t.join();
+Result merged(const std::vector<Result>& parts) {
   Result all;
-  for (Result& part : parts) {
+  for (const Result& part : parts) {
     for (std::size_t a = 0; a < accuracies.size(); ++a) {
       for (std::size_t f = 0; f < names.size(); ++f) {
-        Tally &to = all.tallies[a][f], &from = part.tallies[a][f];
+        Tally& to = all.tallies[a][f];
+        const Tally& from = part.tallies[a][f];
         to.figures += from.figures;
         to.within += from.within;
         to.ill += from.ill;
@@ -193,13 +191,16 @@ void run(const Task& task) {
   }
   std::sort(all.misses.begin(), all.misses.end(),
             [](const Miss& a, const Miss& b) { return std::pair(a.index, -a.accuracy) < std::pair(b.index, -b.accuracy); });
+  return all;
+}
 
+void print(const Task& task, const Result& all, unsigned workers) {
   std::vector<std::vector<std::string>> rows{{"accuracy", "figure", "well-conditioned", "within", "share",
                                               "median error / accuracy", "99 % error / accuracy", "ill-conditioned"}};
   long figures = 0, within = 0;
   for (std::size_t a = 0; a < task.accuracies_asked(); ++a) {
     for (std::size_t f = 0; f < names.size(); ++f) {
-      Tally& t = all.tallies[a][f];
+      Tally t = all.tallies[a][f];
       std::sort(t.share.begin(), t.share.end());
       const auto quantile = [&](double q) {
         return t.share.empty()
@@ -233,6 +234,23 @@ void run(const Task& task) {
   fmt::print(
       "\nMade by `build/bench/bench_accuracy {} {}{}` (configured with `-DSOFTLAND_BENCH=ON`) on {:%Y-%m-%d}, {} threads.\n",
       task.count, task.seed, task.film ? " film" : "", fmt::localtime(std::time(nullptr)), workers);
+}
+
+void run(const Task& task) {
+  const auto workers = std::max(1U, std::thread::hardware_concurrency());
+  std::vector<Result> parts(workers);
+  std::atomic<std::uint64_t> next{0};
+  std::vector<std::thread> threads;
+  for (Result& part : parts) {
+    threads.emplace_back([&] {
+      for (std::uint64_t i = next++; i < task.count; i = next++) {
+        judge(task, i, part);
+        if (i % 20 == 19) fmt::print(stderr, "{} of {} scenes\n", i + 1, task.count);
+      }
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  print(task, merged(parts), workers);
 }
 
 }  // namespace

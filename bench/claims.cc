@@ -96,6 +96,79 @@ std::string made_by(const std::string& study) {
 
 // ---- switching time and bounce against voltage, and what a shaped waveform gains
 
+/// Figures of steps, and as curves over their height.
+struct Steps {
+  std::map<int, Cloudy> by_percent;  // of the dynamic pull-in voltage
+  Points first, settled, count, height, speed;
+
+  /// What a step of about this height takes: t_p of single heights jumps.
+  [[nodiscard]] double usual(int percent) const {
+    constexpr int around = 3;
+    std::vector<double> times;
+    for (int k = percent - around; k <= percent + around; ++k) {
+      if (by_percent.contains(k)) times.push_back(by_percent.at(k).settled.middle);
+    }
+    return median(times);
+  }
+};
+
+/// Of the scenes at(height over the dynamic pull-in voltage).
+Steps steps_of(const std::function<SceneFile(double)>& at) {
+  constexpr int lowest = 101, highest = 200;
+  Steps steps;
+  for (int percent = lowest; percent <= highest; ++percent) {
+    const double r = percent / 100.0;
+    const Cloudy& c = steps.by_percent.emplace(percent, closings([&](double part) { return at(part * r); })).first->second;
+    steps.first.push_back({r, c.first.middle});
+    steps.settled.push_back({r, c.settled.middle});
+    steps.count.push_back({r, c.count.middle});
+    steps.height.push_back({r, c.height.middle});
+    steps.speed.push_back({r, c.speed.middle});
+  }
+  return steps;
+}
+
+struct Shaped {
+  std::string family, label;
+  Role pen;
+  Points settled, gain, saved;
+};
+
+std::vector<Panel> nem_panels(const Steps& steps, const std::vector<Shaped>& shaped) {
+  const std::string x = "Step height over dynamic pull-in voltage";
+  return {{.title = "Permanent contact (dots: first)",
+           .x_label = x,
+           .y_label = "Time",
+           .y_unit = "s",
+           .curves = {{"", steps.first, Role::evaluations},
+                      {"step", steps.settled, Role::baseline},
+                      {"dither", shaped[0].settled, Role::third},
+                      {"pulse", shaped[1].settled, Role::fourth}}},
+          {.title = "Settling time saved",
+           .x_label = x,
+           .y_label = "Time",
+           .y_unit = "s",
+           .curves = {{"dither", shaped[0].saved, Role::third}, {"pulse", shaped[1].saved, Role::fourth}}},
+          {.title = "Part of the settling time saved",
+           .x_label = x,
+           .y_label = "Gain in %",
+           .curves = {{"dither", shaped[0].gain, Role::third}, {"pulse", shaped[1].gain, Role::fourth}}},
+          {.title = "Impact speed of the step",
+           .x_label = x,
+           .y_label = "Speed",
+           .y_unit = "m/s",
+           .curves = {{"step", steps.speed, Role::baseline}}},
+          {.title = "Rebounds of the step",
+           .x_label = x,
+           .y_label = "Rebounds above 0.01 nm",
+           .curves = {{"step", steps.count, Role::baseline}}},
+          {.title = "Highest rebound of the step",
+           .x_label = x,
+           .y_label = "Height",
+           .y_unit = "m",
+           .curves = {{"step", steps.height, Role::baseline}}}};
+}
+
 void nem_voltage(const std::filesystem::path& folder) {
   const SceneFile scene = shipped("nem-tin.toml");
   const double dynamic = prepare(scene, true).voltage_units().at("main").dynamic_pull_in;
@@ -107,40 +180,14 @@ void nem_voltage(const std::filesystem::path& folder) {
                  fmt::format("driver.main.max_voltage={:.17g} V", room * level), fmt::format("simulate.duration={} s", window)});
   };
 
-  // Steps, in per cent of the dynamic pull-in voltage.
-  constexpr int lowest = 101, highest = 200, around = 3;
-  Points first, settled, count, height, speed;
-  std::map<int, Cloudy> steps;
-  for (int percent = lowest; percent <= highest; ++percent) {
-    const double r = percent / 100.0;
-    const Cloudy& c = steps.emplace(percent, closings([&](double part) { return at(part * r * dynamic); })).first->second;
-    first.push_back({r, c.first.middle});
-    settled.push_back({r, c.settled.middle});
-    count.push_back({r, c.count.middle});
-    height.push_back({r, c.height.middle});
-    speed.push_back({r, c.speed.middle});
-  }
-  // What a step of about this height takes: t_p of single heights jumps.
-  const auto usual = [&](int percent) {
-    std::vector<double> times;
-    for (int k = percent - around; k <= percent + around; ++k) {
-      if (steps.contains(k)) times.push_back(steps.at(k).settled.middle);
-    }
-    return median(times);
-  };
-
-  struct Shaped {
-    std::string family, label;
-    Role pen;
-    Points settled, gain, saved;
-  };
+  const Steps steps = steps_of([&](double r) { return at(r * dynamic); });
   std::vector<Shaped> shaped{{"harmonic", "dither", Role::third, {}, {}, {}}, {"pulse", "pulse", Role::fourth, {}, {}, {}}};
   std::vector<std::vector<std::string>> rows{{"V / V_dp", "t_i [ns]", "v_i [m/s]", "t_p [ns]", "t_p around [ns]", "N_B",
                                               "B_H [nm]", "dither: t_p [ns]", "N_B", "gain", "pulse: t_p [ns]", "N_B", "gain"}};
   std::string finding;
   for (const int percent : {105, 110, 115, 120, 125, 130, 135, 140, 145, 150, 160, 170, 180, 190, 200}) {
-    const double r = percent / 100.0, reference = usual(percent);
-    const Cloudy& step = steps.at(percent);
+    const double r = percent / 100.0, reference = steps.usual(percent);
+    const Cloudy& step = steps.by_percent.at(percent);
     rows.push_back({fmt::format("{:.2f}", r), step.first.text(1e-9), step.speed.text(1), step.settled.text(1e-9),
                     number(reference / 1e-9), step.count.text(1), step.height.text(1e-9)});
     for (Shaped& s : shaped) {
@@ -161,46 +208,13 @@ void nem_voltage(const std::filesystem::path& folder) {
     finding += fmt::format("{} {} saves most time at {:.2f} Vdp: {:.1f} ns, {:.0f} %.", finding.empty() ? "A searched" : " A",
                            s.label, (*most)[0], (*most)[1] / 1e-9, (*gain)[1]);
   }
-  const std::string x = "Step height over dynamic pull-in voltage";
-  const std::vector<Panel> panels{
-      {.title = "Permanent contact (dots: first)",
-       .x_label = x,
-       .y_label = "Time",
-       .y_unit = "s",
-       .curves = {{"", first, Role::evaluations},
-                  {"step", settled, Role::baseline},
-                  {"dither", shaped[0].settled, Role::third},
-                  {"pulse", shaped[1].settled, Role::fourth}}},
-      {.title = "Settling time saved",
-       .x_label = x,
-       .y_label = "Time",
-       .y_unit = "s",
-       .curves = {{"dither", shaped[0].saved, Role::third}, {"pulse", shaped[1].saved, Role::fourth}}},
-      {.title = "Part of the settling time saved",
-       .x_label = x,
-       .y_label = "Gain in %",
-       .curves = {{"dither", shaped[0].gain, Role::third}, {"pulse", shaped[1].gain, Role::fourth}}},
-      {.title = "Impact speed of the step",
-       .x_label = x,
-       .y_label = "Speed",
-       .y_unit = "m/s",
-       .curves = {{"step", speed, Role::baseline}}},
-      {.title = "Rebounds of the step",
-       .x_label = x,
-       .y_label = "Rebounds above 0.01 nm",
-       .curves = {{"step", count, Role::baseline}}},
-      {.title = "Highest rebound of the step",
-       .x_label = x,
-       .y_label = "Height",
-       .y_unit = "m",
-       .curves = {{"step", height, Role::baseline}}}};
   const std::string words =
       "Titanium nitride nano-switch (scenes/nem-tin.toml, a reconstruction). Steps: medians of nine runs whose voltage differs "
       "by parts "
       "in a million. Dither and pulse: searched for early settling, at most 20 % above the level they hold; compared with the "
       "median "
       "of the steps within 0.03 Vdp.";
-  keep(folder, "nem-voltage", figure(finding, words, panels),
+  keep(folder, "nem-voltage", figure(finding, words, nem_panels(steps, shaped)),
        fmt::format("# The nano-switch against its voltage\n\n{}\n\n"
                    "{}- scene `scenes/nem-tin.toml`, a reconstruction of the titanium nitride switch: V_dp = {:.4f} V\n"
                    "- step: medians of nine runs whose voltage differs by parts in a million, with their range where it matters; "
@@ -215,52 +229,29 @@ void nem_voltage(const std::filesystem::path& folder) {
 
 // ---- the switch closed by the Casimir force: size and bounce
 
-void casimir_size(const std::filesystem::path& folder) {
-  const SceneFile scene = shipped("nem-casimir.toml");
-  const double own_length = prepare(scene).scene.device.structure.length;
-  struct Kind {
-    double critical;  // times its strength at rest the force must grow to close the switch quasi-statically
-    std::string label;
-    Role pen;
-    Points height, relative, count, time;
-  };
-  std::vector<Kind> kinds{{1.06, "closes at 1.06", Role::fourth, {}, {}, {}, {}},
-                          {1.12, "at 1.12", Role::best, {}, {}, {}, {}},
-                          {1.18, "at 1.18", Role::third, {}, {}, {}, {}}};
-  std::vector<std::vector<std::string>> rows{{"gap [nm]", "contact gap [nm]", "critical factor", "length [um]", "t_i [ns]",
-                                              "v_i [mm/s]", "N_B", "B_H [nm]", "B_H / contact gap", "t_p - t_i [ns]"}};
-  for (const double gap : {25e-9, 30e-9, 35e-9, 40e-9, 45e-9, 50e-9, 55e-9, 60e-9, 65e-9, 70e-9, 75e-9, 80e-9}) {
-    const double contact = 0.6 * gap;
-    const auto sized = [&](double length) {
-      return with(scene, {fmt::format("gap.electrode={:.17g} m", gap), fmt::format("gap.contact={:.17g} m", contact),
-                          fmt::format("structure.length={:.17g} m", length)});
-    };
-    for (Kind& kind : kinds) {
-      // The force that a beam bears falls with the fourth power of its length.
-      double length = own_length;
-      for (int i = 0; i < 4; ++i) {
-        const double bears = 1 + static_pull_in(prepare(sized(length)).model, 0).voltage;
-        length *= std::pow(bears / kind.critical, 0.25);
-      }
-      const double period = 2 * pi / prepare(sized(length)).model.angular_frequencies()[0];
-      const auto scaled = [&](double part) {
-        return with(sized(length), {fmt::format("waveform.dispersion.level={:.17g}", 1 + 0.25 * part),
-                                    fmt::format("simulate.duration={:.17g} s", 20 * period)});
-      };
-      const Cloudy c = closings(scaled);
-      kind.height.push_back({gap, c.height.middle});
-      kind.relative.push_back({gap, 100 * c.height.middle / contact});
-      kind.count.push_back({gap, c.count.middle});
-      kind.time.push_back({gap, c.settled.middle - c.first.middle});
-      rows.push_back({number(gap / 1e-9), number(contact / 1e-9), number(kind.critical), number(length / 1e-6, 4),
-                      c.first.text(1e-9), c.speed.text(1e-3), c.count.text(1), c.height.text(1e-9),
-                      fmt::format("{} %", number(100 * c.height.middle / contact)),
-                      number((c.settled.middle - c.first.middle) / 1e-9)});
-    }
+struct SizedSwitches {
+  double critical;  // times its strength at rest the force must grow to close the switch quasi-statically
+  std::string label;
+  Role pen;
+  Points height, relative, count, time;
+};
+
+/// The length at which a beam closes quasi-statically under `critical` times the force at rest [m], found from a first one.
+double critical_length(const std::function<SceneFile(double)>& sized, double length, double critical) {
+  // The force that a beam bears falls with the fourth power of its length.
+  for (int i = 0; i < 4; ++i) {
+    const double bears = 1 + static_pull_in(prepare(sized(length)).model, 0).voltage;
+    length *= std::pow(bears / critical, 0.25);
   }
-  const auto panel = [&](const std::string& title, const std::string& label, const std::string& unit, Points Kind::*points) {
+  return length;
+}
+
+void write_casimir_size(const std::filesystem::path& folder, const std::vector<SizedSwitches>& kinds,
+                        const std::vector<std::vector<std::string>>& rows) {
+  const auto panel = [&](const std::string& title, const std::string& label, const std::string& unit,
+                         Points SizedSwitches::*points) {
     Panel p{.title = title, .x_label = "Gap at rest", .x_unit = "m", .y_label = label, .y_unit = unit};
-    for (const Kind& kind : kinds) p.curves.push_back({kind.label, kind.*points, kind.pen});
+    for (const SizedSwitches& kind : kinds) p.curves.push_back({kind.label, kind.*points, kind.pen});
     return p;
   };
   const auto& middle = kinds[1];
@@ -278,10 +269,10 @@ void casimir_size(const std::filesystem::path& folder) {
       "2.5 µm at 25 nm.";
   keep(folder, "casimir-size",
        figure(finding, words,
-              {panel("Highest rebound", "Height", "m", &Kind::height),
-               panel("Highest rebound over contact gap", "Height in % of the gap", "", &Kind::relative),
-               panel("Rebounds above 0.1 nm", "Rebounds", "", &Kind::count),
-               panel("Bounce time", "First to permanent contact", "s", &Kind::time)}),
+              {panel("Highest rebound", "Height", "m", &SizedSwitches::height),
+               panel("Highest rebound over contact gap", "Height in % of the gap", "", &SizedSwitches::relative),
+               panel("Rebounds above 0.1 nm", "Rebounds", "", &SizedSwitches::count),
+               panel("Bounce time", "First to permanent contact", "s", &SizedSwitches::time)}),
        fmt::format("# The Casimir switch against its size\n\n{}\n\n{}"
                    "- scene `scenes/nem-casimir.toml`, a reconstruction, with other gaps and lengths; contact at 60 % of the "
                    "gap; the force "
@@ -294,7 +285,59 @@ void casimir_size(const std::filesystem::path& folder) {
                    finding, made_by("casimir-size"), markdown_table(rows)));
 }
 
+void casimir_size(const std::filesystem::path& folder) {
+  const SceneFile scene = shipped("nem-casimir.toml");
+  const double own_length = prepare(scene).scene.device.structure.length;
+  std::vector<SizedSwitches> kinds{{1.06, "closes at 1.06", Role::fourth, {}, {}, {}, {}},
+                                   {1.12, "at 1.12", Role::best, {}, {}, {}, {}},
+                                   {1.18, "at 1.18", Role::third, {}, {}, {}, {}}};
+  std::vector<std::vector<std::string>> rows{{"gap [nm]", "contact gap [nm]", "critical factor", "length [um]", "t_i [ns]",
+                                              "v_i [mm/s]", "N_B", "B_H [nm]", "B_H / contact gap", "t_p - t_i [ns]"}};
+  for (const double gap : {25e-9, 30e-9, 35e-9, 40e-9, 45e-9, 50e-9, 55e-9, 60e-9, 65e-9, 70e-9, 75e-9, 80e-9}) {
+    const double contact = 0.6 * gap;
+    const auto sized = [&](double length) {
+      return with(scene, {fmt::format("gap.electrode={:.17g} m", gap), fmt::format("gap.contact={:.17g} m", contact),
+                          fmt::format("structure.length={:.17g} m", length)});
+    };
+    for (SizedSwitches& kind : kinds) {
+      const double length = critical_length(sized, own_length, kind.critical);
+      const double period = 2 * pi / prepare(sized(length)).model.angular_frequencies()[0];
+      const auto scaled = [&](double part) {
+        return with(sized(length), {fmt::format("waveform.dispersion.level={:.17g}", 1 + 0.25 * part),
+                                    fmt::format("simulate.duration={:.17g} s", 20 * period)});
+      };
+      const Cloudy c = closings(scaled);
+      kind.height.push_back({gap, c.height.middle});
+      kind.relative.push_back({gap, 100 * c.height.middle / contact});
+      kind.count.push_back({gap, c.count.middle});
+      kind.time.push_back({gap, c.settled.middle - c.first.middle});
+      rows.push_back({number(gap / 1e-9), number(contact / 1e-9), number(kind.critical), number(length / 1e-6, 4),
+                      c.first.text(1e-9), c.speed.text(1e-3), c.count.text(1), c.height.text(1e-9),
+                      fmt::format("{} %", number(100 * c.height.middle / contact)),
+                      number((c.settled.middle - c.first.middle) / 1e-9)});
+    }
+  }
+  write_casimir_size(folder, kinds, rows);
+}
+
 // ---- small rebounds inside the first large one, and the modes that make them
+
+struct Flight {
+  double begin, end, height;
+};
+
+/// The rebounds that are higher than `significant` [m].
+std::vector<Flight> flights(const Trajectory& t, double significant) {
+  std::vector<Flight> rebounds;
+  for (std::size_t k = 0; k + 1 < t.touches.size(); ++k) {
+    Flight r{t.touches[k].end, t.touches[k + 1].begin, 0};
+    for (const TrajectoryPoint& point : t.points) {
+      if (point.time > r.begin && point.time < r.end) r.height = std::max(r.height, t.contact_gap - point.position);
+    }
+    if (r.height > significant) rebounds.push_back(r);
+  }
+  return rebounds;
+}
 
 void micro_bounces(const std::filesystem::path& folder) {
   constexpr double window = 100e-6;
@@ -308,17 +351,7 @@ void micro_bounces(const std::filesystem::path& folder) {
         prepare(with(shipped("mem-gold.toml"), {fmt::format("structure.modes={}", modes), "waveform.main.level=17.771 V",
                                                 "simulate.duration=100 us", "simulate.accuracy=1e-7"}));
     const Trajectory t = simulate_closing(p.model, p.signals(), {.duration = window, .tolerance = p.tolerance});
-    struct Rebound {
-      double begin, end, height;
-    };
-    std::vector<Rebound> rebounds;
-    for (std::size_t k = 0; k + 1 < t.touches.size(); ++k) {
-      Rebound r{t.touches[k].end, t.touches[k + 1].begin, 0};
-      for (const TrajectoryPoint& point : t.points) {
-        if (point.time > r.begin && point.time < r.end) r.height = std::max(r.height, t.contact_gap - point.position);
-      }
-      if (r.height > significant) rebounds.push_back(r);
-    }
+    const std::vector<Flight> rebounds = flights(t, significant);
     const auto highest =
         std::max_element(rebounds.begin(), rebounds.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
     double small = 0, shortest = missing, longest = 0;
