@@ -28,7 +28,8 @@ double mirror(double u) { return std::abs(std::remainder(u, 2.0)); }
 
 /// Weights of the better half of lambda children, the best first; they add up to 1.
 VectorXd recombination_weights(Eigen::Index lambda) {
-  const Eigen::ArrayXd rank = Eigen::ArrayXd::LinSpaced(lambda / 2, 1, static_cast<double>(lambda / 2));
+  const Eigen::Index mu = lambda / 2;
+  const Eigen::ArrayXd rank = Eigen::ArrayXd::LinSpaced(mu, 1, static_cast<double>(mu));
   const VectorXd weights = std::log((static_cast<double>(lambda) + 1) / 2) - rank.log();
   return weights / weights.sum();
 }
