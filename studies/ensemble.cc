@@ -118,19 +118,19 @@ SampledDevice DeviceBuilder::device(std::vector<double> values) {
   return sampled;
 }
 
-void DeviceBuilder::describe(SampledDevice& sampled) {
+void DeviceBuilder::describe(SampledDevice& device) {
   const Prepared& nominal = ensemble_->nominal();
   if (!ensemble_->reads_anew()) {
-    for (std::size_t i = 0; i < sampled.values.size(); ++i) {
+    for (std::size_t i = 0; i < device.values.size(); ++i) {
       const SpreadVariable& variable = nominal.scene.spread.variables[i];
       for (const VariedKey& key : variable.keys) {
-        if (!key.drive) key.member(scratch_) = DeviceSpread::value(variable, key, sampled.values[i]);
+        if (!key.drive) key.member(scratch_) = DeviceSpread::value(variable, key, device.values[i]);
       }
     }
-    sampled.model.emplace(scratch_.device, nominal.quadrature, &nominal.model);
+    device.model.emplace(scratch_.device, nominal.quadrature, &nominal.model);
     return;
   }
-  sampled.model.emplace(read_scene(ensemble_->scene(sampled.values)).device, nominal.quadrature, &nominal.model);
+  device.model.emplace(read_scene(ensemble_->scene(device.values)).device, nominal.quadrature, &nominal.model);
 }
 
 DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in) : nominal_(&nominal), need_pull_in_(need_pull_in) {
