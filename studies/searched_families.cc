@@ -203,7 +203,7 @@ Parameters of_step(const DriveSearch&, const Waveform& waveform) {
 }
 
 Parameters of_pulse(const DriveSearch& s, const Waveform& waveform) {
-  const Pulse& pulse = std::get<Pulse>(waveform);
+  const auto& pulse = std::get<Pulse>(waveform);
   if (2 * pulse.times.size() + 1 != s.variables.size()) return std::nullopt;
   std::vector<double> x(pulse.levels.begin(), pulse.levels.end() - 1);
   double before = 0;
@@ -216,7 +216,7 @@ Parameters of_pulse(const DriveSearch& s, const Waveform& waveform) {
 }
 
 Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
-  const Harmonic& dither = std::get<Harmonic>(waveform);
+  const auto& dither = std::get<Harmonic>(waveform);
   const double duration = dither.end - dither.start;
   return std::vector<double>{dither.amplitude, dither.angular_frequency, dither.phase, dither.start,
                              duration,         dither.fade / duration};
@@ -228,7 +228,7 @@ bool begins_with_jump(const Table& table, std::size_t rows) {
 }
 
 Parameters of_knots(const DriveSearch& s, const Waveform& waveform) {
-  const Table& table = std::get<Table>(waveform);
+  const auto& table = std::get<Table>(waveform);
   if (!begins_with_jump(table, s.count + 2)) return std::nullopt;
   std::vector<double> x(table.voltage.begin() + 1, table.voltage.end() - 1), parts;
   for (std::size_t k = 2; k < table.time.size(); ++k) parts.push_back(table.time[k] - table.time[k - 1]);
@@ -239,7 +239,7 @@ Parameters of_knots(const DriveSearch& s, const Waveform& waveform) {
 }
 
 Parameters of_ramp(const DriveSearch&, const Waveform& waveform) {
-  const Table& table = std::get<Table>(waveform);
+  const auto& table = std::get<Table>(waveform);
   if (!begins_with_jump(table, 4)) return std::nullopt;
   return std::vector<double>{table.voltage[1], table.voltage[2], table.time[2], table.time[3] - table.time[2]};
 }

@@ -25,6 +25,6 @@ struct SearchedFamily {
 
 /// Sets the family of a drive, and its number of levels, knots, pulses or sines: "pulse", "knots:8". Throws InvalidInput where
 /// there is none.
-void choose_family(DriveSearch& drive, const std::string& text);
+void choose_family(DriveSearch& s, const std::string& text);
 
 }  // namespace softland

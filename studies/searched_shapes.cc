@@ -42,7 +42,7 @@ Waveform train(const DriveSearch& s, const Train& t) {
 
 /// The point of a train of `count` pulses, of which `pauses` follow or, for a drive that brakes, precede one.
 Parameters of_train(const DriveSearch& s, const Waveform& waveform, std::size_t count, std::size_t pauses) {
-  const Pulse& pulse = std::get<Pulse>(waveform);
+  const auto& pulse = std::get<Pulse>(waveform);
   if (pulse.times.size() != count + pauses) return std::nullopt;
   std::vector<double> levels, durations, between;
   double before = 0;
@@ -208,7 +208,7 @@ Waveform s_curve_at(const DriveSearch& s, std::span<const double> x) {
 }
 
 Parameters of_s_curve(const DriveSearch&, const Waveform& waveform) {
-  const SCurve& curve = std::get<SCurve>(waveform);
+  const auto& curve = std::get<SCurve>(waveform);
   if (curve.levels.size() != 2) return std::nullopt;
   return std::vector<double>{curve.levels[0], curve.times[0] - curve.edge, curve.edge};
 }
@@ -258,7 +258,7 @@ Waveform dither_at(const DriveSearch& s, std::span<const double> x) {
 }
 
 Parameters of_dither(const DriveSearch&, const Waveform& waveform) {
-  const Chirp& c = std::get<Chirp>(waveform);
+  const auto& c = std::get<Chirp>(waveform);
   if (c.frequency_ratio != 1 || !std::isfinite(c.decay_time)) return std::nullopt;
   const double duration = c.end - c.start;
   return std::vector<double>{c.amplitude, c.angular_frequency, c.phase, c.start, duration, c.fade / duration, c.decay_time};
@@ -284,7 +284,7 @@ Waveform chirp_at(const DriveSearch& s, std::span<const double> x) {
 }
 
 Parameters of_chirp(const DriveSearch&, const Waveform& waveform) {
-  const Chirp& c = std::get<Chirp>(waveform);
+  const auto& c = std::get<Chirp>(waveform);
   if (std::isfinite(c.decay_time)) return std::nullopt;
   const double duration = c.end - c.start;
   return std::vector<double>{c.amplitude, c.angular_frequency, c.phase, c.start, duration, c.fade / duration, c.frequency_ratio};
@@ -335,7 +335,7 @@ Waveform bspline_at(const DriveSearch& s, std::span<const double> x) {
 }
 
 Parameters of_bspline(const DriveSearch& s, const Waveform& waveform) {
-  const BSpline& spline = std::get<BSpline>(waveform);
+  const auto& spline = std::get<BSpline>(waveform);
   if (spline.levels.size() != s.count + 2 || spline.levels[s.count] != s.hold) return std::nullopt;
   std::vector<double> x(spline.levels.begin(), spline.levels.end() - 2);
   x.push_back(spline.duration);
@@ -389,7 +389,7 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
 }
 
 Parameters of_sines(const DriveSearch& s, const Waveform& waveform) {
-  const Sines& sines = std::get<Sines>(waveform);
+  const auto& sines = std::get<Sines>(waveform);
   if (sines.amplitudes.size() != s.count) return std::nullopt;
   std::vector<double> x = sines.amplitudes;
   x.push_back(sines.duration);
