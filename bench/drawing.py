@@ -13,6 +13,23 @@ def line(x1, y1, x2, y2, colour=GRID, more=""):
     return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}"{more}/>'
 
 
+def tiles(left, top, right, bottom, columns, rows, colours):
+    """A map of coloured cells, one path for each colour; colours[row][column], the first row at the bottom."""
+    wide, high = (right - left) / columns, (bottom - top) / rows
+    paths = {}
+    for row, line_of_colours in enumerate(colours):
+        for column, colour in enumerate(line_of_colours):
+            if column and line_of_colours[column - 1] == colour:
+                paths[colour][-1][2] += 1
+            else:
+                paths.setdefault(colour, []).append([column, row, 1])
+    out = []
+    for colour, runs in paths.items():
+        path = "".join(f"M{left + c * wide:.1f},{bottom - (r + 1) * high:.1f}h{n * wide:.1f}v{high:.1f}h{-n * wide:.1f}z" for c, r, n in runs)
+        out.append(f'<path d="{path}" fill="{colour}" shape-rendering="crispEdges"/>')
+    return out
+
+
 def drawing(width, height, headline, explanation, parts):
     """The whole document: lines of the headline, lines that explain, and what is drawn below them."""
     y, head = 34, []
