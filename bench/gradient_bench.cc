@@ -1,0 +1,80 @@
+// What the gradient of a search's cost costs, in closings, and how far it is off, by the number of parameters and by the number
+// of arcs that a step of the closing is divided into.
+//   bench_gradient [SCENE]     (default: mem-gold.toml)
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "objectives/cost_slope.h"
+#include "studies/search_setting.h"
+
+namespace {
+
+using namespace softland;
+
+template <class F>
+double milliseconds(F&& f) {
+  double least = 1e9;
+  for (int k = 0; k < 15; ++k) {
+    const auto begin = std::chrono::steady_clock::now();
+    f();
+    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
+    least = std::min(least, spent.count());
+  }
+  return least;
+}
+
+void measure(const SearchSetting& s, const std::string& family) {
+  std::vector<double> lower, upper;
+  for (const Variable& v : s.space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
+  const std::vector<double> x = s.space.starts().front();
+  const auto signals_at = [&](std::span<const double> at) { return s.given.driven(signals_of(s.drives(s.space.waveforms(at)))); };
+  const std::vector<Signal> signals = signals_at(x);
+  const ClosingOptions run = s.run_of(signals);
+  const double closing = milliseconds([&] {
+    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    (void)observe_closing(s.given.model, signals, run, observer);
+  });
+  const auto gradient = [&](int refinement, bool backward, double tolerance) {
+    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    MotionTape tape(observer);
+    ClosingOptions own = run;
+    own.tolerance = tolerance;
+    const Trajectory end = observe_closing(s.given.model, signals, own, tape);
+    const LinearizedClosing motion(s.given.model, signals, tape, refinement);
+    const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
+    const auto slope = cost_slope(Target::bounce, end.status, observer.figures(end), s.scale, s.given.scene.metrics, slopes);
+    const SignalSlopes by(signals_at, x, lower, upper);
+    Eigen::VectorXd row = (backward ? motion.backward({*slope}, by) : motion.forward({*slope}, by)).transpose();
+    for (Eigen::Index k = 0; k < row.size(); ++k)
+      row[k] *= upper[static_cast<std::size_t>(k)] - lower[static_cast<std::size_t>(k)];
+    return row;
+  };
+  const Eigen::VectorXd exact = gradient(16, true, 1e-11);
+  for (const int refinement : {1, 2, 4}) {
+    const double adjoint = milliseconds([&] { (void)gradient(refinement, true, run.tolerance); });
+    const double forward = milliseconds([&] { (void)gradient(refinement, false, run.tolerance); });
+    const Eigen::VectorXd found = gradient(refinement, true, run.tolerance);
+    fmt::print("| {} | {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.1e} |\n", family, x.size(), refinement, closing, adjoint / closing,
+               forward / closing, (found - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string scene = argc > 1 ? argv[1] : std::string(SOFTLAND_SCENES) + "/mem-gold.toml";
+  fmt::print("| family | parameters | arcs of a step | closing [ms] | adjoint [closings] | forward [closings] | error |\n");
+  fmt::print("|---|---|---|---|---|---|---|\n");
+  for (const std::string& family : {"pulse", "bspline:4", "bspline:39", "sines:39", "knots:20", "bspline:199", "sines:199"}) {
+    try {
+      measure(search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, family, {}), family);
+    } catch (const std::exception& error) {
+      fmt::print("{}: {}\n", family, error.what());
+    }
+  }
+}
