@@ -25,7 +25,7 @@ def tiles(left, top, right, bottom, columns, rows, colours):
                 paths.setdefault(colour, []).append([column, row, 1])
     out = []
     for colour, runs in paths.items():
-        path = "".join(f"M{left + c * wide:.1f},{bottom - (r + 1) * high:.1f}h{n * wide:.1f}v{high:.1f}h{-n * wide:.1f}z" for c, r, n in runs)
+        path = "".join(f"M{left + c * wide:.2f},{bottom - (r + 1) * high:.2f}h{n * wide:.2f}v{high:.2f}h{-n * wide:.2f}z" for c, r, n in runs)
         out.append(f'<path d="{path}" fill="{colour}" shape-rendering="crispEdges"/>')
     return out
 

@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   const std::string scene = argc > 1 ? argv[1] : std::string(SOFTLAND_SCENES) + "/mem-gold.toml";
   fmt::print("| family | parameters | arcs of a step | closing [ms] | adjoint [closings] | forward [closings] | error |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");
-  for (const std::string& family : {"pulse", "bspline:4", "bspline:39", "sines:39", "knots:20", "bspline:199", "sines:199"}) {
+  for (const char* family : {"pulse", "bspline:4", "bspline:39", "sines:39", "knots:20", "bspline:199", "sines:199"}) {
     try {
       measure(search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, family, {}), family);
     } catch (const std::exception& error) {

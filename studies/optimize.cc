@@ -233,10 +233,13 @@ class Search {
   }
 
  private:
-  // Null where the costs have no gradient.
-  [[nodiscard]] static TwoStages::Slopes slopes_of(const SearchSetting& setting) {
-    if (!setting.gradient_refusal().empty()) return {};
-    return [&setting](std::span<const double> x) { return setting.gradient_at(x); };
+  [[nodiscard]] static PriceSlopes slopes_of(const SearchSetting& setting) {
+    using Slope = std::function<std::vector<double>(std::span<const double>)>;
+    const auto of = [&](const Aim& aim) -> Slope {
+      if (!setting.gradient_refusal(aim).empty()) return {};
+      return [&setting, aim](std::span<const double> x) { return setting.gradient_at(x, aim); };
+    };
+    return {.leading = of(Target::bounce), .own = of(setting.target.has_own_cost() ? setting.target : Aim(Target::bounce))};
   }
 
   // A landing to begin with. Its parameters are empty where the search cannot describe it.

@@ -139,38 +139,32 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
   return found;
 }
 
-std::string SearchSetting::gradient_refusal() const {
-  if (target.is_about(Target::drive)) return "the energy of the drives has no gradient";
+std::string SearchSetting::gradient_refusal(const Aim& aim) const {
+  if (aim.is_about(Target::drive)) return "the energy of the drives has no gradient";
   if (!conditions.empty()) return "conditions on figures have no gradient";
   return LinearizedClosing::refusal(given.model);
 }
 
-PriceSlopes SearchSetting::gradient_at(std::span<const double> x) const {
-  const std::vector<double> unknown(x.size(), std::numeric_limits<double>::quiet_NaN());
-  PriceSlopes found{.leading = unknown, .own = unknown};
-  if (!is_allowed(space.waveforms(x))) return found;
+std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const Aim& aim) const {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> gradient(x.size(), unknown);
+  if (!is_allowed(space.waveforms(x))) return gradient;
   const auto signals_at = [&](std::span<const double> at) { return given.driven(signals_of(drives(space.waveforms(at)))); };
   const std::vector<Signal> signals = signals_at(x);
   CostObserver observer(scale.contact_gap, given.scene.metrics);
   MotionTape tape(observer);
   const Trajectory end = observe_closing(given.model, signals, run_of(signals), tape);
-  const CostFigures figures = observer.figures(end);
   const LinearizedClosing motion(given.model, signals, tape);
   const CostSlopes slopes = cost_slopes(given.model, signals, motion, given.scene.metrics);
+  const auto slope = cost_slope(aim, end.status, observer.figures(end), scale, given.scene.metrics, slopes);
+  if (!slope) return gradient;
   std::vector<double> lower, upper;
   for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
   const SignalSlopes by_parameters(signals_at, x, lower, upper);
-  const auto gradient = [&](const Aim& aim) {
-    const auto slope = cost_slope(aim, end.status, figures, scale, given.scene.metrics, slopes);
-    if (!slope) return unknown;
-    const Eigen::MatrixXd row = motion.backward({*slope}, by_parameters);
-    std::vector<double> by_x(row.data(), row.data() + row.size());
-    for (const std::size_t k : by_parameters.kinks()) by_x[k] = unknown[k];
-    return by_x;
-  };
-  found.leading = gradient(Target::bounce);
-  found.own = target.has_own_cost() ? gradient(target) : found.leading;
-  return found;
+  const Eigen::MatrixXd row = motion.backward({*slope}, by_parameters);
+  gradient.assign(row.data(), row.data() + row.size());
+  for (const std::size_t k : by_parameters.kinks()) gradient[k] = unknown;
+  return gradient;
 }
 
 void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) const {

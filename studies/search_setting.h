@@ -48,11 +48,11 @@ struct SearchSetting {
   /// Of a point of the search space, on the nominal device; infinite where it leaves the limits of a driver. What `memory` holds
   /// is not simulated again.
   [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr) const;
-  /// The gradient of both costs at a point of the search space, by the parameters: of the nominal device, exact but where touches
-  /// graze. None where the search has no gradient: see gradient_refusal(). NaN where a cost has none.
-  [[nodiscard]] PriceSlopes gradient_at(std::span<const double> x) const;
-  /// Why costs have no gradient here, in words; empty where they have.
-  [[nodiscard]] std::string gradient_refusal() const;
+  /// The gradient of a cost at a point of the search space, by the parameters: of the nominal device, exact but where touches
+  /// graze. NaN where there is none.
+  [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim) const;
+  /// Why a cost has no gradient here, in words; empty where it has.
+  [[nodiscard]] std::string gradient_refusal(const Aim& aim) const;
   /// Throws InvalidInput with the name of the first that a search cannot begin with, and why.
   void check_starts(const std::vector<StartingWaveforms>& starts) const;
 };

@@ -28,12 +28,7 @@ OptimizerResult TwoStages::stage(Problem problem, OptimizerOptions options, bool
     known_.emplace(point, prices);
     return leading ? prices.leading : prices.own;
   };
-  if (slopes_) {
-    problem.gradient = [this, leading](std::span<const double> x) {
-      PriceSlopes both = slopes_(x);
-      return leading ? std::move(both.leading) : std::move(both.own);
-    };
-  }
+  problem.gradient = leading ? slopes_.leading : slopes_.own;
   options.on_evaluation = [this](const Evaluation& e) {
     Evaluation own = e;
     own.index += first_index_;

@@ -23,18 +23,16 @@ struct Prices {
   bool lands = false;  ///< without a significant rebound
 };
 
-/// Gradients of both costs by the parameters.
+/// Gradients of the two costs as Problem::gradient; null where there is none.
 struct PriceSlopes {
-  std::vector<double> leading, own;
+  std::function<std::vector<double>(std::span<const double>)> leading, own;
 };
 
 class TwoStages {
  public:
-  using Slopes = std::function<PriceSlopes(std::span<const double>)>;
-  /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value; `slopes` as
-  /// Problem::gradient.
+  /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
   TwoStages(std::function<Prices(std::span<const double>)> price, std::function<void(const Evaluation&)> on_evaluation,
-            Slopes slopes = {})
+            PriceSlopes slopes = {})
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
   /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
@@ -50,7 +48,7 @@ class TwoStages {
 
   std::function<Prices(std::span<const double>)> price_;
   std::function<void(const Evaluation&)> on_evaluation_;
-  Slopes slopes_;
+  PriceSlopes slopes_;
   std::mutex mutex_;
   std::map<std::vector<double>, Prices> known_;
   std::map<long, Evaluation> log_;  ///< by index

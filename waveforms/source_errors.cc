@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 constexpr double most_of_gap = 0.49;  // by which an edge may move towards its neighbour
 
 /// Breakpoints that move together.
@@ -37,8 +37,8 @@ std::vector<double> begins(const std::vector<SignalPiece>& pieces, const std::ve
   std::vector<double> all;
   for (const SignalPiece& piece : pieces) all.push_back(piece.begin + errors.delay);
   for (std::size_t j = 0; j < std::min(edges.size(), errors.edges.size()); ++j) {
-    const double before = j == 0 ? infinite : pieces[edges[j].first].begin - pieces[edges[j - 1].last].begin;
-    const double after = j + 1 == edges.size() ? infinite : pieces[edges[j + 1].first].begin - pieces[edges[j].last].begin;
+    const double before = j == 0 ? no_bound : pieces[edges[j].first].begin - pieces[edges[j - 1].last].begin;
+    const double after = j + 1 == edges.size() ? no_bound : pieces[edges[j + 1].first].begin - pieces[edges[j].last].begin;
     const double late = std::clamp(errors.edges[j], -most_of_gap * before, most_of_gap * after);
     for (std::size_t i = edges[j].first; i <= edges[j].last; ++i) all[i] = pieces[i].begin + late + errors.delay;
   }
@@ -75,7 +75,7 @@ std::size_t edge_count(const Signal& signal) { return edges_of(signal.pieces()).
 
 double first_edge(const Signal& signal, const SourceErrors& errors) {
   const std::vector<Edge> edges = edges_of(signal.pieces());
-  return edges.empty() ? infinite : begins(signal.pieces(), edges, errors)[edges.front().first];
+  return edges.empty() ? no_bound : begins(signal.pieces(), edges, errors)[edges.front().first];
 }
 
 Signal with_errors(const Signal& signal, const SourceErrors& errors, double origin) {
@@ -92,7 +92,7 @@ Signal with_errors(const Signal& signal, const SourceErrors& errors, double orig
   std::vector<SignalPiece> all;
   if (begin[0] > 0) all.push_back({.value = errors.offset});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const double end = i + 1 < pieces.size() ? begin[i + 1] : infinite;
+    const double end = i + 1 < pieces.size() ? begin[i + 1] : no_bound;
     // Late by much more than it lasts, a piece may have lost its duration to rounding.
     if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
   }

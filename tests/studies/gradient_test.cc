@@ -108,7 +108,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
           scale = std::max(scale, whole / (upper[k] - lower[k]));
         }
         // Where differences of two widths differ, they say nothing: another touch is the fastest, another rebound the highest.
-        if (!(std::abs(coarse[f] - fine[f]) <= 2e-6 * scale)) continue;
+        if (!(std::abs(coarse[f] - fine[f]) <= 1e-6 * scale)) continue;
         ++all.slopes;
         const double slope = backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
         const double error = scale > 0 ? std::abs(slope - fine[f]) / scale : std::abs(fine[f]) > 0 ? 1 : 0;
