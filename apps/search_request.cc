@@ -71,6 +71,14 @@ std::string word_of(const json& known, const char* key, const std::string& other
   return known.is_object() && found != known.end() && found->is_string() ? found->get<std::string>() : otherwise;
 }
 
+// The family that does best where none is given. Devices that differ want one that is slow and free, or, where each is driven in
+// its own units, a quick one that holds fast.
+const char* waveform_of(const OptimizeRequest& r) {
+  if (!r.robust.empty()) return r.calibration.empty() || r.calibration == "none" ? "knots" : "catch";
+  const Named<Actuator>* actuator = find_named(actuators, r.actuator);
+  return actuator == nullptr ? "" : default_family(actuator->value).data();
+}
+
 // The request with the words of the plan where none were given.
 OptimizeRequest with_known(OptimizeRequest r, const json& known) {
   const auto fill = [&](std::string& value, const char* key, const char* otherwise) {
@@ -78,10 +86,10 @@ OptimizeRequest with_known(OptimizeRequest r, const json& known) {
   };
   fill(r.target, "target", "bounce");
   fill(r.actuator, "actuator", "electrostatic");
-  fill(r.waveform, "waveform", "pulse");
   fill(r.optimizer, "optimizer", "auto");
   fill(r.robust, "robust", "");
   fill(r.calibration, "calibrate", "");
+  fill(r.waveform, "waveform", waveform_of(r));
   if (!known.is_object()) return r;
   if (r.conditions.empty() && known.contains("constrain")) known.at("constrain").get_to(r.conditions);
   const auto fill_given = [&](std::optional<std::string>& value, const char* key) {

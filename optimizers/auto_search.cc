@@ -12,6 +12,7 @@ namespace softland::internal {
 namespace {
 
 // Shares of the budget of an epoch.
+constexpr double refining = 0.2;  // of what is given; as much again with a gradient
 constexpr double sampling = 0.15;
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
@@ -19,6 +20,7 @@ constexpr double later_heat = 0.2;
 constexpr long longest_epoch = 5000;  // evaluations: beyond that, other starts promise more than longer searches
 constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
+constexpr std::size_t starts_refined = 2;
 constexpr long shortest_heat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
 
 // Fractions of the box.
@@ -101,6 +103,24 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
   const long longest = ledger.has_gradient()
                            ? std::clamp(ledger.remaining() / epochs_with_gradient, shortest_epoch, longest_epoch)
                            : longest_epoch;
+
+  // Starts come with a reason: their neighbourhood is searched before the box, which would lead away from them.
+  if (!ledger.starts().empty()) {
+    const long budget = std::min(ledger.remaining(), longest_epoch);
+    std::vector<Point> starts = promising_points(ledger.known(), explored);
+    starts.resize(std::min(starts.size(), starts_refined));
+    std::vector<Search> refined;
+    const auto go_on = [&] {
+      advance(ledger, refined, share_of(budget, refining, refined.size()));
+      for (const Search& search : refined) explored.push_back(search.best_point);
+    };
+    for (const Point& start : starts) refined.push_back(begin_search(find_method("sbplx"), start, polishing_step));
+    go_on();
+    if (finisher != nullptr) {
+      for (Search& each : refined) each = begin_search(*finisher, each.best_point, polishing_step);
+      go_on();
+    }
+  }
 
   while (!ledger.over()) {
     const long before = ledger.remaining();

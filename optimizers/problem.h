@@ -98,8 +98,8 @@ struct OptimizerResult {
 /// max_seconds and stop. The time budget, the stop flag and the target are looked at before every evaluation; one under way is
 /// never cut short.
 ///
-/// `auto` samples the box, runs local searches from well separated good points, lets the promising ones continue and polishes the
-/// best, with the problem's gradient where it has one; it uses several jobs. So do the methods with a gradient, which go on from
+/// `auto` searches near the best of the starts, samples the box, runs local searches from well separated good points, lets the
+/// promising ones continue and polishes the best, with the problem's gradient where it has one; it uses several jobs. So do the methods with a gradient, which go on from
 /// the best points of such a search after its first two fifths. Another local method runs from the starts in turn and then from
 /// points drawn from the seed, each time until it converges, as long as the budget lasts; infeasible points are passed over. A
 /// global method runs once. Where the problem has no gradient it is taken by central differences, which count as evaluations; one

@@ -52,12 +52,12 @@ std::uint64_t whole_number(const std::string& text, std::uint64_t least, std::ui
 void complete_search(std::map<std::string, std::string>& given, const auto& checked) {
   given.try_emplace("target", name_of(targets, Target::bounce));
   given.try_emplace("actuator", name_of(actuators, Actuator::electrostatic));
-  given.try_emplace("waveform", "pulse");
   given.try_emplace("optimizer", "auto");
   Aim target = Target::bounce;
   checked("target", [&] { target = parse_aim(given["target"]); });
   const auto* actuator = find_named(actuators, given["actuator"]);
   checked("actuator", [&] { require(actuator != nullptr, [] { return fmt::format("must be {}", listed(actuators)); }); });
+  given.try_emplace("waveform", default_family(actuator->value));
   checked("optimizer", [&] { static_cast<void>(optimizer_description(given["optimizer"])); });
   given.try_emplace("budget", std::to_string(default_budget(target, actuator->value)));
   checked("budget", [&] {

@@ -11,6 +11,7 @@
 #include "base/require.h"
 #include "model/pull_in.h"
 #include "studies/plain_step.h"
+#include "studies/swing.h"
 
 namespace softland {
 namespace {
@@ -18,60 +19,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-struct Flight {
-  bool touched = false;
-  std::vector<VectorXd> states;  // one per step
-};
-
-// Flies from rest under full pull, and from a time on under full release, until the contact point arrives or turns back.
-class PullAndRelease {
- public:
-  PullAndRelease(const Switch& model, std::vector<double> pulling, std::vector<double> releasing, double step, double longest)
-      : model_(model),
-        pulling_(std::move(pulling)),
-        releasing_(std::move(releasing)),
-        step_(step),
-        longest_(longest),
-        work_(model.workspace()) {}
-
-  Flight fly(double release_at) {
-    const Index n = model_.modes();
-    const double gap = model_.device().gap.contact;
-    Flight flight;
-    VectorXd x(2 * n), k1(2 * n), k2 = k1, k3 = k1, k4 = k1;
-    x << *model_.rest(), VectorXd::Zero(n);
-    flight.states.push_back(x);
-    for (double t = 0; t < longest_;) {
-      const bool pulls = t < release_at;
-      const double h = pulls ? std::min(step_, release_at - t) : step_;
-      const std::vector<double>& drives = pulls ? pulling_ : releasing_;
-      rates(x, drives, k1);
-      rates(x + h / 2 * k1, drives, k2);
-      rates(x + h / 2 * k2, drives, k3);
-      rates(x + h * k3, drives, k4);
-      x += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-      t += h;
-      flight.states.push_back(x);
-      flight.touched = model_.contact_deflection(x.data()) >= gap;
-      if (flight.touched || !x.allFinite()) break;
-      if (!pulls && model_.contact_deflection(x.data() + n) < 0) break;
-    }
-    return flight;
-  }
-
- private:
-  void rates(const VectorXd& at, const std::vector<double>& drives, VectorXd& result) {
-    const Index n = model_.modes();
-    result.head(n) = at.tail(n);
-    model_.accelerations(at.data(), at.data() + n, drives, false, work_, result.data() + n);
-  }
-
-  const Switch& model_;
-  std::vector<double> pulling_, releasing_;  // [V]
-  double step_, longest_;                    // [s]
-  Switch::Workspace work_;
-};
 
 }  // namespace
 
@@ -255,36 +202,26 @@ std::optional<VectorXd> FreeFlight::landed() const {
 }
 
 std::optional<ControlledCourse> FreeFlight::swing(double longest) const {
-  constexpr double step_angle = 0.05;  // of the fastest mode in a step
-  const double step = step_angle / omega_.maxCoeff();
   const auto values = [&](const VectorXd& c) {
     std::vector<double> all = hold_;
     const std::map<std::string, double> free_volts = volts(c);
     for (const Free& f : free_) all[f.drive] = free_volts.at(f.name);
     return all;
   };
-  PullAndRelease drives(model_, values(pull_), values(release_), step, longest);
-  const Flight full = drives.fly(longest);
-  if (!full.touched) return std::nullopt;
-  double low = 0, high = static_cast<double>(full.states.size()) * step;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = (low + high) / 2;
-    (drives.fly(middle).touched ? high : low) = middle;
-  }
-  const Flight best = drives.fly(high);
+  const std::optional<Swing> best = quickest_swing(model_, values(pull_), values(release_), longest);
+  if (!best) return std::nullopt;
   ControlledCourse course;
-  const auto points = static_cast<double>(best.states.size() - 1);
-  // All steps but the one that ends at the release have one length: its share is too small to matter in a guess.
-  const double time = points * step;
+  const auto points = static_cast<double>(best->states.size() - 1);
+  const double time = points * best->step;
   course.time = time / time_unit();
-  course.knots = {0, std::clamp(high / time, 0.01, 0.99), 1};
+  course.knots = {0, std::clamp(best->driven_time / time, 0.01, 0.99), 1};
   course.controls.resize(controls(), 2);
   course.controls << pull_, release_;
-  course.states.resize(2 * modes_, static_cast<Index>(best.states.size()));
-  for (std::size_t p = 0; p < best.states.size(); ++p) {
+  course.states.resize(2 * modes_, static_cast<Index>(best->states.size()));
+  for (std::size_t p = 0; p < best->states.size(); ++p) {
     course.points.push_back(static_cast<double>(p) / points);
-    course.states.col(static_cast<Index>(p)) << best.states[p].head(modes_).cwiseQuotient(per_q_),
-        best.states[p].tail(modes_).cwiseQuotient(per_v_);
+    course.states.col(static_cast<Index>(p)) << best->states[p].head(modes_).cwiseQuotient(per_q_),
+        best->states[p].tail(modes_).cwiseQuotient(per_v_);
   }
   return course;
 }

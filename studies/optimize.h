@@ -44,7 +44,7 @@ struct OptimizeOptions {
   /// That the winner has to fulfil, on figures of all_figures: see figure_names().
   std::vector<Criterion> conditions = {};
   Actuator actuator = Actuator::electrostatic;
-  std::string family = "pulse";
+  std::string family = "pulse";  ///< see default_family()
   std::string optimizer = "auto";
   long max_evaluations = 2500;  ///< see default_budget()
   /// Evaluations on top of those, from the best points so far, where they have found no landing without a significant rebound.

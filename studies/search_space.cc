@@ -69,6 +69,18 @@ class FamilyOfDrives {
 
 }  // namespace
 
+std::string_view default_family(Actuator actuator) {
+  switch (actuator) {
+    case Actuator::electrostatic:
+      break;
+    case Actuator::pzt:
+      return "sines:3";
+    case Actuator::both:
+      return "catch";
+  }
+  return "dual-pulse";
+}
+
 bool has_pulling_electrode(const Device& device) {
   return std::any_of(device.electrodes.begin(), device.electrodes.end(), [](const Electrode& e) { return e.side != Side::far; });
 }

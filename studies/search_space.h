@@ -48,6 +48,9 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
+/// The family that lands softest and soonest on the shipped scenes where devices are all alike (results/comparison.md).
+[[nodiscard]] std::string_view default_family(Actuator actuator);
+
 struct SearchedFamily;
 /// "step, pulse, ..., bspline:N or sines:N"
 [[nodiscard]] std::string listed_searched_families();

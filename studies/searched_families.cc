@@ -83,9 +83,11 @@ void add_catch(DriveSearch& s, const Prepared& p, double t0) {
     // Throw, coast, hold fast.
     s.starts.push_back({high, low, high, 0.8 * t0, 0.5 * t0, 1.7 * t0, 0.01 * period});
     s.starts.push_back({inside(s.hold), inside(0.6 * s.hold), inside(s.hold), 0.85 * t0, 0.5 * t0, t0, 0.01 * period});
-    if (const auto landing = internal::throw_and_coast(s, p))
-      s.starts.push_back(
-          {landing->pulling, landing->coasting, high, landing->driven_time, landing->coasting_time, 1.7 * t0, 0.005 * period});
+    if (const auto landing = internal::throw_and_coast(s, p)) {
+      for (const double push : internal::pushes)
+        s.starts.push_back(
+            {landing->pulling, landing->coasting, high, landing->driven_time, landing->coasting_time, push * t0, 0.005 * period});
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/require.h"
 #include "model/constants.h"
 #include "studies/bang_bang.h"
+#include "studies/swing.h"
 
 namespace softland::internal {
 namespace {
@@ -100,6 +101,15 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == s.drive) driven[k] = found.pulling, coasting[k] = found.coasting;
   }
+  // Of one mode where the film has states of its own.
+  if (p.model.film_states() == 0 && p.model.rest()) {
+    constexpr double longest = 3;  // periods
+    const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p));
+    if (!swing) return std::nullopt;
+    found.driven_time = swing->driven_time;
+    found.coasting_time = swing->releasing_time;
+    return found;
+  }
   const std::optional<BangBang> landing = bang_bang(p.model, driven, coasting);
   if (!landing) return std::nullopt;
   found.driven_time = landing->driven_time;
@@ -163,8 +173,10 @@ void add_pulses(DriveSearch& s, const Prepared& p, double t0) {
     const double high = s.limits.max_voltage;
     start(high, high, 0.7 * t0, 1.7 * t0, 0.45 * t0, 0.01);
     start(s.hold, s.hold, 0.85 * t0, t0, 0.4 * t0, 0.01);
-    if (const auto landing = throw_and_coast(s, p))
-      start(landing->pulling, high, landing->driven_time, 1.7 * t0, landing->coasting_time, 0.005);
+    if (const auto landing = throw_and_coast(s, p)) {
+      for (const double push : pushes)
+        start(landing->pulling, high, landing->driven_time, push * t0, landing->coasting_time, 0.005);
+    }
   }
 }
 

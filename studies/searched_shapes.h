@@ -2,6 +2,7 @@
 // searched_families.cc, and search_space.h says what they vary.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,11 +24,15 @@ using Parameters = std::optional<std::vector<double>>;
 [[nodiscard]] Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations,
                                 double edge);
 
-/// Full pull and then none, as it lands the undamped switch of one mode; the other drives stand at their hold levels.
+/// Full pull and then none, as it lands the switch (swing.h), or its first mode without damping (bang_bang.h) where the gas film
+/// is compressible; the other drives stand at their hold levels.
 struct ThrowAndCoast {
   double pulling = 0, coasting = 0;           ///< [V]
   double driven_time = 0, coasting_time = 0;  ///< [s]
 };
+/// How long a pull after the landing lasts where searches begin: while the modes that still ring decay, in first touches of the
+/// plain step.
+inline constexpr std::array pushes = {0.5, 1.0, 2.0, 3.5};
 /// Nothing where there is no such landing, and for a drive that pulls away from the contact.
 [[nodiscard]] std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepared& p);
 

@@ -279,10 +279,11 @@ void add_optimize(Verb& verb) {
   verb.option("--actuator", request->actuator, "NAME",
               "drives that the search may shape: " + first_is_default(listed(actuators)));
   verb.option("--waveform", request->waveform, "NAME",
-              "family to search: pulse (default), step, harmonic, catch, ramp, staircase, knots, coast, dual-pulse, pulses, "
-              "s-curve, dither, "
-              "chirp, bspline or sines; with a number of levels, knots, pulses or sines: knots:8; for each drive its own: "
-              "main=step,pzt=pulse");
+              "family to search: " + std::string(default_family(Actuator::electrostatic)) + " (default), " +
+                  std::string(default_family(Actuator::pzt)) + " (for pzt), " + std::string(default_family(Actuator::both)) +
+                  " (for both; with --robust and --calibrate), knots (with --robust), step, pulse, harmonic, ramp, staircase, "
+                  "coast, pulses, s-curve, dither, chirp or bspline; with a number of levels, knots, pulses or sines: knots:8; "
+                  "for each drive its own: main=step,pzt=pulse");
   verb.option("--robust", request->robust, "MEASURE",
               "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
               "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");

@@ -53,8 +53,9 @@ void expect_complete_log(const std::string& log) {
   ASSERT_FALSE(log.empty());
   EXPECT_EQ(log.back(), '\n');
   const auto all = lines(log);
-  EXPECT_EQ(all.front(), "index,cost,main.level_1_V,main.level_2_V,main.time_1_s,main.duration_2_s,main.edge_s");
-  for (const std::string& line : all) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 6) << line;
+  EXPECT_THAT(all.front(), testing::AllOf(testing::StartsWith("index,cost,main.level_1_V,"), testing::EndsWith(",main.edge_s")));
+  const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+  for (const std::string& line : all) EXPECT_EQ(commas(line), commas(all.front())) << line;
 }
 
 // A long search, once best.toml stands and a little more than the second between two writings has gone by.
@@ -133,10 +134,31 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs) {
   EXPECT_TRUE(one == two) << json::diff(one, two).dump().substr(0, 2000);
 }
 
+TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
+  const auto family = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--budget", "200", "--json", "-", "--out", "families"});
+    std::vector<std::string> words{"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/mem-gold-pzt.toml").string(), "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome o = here->run(words);
+    return o.out.empty() ? o.err : json::parse(o.out).at("waveform").get<std::string>();
+  };
+  EXPECT_EQ(family({}), "dual-pulse");
+  EXPECT_EQ(family({"--actuator", "pzt"}), "sines:3");
+  EXPECT_EQ(family({"--actuator", "both"}), "catch");
+  EXPECT_EQ(family({"--actuator", "both", "--waveform", "pulse"}), "pulse");
+  const std::vector<std::string> robust{"--robust", "worst", "--samples", "8"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), robust.begin(), robust.end());
+    return more;
+  };
+  EXPECT_EQ(family(with({})), "knots");
+  EXPECT_EQ(family(with({"--calibrate", "Vdp"})), "catch");
+}
+
 TEST_F(Search, LooksElsewhereWithAnotherSeed) {
-  search(*here, "default", {}, "6");
-  search(*here, "first", {"--seed", "1"}, "6");
-  search(*here, "other", {"--seed", "2"}, "6");
+  search(*here, "default", {}, "120");
+  search(*here, "first", {"--seed", "1"}, "120");
+  search(*here, "other", {"--seed", "2"}, "120");
   EXPECT_EQ(read(here->path() / "default/evaluations.csv"), read(here->path() / "first/evaluations.csv"));
   EXPECT_NE(read(here->path() / "first/evaluations.csv"), read(here->path() / "other/evaluations.csv"));
 }

@@ -35,6 +35,22 @@ TEST_P(Quality, ATurnedBowlIsSolved) {
   }
 }
 
+TEST(Auto, SearchesNearItsStartsBeforeItLooksElsewhere) {
+  // A well a fiftieth of the box wide, with walls, in a wide bowl that leads away from it.
+  const auto well = [](std::span<const double> x) {
+    double square = 0, bowl = 0;
+    for (const double v : x) square += std::pow((v - 0.8) / 0.02, 2), bowl += std::pow(v + 0.5, 2);
+    return bowl + 1 - 10 * std::exp(-square) + 0.01 * std::abs(x[0] - 0.801);
+  };
+  Problem problem = box(6, -1, 1, well);
+  problem.starts = {std::vector<double>(6, 0.0), std::vector<double>(6, 0.81)};
+  const double depth = well(std::vector<double>(6, 0.8)) + 0.01;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const OptimizerResult result = minimize(problem, {.max_evaluations = 1000, .seed = seed});
+    EXPECT_LT(result.value, depth) << seed;
+  }
+}
+
 TEST_P(Quality, AMinimumInACornerIsFound) {
   const auto slope = [](std::span<const double> x) { return 2 * x[0] - x[1] + 0.5 * x[2]; };
   const OptimizerResult result = minimize(box(3, -1, 1, slope), {.optimizer = GetParam(), .max_evaluations = 500});

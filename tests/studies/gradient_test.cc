@@ -71,7 +71,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
     const std::vector<Signal> signals = signals_at(x);
     MotionTape tape;
     ClosingOptions run = s.run_of(signals);
-    run.tolerance = 1e-10;
+    run.tolerance = 1e-11;
     const Trajectory end = observe_closing(s.given.model, signals, run, tape);
     if (end.status != Status::done) continue;
     const LinearizedClosing motion(s.given.model, signals, tape, 16);
@@ -86,7 +86,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
     const Eigen::MatrixXd backward = motion.backward(wanted_slopes, by), forward = motion.forward(wanted_slopes, by);
     const double size = backward.cwiseAbs().maxCoeff();
     for (Eigen::Index f = 0; f < backward.rows(); ++f)
-      EXPECT_LT((backward.row(f) - forward.row(f)).cwiseAbs().maxCoeff(), 1e-9 * backward.row(f).cwiseAbs().maxCoeff() + 1e-300)
+      EXPECT_LT((backward.row(f) - forward.row(f)).cwiseAbs().maxCoeff(), 1e-8 * backward.row(f).cwiseAbs().maxCoeff() + 1e-300)
           << size;
     const auto differences = [&](std::size_t k, double share) {
       const double h = share * (upper[k] - lower[k]);

@@ -98,7 +98,7 @@ TEST(Box, GivesTheSceneOfItsDevices) {
   // Of calibrated devices in their own units, with the measurements exact.
   const Judged measured = judged(gold_at_17_volts({two_normal, "waveform.main.rise_time=20 us"}), 8,
                                  {.pull_in_error = 0.02, .frequency_error = 0.02});
-  const OtherWays ways = measured.ways({.closings_per_search = 6});
+  const OtherWays ways = measured.ways({.closings_per_search = 30});
   check(measured, ways);
   // In its own units every device touches after as many of its own periods: t_i times thickness times root of modulus.
   const auto in_periods = [](const BoxDevice& device) { return device.figure * device.values[0] * std::sqrt(device.values[1]); };
