@@ -138,6 +138,8 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
   const auto family = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--budget", "200", "--json", "-", "--out", "families"});
     std::vector<std::string> words{"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/mem-gold-pzt.toml").string(), "--quiet"};
+    for (const char* quick : {"structure.modes=2", "simulate.duration=100 us", "simulate.accuracy=1e-3"})
+      words.insert(words.end(), {"--set", quick});
     words.insert(words.end(), more.begin(), more.end());
     const Outcome o = here->run(words);
     return o.out.empty() ? o.err : json::parse(o.out).at("waveform").get<std::string>();
