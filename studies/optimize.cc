@@ -186,14 +186,16 @@ class Search {
   }
 
   // A scene that holds a landing already is refined, and so are landings that other searches have found: they are the first
-  // candidates, and where the search can describe them it starts there.
+  // candidates, and the search starts there, or, from those of another family, at the nearest waveform of its own.
   void begin() {
     const std::vector<Signal> drives = setting_.given.signals();
     if (!same_drives(drives, setting_.baseline_scene.signals()))
       refine(drives, setting_.space.parameters(setting_.given.drives.waveforms), with_waveforms(setting_.given, {}));
     for (const StartingWaveforms& start : options_.starts) {
       const std::map<std::string, Waveform> searched = setting_.space.searched(start.waveforms);
-      refine(signals_of(setting_.drives(searched)), setting_.space.parameters(searched), setting_.scene(searched));
+      const std::optional<std::vector<double>> point = setting_.space.parameters(searched);
+      refine(signals_of(setting_.drives(searched)), point, setting_.scene(searched));
+      if (!point) problem_.starts.push_back(setting_.space.nearest(searched));
     }
     for (std::vector<double>& start : setting_.space.starts()) problem_.starts.push_back(std::move(start));
   }

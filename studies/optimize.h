@@ -52,8 +52,8 @@ struct OptimizeOptions {
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
   int jobs = 1;
-  /// Landings that other searches have found: candidates, and first points of this one. Their drives and family must be those
-  /// that are searched.
+  /// Landings that other searches have found: candidates, and first points of this one, as near as its family comes to them. They
+  /// must be of the drives that are searched.
   std::vector<StartingWaveforms> starts = {};
   /// What is known of candidates already, and learns of those that are simulated; may be null.
   EvaluationMemory* memory = nullptr;

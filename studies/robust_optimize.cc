@@ -223,7 +223,7 @@ class RobustSearch {
     const auto add = [&](const Point& x) { all.push_back({.x = x}); };
     for (const Point& x : setting_.space.starts()) add(x);
     if (const auto given = setting_.space.parameters(setting_.given.drives.waveforms)) add(*given);
-    for (const StartingWaveforms& start : options_.starts) add(setting_.space.parameters(start.waveforms).value());
+    for (const StartingWaveforms& start : options_.starts) add(setting_.space.nearest(start.waveforms));
     for (const Point& x : nominal_winners()) add(x);
     for (Point u : internal::sobol_points(options_.seed, variables_.size(), 0, scouting_.box_points)) {
       for (std::size_t i = 0; i < u.size(); ++i) u[i] = variables_[i].lower + u[i] * (variables_[i].upper - variables_[i].lower);

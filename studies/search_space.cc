@@ -108,47 +108,55 @@ std::vector<std::string> braking_electrodes(const Prepared& prepared) {
 
 Waveform DriveSearch::waveform(std::span<const double> x) const { return family->at(*this, x); }
 
-std::optional<std::vector<double>> DriveSearch::unbounded_parameters(const Waveform& waveform) const {
-  if (softland::family(waveform) != family->waveform) return std::nullopt;
-  return family->parameters(*this, waveform);
-}
-
-std::optional<std::size_t> DriveSearch::out_of_bounds(const std::vector<double>& x) const {
+bool DriveSearch::is_within_bounds(const std::vector<double>& x) const {
   for (std::size_t k = 0; k < x.size(); ++k) {
     const double lower = variables[k].lower, upper = variables[k].upper;
-    if (!(std::abs(x[k] - std::clamp(x[k], lower, upper)) <= rounding * (upper - lower))) return k;
+    if (!(std::abs(x[k] - std::clamp(x[k], lower, upper)) <= rounding * (upper - lower))) return false;
   }
-  return std::nullopt;
+  return true;
 }
 
 std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& waveform) const {
-  std::optional<std::vector<double>> x = unbounded_parameters(waveform);
-  if (!x || out_of_bounds(*x)) return std::nullopt;
+  if (softland::family(waveform) != family->waveform) return std::nullopt;
+  std::optional<std::vector<double>> x = family->parameters(*this, waveform);
+  if (!x || !is_within_bounds(*x)) return std::nullopt;
   for (std::size_t k = 0; k < x->size(); ++k) (*x)[k] = std::clamp((*x)[k], variables[k].lower, variables[k].upper);
   return x;
 }
 
+std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
+  if (std::optional<std::vector<double>> own = parameters(waveform)) return *own;
+  constexpr int instants = 500;
+  constexpr double beyond = 1.25, least = 2.5;  // of its last breakpoint; of the first touch
+  constexpr long evaluations = 4000;
+  const bool squared = drive != piezo_drive;
+  const auto driving = [&](const Signal& s, double time) {
+    const double volts = s.voltage(time);
+    return squared ? volts * std::abs(volts) : volts;
+  };
+  const Signal given = signal(waveform);
+  const double end = std::max(beyond * given.breakpoints().back(), least * first_touch);
+  std::vector<std::pair<double, double>> course;
+  for (int i = 0; i < instants; ++i) {
+    const double time = (i + 0.5) / instants * end;
+    course.emplace_back(time, driving(given, time));
+  }
+  const auto difference = [&](std::span<const double> x) {
+    const Signal own = signal(this->waveform(x));
+    double sum = 0;
+    for (const auto& [time, value] : course) sum += std::pow(driving(own, time) - value, 2);
+    return sum / instants;
+  };
+  return minimize({.variables = variables, .objective = difference, .starts = starts}, {.max_evaluations = evaluations}).x;
+}
+
 std::string DriveSearch::misfit(const Waveform& waveform) const {
-  const std::string_view given = softland::family(waveform);
-  if (given != family->waveform)
-    return fmt::format("drive '{}' has a waveform of the family {}, and the search is for {}", drive, given, searched_name());
-  const std::optional<std::vector<double>> x = unbounded_parameters(waveform);
-  if (!x) return fmt::format("drive '{}' has a {} that is none of the searched family {}", drive, given, searched_name());
   const double held = signal(waveform).hold_level();
   if (!(std::abs(held - hold) <= rounding * (limits.max_voltage - limits.min_voltage)))
     return fmt::format("drive '{}' ends on {}, and the scene holds {}, which no search changes", drive, engineering(held, "V", 6),
                        engineering(hold, "V", 6));
-  if (const auto k = out_of_bounds(*x)) {
-    const Variable& v = variables[*k];
-    return fmt::format("drive '{}': {} = {:.6g} lies outside its bounds, {:.6g} to {:.6g}", drive, v.name, (*x)[*k], v.lower,
-                       v.upper);
-  }
   const std::string broken = violation(signal(waveform), limits);
   return broken.empty() ? broken : fmt::format("drive '{}': {}", drive, broken);
-}
-
-std::string DriveSearch::searched_name() const {
-  return count > 0 ? fmt::format("{}:{}", family->name, count) : std::string(family->name);
 }
 
 SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch) {
@@ -161,6 +169,7 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
     DriveSearch s{.drive = drive,
                   .hold = hold_level(prepared, drive),
                   .brakes = brakes,
+                  .first_touch = first_touch,
                   .limits = limits->second,
                   .variables = {},
                   .starts = {}};
@@ -224,6 +233,15 @@ std::optional<std::vector<double>> SearchSpace::parameters(const std::map<std::s
     const auto part = found == waveforms.end() ? std::nullopt : d.parameters(found->second);
     if (!part) return std::nullopt;
     all.insert(all.end(), part->begin(), part->end());
+  }
+  return all;
+}
+
+std::vector<double> SearchSpace::nearest(const std::map<std::string, Waveform>& waveforms) const {
+  std::vector<double> all;
+  for (const DriveSearch& d : drives_) {
+    const std::vector<double> part = d.nearest(waveforms.at(d.drive));
+    all.insert(all.end(), part.begin(), part.end());
   }
   return all;
 }

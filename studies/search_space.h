@@ -59,24 +59,26 @@ struct SearchedFamily;
 struct DriveSearch {
   std::string drive;
   const SearchedFamily* family = nullptr;
-  std::size_t count = 0;  ///< of levels, knots, pulses or sines, where the family has any number of them
-  double hold = 0;        ///< [V]
-  bool brakes = false;    ///< an electrode on the far side
+  std::size_t count = 0;   ///< of levels, knots, pulses or sines, where the family has any number of them
+  double hold = 0;         ///< [V]
+  bool brakes = false;     ///< an electrode on the far side
+  double first_touch = 0;  ///< of the plain step [s]
   DriverLimits limits;
   std::vector<Variable> variables;
   std::vector<std::vector<double>> starts;
   [[nodiscard]] Waveform waveform(std::span<const double> x) const;
   /// The parameters of a waveform of this family that lies within the bounds, to rounding.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const Waveform& waveform) const;
-  /// Why a waveform has no parameters here, or holds another level, in words; empty where the search can begin with it.
+  /// The parameters of the waveform of this family that differs least from the given one in what drives the beam, the square of
+  /// an electrode's voltage or the piezo's voltage: in the mean square, until a little after the last breakpoint. Its own where
+  /// it is of this family.
+  [[nodiscard]] std::vector<double> nearest(const Waveform& waveform) const;
+  /// Why a search cannot begin with a waveform, in words: it holds another level, or leaves the driver's limits. Empty where it
+  /// can.
   [[nodiscard]] std::string misfit(const Waveform& waveform) const;
 
  private:
-  /// "knots:6"
-  [[nodiscard]] std::string searched_name() const;
-  [[nodiscard]] std::optional<std::vector<double>> unbounded_parameters(const Waveform& waveform) const;
-  /// The first parameter that lies beyond its bounds by more than rounding.
-  [[nodiscard]] std::optional<std::size_t> out_of_bounds(const std::vector<double>& x) const;
+  [[nodiscard]] bool is_within_bounds(const std::vector<double>& x) const;
 };
 
 class SearchSpace {
@@ -92,6 +94,8 @@ class SearchSpace {
   [[nodiscard]] std::map<std::string, Waveform> waveforms(std::span<const double> x) const;
   /// The point that gives these waveforms, if there is one: where a search refines what was found before.
   [[nodiscard]] std::optional<std::vector<double>> parameters(const std::map<std::string, Waveform>& waveforms) const;
+  /// The point whose waveforms differ least from these, which must not be misfits: where a search for another family begins.
+  [[nodiscard]] std::vector<double> nearest(const std::map<std::string, Waveform>& waveforms) const;
   /// Why a search cannot begin with these waveforms, in words; empty where it can.
   [[nodiscard]] std::string misfit(const std::map<std::string, Waveform>& waveforms) const;
   /// Of these waveforms those of the searched drives.

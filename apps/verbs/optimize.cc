@@ -299,8 +299,9 @@ void add_optimize(Verb& verb) {
   verb.with_samples(request->samples, "devices that a robust search looks at (default: 128)");
   verb.option("--optimizer", request->optimizer, "NAME", "auto (default), or another of the names below");
   verb.repeated("--start", request->starts, "FILE",
-                "begin with the waveform of this scene or result, which must be of the searched drives and family; it stays the "
-                "best unless a better one is found, and without --robust the search never ends worse; may be repeated");
+                "begin with the waveform of this scene or result (of softland limit, say), which must be of the searched drives; "
+                "from another family, with the nearest waveform of the searched one; it stays the best unless a better one is "
+                "found, and without --robust the search never ends worse; may be repeated");
   verb.optional(
       "--budget", request->budget, "N|TIME",
       fmt::format(

@@ -39,8 +39,8 @@ struct Named {
   const char* name;
   double CostFigures::*figure;
   FigureSlope CostSlopes::*slope;
-  double bound = 1e-5;  // of the error, over the largest slope
 };
+constexpr double bound = 1e-5;  // of the error, over the largest slope
 constexpr Named named[] = {{"first touch", &CostFigures::first_touch, &CostSlopes::first_touch},
                            {"touch speed", &CostFigures::touch_speed, &CostSlopes::touch_speed},
                            {"rebound height", &CostFigures::rebound_height, &CostSlopes::rebound_height},
@@ -112,8 +112,8 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
         ++all.slopes;
         const double slope = backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
         const double error = scale > 0 ? std::abs(slope - fine[f]) / scale : std::abs(fine[f]) > 0 ? 1 : 0;
-        all.worst = std::max(all.worst, error / named[f].bound);
-        EXPECT_LT(error, named[f].bound) << named[f].name << " by " << variables[k].name << ": " << slope << ", differences "
+        all.worst = std::max(all.worst, error / bound);
+        EXPECT_LT(error, bound) << named[f].name << " by " << variables[k].name << ": " << slope << ", differences "
                                          << fine[f] << " (" << coarse[f] << ")";
       }
     }

@@ -248,6 +248,42 @@ TEST(SearchSpace, OfACompressibleFilmBeginsWithTheLandingOfItsFirstModeWithoutDa
   EXPECT_EQ(x[4], landing->coasting_time);
 }
 
+// Root of the mean square of the difference of two waveforms [V], over this time [s].
+double apart(const Waveform& a, const Waveform& b, double end) {
+  const Signal one = signal(a), other = signal(b);
+  double sum = 0;
+  constexpr int instants = 2000;
+  for (int i = 0; i < instants; ++i) sum += std::pow(one.voltage(i * end / instants) - other.voltage(i * end / instants), 2);
+  return std::sqrt(sum / instants);
+}
+
+TEST(SearchSpace, FindsTheNearestWaveformOfAFamily) {
+  const double end = 2.5 * first_touch;
+  const double hold = signal(plain().drives.waveforms.at("main")).hold_level();
+  const Waveform thrown =
+      Pulse{.levels = {20, 2, 19, hold}, .times = {0.55 * first_touch, 0.9 * first_touch, 1.8 * first_touch}, .edge = 0.5e-6};
+  const auto miss = [&](const char* family, const Waveform& given) {
+    const SearchSpace space(plain(), Actuator::electrostatic, family, first_touch);
+    return apart(space.waveforms(space.nearest({{"main", given}})).at("main"), given, end);
+  };
+  EXPECT_LT(miss("catch", thrown), 1e-9) << "its own family: to the last digit";
+  EXPECT_LT(miss("staircase:3", thrown), 0.5);
+  EXPECT_LT(miss("dual-pulse", thrown), 1.5) << "it coasts on 2 V, which a train of pulses cannot";
+  EXPECT_GT(miss("pulse", thrown), 3) << "the push after it is missing";
+  // The line of a table, by splines and by knots.
+  Table table{.time = {0}, .voltage = {0}};
+  for (int k = 1; k <= 40; ++k) {
+    table.time.push_back(k * 2 * first_touch / 40);
+    table.voltage.push_back(hold * (0.8 + 0.2 * std::sin(k * pi / 80)));
+  }
+  EXPECT_LT(miss("knots:6", table), 0.4);
+  EXPECT_LT(miss("bspline:6", table), 1.5);
+  const SearchSpace space(plain(), Actuator::both, "main=dual-pulse,pzt=sines:3", first_touch);
+  const Waveform dither = Table{.time = {0, 1e-5, 3e-5, 4e-5}, .voltage = {0, 0.5, -0.5, 0}};
+  const auto both = space.waveforms(space.nearest({{"main", thrown}, {"piezo", dither}}));
+  EXPECT_LT(apart(both.at("piezo"), dither, end), 0.15);
+}
+
 TEST(SearchSpace, GivesEveryDriveTheFamilyThatIsNamedForIt) {
   const SearchSpace space(plain(), Actuator::both, "main=step,pzt=coast", first_touch);
   EXPECT_THAT(names(space),
