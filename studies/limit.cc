@@ -116,110 +116,144 @@ Arrival arrival(const Prepared& prepared, const std::map<std::string, Waveform>&
   return {m.initial_contact_time, m.impact_velocity};
 }
 
-}  // namespace
-
-LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options) {
-  require(options.impact_velocity > 0 && std::isfinite(options.impact_velocity),
-          "the permitted impact velocity must be positive");
-  FreeFlight flight(prepared, options.actuator, options.peak);
-  LeastTime result;
-  result.permitted = options.impact_velocity;
-  const auto ended = [&](Status status, std::string why) {
-    result.status = status;
-    result.message = std::move(why);
-    return result;
-  };
-  if (options.actuator != Actuator::pzt) {
+// One search for a least time: the problem, its best course so far, and what is told of it.
+class LeastTimeSearch {
+ public:
+  LeastTimeSearch(const Prepared& prepared, const LeastTimeOptions& options)
+      : prepared_(prepared), options_(options), flight_(prepared, options.actuator, options.peak) {
+    result_.permitted = options.impact_velocity;
+    if (options.actuator == Actuator::pzt) return;
     const DriverLimits& limits = prepared.drives.limits.at(searched_electrode(prepared.scene.device));
-    result.peak = std::min(options.peak, std::max(std::abs(limits.max_voltage), std::abs(limits.min_voltage)));
-  }
-  const double longest = longest_swing * 2 * pi / prepared.model.angular_frequencies()[0];
-  std::optional<ControlledCourse> guess = flight.swing(longest);
-  if (!guess) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
-  std::optional<VectorXd> landed;
-  if (options.at_rest) {
-    landed = flight.landed();
-    if (!landed) return ended(Status::no_contact, "the hold levels do not keep the switch closed");
+    result_.peak = std::min(options.peak, std::max(std::abs(limits.max_voltage), std::abs(limits.min_voltage)));
   }
 
-  const double speed = options.impact_velocity / flight.speed_unit();
-  const double fastest = prepared.model.angular_frequencies().maxCoeff() * flight.time_unit();
-  ControlProblem problem{
-      .system = &flight,
-      .start = flight.start(),
-      .bounds = flight.bounds(),
-      .on_the_way = {{.row = flight.tip(), .upper = 1}},
-      .at_the_end = {{.row = flight.tip(), .lower = 1, .upper = 1},
-                     {.row = flight.tip_speed(), .lower = (options.at_rest ? grazing : 0) * speed, .upper = speed}},
-      .shortest = guess->time / 10,
-      .longest = longest / flight.time_unit(),
-      .knots = uniform_knots(first_knots),
-      .longest_piece = piece_angle / (fastest * guess->time),
-      .stop = options.watch.stop};
-  // A beam at rest under the hold levels stays so where the drives have come to them.
-  for (Index k = 0; landed && flight.ramps() && k < flight.controls(); ++k)
-    problem.bounds[static_cast<std::size_t>(k)].after = flight.hold()[k];
-  const double finest = 1.0 / (first_knots * std::exp2(refinements));
+  LeastTime run() {
+    const double longest = longest_swing * 2 * pi / prepared_.model.angular_frequencies()[0];
+    std::optional<ControlledCourse> swing = flight_.swing(longest);
+    if (!swing) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
+    course_ = std::move(*swing);
+    std::optional<VectorXd> landed;
+    if (options_.at_rest) {
+      landed = flight_.landed();
+      if (!landed) return ended(Status::no_contact, "the hold levels do not keep the switch closed");
+    }
+    pose(longest, landed.has_value());
+    if (landed) {
+      const Status status = come_to_rest(*landed);
+      if (status != Status::done) return ended(status, status == Status::interrupted ? std::string() : result_.message);
+    }
+    if (const Status status = improve_with_finer_knots(); status != Status::done) return ended(status, result_.message);
+    return refine_until_simulated();
+  }
+
+ private:
+  LeastTime ended(Status status, std::string why) {
+    result_.status = status;
+    result_.message = std::move(why);
+    return result_;
+  }
+
+  void pose(double longest, bool at_rest) {
+    const double speed = options_.impact_velocity / flight_.speed_unit();
+    const double fastest = prepared_.model.angular_frequencies().maxCoeff() * flight_.time_unit();
+    problem_ = {.system = &flight_,
+                .start = flight_.start(),
+                .bounds = flight_.bounds(),
+                .on_the_way = {{.row = flight_.tip(), .upper = 1}},
+                .at_the_end = {{.row = flight_.tip(), .lower = 1, .upper = 1},
+                               {.row = flight_.tip_speed(), .lower = (at_rest ? grazing : 0) * speed, .upper = speed}},
+                .shortest = course_.time / 10,
+                .longest = longest / flight_.time_unit(),
+                .knots = uniform_knots(first_knots),
+                .longest_piece = piece_angle / (fastest * course_.time),
+                .stop = options_.watch.stop};
+    // A beam at rest under the hold levels stays so where the drives have come to them.
+    for (Index k = 0; at_rest && flight_.ramps() && k < flight_.controls(); ++k)
+      problem_.bounds[static_cast<std::size_t>(k)].after = flight_.hold()[k];
+  }
+
   // A failure leaves the last course.
-  const auto improve = [&] {
-    ControlledCourse course = solve(problem, *guess);
-    result.message = course.message;
+  Status improve() {
+    ControlledCourse course = solve(problem_, course_);
+    result_.message = course.message;
     if (course.interrupted) return Status::interrupted;
     if (!course.converged) return Status::numerical_failure;
-    guess = std::move(course);
+    course_ = std::move(course);
     return Status::done;
-  };
-  const auto improve_with_finer_knots = [&] {
+  }
+
+  Status improve_with_finer_knots() {
+    const double finest = 1.0 / (first_knots * std::exp2(refinements));
     for (;;) {
       if (const Status status = improve(); status != Status::done) return status;
-      std::vector<double> knots = refined_knots(*guess, problem.bounds, finest);
-      if (knots.size() == problem.knots.size()) return Status::done;
-      problem.knots = std::move(knots);
+      std::vector<double> knots = refined_knots(course_, problem_.bounds, finest);
+      if (knots.size() == problem_.knots.size()) return Status::done;
+      problem_.knots = std::move(knots);
     }
-  };
-  if (landed) {
-    // The modes are brought to rest little by little: at once Ipopt finds no way.
-    const Index n = flight.states();
-    for (Index r = 0; r < n; ++r) problem.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
+  }
+
+  // The modes are brought to rest little by little: at once Ipopt finds no way.
+  Status come_to_rest(const VectorXd& landed) {
+    const Index n = flight_.states();
+    for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
     const auto leave = [&](double room) {
       for (Index r = 0; r < n; ++r) {
-        StateCondition& mode = problem.at_the_end[static_cast<std::size_t>(r) + 2];
-        mode.lower = (*landed)[r] - room;
-        mode.upper = (*landed)[r] + room;
+        StateCondition& mode = problem_.at_the_end[static_cast<std::size_t>(r) + 2];
+        mode.lower = landed[r] - room;
+        mode.upper = landed[r] + room;
       }
     };
     for (const double room : rest_rooms) {
       leave(room);
       const Status status = improve();
-      if (status == Status::interrupted) return ended(status, {});
+      if (status == Status::interrupted) return status;
       if (status != Status::done) break;
-      result.room = room;
+      result_.room = room;
     }
-    if (std::isnan(result.room)) return ended(Status::numerical_failure, result.message);
-    leave(result.room);
+    if (std::isnan(result_.room)) return Status::numerical_failure;
+    leave(result_.room);
+    return Status::done;
   }
-  if (const Status status = improve_with_finer_knots(); status != Status::done) return ended(status, result.message);
 
-  for (int mesh = 1;; ++mesh) {
-    result.course = *guess;
-    result.time = guess->time * flight.time_unit();
-    result.impact_velocity = flight.tip_speed().dot(guess->states.col(guess->states.cols() - 1)) * flight.speed_unit();
-    result.waveforms = with_catch(flight, {.waveforms = tables_of(flight, *guess), .course = *guess}, 2 * result.time, {});
-    const Arrival touch = arrival(prepared, result.waveforms, options.actuator, 2 * result.time);
-    result.simulated_time = touch.time;
-    result.simulated_velocity = touch.velocity;
-    const double apart = std::abs(touch.time - result.time);
-    const double missed = apart * std::max(touch.velocity, result.impact_velocity);
-    bool near = apart <= agreement * result.time || missed <= agreement * prepared.scene.device.gap.contact;
-    const bool as_soft = touch.velocity <= result.impact_velocity + softness * options.impact_velocity;
-    // A contact point that comes to rest beside its plane may graze it before.
-    near = near || (options.at_rest && as_soft && touch.time < result.time);
-    if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
-    if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
-    problem.longest_piece /= 2;
-    const Status status = improve();
-    if (status != Status::done) return ended(near && status != Status::interrupted ? Status::done : status, {});
+  // On finer meshes, until a simulation of the waveform touches when and as softly as the optimum does.
+  LeastTime refine_until_simulated() {
+    for (int mesh = 1;; ++mesh) {
+      result_.course = course_;
+      result_.time = course_.time * flight_.time_unit();
+      result_.impact_velocity = flight_.tip_speed().dot(course_.states.col(course_.states.cols() - 1)) * flight_.speed_unit();
+      result_.waveforms =
+          with_catch(flight_, {.waveforms = tables_of(flight_, course_), .course = course_}, 2 * result_.time, {});
+      const Arrival touch = arrival(prepared_, result_.waveforms, options_.actuator, 2 * result_.time);
+      result_.simulated_time = touch.time;
+      result_.simulated_velocity = touch.velocity;
+      const double apart = std::abs(touch.time - result_.time);
+      const double missed = apart * std::max(touch.velocity, result_.impact_velocity);
+      bool near = apart <= agreement * result_.time || missed <= agreement * prepared_.scene.device.gap.contact;
+      const bool as_soft = touch.velocity <= result_.impact_velocity + softness * options_.impact_velocity;
+      // A contact point that comes to rest beside its plane may graze it before.
+      near = near || (options_.at_rest && as_soft && touch.time < result_.time);
+      if ((near && as_soft) || (near && mesh == most_meshes)) return ended(Status::done, {});
+      if (mesh == most_meshes) return ended(Status::numerical_failure, "a simulation of the waveform touches at another time");
+      problem_.longest_piece /= 2;
+      const Status status = improve();
+      if (status != Status::done) return ended(near && status != Status::interrupted ? Status::done : status, {});
+    }
   }
+
+  const Prepared& prepared_;
+  const LeastTimeOptions& options_;
+  FreeFlight flight_;
+  ControlProblem problem_;
+  ControlledCourse course_;
+  LeastTime result_;
+};
+
+}  // namespace
+
+LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options) {
+  require(options.impact_velocity > 0 && std::isfinite(options.impact_velocity),
+          "the permitted impact velocity must be positive");
+  return LeastTimeSearch(prepared, options).run();
 }
 
 namespace {
@@ -269,6 +303,79 @@ bool is_better(const LimitLanding& a, const std::optional<LimitLanding>& b) {
                        : own.major_bounce_height < other.major_bounce_height;
 }
 
+// All least times and landings of one limit, each told as it begins.
+class LimitStudy {
+ public:
+  LimitStudy(Limit& result, const Watch& watch)
+      : result_(result),
+        watch_(watch),
+        usual_{.actuator = result.options.actuator, .impact_velocity = result.impact_velocity, .watch = watch},
+        parts_(static_cast<double>(3 + quicker.size() + (result.options.curves ? speeds.size() : 0) +
+                                   (has_peaks() ? peaks.size() : 0))) {}
+
+  void run() {
+    if (next("least time of a touch")) result_.touch = at_speed(1);
+    if (next("a landing after it")) land(result_.touch, true);
+    for (const double more : quicker) {
+      if (next("quicker landings")) land(at_speed(more), true);
+    }
+    if (next("least time at rest")) {
+      LeastTimeOptions at_rest = usual_;
+      at_rest.at_rest = true;
+      result_.rest = least_time(result_.given, at_rest);
+      land(result_.rest, false);
+    }
+    if (result_.options.curves) {
+      for (const double share : speeds) {
+        if (next("over the permitted speed")) result_.over_velocity.push_back(at_speed(share));
+      }
+    }
+    if (has_peaks()) over_peaks();
+  }
+
+ private:
+  static constexpr std::array quicker = {10.0, 3.0};  // times the permitted speed
+  static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
+  static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
+
+  [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
+
+  bool next(std::string_view what) {
+    watch_.tell(what, done_++ / parts_);
+    return !watch_.stopped();
+  }
+
+  const LeastTime& at_speed(double share) {
+    const auto found = known_.find(share);
+    if (found != known_.end()) return found->second;
+    LeastTimeOptions other = usual_;
+    other.impact_velocity *= share;
+    return known_.emplace(share, least_time(result_.given, other)).first->second;
+  }
+
+  void land(const LeastTime& way, bool catches) {
+    if (way.status != Status::done || watch_.stopped()) return;
+    LimitLanding landing = landing_of(result_.given, way, result_.options.actuator, catches, watch_);
+    if (is_better(landing, result_.landing)) result_.landing = std::move(landing);
+  }
+
+  void over_peaks() {
+    for (const double share : peaks) {
+      if (!next("over the peak voltage")) return;
+      LeastTimeOptions lower = usual_;
+      lower.peak = share * result_.touch.peak;
+      result_.over_peak.push_back(least_time(result_.given, lower));
+    }
+    if (!watch_.stopped()) result_.over_peak.push_back(result_.touch);
+  }
+
+  Limit& result_;
+  const Watch& watch_;
+  LeastTimeOptions usual_;
+  double parts_, done_ = 0;
+  std::map<double, LeastTime> known_;  // by the speed over the permitted one
+};
+
 }  // namespace
 
 Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch) {
@@ -285,56 +392,7 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
           "the plain step does not touch: give --impact-velocity");
   result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);
 
-  const LeastTimeOptions usual{.actuator = options.actuator, .impact_velocity = result.impact_velocity, .watch = watch};
-  std::map<double, LeastTime> known;  // by the speed over the permitted one
-  const auto at_speed = [&](double share) -> const LeastTime& {
-    const auto found = known.find(share);
-    if (found != known.end()) return found->second;
-    LeastTimeOptions other = usual;
-    other.impact_velocity *= share;
-    return known.emplace(share, least_time(prepared, other)).first->second;
-  };
-  constexpr std::array quicker = {10.0, 3.0};  // times the permitted speed
-  constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
-  constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
-  const bool over_peaks = options.curves && options.actuator != Actuator::pzt;
-  const auto parts =
-      static_cast<double>(3 + quicker.size() + (options.curves ? speeds.size() : 0) + (over_peaks ? peaks.size() : 0));
-  double done = 0;
-  const auto next = [&](std::string_view what) {
-    watch.tell(what, done++ / parts);
-    return !watch.stopped();
-  };
-  const auto land = [&](const LeastTime& way, bool catches) {
-    if (way.status != Status::done || watch.stopped()) return;
-    LimitLanding landing = landing_of(prepared, way, options.actuator, catches, watch);
-    if (is_better(landing, result.landing)) result.landing = std::move(landing);
-  };
-  if (next("least time of a touch")) result.touch = at_speed(1);
-  if (next("a landing after it")) land(result.touch, true);
-  for (const double more : quicker) {
-    if (next("quicker landings")) land(at_speed(more), true);
-  }
-  if (next("least time at rest")) {
-    LeastTimeOptions at_rest = usual;
-    at_rest.at_rest = true;
-    result.rest = least_time(prepared, at_rest);
-    land(result.rest, false);
-  }
-  if (options.curves) {
-    for (const double share : speeds) {
-      if (next("over the permitted speed")) result.over_velocity.push_back(at_speed(share));
-    }
-  }
-  if (over_peaks) {
-    for (const double share : peaks) {
-      if (!next("over the peak voltage")) break;
-      LeastTimeOptions lower = usual;
-      lower.peak = share * result.touch.peak;
-      result.over_peak.push_back(least_time(prepared, lower));
-    }
-    if (!watch.stopped()) result.over_peak.push_back(result.touch);
-  }
+  LimitStudy(result, watch).run();
   result.interrupted = watch.stopped();
   return result;
 }
