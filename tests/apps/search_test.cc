@@ -134,6 +134,26 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs) {
   EXPECT_TRUE(one == two) << json::diff(one, two).dump().substr(0, 2000);
 }
 
+TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked) {
+  const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
+  const Outcome o =
+      here->run({"optimize", scene, "--quiet", "--budget", "200", "--limit", "--json", "limit.json", "--out", "near"});
+  const json found = json::parse(read(here->path() / "limit.json"));
+  const double least = found.at("limit").at("least_time_s"), own = found["metrics"]["initial_contact_time_s"];
+  EXPECT_EQ(found["limit"]["impact_velocity_m_s"], found["metrics"]["impact_velocity_m_s"]);
+  EXPECT_GT(own, 0.99 * least);
+  EXPECT_LT(own, 2 * least);
+  const std::string told = "Touches in ";
+  EXPECT_THAT(o.out, testing::HasSubstr(told));
+  EXPECT_THAT(here->run({"report", "near"}).out, testing::HasSubstr(told)) << "from result.json";
+  // The same time as `limit` finds for that speed.
+  const Outcome limit =
+      here->run({"limit", scene, "--quiet", "--no-curves", "--impact-velocity",
+                 found["metrics"]["impact_velocity_m_s"].dump() + " m/s", "--json", "least.json", "--out", "least"});
+  ASSERT_EQ(limit.status, 0) << limit.err;
+  EXPECT_NEAR(json::parse(read(here->path() / "least.json")).at("touch").at("least_time_s").get<double>(), least, 1e-6 * least);
+}
+
 TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
   const auto family = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--budget", "200", "--json", "-", "--out", "families"});
