@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws two explorations of the gold cantilever over length and gap: the plain step at many points, and the best pulse at some.
+"""Draws two explorations of the gold cantilever over length and gap: the plain step at many points, and the best pulses at some.
 
     bench/run_explorations.py PROGRAM MAP BEST results
 
@@ -10,25 +10,15 @@ MAP and BEST are stores (--resume goes on with one that is not complete):
         --study optimize --budget 2500 --out BEST
 """
 
-import bisect
-import csv
-import io
 import pathlib
 import statistics
-import subprocess
 import sys
 
-from drawing import BOLD, INK, MUTED, drawing, line, tiles, words
+from drawing import drawing, heat_map
+from tables import rows_of
 
-COLOURS = ("#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6dcd59", "#b4de2c", "#fde725")
-NOTHING = "#c3c9cf"
 LENGTH, GAP = "structure_length_m", "gap_contact_m"
 T_I, B_H, N_B, V_I = "initial_contact_time_s", "major_bounce_height_m", "bounce_count", "impact_velocity_m_s"
-
-
-def rows_of(program, store):
-    text = subprocess.run([program, "table", store, "--csv"], capture_output=True, text=True, check=True).stdout
-    return [{k: float(v) if k not in ("status", "reason") and v else v for k, v in row.items()} for row in csv.DictReader(io.StringIO(text))]
 
 
 class Map:
@@ -43,29 +33,8 @@ class Map:
 
 def panel(found, value, bounds, unit, title, box, missing):
     """A map of value(row), which is None where there is none; bounds between the colours."""
-    left, top, right, bottom = box
-    colour = lambda v: NOTHING if v is None else COLOURS[bisect.bisect_right(bounds, v)]
-    out = [words(left, top - 12, title, 13, colour=INK, more=BOLD)]
-    out += tiles(left, top, right, bottom, len(found.lengths), len(found.gaps), [[colour(v) for v in row] for row in found.values(value)])
-    out.append(f'<rect x="{left}" y="{top}" width="{right - left}" height="{bottom - top}" fill="none" stroke="{MUTED}"/>')
-    for length in (245, 255, 265, 275, 285):
-        x = left + (right - left) * (length - 242) / 48
-        out += [line(x, bottom, x, bottom + 4, MUTED), words(x, bottom + 17, length, 11, "middle")]
-    for gap in (1.2, 1.6, 2.0, 2.4):
-        y = bottom - (bottom - top) * (gap - 1.2) / 1.4
-        out += [line(left - 4, y, left, y, MUTED), words(left - 8, y + 4, gap, 11, "end")]
-    out.append(words((left + right) / 2, bottom + 34, "length [µm]", 12, "middle"))
-    out.append(f'<text x="{left - 34}" y="{(top + bottom) / 2}" font-size="12" text-anchor="middle" fill="{MUTED}" '
-               f'transform="rotate(-90 {left - 34} {(top + bottom) / 2})">contact gap [µm]</text>')
-    size = (right - left) / len(COLOURS)
-    for k, shade in enumerate(COLOURS):
-        out.append(f'<rect x="{left + k * size:.1f}" y="{bottom + 48}" width="{size:.1f}" height="12" fill="{shade}"/>')
-        if k:
-            out.append(words(left + k * size, bottom + 74, f"{bounds[k - 1]:g}", 10, "middle"))
-    out.append(words(right + 6, bottom + 58, unit, 11))
-    if missing:
-        out += [f'<rect x="{left}" y="{bottom + 84}" width="22" height="11" fill="{NOTHING}"/>', words(left + 28, bottom + 93, missing, 11)]
-    return out
+    return heat_map(found.values(value), bounds, unit, title, box, (242, 290, (245, 255, 265, 275, 285), "length [µm]"),
+                    (1.2, 2.6, (1.2, 1.6, 2.0, 2.4), "contact gap [µm]"), missing)
 
 
 def number(row, key, unit):
@@ -91,10 +60,10 @@ def main():
     boxes = [(80 + (k % 2) * 470, 150 + (k // 2) * 440, 440 + (k % 2) * 470, 440 + (k // 2) * 440) for k in range(4)]
     parts = panel(step, lambda r: number(r, B_H, 1e-9), heights, "nm", "Plain step: highest rebound", boxes[0], "")
     parts += panel(step, lambda r: number(r, V_I, 1e-3), (55, 60, 65, 70, 75, 80, 85, 95, 105), "mm/s", "Plain step: impact speed", boxes[1], "")
-    parts += panel(best, lambda r: number(r, B_H, 1e-9), (0.001, 0.01, 0.1, 1, 3, 10, 30, 100, 300), "nm", "Best pulse: highest rebound", boxes[2], "nothing found" if len(best.rows) < 400 else "")
-    parts += panel(best, lambda r: number(r, T_I, 1e-6), (30, 34, 38, 42, 46, 50, 54, 58, 62), "µs", "Best pulse: first touch", boxes[3], "")
+    parts += panel(best, lambda r: number(r, B_H, 1e-9), (0.001, 0.01, 0.1, 1, 3, 10, 30, 100, 300), "nm", "Best pulses: highest rebound", boxes[2], "nothing found" if len(best.rows) < 400 else "")
+    parts += panel(best, lambda r: number(r, T_I, 1e-6), (30, 34, 38, 42, 46, 50, 54, 58, 62), "µs", "Best pulses: first touch", boxes[3], "")
     svg = drawing(1000, 1040, ["How a gold cantilever bounces over its length and gap, and how softly a searched pulse lands it"],
-                  [f"Plain step of 1.25 V_dp of each design: {len(step.rows)} closings. Pulse of four parameters, 2500 evaluations each: {len(best.rows)} searches."], parts)
+                  [f"Plain step of 1.25 V_dp of each design: {len(step.rows)} closings. Two pulses of six parameters (dual-pulse), 2500 evaluations each: {len(best.rows)} searches."], parts)
     (pathlib.Path(results) / "explorations.svg").write_text(svg)
 
     settled = [r for r in step.rows if r["settled"] == 1]
@@ -110,7 +79,7 @@ def main():
     print("\nHighest rebound of the step [nm]\n\n" + table(step, plain, (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
     print("\nImpact speed of the step [mm/s]\n\n" + table(step, lambda r: f"{r[V_I] * 1e3:.1f}", (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
     pulse = lambda r: f"{r[B_H] * 1e9:.3g} nm, {r[T_I] * 1e6:.1f} µs" if isinstance(r[B_H], float) else "none"
-    print("\nBest pulse: highest rebound, first touch\n\n" + table(best, pulse, (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
+    print("\nBest pulses: highest rebound, first touch\n\n" + table(best, pulse, (1.2, 1.48, 1.76, 2.04, 2.32, 2.6)))
 
 
 main()

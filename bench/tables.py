@@ -1,4 +1,6 @@
 """What the scripts that write tables for results/ share."""
+import csv
+import io
 import os
 import pathlib
 import platform
@@ -24,3 +26,9 @@ def revision():
     """Of the sources that a table is made from, with a mark where they were changed since."""
     return subprocess.run(["git", "-C", pathlib.Path(__file__).parent, "describe", "--always", "--dirty"], capture_output=True, text=True,
                           check=True).stdout.strip()
+
+
+def rows_of(program, store):
+    """Of a store of an exploration: a dictionary for each point, with numbers where there are any."""
+    text = subprocess.run([program, "table", store, "--csv"], capture_output=True, text=True, check=True).stdout
+    return [{k: float(v) if k not in ("status", "reason") and v else v for k, v in row.items()} for row in csv.DictReader(io.StringIO(text))]
