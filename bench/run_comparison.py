@@ -32,7 +32,7 @@ CASES = {"gold": ("mem-gold.toml", "electrostatic", []),
          "plate, two electrodes": ("two-electrodes.toml", "electrostatic", [])}
 OPTIMIZERS = ["bobyqa", "sbplx", "nelder-mead", "slsqp", "mma", "ccsaq", "ipopt", "cma-es", "crs2", "isres", "esch", "direct-l", "mlsl"]
 FAMILIES = ["step", "pulse", "harmonic", "catch", "ramp", "staircase", "knots", "coast", "dual-pulse", "pulses", "s-curve", "dither", "chirp",
-            "bspline", "sines", "sines:3"]
+            "bspline", "sines"]
 SEEDS, AUTO_SEEDS = range(1, 2), range(1, 11)
 
 

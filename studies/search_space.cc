@@ -70,15 +70,7 @@ class FamilyOfDrives {
 }  // namespace
 
 std::string_view default_family(Actuator actuator) {
-  switch (actuator) {
-    case Actuator::electrostatic:
-      break;
-    case Actuator::pzt:
-      return "sines:3";
-    case Actuator::both:
-      return "catch";
-  }
-  return "dual-pulse";
+  return actuator == Actuator::pzt ? "sines" : "catch";
 }
 
 bool has_pulling_electrode(const Device& device) {

@@ -278,12 +278,13 @@ void add_optimize(Verb& verb) {
                   ", or a weighted sum such as \"0.7 bounce + 0.3 energy\"; the goal of each asks for no significant rebound");
   verb.option("--actuator", request->actuator, "NAME",
               "drives that the search may shape: " + first_is_default(listed(actuators)));
-  verb.option("--waveform", request->waveform, "NAME",
-              "family to search: " + std::string(default_family(Actuator::electrostatic)) + " (default), " +
-                  std::string(default_family(Actuator::pzt)) + " (for pzt), " + std::string(default_family(Actuator::both)) +
-                  " (for both; with --robust and --calibrate), knots (with --robust), step, pulse, harmonic, ramp, staircase, "
-                  "coast, pulses, s-curve, dither, chirp or bspline; with a number of levels, knots, pulses or sines: knots:8; "
-                  "for each drive its own: main=step,pzt=pulse");
+  verb.option(
+      "--waveform", request->waveform, "NAME",
+      "family to search: " + std::string(default_family(Actuator::electrostatic)) + " (default), " +
+          std::string(default_family(Actuator::pzt)) +
+          " (for pzt), knots (with --robust, without --calibrate), step, pulse, harmonic, ramp, staircase, coast, "
+          "dual-pulse, pulses, s-curve, dither, chirp or bspline; with a number of levels, knots, pulses or sines: knots:8; "
+          "for each drive its own: main=step,pzt=pulse");
   verb.option("--robust", request->robust, "MEASURE",
               "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
               "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");

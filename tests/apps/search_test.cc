@@ -164,8 +164,8 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
     const Outcome o = here->run(words);
     return o.out.empty() ? o.err : json::parse(o.out).at("waveform").get<std::string>();
   };
-  EXPECT_EQ(family({}), "dual-pulse");
-  EXPECT_EQ(family({"--actuator", "pzt"}), "sines:3");
+  EXPECT_EQ(family({}), "catch");
+  EXPECT_EQ(family({"--actuator", "pzt"}), "sines");
   EXPECT_EQ(family({"--actuator", "both"}), "catch");
   EXPECT_EQ(family({"--actuator", "both", "--waveform", "pulse"}), "pulse");
   const std::vector<std::string> robust{"--robust", "worst", "--samples", "8"};
