@@ -35,19 +35,20 @@ Figures figures_at(const SearchSetting& s, std::span<const double> x) {
   return {observer.figures(end), end.status};
 }
 
-struct Named {
+struct ComparedFigure {
   const char* name;
   double CostFigures::*figure;
   FigureSlope CostSlopes::*slope;
 };
 constexpr double bound = 1e-5;  // of the error, over the largest slope
-constexpr Named named[] = {{"first touch", &CostFigures::first_touch, &CostSlopes::first_touch},
-                           {"touch speed", &CostFigures::touch_speed, &CostSlopes::touch_speed},
-                           {"rebound height", &CostFigures::rebound_height, &CostSlopes::rebound_height},
-                           {"last rebound end", &CostFigures::last_rebound_end, &CostSlopes::last_rebound_end},
-                           {"impact energy", &CostFigures::impact_energy, &CostSlopes::impact_energy},
-                           {"landing excess", &CostFigures::landing_excess, &CostSlopes::landing_excess},
-                           {"peak force", &CostFigures::peak_force, &CostSlopes::peak_force}};
+constexpr ComparedFigure compared_figures[] = {
+    {"first touch", &CostFigures::first_touch, &CostSlopes::first_touch},
+    {"touch speed", &CostFigures::touch_speed, &CostSlopes::touch_speed},
+    {"rebound height", &CostFigures::rebound_height, &CostSlopes::rebound_height},
+    {"last rebound end", &CostFigures::last_rebound_end, &CostSlopes::last_rebound_end},
+    {"impact energy", &CostFigures::impact_energy, &CostSlopes::impact_energy},
+    {"landing excess", &CostFigures::landing_excess, &CostSlopes::landing_excess},
+    {"peak force", &CostFigures::peak_force, &CostSlopes::peak_force}};
 
 struct Compared {
   int cases = 0, slopes = 0;
@@ -82,7 +83,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
     ++done;
     ++all.cases;
     std::vector<FigureSlope> wanted_slopes;
-    for (const Named& n : named) wanted_slopes.push_back(slopes.*n.slope);
+    for (const ComparedFigure& n : compared_figures) wanted_slopes.push_back(slopes.*n.slope);
     const Eigen::MatrixXd backward = motion.backward(wanted_slopes, by), forward = motion.forward(wanted_slopes, by);
     const double size = backward.cwiseAbs().maxCoeff();
     for (Eigen::Index f = 0; f < backward.rows(); ++f)
@@ -93,14 +94,14 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
       std::vector<double> up = x, down = x, all_figures;
       up[k] += h, down[k] -= h;
       const Figures a = figures_at(s, up), b = figures_at(s, down);
-      for (const Named& n : named) all_figures.push_back((a.values.*n.figure - b.values.*n.figure) / (2 * h));
+      for (const ComparedFigure& n : compared_figures) all_figures.push_back((a.values.*n.figure - b.values.*n.figure) / (2 * h));
       return all_figures;
     };
     for (std::size_t k = 0; k < x.size(); ++k) {
       const std::vector<double> coarse = differences(k, 2e-6), fine = differences(k, 1e-6);
-      for (std::size_t f = 0; f < std::size(named); ++f) {
-        if (named[f].figure == &CostFigures::peak_force && !slopes.has_peak_force) continue;
-        if (named[f].figure == &CostFigures::last_rebound_end && slopes.ends_above) continue;
+      for (std::size_t f = 0; f < std::size(compared_figures); ++f) {
+        if (compared_figures[f].figure == &CostFigures::peak_force && !slopes.has_peak_force) continue;
+        if (compared_figures[f].figure == &CostFigures::last_rebound_end && slopes.ends_above) continue;
         double scale = 0;  // of the gradient, by this parameter's range
         for (std::size_t i = 0; i < x.size(); ++i) {
           const double whole =
@@ -113,8 +114,8 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
         const double slope = backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
         const double error = scale > 0 ? std::abs(slope - fine[f]) / scale : std::abs(fine[f]) > 0 ? 1 : 0;
         all.worst = std::max(all.worst, error / bound);
-        EXPECT_LT(error, bound) << named[f].name << " by " << variables[k].name << ": " << slope << ", differences "
-                                         << fine[f] << " (" << coarse[f] << ")";
+        EXPECT_LT(error, bound) << compared_figures[f].name << " by " << variables[k].name << ": " << slope << ", differences "
+                                << fine[f] << " (" << coarse[f] << ")";
       }
     }
   }
