@@ -7,7 +7,7 @@ MAP and BEST are stores (--resume goes on with one that is not complete):
 
     softland explore scenes/mem-gold.toml --vary "structure.length=242um:290um:200" --vary "gap.contact=1.2um:2.6um:200" --out MAP
     softland explore scenes/mem-gold.toml --vary "structure.length=242um:290um:20" --vary "gap.contact=1.2um:2.6um:20" \\
-        --study optimize --budget 2500 --out BEST
+        --study optimize --waveform pulse --budget 2500 --out BEST
 """
 
 import pathlib
@@ -63,7 +63,7 @@ def main():
     parts += panel(best, lambda r: number(r, B_H, 1e-9), (0.001, 0.01, 0.1, 1, 3, 10, 30, 100, 300), "nm", "Best pulses: highest rebound", boxes[2], "nothing found" if len(best.rows) < 400 else "")
     parts += panel(best, lambda r: number(r, T_I, 1e-6), (30, 34, 38, 42, 46, 50, 54, 58, 62), "µs", "Best pulses: first touch", boxes[3], "")
     svg = drawing(1000, 1040, ["How a gold cantilever bounces over its length and gap, and how softly a searched pulse lands it"],
-                  [f"Plain step of 1.25 V_dp of each design: {len(step.rows)} closings. Pulses with a catch, seven parameters, 2500 evaluations each: {len(best.rows)} searches."], parts)
+                  [f"Plain step of 1.25 V_dp of each design: {len(step.rows)} closings. Pulses of five parameters, 2500 evaluations each: {len(best.rows)} searches."], parts)
     (pathlib.Path(results) / "explorations.svg").write_text(svg)
 
     settled = [r for r in step.rows if r["settled"] == 1]
