@@ -99,12 +99,12 @@ struct OptimizerResult {
 /// never cut short.
 ///
 /// `auto` searches near the best of the starts, samples the box, runs local searches from well separated good points, lets the
-/// promising ones continue and polishes the best, with the problem's gradient where it has one; it uses several jobs. So do the methods with a gradient, which go on from
-/// the best points of such a search after its first two fifths. Another local method runs from the starts in turn and then from
-/// points drawn from the seed, each time until it converges, as long as the budget lasts; infeasible points are passed over. A
-/// global method runs once. Where the problem has no gradient it is taken by central differences, which count as evaluations; one
-/// that it has counts as three. Ipopt solves one problem at a time in a process; others wait, so an objective must not itself
-/// minimize with ipopt while ipopt calls it.
+/// promising ones continue and polishes the best, with the problem's gradient where it has one; it uses several jobs. So do the
+/// methods with a gradient, which go on from the best points of such a search after its first two fifths. Another local method
+/// runs from the starts in turn and then from points drawn from the seed, each time until it converges, as long as the budget
+/// lasts; infeasible points are passed over. A global method runs once. Where the problem has no gradient it is taken by central
+/// differences, which count as evaluations; one that it has counts as three. Ipopt solves one problem at a time in a process;
+/// others wait, so an objective must not itself minimize with ipopt while ipopt calls it.
 [[nodiscard]] OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options);
 
 }  // namespace softland
