@@ -49,7 +49,7 @@ def table(grid, columns, rows, cell, across, up):
 def cell(row):
     if row is None:
         return ""
-    if not isinstance(row[V_I], float):
+    if row["status"] not in ("done", "not_settled"):
         return {"no_contact": "no contact", "collapsed_at_rest": "not open", "numerical_failure": "onto the electrode"}.get(row["status"], row["status"])
     rebounds = f"{row[N_B]:.0f}, {row[B_H] * 1e9:.3g}" if isinstance(row[N_B], float) and isinstance(row[B_H], float) else "-"
     return rebounds + (" *" if row["settled"] != 1 else "")
