@@ -102,7 +102,7 @@ def picture(contenders, best):
     across = lambda factor: left + (right - left) * math.log(factor) / math.log(most)
     down = lambda share: bottom - (bottom - top) * share
     out = []
-    for tick in (1, 1.05, 1.2, 1.5, 2, 3, 5):
+    for tick in (1, 1.2, 1.5, 2, 3, 5):
         out += [line(across(tick), top, across(tick), bottom), words(across(tick), bottom + 18, tick, anchor="middle")]
     for tick in (0, 0.25, 0.5, 0.75, 1):
         out += [line(left, down(tick), right, down(tick)), words(left - 8, down(tick) + 4, f"{100 * tick:.0f} %", anchor="end")]
@@ -125,8 +125,8 @@ def picture(contenders, best):
                 f'stroke-dasharray="{dash or "none"}"/>',
                 words(right + 60, y + 4, name, 13, colour=INK, more=BOLD if place == 0 else "")]
     return drawing(width, height, ["How near every search comes to the best of all"], [
-        "Eight switches; the part of a contender's searches whose winner lands without a rebound at no more than so many times the least cost",
-        "that any search found for the switch. Higher and further left is better."], out)
+        "Eight switches; the part of a contender's searches whose winner lands without a rebound at no more than so many times",
+        "the least cost that any search found for the switch. Higher and further left is better."], out)
 
 
 def main():
@@ -143,7 +143,7 @@ def main():
 
 `softland optimize SCENE --target bounce` with the default budgets (2500 evaluations, 10 000 with a piezo) on eight switches. `auto` with the default family from ten
 seeds; every other optimizer with the default family, and `auto` with every other family, from one. A search has won as far as its cost is near the least that any of
-all these searches found for the same switch; one that does not land without a rebound, here and in both confirming runs' sense of the goal, has not.
+all these searches found for the same switch; one that does not land without a rebound has not.
 
 - made by `bench/run_comparison.py BUILD/apps/softland STORE results`, {datetime.date.today()}, revision {revision()}
 - machine: {machine()}; two searches at a time, one thread each
@@ -167,7 +167,8 @@ all these searches found for the same switch; one that does not land without a r
             span([x["initial_contact_time_s"] * 1e6 for x in m], 4), span([x["impact_velocity_m_s"] * 1e3 for x in m], 3),
             span([x["major_bounce_height_m"] * 1e9 for x in m], 2), statistics.median(r["time"] for r in own)))
     text.append(f"\nOf all {len(auto)} searches of auto {100 * share_within(ratios(auto, best), 1.05):.0f} % are within 5 % of the best of all, "
-                f"{100 * share_within(ratios(auto, best), 1.2):.0f} % within 20 %.")
+                f"{100 * share_within(ratios(auto, best), 1.2):.0f} % within 20 %. The aim was 90 % within 5 %: no one family is the best of all "
+                "switches, and auto searches one.")
     for title, wanted in (("Optimizers, with the default family", OPTIMIZERS), ("Families, with auto", FAMILIES)):
         text.append(f"\n## {title}\n\nMedian cost over the least of all; - where half of the searches do not land without a rebound.\n\n"
                     f"| | {' | '.join(CASES)} | within 5 % | within a factor 2 | land |\n|---|{'---|' * len(CASES)}---|---|---|")
@@ -184,7 +185,7 @@ all these searches found for the same switch; one that does not land without a r
             text.append(f"| {name} | {' | '.join(cell)} | {100 * share_within(values, 1.05):.0f} % | {100 * share_within(values, 2):.0f} % | "
                         f"{100 * share_within(values, 1e9):.0f} % |")
     (folder / "comparison.md").write_text("\n".join(text) + "\n", encoding="utf-8")
-    (folder / "comparison.svg").write_text(picture([("auto", auto), *ranked[:7]], best), encoding="utf-8")
+    (folder / "comparison.svg").write_text(picture([("auto", auto), *ranked[:3]], best), encoding="utf-8")
 
 
 if __name__ == "__main__":
