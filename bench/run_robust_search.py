@@ -31,13 +31,13 @@ SEARCHES = {
         "mem-gold.toml", "--robust", "yield:bounce_count == 0", "--waveform", "catch", *UNITS, "--budget", "100000"]),
     "gold-errors": ("gold, Vdp to 1 %, period to 0.5 %", GOLD + [
         "--waveform", "knots:5", "--calibrate", "Vdp:1 %,frequency:0.5 %", "--budget", "150000"]),
-    "pzt-both-45us": ("piezo and electrode, below 45 us", BOTH_QUICKLY + ["--budget", "150000", "--seed", "3"],
-                      BOTH_QUICKLY + ["--budget", "100000", "--seed", "11"]),
+    "pzt-both-45us": ("piezo and electrode, below 45 us", BOTH_QUICKLY + ["--budget", "250000", "--seed", "2"],
+                      BOTH_QUICKLY + ["--budget", "150000", "--seed", "5"]),
     "pzt-both-200us": ("piezo and electrode, below 200 us", PZT + [
         "--actuator", "both", "--waveform", "knots:4", "--constrain", "initial_contact_time < 200 us", "--budget", "200000"]),
-    "pzt-alone": ("piezo alone", PZT + ["--actuator", "pzt", "--budget", "100000"]),
-    "nem-tin": ("nem-tin, nothing known", ["nem-tin.toml", "--robust", "cvar:0.9", "--budget", "60000"]),
-    "two-electrodes": ("two electrodes, nothing known", ["two-electrodes.toml", "--robust", "cvar:0.9", "--budget", "60000"]),
+    "pzt-alone": ("piezo alone", PZT + ["--actuator", "pzt", "--waveform", "pulse", "--budget", "100000"]),
+    "nem-tin": ("nem-tin, nothing known", ["nem-tin.toml", "--robust", "cvar:0.9", "--waveform", "pulse", "--budget", "60000"]),
+    "two-electrodes": ("two electrodes, nothing known", ["two-electrodes.toml", "--robust", "cvar:0.9", "--waveform", "pulse", "--budget", "60000"]),
 }
 
 
