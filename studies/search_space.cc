@@ -69,9 +69,7 @@ class FamilyOfDrives {
 
 }  // namespace
 
-std::string_view default_family(Actuator actuator) {
-  return actuator == Actuator::pzt ? "sines" : "catch";
-}
+std::string_view default_family(Actuator actuator) { return actuator == Actuator::pzt ? "sines" : "catch"; }
 
 bool has_pulling_electrode(const Device& device) {
   return std::any_of(device.electrodes.begin(), device.electrodes.end(), [](const Electrode& e) { return e.side != Side::far; });
