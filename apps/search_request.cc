@@ -73,15 +73,15 @@ std::string word_of(const json& known, const char* key, const std::string& other
 
 // The family that does best where none is given. Devices that differ want one that is slow and free, or, where each is driven in
 // its own units, a quick one that holds fast.
-const char* waveform_of(const OptimizeRequest& r) {
+std::string waveform_of(const OptimizeRequest& r) {
   if (!r.robust.empty()) return r.calibration.empty() || r.calibration == "none" ? "knots" : "catch";
   const Named<Actuator>* actuator = find_named(actuators, r.actuator);
-  return actuator == nullptr ? "" : default_family(actuator->value).data();
+  return actuator == nullptr ? std::string() : std::string(default_family(actuator->value));
 }
 
 // The request with the words of the plan where none were given.
 OptimizeRequest with_known(OptimizeRequest r, const json& known) {
-  const auto fill = [&](std::string& value, const char* key, const char* otherwise) {
+  const auto fill = [&](std::string& value, const char* key, const std::string& otherwise) {
     if (value.empty()) value = word_of(known, key, otherwise);
   };
   fill(r.target, "target", "bounce");

@@ -109,8 +109,9 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
     const long budget = std::min(ledger.remaining(), longest_epoch);
     std::vector<Point> starts = promising_points(ledger.known(), explored);
     starts.resize(std::min(starts.size(), starts_refined));
-    std::vector<Search> refined;
+    std::vector<Search> refined;  // none where the search was told to end before its first evaluation
     const auto go_on = [&] {
+      if (refined.empty()) return;
       advance(ledger, refined, share_of(budget, refining, refined.size()));
       for (const Search& search : refined) explored.push_back(search.best_point);
     };

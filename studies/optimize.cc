@@ -190,12 +190,10 @@ class Search {
   void begin() {
     const std::vector<Signal> drives = setting_.given.signals();
     if (!same_drives(drives, setting_.baseline_scene.signals()))
-      refine(drives, setting_.space.parameters(setting_.given.drives.waveforms), with_waveforms(setting_.given, {}));
+      refine(drives, setting_.given.drives.waveforms, with_waveforms(setting_.given, {}));
     for (const StartingWaveforms& start : options_.starts) {
       const std::map<std::string, Waveform> searched = setting_.space.searched(start.waveforms);
-      const std::optional<std::vector<double>> point = setting_.space.parameters(searched);
-      refine(signals_of(setting_.drives(searched)), point, setting_.scene(searched));
-      if (!point) problem_.starts.push_back(setting_.space.nearest(searched));
+      refine(signals_of(setting_.drives(searched)), searched, setting_.scene(searched));
     }
     for (std::vector<double>& start : setting_.space.starts()) problem_.starts.push_back(std::move(start));
   }
@@ -251,9 +249,14 @@ class Search {
     std::vector<double> x;
   };
 
-  void refine(const std::vector<Signal>& drives, const std::optional<std::vector<double>>& point, const SceneFile& scene) {
+  void refine(const std::vector<Signal>& drives, const std::map<std::string, Waveform>& waveforms, const SceneFile& scene) {
     const double cost = setting_.price(drives).own;
-    if (point) problem_.starts.push_back(*point);
+    const std::optional<std::vector<double>> point = setting_.space.parameters(waveforms);
+    if (point) {
+      problem_.starts.push_back(*point);
+    } else if (setting_.space.misfit(waveforms).empty()) {
+      problem_.starts.push_back(setting_.space.nearest(waveforms));
+    }
     if (!(cost < never_touched)) return;
     landings_.push_back({.scene = scene, .cost = cost, .x = point.value_or(std::vector<double>{})});
     if (progress_.best_cost <= cost) return;

@@ -48,7 +48,7 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
-/// The family that lands softest and soonest on the shipped scenes where devices are all alike (results/comparison.md).
+/// A family whose searches land without a rebound on every switch that they were compared on (results/comparison.md).
 [[nodiscard]] std::string_view default_family(Actuator actuator);
 
 struct SearchedFamily;

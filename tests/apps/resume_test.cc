@@ -237,6 +237,8 @@ TEST_F(Start, BelongsToTheSearchThatGoesOn) {
   done(optimize({"--out", "two", "--budget", "30", "--start", "one/best.toml"}));
   fs::remove(at("one/best.toml"));  // the plan holds what it says
   done({"optimize", "--resume", "--quiet", "--out", "two"});
+  EXPECT_LE(test::result_in(at("two"))["best"]["cost"].get<double>(),
+            test::result_in(at("one"))["best"]["cost"].get<double>() * (1 + 1e-9));
 }
 
 }  // namespace

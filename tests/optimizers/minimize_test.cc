@@ -161,6 +161,16 @@ TEST_P(Minimize, EndsWhenTheStopFlagIsSet) {
   EXPECT_FALSE(result.x.empty());
 }
 
+TEST_P(Minimize, EndsBeforeTheFirstEvaluationWhereItIsToldTo) {
+  const std::atomic<bool> stop = true;
+  Problem problem = box(2, -2, 2, landscapes::rosenbrock);
+  problem.starts = {{0, 0}, {1, 0}};
+  const OptimizerResult result = minimize(problem, {.optimizer = GetParam(), .stop = &stop});
+  EXPECT_EQ(result.termination, Termination::interrupted);
+  EXPECT_EQ(result.evaluations, 0);
+  EXPECT_TRUE(result.x.empty());
+}
+
 TEST_P(Minimize, EvaluatesTheStartsFirstAndToTheLastDigit) {
   Problem problem = box(2, 1e-6, 9.7e-5, [](std::span<const double> x) { return x[0] + x[1]; });
   // Several, because scaling there and back happens to keep the digits of some.

@@ -21,6 +21,14 @@ inline SceneFile scene(const char* name, std::initializer_list<std::string_view>
 inline SceneFile gold(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold.toml", changes); }
 inline SceneFile gold_pzt(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold-pzt.toml", changes); }
 
+/// A beam or a plate that moves in one mode without losses.
+inline SceneFile undamped_with_one_mode(const std::string& name) {
+  SceneFile file = scene(name.c_str());
+  for (const char* lossy : {"gas", "structure.damping_ratio"}) file.erase(lossy);
+  if (name == "mem-gold.toml") file.set("structure.modes=1");
+  return file;
+}
+
 /// The plain step of the thesis in a window of 100 us.
 inline SceneFile gold_at_17_volts(std::initializer_list<std::string_view> changes = {}) {
   SceneFile file = gold(

@@ -27,10 +27,7 @@ std::vector<double> full_pull(const Prepared& p) {
 
 TEST(Swing, OfOneUndampedModeIsTheBangBangLanding) {
   for (const std::string name : {"mem-gold.toml", "gap-closing-actuator.toml"}) {
-    SceneFile file = scene(name.c_str());
-    for (const char* lossy : {"gas", "structure.damping_ratio"}) file.erase(lossy);
-    if (name == "mem-gold.toml") file.set("structure.modes=1");
-    const Prepared p = prepare(file, true);
+    const Prepared p = prepare(undamped_with_one_mode(name), true);
     const std::vector<double> none(p.model.drives(), 0.0);
     const auto closed_form = bang_bang(p.model, full_pull(p), none);
     const auto swing = quickest_swing(p.model, full_pull(p), none, longest(p));
