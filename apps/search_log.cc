@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace softland::apps {
@@ -29,7 +30,7 @@ void SearchLog::flush() {
   log += "\n";
   for (const auto& [index, e] : evaluations_) {
     log += fmt::format("{},{}", index, e.value);
-    for (const double x : e.x) log += fmt::format(",{}", x);
+    for (const double x : e.x) log += std::isnan(x) ? "," : fmt::format(",{}", x);
     log += "\n";
   }
   folder_.write("evaluations.csv", log);

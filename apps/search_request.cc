@@ -71,12 +71,12 @@ std::string word_of(const json& known, const char* key, const std::string& other
   return known.is_object() && found != known.end() && found->is_string() ? found->get<std::string>() : otherwise;
 }
 
-// The family that does best where none is given. Devices that differ want one that is slow and free, or, where each is driven in
+// The families that do best where none is given. Devices that differ want one that is slow and free, or, where each is driven in
 // its own units, a quick one that holds fast.
 std::string waveform_of(const OptimizeRequest& r) {
   if (!r.robust.empty()) return r.calibration.empty() || r.calibration == "none" ? "knots" : "catch";
   const Named<Actuator>* actuator = find_named(actuators, r.actuator);
-  return actuator == nullptr ? std::string() : std::string(default_family(actuator->value));
+  return actuator == nullptr ? std::string() : std::string(default_families(actuator->value));
 }
 
 // The request with the words of the plan where none were given.
@@ -125,6 +125,8 @@ RobustOptions read_robust_options(const OptimizeRequest& request) {
   robust.aim.measure = read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
   robust.aim.conditions = read_conditions(request, figures);
   robust.samples = sample_count(request.samples, robust.samples, 8, most_searched);
+  require(families_of(request.waveform).size() == 1,
+          [&] { return fmt::format("--waveform {}: a search over devices takes one family", request.waveform); });
   require(request.optimizer == "auto",
           [&] { return fmt::format("--optimizer {}: a robust search has a method of its own", request.optimizer); });
   return robust;

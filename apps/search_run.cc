@@ -59,6 +59,14 @@ ResultFolder claimed(const Common& c, const PlannedSearch& search, const std::op
   return folder;
 }
 
+// "knots, dual-pulse or staircase:5"
+std::string families_in_words(const std::string& families) {
+  const std::vector<std::string> names = families_of(families);
+  std::string words = names.front();
+  for (std::size_t k = 1; k < names.size(); ++k) words += (k + 1 == names.size() ? " or " : ", ") + names[k];
+  return words;
+}
+
 }  // namespace
 
 PlannedSearch planned_or_known(const Common& c, const OptimizeRequest& request, std::optional<KnownSearch>& known) {
@@ -137,8 +145,8 @@ std::string search_words(const Common& c, const PlannedSearch& search) {
   const OptimizeOptions& o = search.options;
   const std::string devices =
       search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text) : std::string();
-  return fmt::format("{}: searching a {} waveform, actuator {}, target {}{}", c.scene.empty() ? c.out : c.scene, o.family,
-                     name_of(actuators, o.actuator), o.target.text(), devices);
+  return fmt::format("{}: searching a {} waveform, actuator {}, target {}{}", c.scene.empty() ? c.out : c.scene,
+                     families_in_words(o.family), name_of(actuators, o.actuator), o.target.text(), devices);
 }
 
 }  // namespace softland::apps

@@ -166,10 +166,7 @@ StoredRow SeedStudy::row(std::uint64_t k, const OptimizeResult& result, double c
   row.values.insert(row.values.end(), {truth(result.goal_met), truth(result.confirmed), truth(result.better_than_baseline),
                                        has_best ? finite(result.best_cost) : Metrics::unset, finite(result.baseline_cost),
                                        static_cast<double>(result.search.evaluations), closings});
-  for (const std::string& name : variables_) {
-    const auto parameter = result.parameters.find(name);
-    row.values.push_back(parameter == result.parameters.end() ? Metrics::unset : finite(parameter->second));
-  }
+  for (const std::string& name : variables_) row.values.push_back(finite(result.parameter(name)));
   json extra{{"termination", to_string(result.search.termination)}};
   if (has_best) extra["scene_toml"] = result.best_scene->scene.file.text();
   row.extra = extra.dump();

@@ -21,6 +21,7 @@ constexpr long longest_epoch = 5000;  // evaluations: beyond that, other starts 
 constexpr long epochs_with_gradient = 4, shortest_epoch = 600;
 constexpr std::size_t searches_at_once = 4;
 constexpr std::size_t starts_refined = 2;
+constexpr long shortest_refinement = 125;  // evaluations
 constexpr long shortest_heat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
 
 // Fractions of the box.
@@ -112,7 +113,7 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
     std::vector<Search> refined;  // none where the search was told to end before its first evaluation
     const auto go_on = [&] {
       if (refined.empty()) return;
-      advance(ledger, refined, share_of(budget, refining, refined.size()));
+      advance(ledger, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));
       for (const Search& search : refined) explored.push_back(search.best_point);
     };
     for (const Point& start : starts) refined.push_back(begin_search(find_method("sbplx"), start, polishing_step));

@@ -192,6 +192,14 @@ std::string checks_caption(const Result& result) {
   return words + ".";
 }
 
+std::string families_caption(const Result& result) {
+  std::string words;
+  for (const ResultFamily& one : result.families)
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", one.family,
+                         std::isfinite(one.cost) ? plain_number(one.cost) : std::string("no landing"));
+  return words;
+}
+
 std::string robust_caption(const Result& result) {
   if (!result.robust) return {};
   const ResultRobust& r = *result.robust;

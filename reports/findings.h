@@ -24,6 +24,8 @@ struct Headline {
 [[nodiscard]] std::string waveform_caption(const Result& result, const std::string& drive);
 [[nodiscard]] std::string search_caption(const Result& result);
 [[nodiscard]] std::string checks_caption(const Result& result);
+/// The families that were searched, each with its least cost; empty where there was one.
+[[nodiscard]] std::string families_caption(const Result& result);
 /// What a search over devices that differ came to; empty for any other.
 [[nodiscard]] std::string robust_caption(const Result& result);
 /// How near the winner comes to the least time of any waveform; empty where that is not known.

@@ -284,6 +284,7 @@ std::string facts(const Result& result) {
   fact("Target", result.target);
   fact("Actuator", result.actuator);
   fact("Waveform", result.waveform);
+  fact("Families, least cost", families_caption(result));
   fact("Optimizer", result.optimizer);
   fact("Evaluations", std::isfinite(result.evaluations) ? whole(result.evaluations) : "");
   fact("Ended by", result.termination);

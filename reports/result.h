@@ -133,10 +133,17 @@ struct ResultSeeds {
   std::size_t best = 0;          ///< of them
 };
 
+/// What the search within one of several families came to.
+struct ResultFamily {
+  std::string family;
+  double evaluations = Metrics::unset, cost = Metrics::unset;
+};
+
 struct Result {
   bool is_search = false;  ///< of optimize, else of simulate
   std::string status, message, title;
   std::string target, actuator, waveform, optimizer, termination, termination_message;  ///< of a search
+  std::vector<ResultFamily> families;  ///< of the search, where there were several
   std::optional<std::uint64_t> seed;
   std::optional<bool> goal_met, better_than_baseline;
   double evaluations = Metrics::unset;

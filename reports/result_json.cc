@@ -128,6 +128,9 @@ void add_search(json& j, const Result& r) {
   j["target"] = r.target;
   j["actuator"] = r.actuator;
   j["waveform"] = r.waveform;
+  for (const ResultFamily& one : r.families)
+    j["families"].push_back(
+        {{"family", one.family}, {"evaluations", std::llround(one.evaluations)}, {"cost", json_number(one.cost)}});
   if (r.seed) j["seed"] = *r.seed;
   j["optimizer"] = r.optimizer;
   j["evaluations"] = std::llround(r.evaluations);

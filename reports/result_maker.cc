@@ -122,7 +122,11 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
                           : to_string(Status::no_contact);
   r.target = options.target.text();
   r.actuator = name_of(actuators, options.actuator);
-  r.waveform = options.family;
+  r.waveform = found.family;
+  if (found.families.size() > 1) {
+    for (const SearchedFamilyResult& one : found.families)
+      r.families.push_back({.family = one.family, .evaluations = static_cast<double>(one.evaluations), .cost = one.cost});
+  }
   r.seed = options.seed;
   r.optimizer = options.optimizer;
   r.evaluations = static_cast<double>(found.search.evaluations);

@@ -261,6 +261,13 @@ std::optional<ResultLimit> limit(const json& read) {
   return ResultLimit{.least_time = number(read, {"least_time_s"}), .impact_velocity = number(read, {"impact_velocity_m_s"})};
 }
 
+std::vector<ResultFamily> families(const json& read) {
+  std::vector<ResultFamily> all;
+  for (const json& one : read.is_array() ? read : json::array())
+    all.push_back({.family = text(one, {"family"}), .evaluations = number(one, {"evaluations"}), .cost = number(one, {"cost"})});
+  return all;
+}
+
 }  // namespace
 
 Result read_result(const json& result) {
@@ -273,6 +280,7 @@ Result read_result(const json& result) {
            .waveform = text(result, {"waveform"}),
            .optimizer = text(result, {"optimizer"}),
            .termination = text(result, {"termination"}),
+           .families = families(at(result, {"families"})),
            .goal_met = truth(result, {"goal_met"}),
            .evaluations = number(result, {"evaluations"}),
            .best = run(result, "best"),

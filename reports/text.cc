@@ -75,6 +75,8 @@ std::string text_report(const Result& result) {
     out += "\n" + wrapped(checks) + "\n";
   if (const std::string words = internal::limit_words(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   if (const std::string words = internal::certificate_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
+  if (const std::string words = internal::families_caption(result); !words.empty())
+    out += "\n" + wrapped(fmt::format("Families searched, with the least cost of each: {}.", words)) + "\n";
   if (const std::string words = internal::robust_caption(result); !words.empty()) out += "\n" + wrapped(words) + "\n";
   if (const std::string words = internal::seeds_text(result.seeds); !words.empty()) out += "\n" + words;
   for (const std::string& warning : result.warnings) out += "\n" + wrapped("warning: " + warning) + "\n";

@@ -57,7 +57,7 @@ void complete_search(std::map<std::string, std::string>& given, const auto& chec
   checked("target", [&] { target = parse_aim(given["target"]); });
   const auto* actuator = find_named(actuators, given["actuator"]);
   checked("actuator", [&] { require(actuator != nullptr, [] { return fmt::format("must be {}", listed(actuators)); }); });
-  given.try_emplace("waveform", default_family(actuator->value));
+  given.try_emplace("waveform", default_families(actuator->value));
   checked("optimizer", [&] { static_cast<void>(optimizer_description(given["optimizer"])); });
   given.try_emplace("budget", std::to_string(default_budget(target, actuator->value)));
   checked("budget", [&] {
@@ -231,11 +231,13 @@ void Exploration::list_figures(const Watch& watch) {
       for (const Figure& figure : step_figures) add(figure_column(figure, "plain_step_", ", plain step"));
       add({"evaluations", "Evaluations", ""});
       const Prepared base = prepared(plan_.base(), true, watch);
-      const SearchSpace space(base, find_named(actuators, plan_.options().at("actuator"))->value, plan_.options().at("waveform"),
-                              base.duration / 2);
-      for (const Variable& variable : space.variables()) {
-        parameters_.push_back(variable.name);
-        add(parameter_figure(variable.name));
+      const std::string& families = plan_.options().at("waveform");
+      for (const std::string& family : families_of(families)) {
+        const SearchSpace space(base, find_named(actuators, plan_.options().at("actuator"))->value, family, base.duration / 2);
+        for (const Variable& variable : space.variables()) {
+          parameters_.push_back(prefix_of(families, family) + variable.name);
+          add(parameter_figure(parameters_.back()));
+        }
       }
       return;
     }
@@ -365,10 +367,7 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& w
   row.figures.push_back(finite(found.baseline_cost));
   for (const Figure& figure : step_figures) row.figures.push_back(finite(figure.value(found.baseline.metrics)));
   row.figures.push_back(static_cast<double>(found.search.evaluations));
-  for (const std::string& name : parameters_) {
-    const auto parameter = found.parameters.find(name);
-    row.figures.push_back(parameter == found.parameters.end() ? Metrics::unset : finite(parameter->second));
-  }
+  for (const std::string& name : parameters_) row.figures.push_back(finite(found.parameter(name)));
   if (found.best_scene) {
     row.scene = found.best_scene->scene.file.text();
     row.waveforms = lines_of(*found.best_scene);

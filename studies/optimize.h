@@ -44,7 +44,7 @@ struct OptimizeOptions {
   /// That the winner has to fulfil, on figures of all_figures: see figure_names().
   std::vector<Criterion> conditions = {};
   Actuator actuator = Actuator::electrostatic;
-  std::string family = "pulse";  ///< see default_family()
+  std::string family = "pulse";  ///< or several, see families_of(): of these the best; default_families()
   std::string optimizer = "auto";
   long max_evaluations = 2500;  ///< see default_budget()
   /// Evaluations on top of those, from the best points so far, where they have found no landing without a significant rebound.
@@ -52,7 +52,7 @@ struct OptimizeOptions {
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
   int jobs = 1;
-  /// Landings that other searches have found: candidates, and first points of this one, as near as its family comes to them. They
+  /// Landings that other searches have found: candidates, and first points of this one, as near as a family comes to them. They
   /// must be of the drives that are searched.
   std::vector<StartingWaveforms> starts = {};
   /// What is known of candidates already, and learns of those that are simulated; may be null.
@@ -63,7 +63,7 @@ struct OptimizeOptions {
   /// Watch.
   std::function<void(std::string_view what, double part)> on_preparation = {};
   /// Called once, when scene and options have been found valid and before the first evaluation, with the names of the searched
-  /// parameters in the order of Evaluation::x.
+  /// parameters in the order of Evaluation::x: searched_names(). Of several families those that a point is not of are NaN.
   std::function<void(const std::vector<std::string>&)> on_start = {};
   /// Called under a lock after every evaluation.
   std::function<void(const Evaluation&, const OptimizeProgress&)> on_evaluation = {};
@@ -83,6 +83,13 @@ struct ConfirmingRun {
 /// The same closing by a tighter integrator, and with a richer beam where there is one.
 [[nodiscard]] std::vector<ConfirmingRun> confirm(const Prepared& winner);
 
+/// What the search within one family came to.
+struct SearchedFamilyResult {
+  std::string family;
+  long evaluations = 0;
+  double cost = std::numeric_limits<double>::quiet_NaN();  ///< the least; NaN where nothing was feasible
+};
+
 struct OptimizeResult {
   Prepared scene;  ///< as given
   Prepared baseline_scene;
@@ -90,8 +97,11 @@ struct OptimizeResult {
   std::optional<Prepared> best_scene;  ///< what best.toml says
   std::optional<Closing> best;
   std::vector<ConfirmingRun> checks;
-  std::map<std::string, double> parameters;  ///< of the winner, by drive.name
-  std::vector<Variable> variables;           ///< what was searched, and within which bounds
+  std::vector<SearchedFamilyResult> families = {};  ///< that were searched
+  std::string family;                               ///< of the winner
+  std::string prefix;                               ///< of its parameters among those of all families: prefix_of()
+  std::map<std::string, double> parameters;         ///< of the winner, by drive.name
+  std::vector<Variable> variables;                  ///< of the winner's family, and within which bounds they were searched
   double best_cost = std::numeric_limits<double>::quiet_NaN();
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   OptimizerResult search;
@@ -99,6 +109,9 @@ struct OptimizeResult {
   bool confirmed = false;  ///< the goal is met in the confirming runs too
   bool better_than_baseline = false;
   std::vector<std::string> broken_conditions = {};  ///< by the winner
+
+  /// The winner's value of one of searched_names(); NaN where its family has no such parameter, or there is no winner.
+  [[nodiscard]] double parameter(std::string_view name) const;
 };
 
 /// Throws InvalidInput for a scene or options that cannot be searched, before on_start is called. Numerical trouble is in the

@@ -398,6 +398,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   const RobustCost cost(setting, robust.aim, own_devices(setting, known, options, robust.samples, 0, watch));
   RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline}};
   OptimizeResult& out = result.found;
+  out.family = options.family;
   out.variables = setting.space.variables();
   std::vector<std::string> names;
   for (const Variable& v : out.variables) names.push_back(v.name);
@@ -439,15 +440,16 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
 SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOptions& options, bool over_devices,
                                        const Watch& watch) {
   static_cast<void>(optimizer_description(options.optimizer));
-  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch, options.conditions);
+  const std::vector<SearchSetting> settings =
+      search_settings(file, options.target, options.actuator, options.family, watch, options.conditions);
+  const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
   if (over_devices) {
     static_cast<void>(known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch));
     static_cast<void>(Ensemble(setting.given, 1, options.seed));
   }
-  SearchedParameters searched{.names = {}, .significant_rebound = setting.given.scene.metrics.significant_rebound};
-  for (const Variable& v : setting.space.variables()) searched.names.push_back(v.name);
-  return searched;
+  return {.names = searched_names(settings, options.family),
+          .significant_rebound = setting.given.scene.metrics.significant_rebound};
 }
 
 }  // namespace softland

@@ -216,4 +216,27 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
           .space = std::move(space)};
 }
 
+std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
+                                           const std::string& families, const Watch& watch, std::vector<Criterion> conditions) {
+  std::vector<SearchSetting> all;
+  for (const std::string& family : families_of(families)) {
+    if (all.empty()) {
+      all.push_back(search_setting(file, target, actuator, family, watch, std::move(conditions)));
+    } else {
+      all.push_back(all.front());
+      all.back().space = SearchSpace(all.front().given, actuator, family, all.front().scale.step.first_touch);
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> searched_names(const std::vector<SearchSetting>& settings, const std::string& families) {
+  const std::vector<std::string> names = families_of(families);
+  std::vector<std::string> all;
+  for (std::size_t k = 0; k < settings.size(); ++k) {
+    for (const Variable& v : settings[k].space.variables()) all.push_back(prefix_of(families, names[k]) + v.name);
+  }
+  return all;
+}
+
 }  // namespace softland

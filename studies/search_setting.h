@@ -61,6 +61,13 @@ struct SearchSetting {
 [[nodiscard]] SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                                            const Watch& watch, std::vector<Criterion> conditions = {});
 
+/// One for each of the families that are named: families_of(). They differ in their space alone.
+[[nodiscard]] std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
+                                                         const std::string& families, const Watch& watch,
+                                                         std::vector<Criterion> conditions = {});
+/// The parameters of all families, by drive.name, of several by family.drive.name.
+[[nodiscard]] std::vector<std::string> searched_names(const std::vector<SearchSetting>& settings, const std::string& families);
+
 /// By how much a closing breaks the conditions, added up; each by at most 10.
 [[nodiscard]] double broken(const std::vector<Criterion>& conditions, const Metrics& metrics);
 /// What conditions on the nominal device may be about: all_figures.

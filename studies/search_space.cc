@@ -69,7 +69,27 @@ class FamilyOfDrives {
 
 }  // namespace
 
-std::string_view default_family(Actuator actuator) { return actuator == Actuator::pzt ? "sines" : "catch"; }
+std::string_view default_families(Actuator actuator) {
+  return actuator == Actuator::pzt ? "sines" : "knots+dual-pulse+staircase:5";
+}
+
+std::vector<std::string> families_of(const std::string& text) {
+  std::vector<std::string> all;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('+', begin), text.size());
+    const std::string family = text.substr(begin, end - begin);
+    require(!family.empty() || text.empty(), fmt::format("--waveform {}: a family before or after '+' is missing", text));
+    require(std::find(all.begin(), all.end(), family) == all.end(),
+            fmt::format("--waveform {}: '{}' is named twice", text, family));
+    all.push_back(family);
+    begin = end + 1;
+  }
+  return all;
+}
+
+std::string prefix_of(const std::string& families, const std::string& family) {
+  return families.find('+') == std::string::npos ? std::string() : family + ".";
+}
 
 bool has_pulling_electrode(const Device& device) {
   return std::any_of(device.electrodes.begin(), device.electrodes.end(), [](const Electrode& e) { return e.side != Side::far; });

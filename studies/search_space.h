@@ -48,8 +48,13 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
-/// A family whose searches land without a rebound on every switch that they were compared on (results/comparison.md).
-[[nodiscard]] std::string_view default_family(Actuator actuator);
+/// Families whose search together comes nearest to the best of all on the switches that they were compared on
+/// (results/comparison.md).
+[[nodiscard]] std::string_view default_families(Actuator actuator);
+/// The families that "knots", or "knots+dual-pulse+staircase:5", names. Throws InvalidInput where one is empty or named twice.
+[[nodiscard]] std::vector<std::string> families_of(const std::string& text);
+/// What the names of a family's parameters begin with: "knots." where there are several, nothing where it is the only one.
+[[nodiscard]] std::string prefix_of(const std::string& families, const std::string& family);
 
 struct SearchedFamily;
 /// "step, pulse, ..., bspline:N or sines:N"

@@ -74,9 +74,11 @@ std::optional<Evaluation> TwoStages::surest_below(double own, const std::vector<
   return surest ? std::optional(*surest) : std::nullopt;
 }
 
-OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more) {
+OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more, long first_index) {
   const auto begin = std::chrono::steady_clock::now();
   options.on_improvement = {};
+  first_index_ = first_index;
+  if (!log_.empty()) problem.starts = promising_points(problem.variables);
   OptimizerOptions first = options;
   if (own_cost_differs) {
     first.max_evaluations -= options.max_evaluations / own_share;

@@ -36,9 +36,13 @@ class TwoStages {
       : price_(std::move(price)), on_evaluation_(std::move(on_evaluation)), slopes_(std::move(slopes)) {}
 
   /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
-  /// Throws as minimize() does. Result, improvements and indices are those of one search by the own cost. Where both costs are
-  /// the same and no point lands, a second stage of `more` evaluations goes on from the best points.
-  [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more = 0);
+  /// Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by the own cost.
+  /// Where both costs are the same and no point lands, a second stage of `more` evaluations goes on from the best points. So does
+  /// a further run, whose result is that of all.
+  [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more = 0,
+                                    long first_index = 0);
+  /// Every evaluation, by index, with the own cost as value.
+  [[nodiscard]] const std::map<long, Evaluation>& log() const { return log_; }
   /// Of the points whose own cost is below `own`, and that differ from the `others`, the one of the least leading cost.
   [[nodiscard]] std::optional<Evaluation> surest_below(double own, const std::vector<std::vector<double>>& others) const;
 

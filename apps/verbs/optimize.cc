@@ -280,11 +280,11 @@ void add_optimize(Verb& verb) {
               "drives that the search may shape: " + first_is_default(listed(actuators)));
   verb.option(
       "--waveform", request->waveform, "NAME",
-      "family to search: " + std::string(default_family(Actuator::electrostatic)) + " (default), " +
-          std::string(default_family(Actuator::pzt)) +
-          " (for pzt), knots (with --robust, without --calibrate), step, pulse, harmonic, ramp, staircase, coast, "
-          "dual-pulse, pulses, s-curve, dither, chirp or bspline; with a number of levels, knots, pulses or sines: knots:8; "
-          "for each drive its own: main=step,pzt=pulse");
+      "family to search: step, pulse, catch (default with --robust and --calibrate), harmonic, ramp, staircase, knots (default "
+      "with --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines (default for pzt); with a number of "
+      "levels, knots, pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, of which the best goes on "
+      "and the last begins where the others are: " +
+          std::string(default_families(Actuator::electrostatic)) + " (default)");
   verb.option("--robust", request->robust, "MEASURE",
               "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
               "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");

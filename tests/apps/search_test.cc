@@ -162,11 +162,17 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
       words.insert(words.end(), {"--set", quick});
     words.insert(words.end(), more.begin(), more.end());
     const Outcome o = here->run(words);
-    return o.out.empty() ? o.err : json::parse(o.out).at("waveform").get<std::string>();
+    if (o.out.empty()) return o.err;
+    const json found = json::parse(o.out);
+    if (!found.contains("families")) return found.at("waveform").get<std::string>();
+    std::string all;
+    for (const json& one : found.at("families")) all += one.at("family").get<std::string>() + " ";
+    EXPECT_NE(all.find(found.at("waveform").get<std::string>()), std::string::npos);
+    return all;
   };
-  EXPECT_EQ(family({}), "catch");
+  EXPECT_EQ(family({}), "knots dual-pulse staircase:5 ");
   EXPECT_EQ(family({"--actuator", "pzt"}), "sines");
-  EXPECT_EQ(family({"--actuator", "both"}), "catch");
+  EXPECT_EQ(family({"--actuator", "both"}), "knots dual-pulse staircase:5 ");
   EXPECT_EQ(family({"--actuator", "both", "--waveform", "pulse"}), "pulse");
   const std::vector<std::string> robust{"--robust", "worst", "--samples", "8"};
   const auto with = [&](std::vector<std::string> more) {
@@ -175,6 +181,22 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
   };
   EXPECT_EQ(family(with({})), "knots");
   EXPECT_EQ(family(with({"--calibrate", "Vdp"})), "catch");
+}
+
+TEST_F(Search, TellsWhatEachOfItsFamiliesCameTo) {
+  const Outcome o = search(*here, "several", {"--waveform", "pulse+staircase:2"}, "60");
+  const json found = json::parse(read(here->path() / "several/result.json"));
+  ASSERT_EQ(found.at("families").size(), 2U);
+  EXPECT_NE(o.out.find("Families searched, with the least cost of each: pulse "), std::string::npos) << o.out;
+  EXPECT_NE(read(here->path() / "several/report.html").find("Families, least cost"), std::string::npos);
+  const std::string log = read(here->path() / "several/evaluations.csv");
+  EXPECT_EQ(log.substr(0, log.find('\n')),
+            "index,cost,pulse.main.level_1_V,pulse.main.level_2_V,pulse.main.time_1_s,pulse.main.duration_2_s,pulse.main.edge_s,"
+            "staircase:2.main.level_1_V,staircase:2.main.level_2_V,staircase:2.main.duration_1_s,staircase:2.main.duration_2_s,"
+            "staircase:2.main.edge_s");
+  EXPECT_EQ(log.find("nan"), std::string::npos);
+  EXPECT_NE(log.find(",,,,,\n"), std::string::npos) << "a pulse has no parameters of a staircase";
+  EXPECT_THAT(here->run({"report", "several"}).out, testing::HasSubstr("the least cost of each: pulse ")) << "from result.json";
 }
 
 TEST_F(Search, LooksElsewhereWithAnotherSeed) {

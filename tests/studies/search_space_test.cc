@@ -1,6 +1,7 @@
 // What a search may vary, and that nothing it can reach leaves the driver's limits.
 #include "studies/search_space.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -385,6 +386,22 @@ TEST(SearchedElectrode, IsMainElseTheFirst) {
             "optimize needs an electrode that pulls in, and all of the scene's are on the far side");
   device.electrodes[1].side = Side::near;
   EXPECT_EQ(searched_electrode(device), "right");
+}
+
+TEST(FamiliesOf, ReadsOneOrSeveral) {
+  EXPECT_EQ(families_of("pulse"), std::vector<std::string>{"pulse"});
+  EXPECT_EQ(families_of("knots:8+main=step,pzt=pulse+catch"),
+            (std::vector<std::string>{"knots:8", "main=step,pzt=pulse", "catch"}));
+  EXPECT_EQ(prefix_of("knots+catch", "catch"), "catch.");
+  EXPECT_EQ(prefix_of("catch", "catch"), "");
+  for (const char* text : {"+catch", "catch+", "catch++knots"})
+    EXPECT_EQ(refusal([&] { (void)families_of(text); }),
+              fmt::format("--waveform {}: a family before or after '+' is missing", text));
+  EXPECT_EQ(refusal([] { (void)families_of("catch+catch"); }), "--waveform catch+catch: 'catch' is named twice");
+  for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt, Actuator::both}) {
+    for (const std::string& family : families_of(std::string(default_families(actuator))))
+      EXPECT_EQ(refusal([&] { (void)SearchSpace(plain(), actuator, family, first_touch); }), "");
+  }
 }
 
 }  // namespace

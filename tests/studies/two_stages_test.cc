@@ -106,6 +106,23 @@ TEST(TwoStages, KnowTheSurestOfThePromisingPoints) {
   EXPECT_FALSE(stages.surest_below(result.value, {}));
 }
 
+TEST(TwoStages, GoOnFromTheBestPointsInAFurtherRun) {
+  std::map<long, Evaluation> seen;
+  const auto bowl = [](std::span<const double> x) {
+    const double cost = x[0] * x[0] + x[1] * x[1];
+    return Prices{.leading = cost, .own = cost};
+  };
+  TwoStages stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
+  const Problem problem{.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}};
+  const OptimizerResult first = stages.run(problem, {.max_evaluations = 40}, false);
+  const long next = 1000;
+  const OptimizerResult all = stages.run(problem, {.max_evaluations = 40}, false, 0, next);
+  EXPECT_EQ(seen.at(next).x, first.x);
+  EXPECT_EQ(stages.log().size(), 80U);
+  EXPECT_LE(all.value, first.value);
+  EXPECT_EQ(all.improvements.front().index, 0) << "of both runs";
+}
+
 TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
   std::atomic<bool> stop = false;
   std::atomic<long> calls = 0;
@@ -124,7 +141,7 @@ TEST(TwoStages, KeepAnInfeasiblePointAndOneThatThrows) {
     if (x[0] > 0.2) return {};
     return {.leading = x[0] * x[0], .own = x[1] * x[1]};
   };
-  const StagesLog log = search_in_stages({.max_evaluations = 60}, true, failing);
+  const StagesLog log = search_in_stages({.max_evaluations = 600}, true, failing);
   EXPECT_EQ(log.result.first_exception, "too far");
   EXPECT_TRUE(std::isfinite(log.result.value));
   for (const auto& [index, e] : log.evaluations) EXPECT_EQ(std::isfinite(e.value), e.x[0] <= 0.2) << index;

@@ -1,0 +1,114 @@
+#include "studies/family_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace softland {
+namespace {
+
+// The memory of a search in all its families, as one of these asks it.
+class MemoryOfFamily final : public EvaluationMemory {
+ public:
+  MemoryOfFamily(EvaluationMemory& all, const ParameterBlock& block) : all_(all), block_(block) {}
+
+  std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override { return all_.recall(among_all(key)); }
+  void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override { all_.note(among_all(key), values); }
+
+ private:
+  [[nodiscard]] EvaluationKey among_all(EvaluationKey key) const {
+    key.x = block_.point(key.x);
+    return key;
+  }
+
+  EvaluationMemory& all_;
+  const ParameterBlock& block_;
+};
+
+}  // namespace
+
+bool ParameterBlock::holds(std::span<const double> point) const { return !std::isnan(point[begin_]); }
+
+std::vector<double> ParameterBlock::point(std::span<const double> own) const {
+  std::vector<double> all(all_, std::numeric_limits<double>::quiet_NaN());
+  std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(begin_));
+  return all;
+}
+
+FamilySearch::FamilySearch(const SearchSetting& setting, const ParameterBlock& block, const OptimizeOptions& options,
+                           std::function<void(const Evaluation&)> on_evaluation)
+    : setting_(setting),
+      block_(block),
+      options_(options),
+      problem_{.variables = setting.space.variables(), .starts = setting.space.starts()},
+      stages_([this](std::span<const double> x) { return price(x); },
+              [this, told = std::move(on_evaluation)](const Evaluation& e) { told(among_all(e)); }, slopes()) {}
+
+Prices FamilySearch::price(std::span<const double> own) const {
+  if (options_.memory == nullptr) return setting_.price_at(own);
+  MemoryOfFamily memory(*options_.memory, block_);
+  return setting_.price_at(own, &memory);
+}
+
+PriceSlopes FamilySearch::slopes() const {
+  using Slope = std::function<std::vector<double>(std::span<const double>)>;
+  const auto of = [&](const Aim& aim) -> Slope {
+    if (!setting_.gradient_refusal(aim).empty()) return {};
+    return [this, aim](std::span<const double> x) { return setting_.gradient_at(x, aim); };
+  };
+  return {.leading = of(Target::bounce), .own = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};
+}
+
+void FamilySearch::begin_at(const std::map<std::string, Waveform>& waveforms) {
+  const SearchSpace& space = setting_.space;
+  const auto ahead = problem_.starts.end() - static_cast<std::ptrdiff_t>(space.starts().size());
+  if (const auto point = space.parameters(waveforms)) {
+    problem_.starts.insert(ahead, *point);
+  } else if (space.misfit(waveforms).empty()) {
+    problem_.starts.insert(ahead, space.nearest(waveforms));
+  }
+}
+
+std::vector<double> FamilySearch::point(const std::map<std::string, Waveform>& waveforms) const {
+  const auto own = setting_.space.parameters(waveforms);
+  return own ? block_.point(*own) : std::vector<double>();
+}
+
+OptimizerResult FamilySearch::run(const OptimizerOptions& share, long more, long first_index) {
+  return stages_.run(problem_, share, options_.target.has_own_cost(), more, first_index);
+}
+
+Evaluation FamilySearch::among_all(Evaluation e) const {
+  e.x = block_.point(e.x);
+  return e;
+}
+
+std::map<std::string, Waveform> FamilySearch::waveforms(const Evaluation& e) const {
+  return setting_.space.waveforms(block_.own(e.x));
+}
+
+std::map<std::string, double> FamilySearch::named(const Evaluation& e) const {
+  std::map<std::string, double> parameters;
+  const std::span<const double> x = block_.own(e.x);
+  for (std::size_t k = 0; k < x.size(); ++k) parameters[problem_.variables[k].name] = x[k];
+  return parameters;
+}
+
+std::vector<Evaluation> FamilySearch::log() const {
+  std::vector<Evaluation> all;
+  for (const auto& [index, e] : stages_.log()) all.push_back(among_all(e));
+  return all;
+}
+
+std::optional<Evaluation> FamilySearch::surest_below(double own, const std::vector<std::vector<double>>& others) const {
+  std::vector<std::vector<double>> own_others;
+  for (const std::vector<double>& other : others) {
+    const std::span<const double> x = block_.own(other);
+    if (block_.holds(other)) own_others.emplace_back(x.begin(), x.end());
+  }
+  const std::optional<Evaluation> found = stages_.surest_below(own, own_others);
+  return found ? std::optional(among_all(*found)) : std::nullopt;
+}
+
+}  // namespace softland

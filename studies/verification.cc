@@ -1,0 +1,127 @@
+#include "studies/verification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "base/engineering.h"
+#include "objectives/figures.h"
+
+namespace softland {
+namespace {
+
+constexpr double tight_tolerance = 1e-9;  // of the confirming run
+constexpr int more_modes = 2;             // of the confirming run
+
+// The target's own figure, infinite where the closing has none; of a sum, the mean of figures over those of the baseline, of
+// settling over its first touch: it may not settle at all.
+double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
+  const double value = aim.mean([&](Target target) {
+    const double own = figure_of(target).value(m);
+    const double unit = target == Target::settling ? baseline.initial_contact_time : figure_of(target).value(baseline);
+    return aim.is_sum() && unit > 0 ? own / unit : own;
+  });
+  return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Verification::Verification(const SearchSetting& setting, const OptimizeOptions& options)
+    : given_(setting.given),
+      baseline_(setting.baseline.metrics),
+      target_(options.target),
+      conditions_(options.conditions),
+      watch_{.progress = options.on_preparation} {}
+
+bool Verification::Verified::better_than(const Verified& other) const {
+  return std::tuple(-static_cast<int>(belief), broken, figure, cost) <
+         std::tuple(-static_cast<int>(other.belief), other.broken, other.figure, other.cost);
+}
+
+void Verification::add(const SceneFile& text, double cost, std::size_t family, std::map<std::string, double> parameters) {
+  Prepared scene = read_back(text, "best.toml", given_);
+  Closing closing = simulate(scene, true, watch_);
+  const Metrics& m = closing.metrics;
+  Verified now{.scene = std::move(scene),
+               .closing = closing,
+               .checks = {},
+               .family = family,
+               .parameters = std::move(parameters),
+               .cost = cost,
+               .figure = figure(target_, m, baseline_),
+               .broken = broken(conditions_, m),
+               .belief = met(m)                             ? Belief::meets_goal
+                         : m.settled && m.bounce_count == 0 ? Belief::lands
+                         : m.settled                        ? Belief::settles
+                                                            : Belief::touches};
+  if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))
+    now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
+  if (now.belief == Belief::meets_goal || !best_ || now.better_than(*best_)) now.checks = confirm(now.scene);
+  if (now.belief == Belief::meets_goal &&
+      std::all_of(now.checks.begin(), now.checks.end(), [&](const ConfirmingRun& c) { return met(c.metrics); }))
+    now.belief = Belief::confirmed;
+  if (!best_ || now.better_than(*best_)) best_ = std::move(now);
+}
+
+double Verification::best_cost() const { return best_ ? best_->cost : std::numeric_limits<double>::infinity(); }
+
+bool Verification::decided(double cost) const { return best_ && best_->belief == Belief::confirmed && best_->cost <= cost; }
+
+std::optional<std::size_t> Verification::family() const { return best_ ? std::optional(best_->family) : std::nullopt; }
+
+void Verification::move_to(OptimizeResult& result) {
+  if (!best_) return;
+  result.goal_met = best_->belief >= Belief::meets_goal;
+  result.confirmed = best_->belief == Belief::confirmed;
+  const Metrics& m = best_->closing.metrics;
+  result.better_than_baseline = figure(target_, m, baseline_) < figure(target_, baseline_, baseline_);
+  for (const Criterion& one : conditions_) {
+    if (softland::broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
+  }
+  result.best_scene = std::move(best_->scene);
+  result.best = std::move(best_->closing);
+  result.checks = std::move(best_->checks);
+  result.parameters = std::move(best_->parameters);
+  result.best_cost = best_->cost;
+}
+
+// Of a confirming run nothing is known that is not of the motion: its hold force and drives are those of the winner.
+bool Verification::met(const Metrics& m) const { return goal_met(target_, m, baseline_) && !(broken(known(m), m) > 0); }
+
+std::vector<Criterion> Verification::known(const Metrics& m) const {
+  std::vector<Criterion> all;
+  for (const Criterion& one : conditions_) {
+    if (std::isfinite(all_figures[one.figure].value(m))) all.push_back(one);
+  }
+  return all;
+}
+
+std::vector<ConfirmingRun> confirm(const Prepared& winner) {
+  const std::vector<Signal> signals = winner.signals();
+  const auto run = [&](const Switch& model, double tolerance) {
+    return metrics(simulate_closing(model, signals, {.duration = winner.duration, .tolerance = tolerance}), winner.scene.metrics);
+  };
+  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.model, tight_tolerance)}};
+  Device richer = winner.scene.device;
+  if (richer.structure.kind != StructureKind::plate) {
+    richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
+    runs.push_back({fmt::format("{} modes", richer.structure.modes), run(Switch(richer, winner.quadrature), winner.tolerance)});
+  }
+  return runs;
+}
+
+bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
+  if (!best.settled || best.bounce_count > 0) return false;
+  if (!target.has_own_cost()) return true;
+  // The plain step bounces for many times its closing: what counts is how soon contact can begin for good.
+  const bool is_settling = !target.is_sum() && target.is_about(Target::settling);
+  if (is_settling && std::isfinite(baseline.initial_contact_time))
+    return best.permanent_contact_time <= settling_goal * baseline.initial_contact_time;
+  return figure(target, best, baseline) < figure(target, baseline, baseline);
+}
+
+}  // namespace softland
