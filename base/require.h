@@ -51,4 +51,11 @@ inline void require_of(std::string_view parameter, bool rule_holds, const std::s
   if (!rule_holds) throw InvalidParameter(parameter, message, where);
 }
 
+/// The same with a message that is made when it is needed: message().
+template <std::invocable Message>
+void require_of(std::string_view parameter, bool rule_holds, Message&& message,
+                std::source_location where = std::source_location::current()) {
+  if (!rule_holds) throw InvalidParameter(parameter, message(), where);
+}
+
 }  // namespace softland

@@ -42,13 +42,13 @@ std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t
 Signal signal(const BSpline& spline) {
   constexpr std::size_t fewest = 4;
   require_of("levels", spline.levels.size() >= fewest,
-             fmt::format("levels of a bspline are {}; there must be at least {}", spline.levels.size(), fewest));
+             [&] { return fmt::format("levels of a bspline are {}; there must be at least {}", spline.levels.size(), fewest); });
   for (std::size_t k = 0; k < spline.levels.size(); ++k) {
     require_of("levels", std::isfinite(spline.levels[k]),
-               fmt::format("level {} of a bspline is {} V; it must be finite", k + 1, spline.levels[k]));
+               [&] { return fmt::format("level {} of a bspline is {} V; it must be finite", k + 1, spline.levels[k]); });
   }
   require_of("duration", spline.duration > 0 && std::isfinite(spline.duration),
-             fmt::format("duration of a bspline is {} s; it must be finite and > 0", spline.duration));
+             [&] { return fmt::format("duration of a bspline is {} s; it must be finite and > 0", spline.duration); });
   return Signal(pieces(spline));
 }
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "waveforms/parameter.h"
@@ -38,6 +39,9 @@ namespace internal {
 /// is past, coefficients in rising order. The first one belongs to level j.
 [[nodiscard]] std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t n);
 
+/// Whether the knots about span j are evenly spaced: the B-splines of all such spans are the same.
+[[nodiscard]] constexpr bool has_even_knots(std::size_t j, std::size_t n) { return j >= 3 && j + 7 <= n; }
+
 /// Knot `i` of the n + 4 knots of a spline of n levels, in spans.
 [[nodiscard]] double bspline_knot(std::size_t i, std::size_t n);
 
@@ -49,8 +53,10 @@ template <class P>
   const std::size_t n = spline.levels.size(), spans = n - 3;
   const P per_time = P(static_cast<double>(spans)) / spline.duration;
   Pieces<P> all;
+  all.reserve(spans + 1);
+  std::array<std::array<double, 4>, 4> basis;
   for (std::size_t j = 0; j < spans; ++j) {
-    const auto basis = internal::bsplines_of_span(j, n);
+    if (!internal::has_even_knots(j, n) || !internal::has_even_knots(j - 1, n)) basis = internal::bsplines_of_span(j, n);
     std::array<P, 4> cubic = {};
     P power = P(1);
     for (std::size_t k = 0; k < 4; ++k, power = power * per_time) {
@@ -60,7 +66,7 @@ template <class P>
     }
     SignalPieceOf<P> piece{.begin = P(static_cast<double>(j)) / per_time, .value = cubic[0], .slope = cubic[1]};
     piece.terms.push_back({.cosine = {P(0), P(0), cubic[2], cubic[3]}});
-    all.push_back(piece);
+    all.push_back(std::move(piece));
   }
   all.push_back({.begin = spline.duration, .value = spline.levels.back()});
   return all;

@@ -15,11 +15,13 @@ Signal signal(const Chirp& chirp) {
                                        .fade = chirp.fade});
   const double ratio = chirp.frequency_ratio;
   require_of("frequency_ratio", ratio > 0 && std::isfinite(ratio),
-             fmt::format("frequency_ratio of a chirp is {}; it must be finite and > 0", ratio));
-  require_of("decay_time", chirp.decay_time > 0, fmt::format("decay_time of a chirp is {} s; it must be > 0", chirp.decay_time));
+             [&] { return fmt::format("frequency_ratio of a chirp is {}; it must be finite and > 0", ratio); });
+  require_of("decay_time", chirp.decay_time > 0,
+             [&] { return fmt::format("decay_time of a chirp is {} s; it must be > 0", chirp.decay_time); });
   if (!std::isfinite(chirp.end)) {
-    require_of("frequency_ratio", ratio == 1,
-               fmt::format("frequency_ratio of a chirp is {}; without an end the frequency must stay the same, 1", ratio));
+    require_of("frequency_ratio", ratio == 1, [&] {
+      return fmt::format("frequency_ratio of a chirp is {}; without an end the frequency must stay the same, 1", ratio);
+    });
     require_of("decay_time", std::isfinite(chirp.decay_time),
                "a chirp has neither an end nor a decay_time; it must have one of them (a harmonic goes on for ever)");
   }

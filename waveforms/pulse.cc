@@ -9,23 +9,27 @@ namespace internal {
 void require_levels_and_edges(std::string_view what, const std::vector<double>& levels, const std::vector<double>& times,
                               double edge) {
   const std::size_t count = levels.size();
-  require_of("levels", count >= 1, fmt::format("levels of {} are empty; there must be at least one", what));
-  require_of("times", times.size() + 1 == count,
-             fmt::format("times of {} are {} for {} levels; there must be one fewer than levels", what, times.size(), count));
-  require_of("edge", edge >= 0 && std::isfinite(edge), fmt::format("edge of {} is {} s; it must be finite and >= 0", what, edge));
+  require_of("levels", count >= 1, [&] { return fmt::format("levels of {} are empty; there must be at least one", what); });
+  require_of("times", times.size() + 1 == count, [&] {
+    return fmt::format("times of {} are {} for {} levels; there must be one fewer than levels", what, times.size(), count);
+  });
+  require_of("edge", edge >= 0 && std::isfinite(edge),
+             [&] { return fmt::format("edge of {} is {} s; it must be finite and >= 0", what, edge); });
   for (std::size_t k = 0; k < count; ++k) {
     require_of("levels", std::isfinite(levels[k]),
-               fmt::format("level {} of {} is {} V; it must be finite", k + 1, what, levels[k]));
+               [&] { return fmt::format("level {} of {} is {} V; it must be finite", k + 1, what, levels[k]); });
   }
 
   double edge_end = edge;
   for (std::size_t k = 0; k + 1 < count; ++k) {
     const double time = times[k];
-    require_of("times", std::isfinite(time), fmt::format("time {} of {} is {} s; it must be finite", k + 1, what, time));
+    require_of("times", std::isfinite(time),
+               [&] { return fmt::format("time {} of {} is {} s; it must be finite", k + 1, what, time); });
     const bool meets = coincide(edge_end, time);
-    require_of("times", meets || time > edge_end,
-               fmt::format("time {} of {} is {} s; it must be at least {} s, where the edge before it ends", k + 1, what, time,
-                           edge_end));
+    require_of("times", meets || time > edge_end, [&] {
+      return fmt::format("time {} of {} is {} s; it must be at least {} s, where the edge before it ends", k + 1, what, time,
+                         edge_end);
+    });
     edge_end = time + edge;
   }
 }

@@ -37,8 +37,10 @@ double de_boor(const std::vector<double>& levels, double u) {
 const std::vector<double> some_levels{8, -3, 5, 12, 1, 0.5, 7};
 
 TEST(BSpline, IsWhatDeBoorsAlgorithmGives) {
-  for (std::size_t n = 4; n <= some_levels.size(); ++n) {
-    const std::vector<double> levels(some_levels.begin(), some_levels.begin() + static_cast<std::ptrdiff_t>(n));
+  for (const std::size_t n : {4U, 5U, 6U, 7U, 10U, 11U, 16U}) {
+    std::vector<double> levels = some_levels;
+    for (std::size_t k = levels.size(); k < n; ++k) levels.push_back(levels[k - 7] + levels[k - 5]);
+    levels.resize(n);
     const Signal spline = signal(BSpline{.levels = levels, .duration = 30_us});
     const double spans = static_cast<double>(n - 3);
     for (int i = 0; i < 300; ++i) {
