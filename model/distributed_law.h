@@ -25,7 +25,7 @@ class DistributedLaw {
   virtual ~DistributedLaw() = default;
   /// load += drive * law [N/m] at the law's points; laws that are not driven ignore `drive`. `load` is as long as the field.
   virtual void add_load(const GapField& field, double drive, double* load) const = 0;
-  /// Derivatives of the load with respect to deflection and velocity, added at the law's points.
+  /// Derivatives of the load with respect to deflection and velocity, added at the law's points. Both are as long as the field.
   virtual void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const = 0;
   /// Second derivatives of the load: by deflection twice, by deflection and velocity, by velocity twice, added at the law's
   /// points; nothing at points below the floor, where the load goes on by its tangent.
@@ -71,11 +71,27 @@ class DistributedLawOf final : public DistributedLaw {
 
   void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const override {
     if (field.smallest_gap < floor_) return add_tangent_derivatives(field, drive, by_deflection, by_velocity);
+    const double* gap = field.gap.data();
+    const double* velocity = field.velocity.data();
+    const double* share = share_.data();
     const double factor = Law::driven ? drive : 1;
-    for (Eigen::Index p = begin_; p < end_; ++p) {
-      const double gap = field.gap[p], velocity = field.velocity[p];
-      by_deflection[p] -= factor * law_.load(Dual(gap, 1), Dual(velocity)).slope;  // the gap shrinks as the beam deflects
-      by_velocity[p] += factor * law_.load(Dual(gap), Dual(velocity, 1)).slope;
+    const Law law = law_;
+    for (Eigen::Index p = begin_ / lanes * lanes; p < share_.size(); p += lanes) {
+      double by_gap[lanes], by_rate[lanes];
+      for (Eigen::Index k = 0; k < lanes; ++k) {
+        if constexpr (Law::driven) {
+          by_gap[k] = law.load(Dual(gap[p + k], 1), Dual(velocity[p + k])).slope;
+        } else {
+          using Both = Gradient<2>;
+          const auto slopes =
+              law.load(Both(gap[p + k], Directions<2>::unit(0)), Both(velocity[p + k], Directions<2>::unit(1))).slope;
+          by_gap[k] = slopes.along[0], by_rate[k] = slopes.along[1];
+        }
+      }
+      for (Eigen::Index k = 0; k < lanes; ++k) {
+        by_deflection[p + k] -= factor * share[p + k] * by_gap[k];  // the gap shrinks as the beam deflects
+        if constexpr (!Law::driven) by_velocity[p + k] += share[p + k] * by_rate[k];
+      }
     }
   }
 

@@ -363,6 +363,14 @@ void Switch::accelerations(const double* q, const double* v, std::span<const dou
   if (stretching_) stretching_->add_force(q, result);
 }
 
+void Switch::project_slopes(const Eigen::ArrayXd& slopes, Workspace& work, Eigen::Ref<Eigen::MatrixXd> by) const {
+  const auto n = static_cast<std::size_t>(modes());
+  for (Eigen::Index k = 0; k < modes(); ++k) {
+    work.load = slopes * shapes_.col(k).array();
+    for (std::size_t i = 0; i < n; i += lanes) store_lane(projected(work, i), by.col(k).data(), i, n);
+  }
+}
+
 void Switch::jacobian(const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                       Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_q, Eigen::Ref<Eigen::MatrixXd> by_v) const {
   set_field(q, v, work);
@@ -372,8 +380,12 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
     driven_laws_[k]->add_derivatives(work.field, strength(k, volts[k]), work.by_deflection.data(), work.by_velocity.data());
   }
   for (const auto& law : passive_laws_) law->add_derivatives(work.field, 0, work.by_deflection.data(), work.by_velocity.data());
-  by_q = weighted_shapes_.transpose() * work.by_deflection.matrix().asDiagonal() * shapes_;
-  by_v = weighted_shapes_.transpose() * work.by_velocity.matrix().asDiagonal() * shapes_;
+  project_slopes(work.by_deflection, work, by_q);
+  if (passive_laws_.empty()) {
+    by_v.setZero();
+  } else {
+    project_slopes(work.by_velocity, work, by_v);
+  }
   by_q.diagonal() -= squares_;
   by_v.diagonal() -= 2 * device_.structure.damping_ratio * frequencies_;
   if (contact.active) {
@@ -385,8 +397,8 @@ void Switch::jacobian(const double* q, const double* v, std::span<const double> 
             [&](const auto& law) { return force_of(law, Dual(d, by_d), contact, [&] { return Dual(rate, by_rate); }).slope; },
             *contact_);
       };
-      by_q -= share * slope(1, 0) * shape * shape.transpose();
-      by_v -= share * slope(0, 1) * shape * shape.transpose();
+      by_q.noalias() -= (share * slope(1, 0) * shape) * shape.transpose();
+      if (has_damped_contact()) by_v.noalias() -= (share * slope(0, 1) * shape) * shape.transpose();
     });
   }
   if (stretching_) stretching_->add_derivative(q, by_q);
@@ -396,7 +408,9 @@ void Switch::drive_forces(Workspace& work, Eigen::Ref<Eigen::MatrixXd> by_streng
   for (std::size_t k = 0; k < driven_laws_.size(); ++k) {
     work.load.setZero();
     driven_laws_[k]->add_load(work.field, 1, work.load.data());
-    by_strength.col(static_cast<Eigen::Index>(k)) = weighted_shapes_.transpose() * work.load.matrix();
+    const auto n = static_cast<std::size_t>(modes());
+    double* forces = by_strength.col(static_cast<Eigen::Index>(k)).data();
+    for (std::size_t i = 0; i < n; i += lanes) store_lane(projected(work, i), forces, i, n);
   }
   if (device_.piezo) by_strength.rightCols<1>() = piezo_shape_;
 }

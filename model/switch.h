@@ -208,6 +208,8 @@ class Switch {
   double add_modes(Eigen::Index first, const double* q, const double* v, GapField& field) const;
   /// Modal forces of the load in `work` on modes from `first` on: the sums over points of w_p phi_i(x_p) f(x_p).
   [[nodiscard]] Lane projected(const Workspace& work, std::size_t first) const;
+  /// Derivatives of the modal forces by modal coordinates, of those of the load by the local ones. Uses the load of `work`.
+  void project_slopes(const Eigen::ArrayXd& slopes, Workspace& work, Eigen::Ref<Eigen::MatrixXd> by) const;
   [[nodiscard]] std::optional<Eigen::VectorXd> find_rest() const;
 
   Device device_;

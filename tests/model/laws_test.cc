@@ -1211,9 +1211,9 @@ void expect_tangent_below(const Law& physics, double floor, double velocity) {
   for (const double below : {0.5 * floor, 0.0, -3 * floor}) {
     const double expected = value + slope * (below - floor);
     EXPECT_NEAR(load_at(law, below, velocity), expected, 1e-14 * std::abs(expected)) << "gap " << below;
-    double by_deflection = 0, by_velocity = 0;
-    law.add_derivatives(field({below}, velocity), 1, &by_deflection, &by_velocity);
-    EXPECT_DOUBLE_EQ(by_deflection, -slope);
+    std::array<double, lanes> by_deflection{}, by_velocity{};
+    law.add_derivatives(field({below}, velocity), 1, by_deflection.data(), by_velocity.data());
+    EXPECT_DOUBLE_EQ(by_deflection[0], -slope);
   }
 }
 
@@ -1261,12 +1261,12 @@ TYPED_TEST(LawAlongTheBeam, HasTheDerivativesOfItsLoadAboveAndBelowTheFloor) {
   const DistributedLawOf law(TestFixture::physics(), 0, 1, gap_floor);
   for (const double h : around_the_floor) {
     for (const double v : {-0.4, 0.1}) {
-      double by_deflection = 0, by_velocity = 0;
-      law.add_derivatives(field({h}, v), 1, &by_deflection, &by_velocity);
+      std::array<double, lanes> by_deflection{}, by_velocity{};
+      law.add_derivatives(field({h}, v), 1, by_deflection.data(), by_velocity.data());
       const double by_gap = derivative([&](double x) { return load_at(law, x, v); }, h, 1e-6 * gap_floor);
-      EXPECT_NEAR(by_deflection, -by_gap, differences * std::abs(by_gap)) << "gap " << h << ", velocity " << v;
+      EXPECT_NEAR(by_deflection[0], -by_gap, differences * std::abs(by_gap)) << "gap " << h << ", velocity " << v;
       const double expected = derivative([&](double x) { return load_at(law, h, x); }, v, 0.01);
-      EXPECT_NEAR(by_velocity, expected, 1e-11 * std::abs(expected)) << "gap " << h << ", velocity " << v;
+      EXPECT_NEAR(by_velocity[0], expected, 1e-11 * std::abs(expected)) << "gap " << h << ", velocity " << v;
     }
   }
 }
