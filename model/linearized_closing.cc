@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/lanes.h"
 #include "integrators/quintic.h"
 
 namespace softland {
@@ -18,40 +19,102 @@ using Eigen::VectorXd;
 constexpr double longest_angle = 2.5;  // norm of A times the length of an arc
 constexpr int most_parts = 4096;       // of a step
 constexpr int parts_at_edge = 6;       // of a step that begins or ends where a contact does
+constexpr Index lane_size = lanes;
+constexpr Index widest = 2 * most_modes;  // unknowns, whole lanes
 
-// exp(x) and phi_j(x) = sum over k of x^k / (k + j)!, j = 1, 2, 3, of a matrix whose norm is small.
-struct Exponentials {
-  MatrixXd exp, phi1, phi2, phi3;
+// Terms after which the exponential of a matrix of this norm is good to rounding; as many as the parabola of an input has.
+int terms_of_exponential(double norm) {
+  constexpr int fewest = 3;
+  constexpr double rounding = 1e-13;
+  constexpr int most = 40;
+  static const std::array<double, most> largest_norm = [] {
+    std::array<double, most> norms{};
+    for (int k = 1; k <= most; ++k)
+      norms[static_cast<std::size_t>(k - 1)] = std::exp((std::log(rounding) + std::lgamma(k + 1)) / k);
+    return norms;
+  }();
+  const auto found = std::find_if(largest_norm.begin(), largest_norm.end() - 1, [&](double largest) { return norm <= largest; });
+  return std::max(fewest, static_cast<int>(found - largest_norm.begin()) + 1);
+}
 
-  explicit Exponentials(const MatrixXd& x) {
-    constexpr int most = 24;
-    constexpr double rounding = 1e-15;
-    const MatrixXd one = MatrixXd::Identity(x.rows(), x.cols());
-    const double norm = x.cwiseAbs().colwise().sum().maxCoeff();
-    std::array<double, most> factor{};  // 1 / (k + 3)!
-    int terms = 0;
-    double power = 1, next = 1.0 / 6;
-    do {
-      factor[static_cast<std::size_t>(terms)] = next;
-      power *= norm;
-      ++terms;
-      next /= terms + 3;
-    } while (terms < most && power * next > rounding);
-    // Paterson and Stockmeyer 1973: polynomials of x^4 whose coefficients are cubics in x.
-    const MatrixXd x2 = x * x, x3 = x2 * x, x4 = x2 * x2;
-    const auto cubic = [&](int k) {
-      const auto at = [&](int i) { return i < terms ? factor[static_cast<std::size_t>(i)] : 0; };
-      return MatrixXd(at(k) * one + at(k + 1) * x + at(k + 2) * x2 + at(k + 3) * x3);
-    };
-    int k = (terms - 1) / 4 * 4;
-    phi3 = cubic(k);
-    for (k -= 4; k >= 0; k -= 4) phi3 = cubic(k) + x4 * phi3;
-    phi2.noalias() = x * phi3;
-    phi2 += one / 2;
-    phi1.noalias() = x * phi2;
-    phi1 += one;
-    exp.noalias() = x * phi1;
-    exp += one;
+// Of a matrix whose rows are whole lanes: largest sum of magnitudes in a column.
+double column_norm(const double* x, Index size, Index stride) {
+  Lane largest = Lane::Zero();
+  for (Index c = 0; c < stride; c += lane_size) {
+    Lane sum = Lane::Zero();
+    for (Index i = 0; i < size; ++i) sum += Eigen::Map<const Lane>(x + i * stride + c).abs();
+    largest = largest.max(sum);
+  }
+  return largest.maxCoeff();
+}
+
+// value += gain, of very many small gains: what rounding cuts off is kept for the next one (Kahan 1965). The sum is value - left.
+template <class Value, class Left, class Gain>
+void add_compensated(Value&& value, Left&& left, const Gain& gain) {
+  for (Index i = 0; i < gain.rows(); ++i) {
+    for (Index j = 0; j < gain.cols(); ++j) {
+      const double wanted = gain(i, j) - left(i, j), sum = value(i, j) + wanted;
+      left(i, j) = (sum - value(i, j)) - wanted;
+      value(i, j) = sum;
+    }
+  }
+}
+
+// What a row w gains times exp(x), and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
+struct RowSeries {
+  using Row = Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, widest>;
+  Row gain, phi1, phi2, phi3;
+
+  template <class W>
+  RowSeries(const double* x, Index size, Index stride, int terms, const W& w) {
+    std::array<double, widest> first{}, second;
+    double *term = first.data(), *next = second.data();
+    Eigen::Map<Row>(term, size) = w;
+    gain = Row::Zero(stride);
+    phi1 = Eigen::Map<Row>(term, stride);
+    phi2 = phi1 / 2;
+    phi3 = phi1 / 6;
+    for (int k = 1; k <= terms; ++k) {
+      const double over = 1.0 / k, by1 = 1.0 / (k + 1), by2 = by1 / (k + 2), by3 = by2 / (k + 3);
+      for (Index c = 0; c < stride; c += lane_size) {
+        Lane sum = Lane::Zero();
+        for (Index i = 0; i < size; ++i) sum += term[i] * Eigen::Map<const Lane>(x + i * stride + c);
+        sum *= over;
+        Eigen::Map<Lane>{next + c} = sum;
+        Eigen::Map<Lane>{gain.data() + c} += sum;
+        Eigen::Map<Lane>{phi1.data() + c} += by1 * sum;
+        Eigen::Map<Lane>{phi2.data() + c} += by2 * sum;
+        Eigen::Map<Lane>{phi3.data() + c} += by3 * sum;
+      }
+      std::swap(term, next);
+    }
+  }
+};
+
+// What columns d gain along y' = x y + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are whole lanes; u is 0 in their upper half.
+using Rows = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+struct ColumnSeries {
+  Rows gain, term, next;
+
+  void carry(const double* x, Index stride, int terms, const std::array<Rows, 3>& u, const Rows& d) {
+    const Index size = 2 * u[0].rows(), columns = d.cols();
+    term = d.topRows(size);
+    gain = Rows::Zero(size, columns);
+    next.resize(size, columns);
+    for (int k = 1; k <= terms; ++k) {
+      const double over = 1.0 / k;
+      for (Index c = 0; c < columns; c += lane_size) {
+        for (Index i = 0; i < size; ++i) {
+          Lane sum = Lane::Zero();
+          for (Index j = 0; j < size; ++j) sum += x[i * stride + j] * Eigen::Map<const Lane>(term.data() + j * columns + c);
+          if (k <= 3 && 2 * i >= size)
+            sum += Eigen::Map<const Lane>(u[static_cast<std::size_t>(k - 1)].data() + (i - size / 2) * columns + c);
+          Eigen::Map<Lane>{next.data() + i* columns + c} = over * sum;
+          Eigen::Map<Lane>{gain.data() + i* columns + c} += over * sum;
+        }
+      }
+      term.swap(next);
+    }
   }
 };
 
@@ -77,45 +140,52 @@ LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal
       signals_(signals),
       n_(model.modes()),
       size_(2 * n_),
+      stride_((size_ + lane_size - 1) / lane_size * lane_size),
+      inputs_(static_cast<Index>(signals.size()) + 1),
       fastest_(model.angular_frequencies().maxCoeff()),
       work_(model.workspace()),
-      refinement_(refinement) {
+      refinement_(refinement),
+      pieces_(1, std::vector<std::size_t>(signals.size(), 0)),
+      volts_(signals.size()) {
+  for (Node* node : {&from_, &middle_, &to_}) {
+    node->by_q = node->by_v = MatrixXd(n_, n_);
+    node->inputs = MatrixXd(n_, inputs_);
+  }
+  arcs_.reserve(tape.arcs().size());
   auto passage = tape.passages().begin();
   for (std::size_t k = 0; k < tape.arcs().size(); ++k) {
     for (; passage != tape.passages().end() && passage->arc <= k; ++passage) add_passage(*passage);
     const MotionTape::Arc& arc = tape.arcs()[k];
-    enter_pieces(arc.begin, arc.contact);
+    enter_pieces(tape.begin(k), arc.contact);
     const bool after_edge = passage != tape.passages().begin() && std::prev(passage)->arc == k;
     const bool before_edge = passage != tape.passages().end() && passage->arc == k + 1;
-    add_step(arc, arc.contact.active && after_edge, arc.contact.active && before_edge);
+    add_step(tape, k, arc.contact.active && after_edge, arc.contact.active && before_edge);
   }
   for (; passage != tape.passages().end(); ++passage) add_passage(*passage);
 }
 
-VectorXd LinearizedClosing::rates(double t, const VectorXd& q, const VectorXd& v, const std::vector<std::size_t>& pieces,
-                                  const ContactState& contact) {
-  std::vector<double> volts(signals_.size());
-  for (std::size_t k = 0; k < volts.size(); ++k) volts[k] = signals_[k].pieces()[pieces[k]].voltage(t);
+// Of the drives at present.
+void LinearizedClosing::set_volts(double t) {
+  for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_.back()[k]].voltage(t);
+}
+
+VectorXd LinearizedClosing::rates(double t, const double* q, const double* v, const ContactState& contact) {
+  set_volts(t);
   VectorXd all(size_);
-  all.head(n_) = fastest_ * v;
-  model_.accelerations(q.data(), v.data(), volts, contact, work_, all.data() + n_);
+  all.head(n_) = fastest_ * Eigen::Map<const VectorXd>(v, n_);
+  model_.accelerations(q, v, volts_, contact, work_, all.data() + n_);
   return all;
 }
 
-LinearizedClosing::Node LinearizedClosing::node(double t, const double* q, const double* v,
-                                                const std::vector<std::size_t>& pieces, const ContactState& contact) {
-  std::vector<double> volts(signals_.size());
-  for (std::size_t k = 0; k < volts.size(); ++k) volts[k] = signals_[k].pieces()[pieces[k]].voltage(t);
-  Node at{.a = MatrixXd::Zero(size_, size_),
-          .inputs = MatrixXd::Zero(size_, static_cast<Index>(volts.size())),
-          .by_shift = VectorXd::Zero(size_)};
-  at.a.topRightCorner(n_, n_).diagonal().setConstant(fastest_);
-  model_.jacobian(q, v, volts, contact, work_, at.a.bottomLeftCorner(n_, n_), at.a.bottomRightCorner(n_, n_));
-  at.a.bottomLeftCorner(n_, n_) /= fastest_;
-  model_.drive_forces(work_, at.inputs.bottomRows(n_));
-  for (std::size_t k = 0; k < volts.size(); ++k) {
-    if (model_.drive_kind(k) == DriveKind::electrode) at.inputs.col(static_cast<Index>(k)) *= 2 * volts[k];
+void LinearizedClosing::set_node(Node& node, double t, const double* q, const double* v, const ContactState& contact) {
+  set_volts(t);
+  model_.jacobian(q, v, volts_, contact, work_, node.by_q, node.by_v);
+  node.by_q /= fastest_;
+  model_.drive_forces(work_, node.inputs.leftCols(inputs_ - 1));
+  for (std::size_t k = 0; k < volts_.size(); ++k) {
+    if (model_.drive_kind(k) == DriveKind::electrode) node.inputs.col(static_cast<Index>(k)) *= 2 * volts_[k];
   }
+  node.inputs.rightCols<1>().setZero();
   if (contact.active && contact.unloading) {
     const double d = model_.contact_deflection(q) - model_.device().gap.contact, step = 1e-5 * (std::abs(d) + contact.shift);
     const auto force = [&](double shift) {
@@ -124,156 +194,159 @@ LinearizedClosing::Node LinearizedClosing::node(double t, const double* q, const
       return contact_force(model_.contact(), d, moved, 0);
     };
     const double slope = (force(contact.shift + step) - force(contact.shift - step)) / (2 * step);
-    at.by_shift.tail(n_) = -slope * model_.contact_shape();
+    node.inputs.rightCols<1>() = -slope * model_.contact_shape();
   }
-  return at;
 }
 
-LinearizedClosing::Transition LinearizedClosing::transition(double h, const Node& begin, const Node& middle,
-                                                            const Node& end) const {
-  MatrixXd magnus = h / 6 * (begin.a + 4 * middle.a + end.a);
-  const MatrixXd change = end.a - begin.a;
-  magnus.noalias() -= h * h / 12 * (middle.a * change);
-  magnus.noalias() += h * h / 12 * (change * middle.a);
-  const Exponentials e(magnus);
-  // An input that is 1 at the begin, in the middle or at the end, and there the parabola's only value that is not 0.
-  const MatrixXd at_begin = h * (e.phi1 - 3 * e.phi2 + 4 * e.phi3);
-  const MatrixXd at_middle = h * (4 * e.phi2 - 8 * e.phi3);
-  const MatrixXd at_end = h * (4 * e.phi3 - e.phi2);
-  Transition t{.state = e.exp, .inputs = MatrixXd(size_, 3 * begin.inputs.cols()), .shift = VectorXd::Zero(size_)};
-  for (Index k = 0; k < begin.inputs.cols(); ++k) {
-    t.inputs.col(3 * k).noalias() = at_begin * begin.inputs.col(k);
-    t.inputs.col(3 * k + 1).noalias() = at_middle * middle.inputs.col(k);
-    t.inputs.col(3 * k + 2).noalias() = at_end * end.inputs.col(k);
-  }
-  if (!begin.by_shift.isZero() || !end.by_shift.isZero()) {
-    t.shift = at_begin * begin.by_shift + at_middle * middle.by_shift + at_end * end.by_shift;
-  }
-  return t;
+// With A = (0, fastest; K, D) at the nodes, h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] block by block.
+void LinearizedClosing::add_transition(double h) {
+  using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_modes, most_modes>;
+  const std::size_t at = numbers_.size();
+  numbers_.resize(at + static_cast<std::size_t>(size_ * stride_ + 3 * n_ * inputs_), 0.0);
+  double* here = numbers_.data() + at;
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> x(here, size_, stride_);
+  const MatrixXd &k = middle_.by_q, &d = middle_.by_v;
+  const Block dk = to_.by_q - from_.by_q, dd = to_.by_v - from_.by_v;
+  const double c = h * h / 12;
+  x.topLeftCorner(n_, n_) = -c * fastest_ * dk;
+  x.block(0, n_, n_, n_) = -c * fastest_ * dd;
+  x.block(0, n_, n_, n_).diagonal().array() += h * fastest_;
+  x.bottomLeftCorner(n_, n_) = h / 6 * (from_.by_q + 4 * k + to_.by_q) - c * (d.lazyProduct(dk) - dd.lazyProduct(k));
+  x.block(n_, n_, n_, n_) = h / 6 * (from_.by_v + 4 * d + to_.by_v) - c * (d.lazyProduct(dd) - dd.lazyProduct(d) - fastest_ * dk);
+  terms_.push_back(terms_of_exponential(column_norm(here, size_, stride_)));
+  here += size_ * stride_;
+  for (const Node* node : {&from_, &middle_, &to_}) here = std::copy_n(node->inputs.data(), n_ * inputs_, here);
 }
 
-// A step in arcs that end where the contact point turns back, and are short enough.
-void LinearizedClosing::add_step(const MotionTape::Arc& arc, bool after_edge, bool before_edge) {
-  const double t0 = arc.begin.time, t1 = arc.end.time, h = t1 - t0;
-  std::vector<Quintic> modes;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n_); ++i) {
-    const std::size_t v = i + static_cast<std::size_t>(n_);
-    modes.emplace_back(t0, arc.begin.state[i], arc.begin.state[v], arc.begin.rates[i], t1, arc.end.state[i], arc.end.state[v],
-                       arc.end.rates[i]);
-  }
-  const auto tip = [&](const std::vector<double>& of) { return model_.contact_deflection(of.data()); };
-  const auto speed = [&](const Knot& knot) { return model_.contact_deflection(knot.state.data() + n_); };
-  const Quintic contact_point(t0, tip(arc.begin.state), speed(arc.begin), tip(arc.begin.rates), t1, tip(arc.end.state),
-                              speed(arc.end), tip(arc.end.rates));
-  const auto node_at = [&](double t) {
-    VectorXd q(n_), v(n_);
-    for (Index i = 0; i < n_; ++i) {
-      q[i] = modes[static_cast<std::size_t>(i)].position(t);
-      v[i] = modes[static_cast<std::size_t>(i)].velocity(t);
-    }
-    return node(t, q.data(), v.data(), pieces_, arc.contact);
-  };
-  Node from = last_ ? std::move(*last_) : node(t0, arc.begin.state.data(), arc.begin.state.data() + n_, pieces_, arc.contact);
-  const double norm = h * from.a.cwiseAbs().colwise().sum().maxCoeff();
+LinearizedClosing::Transition LinearizedClosing::transition(std::size_t arc) const {
+  const Index magnus = size_ * stride_, each = n_ * inputs_;
+  const double* here = numbers_.data() + static_cast<Index>(arc) * (magnus + 3 * each);
+  return {.magnus = here,
+          .begin = here + magnus,
+          .middle = here + magnus + each,
+          .end = here + magnus + 2 * each,
+          .terms = terms_[arc]};
+}
+
+// Times at which the arcs of a step end, and whether the contact point turns there: short enough, of a step from from_ on.
+std::vector<std::pair<double, bool>> LinearizedClosing::ends_of_arcs(const MotionTape::Motion& from, const MotionTape::Motion& to,
+                                                                     bool after_edge, bool before_edge) const {
+  const double t0 = from.time, t1 = to.time, h = t1 - t0;
+  const double norm =
+      h * std::max(from_.by_q.cwiseAbs().colwise().sum().maxCoeff(), fastest_ + from_.by_v.cwiseAbs().colwise().sum().maxCoeff());
   const int least = refinement_ * (after_edge || before_edge ? parts_at_edge : 1);
   const int parts = std::min(most_parts, std::max(least, static_cast<int>(std::ceil(norm / longest_angle))));
-  std::vector<std::pair<double, bool>> ends;  // time, and whether the contact point turns there
+  std::vector<std::pair<double, bool>> ends;
   for (const double share : ends_of_parts(parts, after_edge, before_edge))
     ends.emplace_back(share < 1 ? t0 + h * share : t1, false);
-  if (speed(arc.begin) * speed(arc.end) < 0) {
+  const auto tip = [&](const double* of) { return model_.contact_deflection(of); };
+  if (tip(from.v) * tip(to.v) < 0) {
+    const Quintic contact_point(t0, tip(from.q), tip(from.v), tip(from.accelerations), t1, tip(to.q), tip(to.v),
+                                tip(to.accelerations));
     const double turn = bracketed_zero([&](double t) { return contact_point.velocity(t); }, t0, t1);
     ends.emplace_back(turn, true);
     std::sort(ends.begin(), ends.end());
   }
-  double begin = t0;
-  for (const auto& [end, turns] : ends) {
+  return ends;
+}
+
+void LinearizedClosing::add_step(const MotionTape& tape, std::size_t step, bool after_edge, bool before_edge) {
+  const MotionTape::Motion from = tape.begin(step), to = tape.end(step);
+  const ContactState& contact = tape.arcs()[step].contact;
+  if (!goes_on_) set_node(from_, from.time, from.q, from.v, contact);
+  goes_on_ = true;
+  double begin = from.time;
+  Arc at{.q = Modal(n_), .v = Modal(n_), .accelerations = Modal(n_), .contact = contact, .pieces_entered = pieces_.size() - 1};
+  const auto move_to = [&](double t) {
+    for (Index i = 0; i < n_; ++i) {
+      const Quintic mode(from.time, from.q[i], from.v[i], from.accelerations[i], to.time, to.q[i], to.v[i], to.accelerations[i]);
+      at.q[i] = mode.position(t);
+      at.v[i] = mode.velocity(t);
+      at.accelerations[i] = mode.acceleration(t);
+    }
+  };
+  for (const auto& [end, turns] : ends_of_arcs(from, to, after_edge, before_edge)) {
     if (!(end > begin)) {
       if (turns && !arcs_.empty()) arcs_.back().turns = true;
       continue;
     }
-    Node middle = node_at((begin + end) / 2);
-    Arc next{.begin = begin,
-             .end = end,
-             .q = VectorXd(n_),
-             .v = VectorXd(n_),
-             .accelerations = VectorXd(n_),
-             .turns = turns,
-
-             .contact = arc.contact,
-             .pieces = pieces_};
-    for (Index i = 0; i < n_; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const bool last = end == t1;
-      next.q[i] = last ? arc.end.state[k] : modes[k].position(end);
-      next.v[i] = last ? arc.end.state[k + static_cast<std::size_t>(n_)] : modes[k].velocity(end);
-      next.accelerations[i] = last ? arc.end.rates[k] : modes[k].acceleration(end);
+    move_to((begin + end) / 2);
+    set_node(middle_, (begin + end) / 2, at.q.data(), at.v.data(), contact);
+    if (end == to.time) {
+      at.q = Eigen::Map<const VectorXd>(to.q, n_);
+      at.v = Eigen::Map<const VectorXd>(to.v, n_);
+      at.accelerations = Eigen::Map<const VectorXd>(to.accelerations, n_);
+    } else {
+      move_to(end);
     }
-    Node to = node(end, next.q.data(), next.v.data(), pieces_, arc.contact);
-    transitions_.push_back(transition(end - begin, from, middle, to));
-    arcs_.push_back(std::move(next));
-    from = std::move(to);
+    set_node(to_, end, at.q.data(), at.v.data(), contact);
+    at.begin = begin;
+    at.end = end;
+    at.turns = turns;
+    add_transition(end - begin);
+    arcs_.push_back(at);
+    std::swap(from_, to_);
     begin = end;
   }
-  last_ = std::move(from);
 }
 
 // Where drives go on to other pieces, f jumps at times that the waveform decides.
-void LinearizedClosing::enter_pieces(const Knot& here, const ContactState& contact) {
-  std::vector<std::size_t> next;
-  for (const Signal& signal : signals_) next.push_back(signal.piece_at(here.time));
-  if (next == pieces_) return;
-  last_.reset();
-  if (pieces_.empty()) {
-    pieces_ = std::move(next);
-    return;
-  }
-  const Eigen::Map<const VectorXd> q(here.state.data(), n_), v(here.state.data() + n_, n_);
-  Jump jump{.arcs = arcs_.size(), .matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}};
-  for (std::size_t k = 0; k < next.size(); ++k) {
-    if (next[k] == pieces_[k]) continue;
-    const VectorXd before = rates(here.time, q, v, pieces_, contact);
-    pieces_[k] = next[k];
-    const VectorXd after = rates(here.time, q, v, pieces_, contact);
+void LinearizedClosing::enter_pieces(const MotionTape::Motion& here, const ContactState& contact) {
+  const auto next = [&](std::size_t k) {
+    const std::vector<SignalPiece>& all = signals_[k].pieces();
+    std::size_t piece = pieces_.back()[k];
+    while (piece + 1 < all.size() && all[piece + 1].begin <= here.time) ++piece;
+    return piece;
+  };
+  Jump jump{.arcs = arcs_.size(), .matrix = {}, .moved = {}};
+  for (std::size_t k = 0; k < signals_.size(); ++k) {
+    const std::size_t piece = next(k);
+    if (piece == pieces_.back()[k]) continue;
     VectorXd gained = VectorXd::Zero(size_ + 1);
-    gained.head(size_) = before - after;
-    jump.moved.push_back({{.drive = k, .piece = next[k], .rate = 0}, std::move(gained)});
+    gained.head(size_) = rates(here.time, here.q, here.v, contact);
+    pieces_.push_back(pieces_.back());
+    pieces_.back()[k] = piece;
+    gained.head(size_) -= rates(here.time, here.q, here.v, contact);
+    jump.moved.push_back({{.drive = k, .piece = piece, .rate = 0}, std::move(gained)});
   }
-  jumps_.push_back(std::move(jump));
+  if (jump.moved.empty()) return;
+  goes_on_ = false;
+  if (!arcs_.empty()) jumps_.push_back(std::move(jump));
 }
 
 void LinearizedClosing::add_passage(const MotionTape::Passage& passage) {
   using Kind = PhaseChange::Kind;
   const PhaseChange& change = passage.change;
-  last_.reset();
+  goes_on_ = false;
   passages_.push_back({arcs_.size(), change});
   if (arcs_.empty() || change.kind == Kind::leaves) return;
   if (change.kind == Kind::turn) arcs_.back().turns = true;
   const Arc& before = arcs_.back();
-  Jump jump{.arcs = arcs_.size(), .matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}};
+  MatrixXd matrix = MatrixXd::Identity(size_ + 1, size_ + 1);
   VectorXd normal = VectorXd::Zero(size_);
   normal.head(n_) = model_.contact_shape() / fastest_;
   if (change.kind == Kind::rests) {
-    jump.matrix.setZero();
+    matrix.setZero();
   } else if (change.kind == Kind::turn) {
     const double deepest = model_.contact_deflection(before.q.data()) - model_.device().gap.contact, step = 1e-5 * deepest;
     const auto shift = [&](double d) { return dent(model_.contact(), d).shift; };
-    jump.matrix.bottomRows<1>().setZero();
-    jump.matrix.bottomLeftCorner(1, size_) = (shift(deepest + step) - shift(deepest - step)) / (2 * step) * normal.transpose();
+    matrix.bottomRows<1>().setZero();
+    matrix.bottomLeftCorner(1, size_) = (shift(deepest + step) - shift(deepest - step)) / (2 * step) * normal.transpose();
   } else {
-    const double t = passage.here.time;
-    VectorXd from = rates(t, before.q, before.v, before.pieces, change.before), v = before.v;
+    Modal v = before.v;
+    VectorXd from = rates(passage.time, before.q.data(), v.data(), change.before);
+    const double approach = normal.dot(from);
     if (change.kind == Kind::impact) {
       const double restitution = model_.rigid_contact()->restitution;
       v *= -restitution;
       from.tail(n_) *= -restitution;
-      jump.matrix.block(n_, n_, n_, n_) *= -restitution;
+      matrix.block(n_, n_, n_, n_) *= -restitution;
     }
-    const VectorXd to = rates(t, before.q, v, before.pieces, change.after);
-    const double approach = normal.dot(rates(t, before.q, before.v, before.pieces, change.before));
-    jump.matrix.topLeftCorner(size_, size_) -= (from - to) * normal.transpose() / approach;
-    if (change.before.shift != 0 && change.after.shift == 0) jump.matrix.bottomRows<1>().setZero();  // the dent has healed
+    const VectorXd to = rates(passage.time, before.q.data(), v.data(), change.after);
+    matrix.topLeftCorner(size_, size_) -= (from - to) * normal.transpose() / approach;
+    if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();  // the dent has healed
   }
-  jumps_.push_back(std::move(jump));
+  jumps_.push_back({.arcs = arcs_.size(), .matrix = std::move(matrix), .moved = {}});
 }
 
 VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
@@ -284,33 +357,40 @@ VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
   return all;
 }
 
-// Calls add(column of Transition::inputs, parameter, dV/dp) for what moves the drives in an arc.
-template <class Add>
-void LinearizedClosing::for_inputs(std::size_t arc, const SignalSlopes& slopes, Add&& add) const {
-  const Arc& at = arcs_[arc];
-  for (std::size_t k = 0; k < signals_.size(); ++k) {
-    for (const SignalSlopes::Slope& slope : slopes.at(k, at.pieces[k])) {
-      const auto column = static_cast<Index>(3 * k), parameter = static_cast<Index>(slope.parameter);
-      add(column, parameter, slope.voltage(at.begin));
-      add(column + 1, parameter, slope.voltage((at.begin + at.end) / 2));
-      add(column + 2, parameter, slope.voltage(at.end));
-    }
-  }
-}
-
-MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const {
-  const auto count = static_cast<Index>(figures.size());
-  MatrixXd gradient = MatrixXd::Zero(count, static_cast<Index>(slopes.parameters()));
-  MatrixXd weights = MatrixXd::Zero(count, size_ + 1), inputs;
-  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc, figure, weights
+// Of figures that are measured at the beginnings of pieces.
+void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, MatrixXd& gradient) const {
   for (std::size_t f = 0; f < figures.size(); ++f) {
-    for (const FigureSlope::Weights& w : figures[f].weights) given.push_back({w.arc, {static_cast<Index>(f), scaled(w)}});
     for (const FigureSlope::Moved& m : figures[f].moved) {
       for (const SignalSlopes::Slope& slope : slopes.at(m.drive, m.piece))
         gradient(static_cast<Index>(f), static_cast<Index>(slope.parameter)) += m.rate * slope.begin;
     }
   }
+}
+
+// Calls add(drive, parameter, dV/dp at the begin, in the middle and at the end of an arc).
+template <class Add>
+void LinearizedClosing::for_inputs(const Arc& arc, const SignalSlopes& slopes, Add&& add) const {
+  const std::vector<std::size_t>& on = pieces(arc);
+  for (std::size_t k = 0; k < signals_.size(); ++k) {
+    for (const SignalSlopes::Slope& slope : slopes.at(k, on[k])) {
+      add(static_cast<Index>(k), static_cast<Index>(slope.parameter), slope.voltage(arc.begin),
+          slope.voltage((arc.begin + arc.end) / 2), slope.voltage(arc.end));
+    }
+  }
+}
+
+// An input on an arc is the parabola through its values at the nodes.
+MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const {
+  const auto count = static_cast<Index>(figures.size());
+  MatrixXd gradient = MatrixXd::Zero(count, static_cast<Index>(slopes.parameters()));
+  MatrixXd weights = MatrixXd::Zero(count, size_ + 1), left = weights;
+  std::vector<std::pair<std::size_t, std::pair<Index, VectorXd>>> given;  // arc, figure, weights
+  for (std::size_t f = 0; f < figures.size(); ++f) {
+    for (const FigureSlope::Weights& w : figures[f].weights) given.push_back({w.arc, {static_cast<Index>(f), scaled(w)}});
+  }
+  add_moved(figures, slopes, gradient);
   std::stable_sort(given.begin(), given.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  MatrixXd at_begin(count, inputs_), at_middle(count, inputs_), at_end(count, inputs_);
   auto jump = jumps_.rbegin();
   for (std::size_t arc = arcs_.size(); arc-- > 0;) {
     for (; jump != jumps_.rend() && jump->arcs == arc + 1; ++jump) {
@@ -319,50 +399,80 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
         for (const SignalSlopes::Slope& slope : slopes.at(moved.drive, moved.piece))
           gradient.col(static_cast<Index>(slope.parameter)) += each * slope.begin;
       }
-      weights = weights * jump->matrix;
+      if (!jump->matrix) continue;
+      weights = weights * *jump->matrix;
+      left = left * *jump->matrix;
     }
     for (; !given.empty() && given.back().first == arc; given.pop_back())
       weights.row(given.back().second.first) += given.back().second.second.transpose();
-    const Transition& t = transitions_[arc];
-    inputs.noalias() = weights.leftCols(size_) * t.inputs;
-    for_inputs(arc, slopes,
-               [&](Index column, Index parameter, double volts) { gradient.col(parameter) += inputs.col(column) * volts; });
-    weights.col(size_) += weights.leftCols(size_) * t.shift;
-    weights.leftCols(size_) = (weights.leftCols(size_) * t.state).eval();
+    const Transition t = transition(arc);
+    const double h = arcs_[arc].end - arcs_[arc].begin;
+    using Inputs = Eigen::Map<const MatrixXd>;
+    const Inputs begin(t.begin, n_, inputs_), middle(t.middle, n_, inputs_), end(t.end, n_, inputs_);
+    for (Index f = 0; f < count; ++f) {
+      const RowSeries w(t.magnus, size_, stride_, t.terms, weights.row(f).head(size_).array());
+      const auto of = [&](const auto& row) { return row.matrix().segment(n_, n_); };
+      at_begin.row(f) = of(h * (w.phi1 - 3 * w.phi2 + 4 * w.phi3)).lazyProduct(begin);
+      at_middle.row(f) = of(h * (4 * w.phi2 - 8 * w.phi3)).lazyProduct(middle);
+      at_end.row(f) = of(h * (4 * w.phi3 - w.phi2)).lazyProduct(end);
+      add_compensated(weights.row(f), left.row(f), w.gain.head(size_));
+      weights(f, size_) += at_begin(f, inputs_ - 1) + at_middle(f, inputs_ - 1) + at_end(f, inputs_ - 1);
+    }
+    for_inputs(arcs_[arc], slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
+      gradient.col(parameter) += v0 * at_begin.col(drive) + v1 * at_middle.col(drive) + v2 * at_end.col(drive);
+    });
   }
   return gradient;
 }
 
 MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const {
-  const auto count = static_cast<Index>(slopes.parameters());
+  const auto count = static_cast<Index>(slopes.parameters()), columns = (count + lane_size - 1) / lane_size * lane_size;
   MatrixXd gradient = MatrixXd::Zero(static_cast<Index>(figures.size()), count);
-  MatrixXd d = MatrixXd::Zero(size_ + 1, count);
+  Rows d = Rows::Zero(size_ + 1, columns), left = d;
+  ColumnSeries series;
+  std::array<Rows, 3> u;
+  u.fill(Rows::Zero(n_, columns));
   auto jump = jumps_.begin();
   for (std::size_t arc = 0; arc < arcs_.size(); ++arc) {
     for (; jump != jumps_.end() && jump->arcs <= arc; ++jump) {
-      d = (jump->matrix * d).eval();
+      if (jump->matrix) {
+        d = (*jump->matrix * d.matrix()).array().eval();
+        left = (*jump->matrix * left.matrix()).array().eval();
+      }
       for (const auto& [moved, gained] : jump->moved) {
         for (const SignalSlopes::Slope& slope : slopes.at(moved.drive, moved.piece))
-          d.col(static_cast<Index>(slope.parameter)) += gained * slope.begin;
+          d.col(static_cast<Index>(slope.parameter)) += gained.array() * slope.begin;
       }
     }
-    const Transition& t = transitions_[arc];
-    d.topRows(size_) = (t.state * d.topRows(size_) + t.shift * d.bottomRows<1>()).eval();
-    for_inputs(arc, slopes, [&](Index column, Index parameter, double volts) {
-      d.col(parameter).head(size_) += t.inputs.col(column) * volts;
+    const Transition t = transition(arc);
+    const double h = arcs_[arc].end - arcs_[arc].begin;
+    using Input = Eigen::Map<const Eigen::ArrayXd>;
+    const auto at = [&](const double* inputs, Index k) { return Input(inputs + k * n_, n_); };
+    for (Rows& each : u) each.setZero();
+    for_inputs(arcs_[arc], slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
+      const auto p0 = h * v0 * at(t.begin, drive), p1 = h * v1 * at(t.middle, drive), p2 = h * v2 * at(t.end, drive);
+      u[0].col(parameter) += p0;
+      u[1].col(parameter) += 4 * p1 - 3 * p0 - p2;
+      u[2].col(parameter) += 2 * (p0 - 2 * p1 + p2);
     });
+    const Index dent = inputs_ - 1;
+    if (arcs_[arc].contact.unloading) {
+      const auto p0 = (h * at(t.begin, dent)).matrix(), p1 = (h * at(t.middle, dent)).matrix(),
+                 p2 = (h * at(t.end, dent)).matrix();
+      const auto shift = d.bottomRows<1>().matrix();
+      u[0] += (p0 * shift).array();
+      u[1] += ((4 * p1 - 3 * p0 - p2) * shift).array();
+      u[2] += (2 * (p0 - 2 * p1 + p2) * shift).array();
+    }
+    series.carry(t.magnus, stride_, t.terms, u, d);
+    add_compensated(d, left, series.gain);
     for (std::size_t f = 0; f < figures.size(); ++f) {
       for (const FigureSlope::Weights& w : figures[f].weights) {
-        if (w.arc == arc) gradient.row(static_cast<Index>(f)) += scaled(w).transpose() * d;
+        if (w.arc == arc) gradient.row(static_cast<Index>(f)) += scaled(w).transpose() * d.leftCols(count).matrix();
       }
     }
   }
-  for (std::size_t f = 0; f < figures.size(); ++f) {
-    for (const FigureSlope::Moved& m : figures[f].moved) {
-      for (const SignalSlopes::Slope& slope : slopes.at(m.drive, m.piece))
-        gradient(static_cast<Index>(f), static_cast<Index>(slope.parameter)) += m.rate * slope.begin;
-    }
-  }
+  add_moved(figures, slopes, gradient);
   return gradient;
 }
 

@@ -9,7 +9,8 @@
 // Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference to the state.
 //
 // Forward, d is carried along for all parameters at once. Backward (adjoint), the weights that a figure gives to d are carried
-// from the end to the beginning: its cost hardly depends on the number of parameters.
+// from the end to the beginning: its cost hardly depends on the number of parameters. Both take the exponential times vectors, by
+// its Taylor series, and never the exponential itself.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,15 +44,16 @@ struct FigureSlope {
 
 class LinearizedClosing {
  public:
+  using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< a number to each mode, without an allocation
+
   /// A stretch of a step, short enough for the series; a step in which the contact point turns back ends one there.
   struct Arc {
-    double begin = 0, end = 0;      ///< [s]
-    Eigen::VectorXd q, v;           ///< at its end
-    Eigen::VectorXd accelerations;  ///< at its end
-    bool turns = false;             ///< the contact point turns back at its end
-
+    double begin = 0, end = 0;  ///< [s]
+    Modal q, v;                 ///< at its end
+    Modal accelerations;        ///< at its end
+    bool turns = false;         ///< the contact point turns back at its end
     ContactState contact;
-    std::vector<std::size_t> pieces;  ///< of the drives
+    std::size_t pieces_entered = 0;  ///< see pieces()
   };
   /// A passage of the tape after so many arcs.
   struct Passage {
@@ -67,6 +69,8 @@ class LinearizedClosing {
   [[nodiscard]] static std::string refusal(const Switch& model);
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
+  /// Of the drives, all along an arc.
+  [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<Passage>& passages() const { return passages_; }
 
   /// Derivatives of figures, a row each, with respect to the parameters: adjoint.
@@ -77,48 +81,57 @@ class LinearizedClosing {
  private:
   using Index = Eigen::Index;
 
-  // The equations at one state, in units in which q is times the fastest frequency.
+  // The derivatives of the accelerations at one state, in units in which q is times the fastest frequency.
   struct Node {
-    Eigen::MatrixXd a;         // 2 modes square
-    Eigen::MatrixXd inputs;    // 2 modes x drives
-    Eigen::VectorXd by_shift;  // of the dent of a contact with memory; zero where there is none
+    Eigen::MatrixXd by_q, by_v;
+    Eigen::MatrixXd inputs;  // by the drives, then by the dent of a contact with memory
   };
+  // Magnus' series of an arc and what drives and dents add: places in numbers_.
   struct Transition {
-    Eigen::MatrixXd state;   // 2 modes square
-    Eigen::MatrixXd inputs;  // 2 modes x 3 drives: dV/dp of drive k at begin, middle and end of the arc
-    Eigen::VectorXd shift;
+    const double* magnus;  // rows of whole lanes
+    const double* begin;   // inputs at the begin,
+    const double* middle;  // in the middle
+    const double* end;     // and at the end of the arc, modes x inputs each
+    int terms = 0;         // of the series of its exponential
   };
-  // d, and the shift's derivative below it, after an event: jump * d + sum over moved pieces.
+  // d, and the shift's derivative below it, after an event: matrix * d + sum over moved pieces. No matrix: d stays.
   struct Jump {
     std::size_t arcs = 0;
-    Eigen::MatrixXd matrix;                                             // 2 modes + 1 square
+    std::optional<Eigen::MatrixXd> matrix;                              // 2 modes + 1 square
     std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // d gains the vector times d(begin)/dp
   };
 
-  [[nodiscard]] Node node(double t, const double* q, const double* v, const std::vector<std::size_t>& pieces,
-                          const ContactState& contact);
-  [[nodiscard]] Transition transition(double h, const Node& begin, const Node& middle, const Node& end) const;
-  [[nodiscard]] Eigen::VectorXd rates(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                                      const std::vector<std::size_t>& pieces, const ContactState& contact);
-  void add_step(const MotionTape::Arc& arc, bool after_edge, bool before_edge);
+  void set_node(Node& node, double t, const double* q, const double* v, const ContactState& contact);
+  void set_volts(double t);
+  [[nodiscard]] Eigen::VectorXd rates(double t, const double* q, const double* v, const ContactState& contact);
+  void add_step(const MotionTape& tape, std::size_t step, bool after_edge, bool before_edge);
+  [[nodiscard]] std::vector<std::pair<double, bool>> ends_of_arcs(const MotionTape::Motion& from, const MotionTape::Motion& to,
+                                                                  bool after_edge, bool before_edge) const;
+  void add_transition(double h);
   void add_passage(const MotionTape::Passage& passage);
-  void enter_pieces(const Knot& here, const ContactState& contact);
+  void enter_pieces(const MotionTape::Motion& here, const ContactState& contact);
+  [[nodiscard]] Transition transition(std::size_t arc) const;
   [[nodiscard]] Eigen::VectorXd scaled(const FigureSlope::Weights& weights) const;
+  void add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, Eigen::MatrixXd& gradient) const;
   template <class Add>
-  void for_inputs(std::size_t arc, const SignalSlopes& slopes, Add&& add) const;
+  void for_inputs(const Arc& arc, const SignalSlopes& slopes, Add&& add) const;
 
   const Switch& model_;
   std::span<const Signal> signals_;
-  Index n_, size_;  // modes, unknowns: 2 modes
-  double fastest_;  // [rad/s]
+  Index n_, size_;         // modes, unknowns: 2 modes
+  Index stride_, inputs_;  // size_ in whole lanes; drives and the dent
+  double fastest_;         // [rad/s]
   Switch::Workspace work_;
   int refinement_;
-  std::vector<std::size_t> pieces_;  // that hold at present
+  std::vector<std::vector<std::size_t>> pieces_;  // that the drives were on, one set after the other
+  std::vector<double> volts_;                     // of the drives, at present
   std::vector<Arc> arcs_;
-  std::vector<Transition> transitions_;
+  std::vector<int> terms_;       // of the arcs' series
+  std::vector<double> numbers_;  // of the arcs, Magnus' series and inputs
   std::vector<Jump> jumps_;
   std::vector<Passage> passages_;
-  std::optional<Node> last_;  // at the end of the last arc, where nothing has changed since
+  Node from_, middle_, to_;
+  bool goes_on_ = false;  // from_ is where the next arc begins
 };
 
 }  // namespace softland

@@ -12,13 +12,18 @@ namespace softland {
 class MotionTape final : public ClosingObserver {
  public:
   struct Arc {
-    Knot begin, end;
+    double begin = 0, end = 0;  ///< [s]
     ContactState contact;
+  };
+  /// All modes at one time: pointers into the tape.
+  struct Motion {
+    double time = 0;  ///< [s]
+    const double *q, *v, *accelerations;
   };
   /// Before the arc of this number.
   struct Passage {
     std::size_t arc = 0;
-    Knot here;
+    double time = 0;  ///< [s]
     PhaseChange change;
   };
 
@@ -33,15 +38,31 @@ class MotionTape final : public ClosingObserver {
     if (next_ != nullptr) next_->touch(touch);
   }
   [[nodiscard]] bool follows_motion() const override { return true; }
-  void step(const Knot& begin, const Knot& end, const ContactState& contact) override { arcs_.push_back({begin, end, contact}); }
-  void pass(const Knot& here, const PhaseChange& change) override { passages_.push_back({arcs_.size(), here, change}); }
+  void step(const Knot& begin, const Knot& end, const ContactState& contact) override {
+    arcs_.push_back({begin.time, end.time, contact});
+    for (const Knot* knot : {&begin, &end}) {
+      modes_ = knot->state.size() - knot->rates.size();  // a film counts in both
+      numbers_.insert(numbers_.end(), knot->state.data(), knot->state.data() + 2 * modes_);
+      numbers_.insert(numbers_.end(), knot->rates.data(), knot->rates.data() + modes_);
+    }
+  }
+  void pass(const Knot& here, const PhaseChange& change) override { passages_.push_back({arcs_.size(), here.time, change}); }
 
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
+  [[nodiscard]] Motion begin(std::size_t arc) const { return motion(arcs_[arc].begin, 2 * arc); }
+  [[nodiscard]] Motion end(std::size_t arc) const { return motion(arcs_[arc].end, 2 * arc + 1); }
   [[nodiscard]] const std::vector<Passage>& passages() const { return passages_; }
 
  private:
+  [[nodiscard]] Motion motion(double time, std::size_t k) const {
+    const double* q = numbers_.data() + 3 * modes_ * k;
+    return {.time = time, .q = q, .v = q + modes_, .accelerations = q + 2 * modes_};
+  }
+
   ClosingObserver* next_ = nullptr;
   std::vector<Arc> arcs_;
+  std::vector<double> numbers_;  // q, v and accelerations at the begin of an arc, then at its end
+  std::size_t modes_ = 0;
   std::vector<Passage> passages_;
 };
 

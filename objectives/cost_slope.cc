@@ -171,10 +171,10 @@ class SlopeFinder {
   void measure_landing(std::size_t i, bool begins_to_touch) {
     if (measured_ || touches_ == 0) return;
     const Arc& at = arc(i);
-    const bool reaches_hold = i + 1 < motion_.arcs().size() && !holds(at.pieces) && holds(arc(i + 1).pieces);
-    if (!reaches_hold && !(begins_to_touch && holds(at.pieces))) return;
+    const bool reaches_hold = i + 1 < motion_.arcs().size() && !holds(motion_.pieces(at)) && holds(motion_.pieces(arc(i + 1)));
+    if (!reaches_hold && !(begins_to_touch && holds(motion_.pieces(at)))) return;
     measured_ = true;
-    const std::vector<std::size_t>& pieces = reaches_hold ? arc(i + 1).pieces : at.pieces;
+    const std::vector<std::size_t>& pieces = motion_.pieces(reaches_hold ? arc(i + 1) : at);
     std::vector<double> volts;
     for (std::size_t k = 0; k < signals_.size(); ++k) volts.push_back(signals_[k].pieces()[pieces[k]].voltage(at.end));
     VectorXd forces(model_.modes());
@@ -184,7 +184,7 @@ class SlopeFinder {
     const double rate = weights.by_q.dot(at.v) + weights.by_v.dot(at.accelerations);
     if (reaches_hold) {
       std::size_t k = 0;
-      while (at.pieces[k] == pieces[k]) ++k;
+      while (motion_.pieces(at)[k] == pieces[k]) ++k;
       slopes_.landing_excess.moved.push_back({.drive = k, .piece = pieces[k], .rate = rate});
     } else {
       weights.by_q -= rate / shape_.dot(at.v) * shape_;
