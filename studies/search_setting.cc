@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/engineering.h"
@@ -20,6 +21,7 @@ constexpr double latest_touch = 2.5;  // times the baseline's first touch
 // Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
+constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
 CostFigures imagined_step(const Prepared& given, double period) {
@@ -145,12 +147,27 @@ std::string SearchSetting::gradient_refusal(const Aim& aim) const {
   return LinearizedClosing::refusal(given.model);
 }
 
-std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const Aim& aim) const {
+SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups) const {
+  std::vector<double> lower, upper;
+  for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
+  const auto signals_at = [&](std::span<const double> at) { return given.driven(signals_of(drives(space.waveforms(at)))); };
+  return SignalSlopes(signals_at, x, lower, upper, groups);
+}
+
+std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
+  std::vector<double> inside;  // where no two parameters are at the same part of their range, by chance or by symmetry
+  for (const Variable& v : space.variables())
+    inside.push_back(std::lerp(v.lower, v.upper, 0.3 + 0.4 * std::fmod(golden_ratio * static_cast<double>(inside.size()), 1.0)));
+  return signal_slopes(inside).groups();
+}
+
+std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const Aim& aim,
+                                               const std::vector<ParameterGroup>& groups) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> gradient(x.size(), unknown);
-  if (!is_allowed(space.waveforms(x))) return gradient;
-  const auto signals_at = [&](std::span<const double> at) { return given.driven(signals_of(drives(space.waveforms(at)))); };
-  const std::vector<Signal> signals = signals_at(x);
+  const std::map<std::string, Waveform> searched = space.waveforms(x);
+  if (!is_allowed(searched)) return gradient;
+  const std::vector<Signal> signals = given.driven(signals_of(drives(searched)));
   CostObserver observer(scale.contact_gap, given.scene.metrics);
   MotionTape tape(observer);
   const Trajectory end = observe_closing(given.model, signals, run_of(signals), tape);
@@ -158,9 +175,7 @@ std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const 
   const CostSlopes slopes = cost_slopes(given.model, signals, motion, given.scene.metrics);
   const auto slope = cost_slope(aim, end.status, observer.figures(end), scale, given.scene.metrics, slopes);
   if (!slope) return gradient;
-  std::vector<double> lower, upper;
-  for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
-  const SignalSlopes by_parameters(signals_at, x, lower, upper);
+  const SignalSlopes by_parameters = signal_slopes(x, groups);
   const Eigen::MatrixXd row = motion.backward({*slope}, by_parameters);
   gradient.assign(row.data(), row.data() + row.size());
   for (const std::size_t k : by_parameters.kinks()) gradient[k] = unknown;

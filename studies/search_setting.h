@@ -19,6 +19,7 @@
 #include "studies/search_space.h"
 #include "studies/simulate.h"
 #include "studies/two_stages.h"
+#include "waveforms/signal_slopes.h"
 
 namespace softland {
 
@@ -49,8 +50,13 @@ struct SearchSetting {
   /// is not simulated again.
   [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr) const;
   /// The gradient of a cost at a point of the search space, by the parameters: of the nominal device, exact but where touches
-  /// graze. NaN where there is none.
-  [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim) const;
+  /// graze. NaN where there is none. The same numbers, sooner, with `groups`, which hold for all points or are not used.
+  [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim,
+                                                const std::vector<ParameterGroup>& groups = {}) const;
+  /// The parameters by the pieces of the signals that they move.
+  [[nodiscard]] std::vector<ParameterGroup> parameter_groups() const;
+  /// How the signals of all drives change with the parameters.
+  [[nodiscard]] SignalSlopes signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups = {}) const;
   /// Why a cost has no gradient here, in words; empty where it has.
   [[nodiscard]] std::string gradient_refusal(const Aim& aim) const;
   /// Throws InvalidInput with the name of the first that a search cannot begin with, and why.

@@ -6,12 +6,16 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <map>
 #include <random>
 #include <set>
+#include <string_view>
 
 #include "scenes.h"
 #include "studies/bang_bang.h"
 #include "studies/swing.h"
+#include "waveforms/signal_slopes.h"
 
 namespace softland {
 namespace {
@@ -61,6 +65,69 @@ void expect_within_limits(const Prepared& prepared, Actuator actuator, const std
       const std::string said = violation(signal(waveform), prepared.drives.limits.at(drive));
       ASSERT_EQ(said, "") << drive << " " << family << " " << testing::PrintToString(x);
     }
+  }
+}
+
+// At random points of every family, some of them on bounds: parameters that share differences give what each gives by itself.
+// Returns how often they shared.
+int expect_shared_slopes(const Prepared& prepared, const char* family) {
+  const SearchSpace space(prepared, Actuator::both, family, first_touch);
+  const auto signals_at = [&](std::span<const double> x) {
+    return prepared.driven(signals_of(prepared.in_drive_order(space.waveforms(x))));
+  };
+  std::vector<double> lower, upper;
+  for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto point = [&](double on_bounds) {
+    std::vector<double> x;
+    for (std::size_t k = 0; k < lower.size(); ++k) {
+      const double u = uniform(random), part = u < on_bounds ? 0 : u > 1 - on_bounds ? 1 : uniform(random);
+      x.push_back(std::lerp(lower[k], upper[k], part));
+    }
+    return x;
+  };
+  const std::vector<ParameterGroup> groups = SignalSlopes(signals_at, point(0), lower, upper).groups();
+  int shared = 0;
+  for (int i = 0; i < 12; ++i) {
+    const std::vector<double> x = point(i % 2 == 0 ? 0 : 0.1);
+    const SignalSlopes alone(signals_at, x, lower, upper), together(signals_at, x, lower, upper, groups);
+    shared += together.are_grouped() ? 1 : 0;
+    EXPECT_EQ(alone.kinks(), together.kinks()) << family;
+    const std::vector<Signal> signals = signals_at(x);
+    for (std::size_t drive = 0; drive < signals.size(); ++drive) {
+      for (std::size_t piece = 0; piece < signals[drive].pieces().size(); ++piece) {
+        const double time = signals[drive].pieces()[piece].begin + 1e-7;
+        const auto numbers = [&](const SignalSlopes& slopes) {
+          std::map<std::size_t, std::pair<double, double>> all;
+          for (const SignalSlopes::Slope& s : slopes.at(drive, piece)) all[s.parameter] = {s.begin, s.voltage(time)};
+          return all;
+        };
+        EXPECT_EQ(numbers(alone), numbers(together)) << family << " drive " << drive << " piece " << piece;
+      }
+    }
+  }
+  return shared;
+}
+
+TEST(SearchSpace, HasTheSameSlopesWhereParametersShareDifferences) {
+  for (const char* family : every_family) {
+    const int shared = expect_shared_slopes(plain(), family);
+    const bool has_many = std::string_view(family) == "bspline:20" || std::string_view(family) == "knots:20";
+    EXPECT_TRUE(shared == 12 || !has_many) << family << " " << shared;
+  }
+}
+TEST(SearchSpace, HasTheSameSlopesUnderSlewLimits) {
+  int shared = 0;
+  for (const char* family : every_family) shared += expect_shared_slopes(slow_drivers(), family);
+  EXPECT_GT(shared, 0);
+}
+TEST(SearchSpace, HasTheSameSlopesThroughDrivers) {
+  const Prepared filtered = prepare(gold_pzt({"driver.main.bandwidth=1 MHz", "driver.piezo.bandwidth=0.3 MHz"}), true);
+  const Prepared sampled = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.piezo.sample_rate=3 MHz"}), true);
+  const Prepared rounded = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.main.bits=8"}), true);
+  for (const char* family : every_family) {
+    for (const Prepared* drivers : {&filtered, &sampled, &rounded}) expect_shared_slopes(*drivers, family);
   }
 }
 
