@@ -1,5 +1,6 @@
 // What the gradient of a search's cost costs, in closings, and how far it is off, by the number of parameters and by the number
-// of arcs that a step of the closing is divided into.
+// of arcs that a step of the closing is divided into. Which parameters share a difference of waveforms is found once, beforehand,
+// as a search does it. A second table has the gradients of searches of some families.
 //   bench_gradient [SCENE]     (default: mem-gold.toml)
 #include <fmt/format.h>
 
@@ -19,7 +20,7 @@ using namespace softland;
 template <class F>
 double milliseconds(F&& f) {
   double least = 1e9;
-  for (int k = 0; k < 15; ++k) {
+  for (int k = 0; k < 60; ++k) {
     const auto begin = std::chrono::steady_clock::now();
     f();
     const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
@@ -55,6 +56,7 @@ void measure(const SearchSetting& s, std::size_t levels) {
     spline.levels.insert(spline.levels.end(), 2, hold);
     return s.given.driven(signals_of(s.drives({{drive, spline}})));
   };
+  const std::vector<ParameterGroup> groups = SignalSlopes(signals_at, upper, lower, upper).groups();
   const std::vector<Signal> signals = signals_at(x);
   const ClosingOptions run = s.run_of(signals);
   const double closing = milliseconds([&] {
@@ -70,20 +72,36 @@ void measure(const SearchSetting& s, std::size_t levels) {
     const LinearizedClosing motion(s.given.model, signals, tape, refinement);
     const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
     const auto slope = cost_slope(Target::bounce, end.status, observer.figures(end), s.scale, s.given.scene.metrics, slopes);
-    const SignalSlopes by(signals_at, x, lower, upper);
+    const SignalSlopes by(signals_at, x, lower, upper, groups);
     Eigen::VectorXd row = (backward ? motion.backward({*slope}, by) : motion.forward({*slope}, by)).transpose();
     for (Eigen::Index k = 0; k < row.size(); ++k)
       row[k] *= upper[static_cast<std::size_t>(k)] - lower[static_cast<std::size_t>(k)];
     return row;
   };
+  const double waveforms = milliseconds([&] { (void)SignalSlopes(signals_at, x, lower, upper, groups); });
   const Eigen::VectorXd exact = gradient(16, true, 1e-11);
   for (const int refinement : {1, 2, 4}) {
     const double adjoint = milliseconds([&] { (void)gradient(refinement, true, run.tolerance); });
     const double forward = milliseconds([&] { (void)gradient(refinement, false, run.tolerance); });
     const Eigen::VectorXd found = gradient(refinement, true, run.tolerance);
-    fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.1e} |\n", x.size(), refinement, closing, adjoint / closing,
-               forward / closing, (found - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff());
+    fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {:.1e} |\n", x.size(), refinement, closing, adjoint / closing,
+               forward / closing, waveforms / closing, (found - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff());
   }
+}
+
+// As a search takes it, at the first of its starting points.
+void measure_search(const std::string& scene, const std::string& family) {
+  const SearchSetting s = search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, family, {});
+  const std::vector<ParameterGroup> groups = s.parameter_groups();
+  const std::vector<double> x = s.space.starts().front();
+  const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
+  const double closing = milliseconds([&] {
+    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    (void)observe_closing(s.given.model, signals, s.run_of(signals), observer);
+  });
+  const double gradient = milliseconds([&] { (void)s.gradient_at(x, Target::bounce, groups); });
+  const double waveforms = milliseconds([&] { (void)s.signal_slopes(x, groups); });
+  fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} |\n", family, x.size(), closing, gradient / closing, waveforms / closing);
 }
 
 }  // namespace
@@ -91,7 +109,12 @@ void measure(const SearchSetting& s, std::size_t levels) {
 int main(int argc, char** argv) {
   const std::string scene = argc > 1 ? argv[1] : std::string(SOFTLAND_SCENES) + "/mem-gold.toml";
   const SearchSetting setting = search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, "pulse", {});
-  fmt::print("| parameters | arcs of a step | closing [ms] | adjoint [closings] | forward [closings] | error |\n");
-  fmt::print("|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| parameters | arcs of a step | closing [ms] | adjoint [closings] | forward [closings] | waveforms alone [closings] | "
+      "error |\n");
+  fmt::print("|---|---|---|---|---|---|---|\n");
   for (const std::size_t parameters : {4U, 40U, 200U}) measure(setting, parameters - 1);
+  fmt::print(
+      "\n| family | parameters | closing [ms] | gradient [closings] | waveforms alone [closings] |\n|---|---|---|---|---|\n");
+  for (const char* family : {"pulse", "dither", "s-curve", "sines:9", "bspline:20", "knots:20"}) measure_search(scene, family);
 }
