@@ -20,7 +20,7 @@ constexpr double longest_angle = 2.5;  // norm of A times the length of an arc
 constexpr int most_parts = 4096;       // of a step
 constexpr int parts_at_edge = 6;       // of a step that begins or ends where a contact does
 constexpr Index lane_size = lanes;
-constexpr Index widest = 2 * most_modes;  // unknowns, whole lanes
+constexpr Index most_unknowns = 2 * most_modes;  // unknowns, whole lanes
 
 // Terms after which the exponential of a matrix of this norm is good to rounding; as many as the parabola of an input has.
 int terms_of_exponential(double norm) {
@@ -62,12 +62,12 @@ void add_compensated(Value&& value, Left&& left, const Gain& gain) {
 
 // What a row w gains times exp(x), and w phi_j(x) = sum over k of w x^k / (k + j)!, j = 1, 2, 3.
 struct RowSeries {
-  using Row = Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, widest>;
+  using Row = Eigen::Array<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most_unknowns>;
   Row gain, phi1, phi2, phi3;
 
   template <class W>
   RowSeries(const double* x, Index size, Index stride, int terms, const W& w) {
-    std::array<double, widest> first{}, second;
+    std::array<double, most_unknowns> first{}, second;
     double *term = first.data(), *next = second.data();
     Eigen::Map<Row>(term, size) = w;
     gain = Row::Zero(stride);
@@ -92,14 +92,14 @@ struct RowSeries {
 };
 
 // What columns d gain along y' = x y + u1 + u2 s + u3 s^2 from s = 0 to 1. Rows are whole lanes; u is 0 in their upper half.
-using Rows = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Columns = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 struct ColumnSeries {
-  Rows gain, term, next;
+  Columns gain, term, next;
 
-  void carry(const double* x, Index stride, int terms, const std::array<Rows, 3>& u, const Rows& d) {
+  void carry(const double* x, Index stride, int terms, const std::array<Columns, 3>& u, const Columns& d) {
     const Index size = 2 * u[0].rows(), columns = d.cols();
     term = d.topRows(size);
-    gain = Rows::Zero(size, columns);
+    gain = Columns::Zero(size, columns);
     next.resize(size, columns);
     for (int k = 1; k <= terms; ++k) {
       const double over = 1.0 / k;
@@ -428,10 +428,10 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
 MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const {
   const auto count = static_cast<Index>(slopes.parameters()), columns = (count + lane_size - 1) / lane_size * lane_size;
   MatrixXd gradient = MatrixXd::Zero(static_cast<Index>(figures.size()), count);
-  Rows d = Rows::Zero(size_ + 1, columns), left = d;
+  Columns d = Columns::Zero(size_ + 1, columns), left = d;
   ColumnSeries series;
-  std::array<Rows, 3> u;
-  u.fill(Rows::Zero(n_, columns));
+  std::array<Columns, 3> u;
+  u.fill(Columns::Zero(n_, columns));
   auto jump = jumps_.begin();
   for (std::size_t arc = 0; arc < arcs_.size(); ++arc) {
     for (; jump != jumps_.end() && jump->arcs <= arc; ++jump) {
@@ -448,7 +448,7 @@ MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, con
     const double h = arcs_[arc].end - arcs_[arc].begin;
     using Input = Eigen::Map<const Eigen::ArrayXd>;
     const auto at = [&](const double* inputs, Index k) { return Input(inputs + k * n_, n_); };
-    for (Rows& each : u) each.setZero();
+    for (Columns& each : u) each.setZero();
     for_inputs(arcs_[arc], slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
       const auto p0 = h * v0 * at(t.begin, drive), p1 = h * v1 * at(t.middle, drive), p2 = h * v2 * at(t.end, drive);
       u[0].col(parameter) += p0;

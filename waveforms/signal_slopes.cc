@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace softland {
@@ -20,8 +21,8 @@ bool have_same_pieces(const std::vector<Signal>& a, const std::vector<Signal>& b
 
 // Sums of durations leave the end of a waveform where it was but for rounding, at some points and not at others.
 bool are_equal(double a, double b) {
-  constexpr double roundings = 16, epsilon = 0x1p-52;
-  return std::abs(a - b) <= roundings * epsilon * std::max(std::abs(a), std::abs(b));
+  constexpr double roundings = 16 * std::numeric_limits<double>::epsilon();
+  return std::abs(a - b) <= roundings * std::max(std::abs(a), std::abs(b));
 }
 bool are_equal(const SignalTerm& a, const SignalTerm& b) {
   const auto equal = [](double one, double other) { return are_equal(one, other); };
