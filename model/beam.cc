@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "base/engineering.h"
@@ -18,46 +19,70 @@
 namespace softland {
 namespace {
 
-constexpr int functions = 8;       // per element: curvatures up to degree 7, so deflections up to degree 9
-constexpr int shortest_count = 6;  // elements over the length, at least
-
-// Legendre polynomials P_0 ... P_n at xi.
-std::vector<double> legendre(double xi, int n) {
-  std::vector<double> p(static_cast<std::size_t>(n) + 1);
-  p[0] = 1;
-  if (n > 0) p[1] = xi;
-  for (int k = 2; k <= n; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    p[i] = ((2 * k - 1) * xi * p[i - 1] - (k - 1) * p[i - 2]) / k;
-  }
-  return p;
-}
-
-// The functions of one element, at rest left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals of P_m from
-// -1. For m >= 2 both vanish at the right end.
-using ElementRow = Eigen::Matrix<double, 1, functions>;
-ElementRow integrals(double xi, int derivative) {
-  const auto p = legendre(xi, functions + 1);
-  ElementRow n;
-  if (derivative == 0) {
-    n.head<2>() << (xi + 1) * (xi + 1) / 2, (xi + 1) * (xi + 1) * (xi - 2) / 6;
-  } else {
-    n.head<2>() << xi + 1, (xi + 1) * (xi - 1) / 2;
-  }
-  for (int m = 2; m < functions; ++m) {
-    const auto i = static_cast<std::size_t>(m);
-    n[m] = derivative == 0 ? p[i + 2] / ((2 * m + 1) * (2 * m + 3)) - 2 * p[i] / ((2 * m - 1) * (2 * m + 3)) +
-                                 p[i - 2] / ((2 * m + 1) * (2 * m - 1))
-                           : (p[i + 1] - p[i - 1]) / (2 * m + 1);
-  }
-  return n;
-}
+constexpr int functions = element_functions;
+constexpr int shortest_count = 6;     // elements over the length, at least
+constexpr double least_pivot = 3e-5;  // of the elimination: it magnifies the rounding by its inverse, to some 1e-11
 
 // Orthonormal columns that are orthogonal to those of `held`.
 Eigen::MatrixXd complement(const Eigen::MatrixXd& held) {
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(held);
   const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(held.rows(), held.rows());
   return q.rightCols(held.rows() - held.cols());
+}
+
+// Combinations of the functions that the support permits, orthonormal in the elastic energy.
+Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(slopes.rows(), slopes.rows());
+  if (beam.far_clamp) basis = complement(end);
+  if (beam.axial_force != 0) {
+    const Eigen::MatrixXd stiffness =
+        Eigen::MatrixXd::Identity(basis.cols(), basis.cols()) + beam.axial_force * basis.transpose() * slopes * basis;
+    const Eigen::LLT<Eigen::MatrixXd> root(stiffness);
+    require(root.info() == Eigen::Success, "beyond the buckling load of the beam");
+    basis = root.matrixU().solve<Eigen::OnTheRight>(basis);
+  }
+  return basis;
+}
+
+// The phase of a mode over the beam where it bends as waves do that travel along it, and what it grows by with omega^2. It hardly
+// changes from a beam to a similar one.
+struct Phase {
+  double value = 0, slope = 0;
+  Phase(const NormalisedModes::Beam& beam, double square) {
+    for (const NormalisedModes::Beam::Section& s : beam.sections) {
+      const double n = beam.axial_force / (2 * s.rigidity), root = std::sqrt(n * n + s.mass * square / s.rigidity);
+      const double number = std::sqrt(root - n);  // of waves: EI k^4 + N k^2 = mu omega^2
+      value += (s.end - s.begin) * number;
+      slope += (s.end - s.begin) * s.mass / (4 * s.rigidity * root * number);
+    }
+  }
+};
+
+// omega^2 of a mode, roughly, from that of a similar beam.
+double carried_over(double square, const NormalisedModes::Beam& from, const NormalisedModes::Beam& to) {
+  constexpr int steps = 3;
+  const double phase = Phase(from, square).value;
+  for (int i = 0; i < steps; ++i) {
+    const Phase here(to, square);
+    square += (phase - here.value) / here.slope;
+  }
+  return square;
+}
+
+// Newton's method for four poles at once, and the motions there; none where it does not settle, or rounding may have grown.
+std::optional<Receptance::Answer> nearest_poles(Receptance& receptance, double place, const Lane& rounding, Lane& squares) {
+  constexpr int most_steps = 10;
+  constexpr double least_motion = 1e-3;  // of the place, in a normalised mode
+  for (int i = 0; i < most_steps; ++i) {
+    const Receptance::Answer at = receptance.at(squares, place);
+    const Lane step = at.deflection / at.inertia;
+    squares += step;
+    if ((step.abs() <= rounding * squares).all()) {
+      const bool moves = (at.deflection.abs() >= least_motion * at.inertia.sqrt()).all();
+      return moves && (at.least_pivot >= least_pivot).all() ? std::optional(at) : std::nullopt;
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -124,29 +149,29 @@ std::vector<BeamSection> beam_sections(const Device& device) {
   return sections;
 }
 
-NormalisedModes::NormalisedModes(Beam beam) : beam_(std::move(beam)) {
+NormalisedModes::NormalisedModes(Beam beam, const NormalisedModes* near) : beam_(std::move(beam)) {
   // A strong tension bends the beam close to its clamps only, over lengths of L / sqrt(N L^2 / EI).
   const double layers = std::sqrt(std::max(0.0, beam_.axial_force)) / 5;
-  const int modes = beam_.modes, count = std::max({shortest_count, modes, static_cast<int>(std::min(layers, 40.0))});
-  std::vector<double> mass;
+  const int count = std::max({shortest_count, beam_.modes, static_cast<int>(std::min(layers, 40.0))});
   for (const Beam::Section& s : beam_.sections) {
     const int parts = std::max(1, static_cast<int>(std::ceil((s.end - s.begin) * count - 1e-9)));
     for (int k = 0; k < parts; ++k) {
       elements_.push_back({.begin = s.begin + (s.end - s.begin) * k / parts,
                            .end = k + 1 == parts ? s.end : s.begin + (s.end - s.begin) * (k + 1) / parts,
-                           .rigidity = s.rigidity});
-      mass.push_back(s.mass);
+                           .rigidity = s.rigidity,
+                           .mass = s.mass});
     }
   }
+  if (near == nullptr || !follow(*near)) search();
+}
 
+void NormalisedModes::search() {
   const GaussRule rule = gauss_rule(functions + 2);  // exact for squares of polynomials of degree 9
   const auto points = static_cast<Eigen::Index>(rule.points.size()),
              total = functions * static_cast<Eigen::Index>(elements_.size());
-  mass_ = Eigen::MatrixXd::Zero(total, total);
-  slopes_ = mass_;
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Element& element = elements_[e];
-    const double half = (element.end - element.begin) / 2;
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(total, total), slopes = mass;
+  for (const BeamElement& element : elements_) {
+    const double half = element.half();
     const auto gram = [&](double factor, int derivative) {
       Eigen::MatrixXd rows(points, total);
       for (Eigen::Index g = 0; g < points; ++g) {
@@ -155,70 +180,125 @@ NormalisedModes::NormalisedModes(Beam beam) : beam_(std::move(beam)) {
       }
       return Eigen::MatrixXd(rows.transpose() * rows);
     };
-    mass_ += gram(mass[e], 0);
-    slopes_ += gram(1, 1);
+    mass += gram(element.mass, 0);
+    slopes += gram(1, 1);
   }
-  support();
+  Eigen::MatrixXd end(total, 2);  // value and slope at the far end
+  end << shape(1, 0).transpose(), shape(1, 1).transpose();
+  const Eigen::MatrixXd basis = permitted(beam_, end, slopes);
+  if (beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
 
   // M x = x / omega^2: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass_);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass);
+  inverse_squares_.resize(beam_.modes);
+  shapes_.resize(total, beam_.modes);
+  for (int i = 0; i < beam_.modes; ++i) {
+    const Eigen::Index k = mass.rows() - 1 - i;
+    inverse_squares_[i] = solver.eigenvalues()[k];
+    shapes_.col(i) = basis * solver.eigenvectors().col(k) / std::sqrt(inverse_squares_[i]);
+  }
+  orient();
+  moving_place_ = moving_place();
+}
+
+bool NormalisedModes::follow(const NormalisedModes& near) {
+  const int modes = beam_.modes;
+  constexpr double least_end = 0.02;  // of the length: a far clamp that holds a shorter element costs digits
+  if (near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
+      near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
+    return false;
+  }
+  moving_place_ = near.moving_place_;
   inverse_squares_.resize(modes);
-  shapes_.resize(total, modes);
+  shapes_.resize(functions * static_cast<Eigen::Index>(elements_.size()), modes);
+  Receptance receptance(elements_, beam_.axial_force, beam_.far_clamp);
+  for (int first = 0; first < modes; first += lanes) {
+    Lane squares;
+    for (int k = 0; k < int{lanes}; ++k) {
+      squares[k] = carried_over(1 / near.inverse_squares_[std::min(first + k, modes - 1)], near.beam_, beam_);
+    }
+    const Lane rounding = 1e-12 + 1e-15 * near.inverse_squares_[0] * squares;
+    const std::optional<Receptance::Answer> last = nearest_poles(receptance, moving_place_, rounding, squares);
+    if (!last) return false;
+    for (int k = 0; k < std::min<int>(lanes, modes - first); ++k) {
+      inverse_squares_[first + k] = 1 / squares[k];
+      shapes_.col(first + k) = receptance.motion(k) / std::sqrt(last->inertia[k]);
+    }
+  }
+  orient();
+
+  // They are the first ones if they differ, none is below the first of them, and no more of them are below the last.
+  constexpr double apart = 1e-7, margin = 1e-8;
+  for (int i = 1; i < modes; ++i) {
+    if (!(inverse_squares_[i] * (1 + apart) < inverse_squares_[i - 1])) return false;
+  }
+  const double first = 1 / inverse_squares_[0], last = 1 / inverse_squares_[modes - 1];
+  const double low = first * (1 - margin), high = last * (1 + margin);
+  const Receptance::Answer around = receptance.at({low, high, low, high}, moving_place_);
+  return first > 0 && around.below[0] == 0 && around.below[1] == modes && (around.least_pivot >= least_pivot).all();
+}
+
+void NormalisedModes::orient() {
   constexpr double close_to_the_clamp = 1e-3;  // of the length: far short of the first zero of forty modes
   const Eigen::RowVectorXd positive = shape(beam_.far_clamp ? close_to_the_clamp : 1, 0);
-  for (int i = 0; i < modes; ++i) {
-    const Eigen::Index k = mass_.rows() - 1 - i;
-    inverse_squares_[i] = solver.eigenvalues()[k];
-    shapes_.col(i) = basis_ * solver.eigenvectors().col(k) / std::sqrt(inverse_squares_[i]);
+  for (Eigen::Index i = 0; i < shapes_.cols(); ++i) {
     if (positive.dot(shapes_.col(i)) < 0) shapes_.col(i) *= -1;
   }
 }
 
-void NormalisedModes::support() {
-  const Eigen::Index total = mass_.rows();
-  basis_ = Eigen::MatrixXd::Identity(total, total);
-  if (beam_.far_clamp) {
-    Eigen::MatrixXd held(total, 2);  // what must vanish: value and slope at the far end
-    held << shape(1, 0).transpose(), shape(1, 1).transpose();
-    basis_ = complement(held);
-  } else if (beam_.axial_force == 0) {
-    return;
+double NormalisedModes::moving_place() const {
+  double place = 1, most = 0;
+  for (const BeamElement& e : elements_) {
+    for (const double x : {e.begin + e.half(), e.end}) {
+      const double least = value(x).cwiseAbs().minCoeff();
+      if (least > most) place = x, most = least;
+    }
   }
-  if (beam_.axial_force != 0) {
-    const Eigen::MatrixXd stiffness =
-        Eigen::MatrixXd::Identity(basis_.cols(), basis_.cols()) + beam_.axial_force * basis_.transpose() * slopes_ * basis_;
-    const Eigen::LLT<Eigen::MatrixXd> root(stiffness);
-    require(root.info() == Eigen::Success, "beyond the buckling load of the beam");
-    basis_ = root.matrixU().solve<Eigen::OnTheRight>(basis_);
-  }
-  mass_ = basis_.transpose() * mass_ * basis_;
+  return place;
 }
 
-Eigen::RowVectorXd NormalisedModes::shape(const Element& element, double xi, int derivative) const {
+Eigen::RowVectorXd NormalisedModes::shape(const BeamElement& element, double xi, int derivative) const {
+  static const ElementRow ends[] = {element_integrals(1, 0), element_integrals(1, 1)};
+  static const Eigen::Array<double, 1, functions> orders = Eigen::Array<double, 1, functions>::LinSpaced(0.5, functions - 0.5);
   Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(functions * static_cast<Eigen::Index>(elements_.size()));
   const double x = element.begin + (element.end - element.begin) * (1 + xi) / 2;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Element& other = elements_[e];
+    const BeamElement& other = elements_[e];
     if (other.begin > element.begin) break;
-    const double half = (other.end - other.begin) / 2;
+    const double half = other.half();
     const bool inside = other.begin == element.begin;
-    ElementRow local = integrals(inside ? xi : 1, derivative) * std::pow(half, 2 - derivative);
-    if (!inside && derivative == 0) local += (x - other.end) * half * integrals(1, 1);  // straight on
-    for (int m = 0; m < functions; ++m) local[m] *= std::sqrt((m + 0.5) / (half * other.rigidity));
-    row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local;
+    ElementRow local = (inside ? element_integrals(xi, derivative) : ends[derivative]) * (derivative == 0 ? half * half : half);
+    if (!inside && derivative == 0) local += (x - other.end) * half * ends[1];  // straight on
+    row.segment<functions>(functions * static_cast<Eigen::Index>(e)) = local.array() * (orders / (half * other.rigidity)).sqrt();
   }
   return row;
 }
 
 Eigen::RowVectorXd NormalisedModes::shape(double x, int derivative) const {
-  const auto element = std::find_if(elements_.begin(), std::prev(elements_.end()), [&](const Element& e) { return x <= e.end; });
+  const auto element =
+      std::find_if(elements_.begin(), std::prev(elements_.end()), [&](const BeamElement& e) { return x <= e.end; });
   return shape(*element, 2 * (x - element->begin) / (element->end - element->begin) - 1, derivative);
 }
 
-double NormalisedModes::pinned_inverse_square(double x) const {
-  const Eigen::MatrixXd z = complement(combined(x, 0).transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(z.transpose() * mass_ * z, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().maxCoeff();
+// The receptance a grows from minus infinity at the first frequency to infinity at the second, or has no zero between where the
+// second mode does not move at x: that is the answer then. Newton's method for (lambda_2 - lambda) a, which is nearly linear.
+double NormalisedModes::pinned_inverse_square(double x, std::optional<double> near) const {
+  constexpr double rounding = 1e-12, last_step = 1e-8;  // Newton's step after that is rounding
+  constexpr int most_steps = 100;
+  Receptance receptance(elements_, beam_.axial_force, beam_.far_clamp);
+  const double second = beam_.modes > 1 ? 1 / inverse_squares_[1] : std::numeric_limits<double>::infinity();
+  double low = 1 / inverse_squares_[0], high = second;
+  const auto middle = [&] { return std::isfinite(high) ? (low + high) / 2 : 2 * low; };
+  double square = near && 1 / *near > low && 1 / *near < high ? 1 / *near : middle();
+  for (int i = 0; i < most_steps && high - low > 2 * rounding * low; ++i) {
+    const Receptance::Answer at = receptance.at(Lane::Constant(square), x);
+    (at.below[0] >= 2 || at.deflection[0] > 0 ? high : low) = square;
+    const double next = square - at.deflection[0] / (at.inertia[0] - at.deflection[0] / (second - square));
+    const bool between = next > low && next < high;
+    if (between && std::abs(next - square) <= last_step * square) return 1 / next;
+    square = between ? next : next >= second && high == second ? second * (1 - rounding) : middle();
+  }
+  return 1 / square;
 }
 
 BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support,
@@ -244,7 +324,8 @@ BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const 
   for (const BeamSection& s : sections)
     beam.sections.push_back({s.begin / length_, s.end / length_, s.rigidity / ei, s.mass_per_length / mu});
   try {
-    normalised_ = known && known->beam() == beam ? std::move(known) : std::make_shared<const NormalisedModes>(std::move(beam));
+    normalised_ =
+        known && known->beam() == beam ? std::move(known) : std::make_shared<const NormalisedModes>(std::move(beam), known.get());
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("axial force {}: {}", engineering(support.axial_force, "N"), error.what()));
   }

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "model/device.h"
+#include "model/receptance.h"
 
 namespace softland {
 
@@ -85,8 +86,9 @@ class NormalisedModes {
     double axial_force = 0;  ///< N L^2 / EI
     [[nodiscard]] bool operator==(const Beam&) const = default;
   };
-  /// Throws InvalidInput below the buckling load.
-  explicit NormalisedModes(Beam beam);
+  /// From those of a beam `near` this one, of as many sections and modes, where they lead to the same quickly, else by a full
+  /// search: the same modes, but for rounding. Throws InvalidInput below the buckling load.
+  explicit NormalisedModes(Beam beam, const NormalisedModes* near = nullptr);
 
   [[nodiscard]] const Beam& beam() const { return beam_; }
   /// omega^-2 of the modes, falling.
@@ -94,36 +96,36 @@ class NormalisedModes {
   /// All modes at x in [0, 1].
   [[nodiscard]] Eigen::VectorXd value(double x) const { return (shape(x, 0) * shapes_).transpose(); }
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return (shape(x, 1) * shapes_).transpose(); }
-  /// Integrals of the products of slopes, times `factor`.
-  [[nodiscard]] Eigen::MatrixXd slope_products(double factor) const { return factor * shapes_.transpose() * slopes_ * shapes_; }
-  /// omega^-2 of the first mode of the beam held at x as well.
-  [[nodiscard]] double pinned_inverse_square(double x) const;
+  /// Integrals of the products of slopes.
+  [[nodiscard]] Eigen::MatrixXd slope_products() const { return softland::slope_products(elements_, shapes_); }
+  /// omega^-2 of the first mode of the beam held at x as well. `near` is that of a similar beam.
+  [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
 
  private:
-  struct Element {
-    double begin = 0, end = 0;
-    double rigidity = 0;
-  };
-  // Combines the functions to those that the support permits, orthonormal in the elastic energy.
-  void support();
+  // Ritz's method: all modes at once.
+  void search();
+  // Rayleigh quotients that begin with other modes' frequencies; false where it cannot prove that it found the modes.
+  [[nodiscard]] bool follow(const NormalisedModes& near);
+  // Where every mode moves.
+  [[nodiscard]] double moving_place() const;
   // All functions, x in units of the length; xi in [-1, 1] over an element.
   [[nodiscard]] Eigen::RowVectorXd shape(double x, int derivative) const;
-  [[nodiscard]] Eigen::RowVectorXd shape(const Element& element, double xi, int derivative) const;
-  [[nodiscard]] Eigen::RowVectorXd combined(double x, int derivative) const { return shape(x, derivative) * basis_; }
+  [[nodiscard]] Eigen::RowVectorXd shape(const BeamElement& element, double xi, int derivative) const;
+  // Turned to the sign that they have by definition.
+  void orient();
 
   Beam beam_;
-  std::vector<Element> elements_;
-  Eigen::MatrixXd basis_;   // functions x combinations
-  Eigen::MatrixXd mass_;    // of the combinations
-  Eigen::MatrixXd slopes_;  // integrals of products of the functions' slopes: what an axial force of one acts on
+  std::vector<BeamElement> elements_;
   Eigen::MatrixXd shapes_;  // functions x modes
   Eigen::VectorXd inverse_squares_;
+  double moving_place_ = 1;
 };
 
 class BeamModes {
  public:
-  /// The first `modes` modes; takes the normalised ones from `known` where they are those of this beam. Throws InvalidInput
-  /// unless sections join, are positive, modes is in [1, 40], and the axial force is above the buckling load.
+  /// The first `modes` modes; takes the normalised ones from `known` where they are those of this beam, and begins with them
+  /// where they are not. Throws InvalidInput unless sections join, are positive, modes is in [1, 40], and the axial force is
+  /// above the buckling load.
   BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support = {},
             std::shared_ptr<const NormalisedModes> known = {});
 
@@ -134,7 +136,7 @@ class BeamModes {
   /// phi_i'(x) [kg^(-1/2)/m].
   [[nodiscard]] Eigen::VectorXd slope(double x) const { return scale_ / length_ * normalised_->slope(x / length_); }
   /// Integrals of phi_i' phi_j' over the beam [1/(kg m)].
-  [[nodiscard]] Eigen::MatrixXd slope_products() const { return normalised_->slope_products(scale_ * scale_ / length_); }
+  [[nodiscard]] Eigen::MatrixXd slope_products() const { return scale_ * scale_ / length_ * normalised_->slope_products(); }
   /// First angular frequency of the beam held at deflection 0 at x as well [rad/s]: the beam while in contact.
   [[nodiscard]] double pinned_frequency(double x) const {
     return frequency_scale_ / std::sqrt(normalised_->pinned_inverse_square(x / length_));

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 
 #include "model/device.h"
 
@@ -23,7 +24,7 @@ class RigidPlate {
     [[nodiscard]] Eigen::VectorXd value(double) const { return Eigen::VectorXd::Ones(1); }
     [[nodiscard]] Eigen::VectorXd slope(double) const { return Eigen::VectorXd::Zero(1); }
     /// Held at its contact a rigid plate cannot move at all. Its own frequency stands in: a rebound takes no longer than that.
-    [[nodiscard]] double pinned_inverse_square(double) const { return 1; }
+    [[nodiscard]] double pinned_inverse_square(double, std::optional<double> = {}) const { return 1; }
   };
 
   explicit RigidPlate(const Structure& s)

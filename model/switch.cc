@@ -86,6 +86,7 @@ struct Switch::Frame {
     [[nodiscard]] bool operator==(const Places&) const = default;
   };
   Places places;
+  std::vector<GaussRule> rules;                  // of the panels
   std::shared_ptr<const NormalisedModes> modes;  // null of a plate
   Eigen::ArrayXd positions, weights;             // [m]
   Eigen::MatrixXd shapes;                        // points x modes
@@ -93,14 +94,16 @@ struct Switch::Frame {
   double pinned_inverse_square = 0;  // of the beam held at its contact
 
   template <class Modes>
-  Frame(const Modes& normalised, double length, Places at) : places(std::move(at)) {
+  Frame(const Modes& normalised, double length, Places at, const Frame* near) : places(std::move(at)) {
     const double end = places.corners.back();
     std::vector<double> x, w;
     for (auto corner = places.corners.begin(); std::next(corner) != places.corners.end(); ++corner) {
       const double begin = *corner, panel = *std::next(corner) - begin;
       if (panel < 1e-9 * end) continue;  // two names of one place that differ by a rounding
-      const GaussRule rule =
-          gauss_rule(std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length))));
+      const int count = std::max(places.fewest_points, static_cast<int>(std::ceil(panel / end * places.points_per_length)));
+      const GaussRule* known = near && rules.size() < near->rules.size() ? &near->rules[rules.size()] : nullptr;
+      rules.push_back(known && static_cast<int>(known->points.size()) == count ? *known : gauss_rule(count));
+      const GaussRule& rule = rules.back();
       for (std::size_t i = 0; i < rule.points.size(); ++i) {
         x.push_back(begin + panel * (1 + rule.points[i]) / 2);
         w.push_back(rule.weights[i] * panel / 2);
@@ -112,7 +115,8 @@ struct Switch::Frame {
     contact_slope = normalised.slope(places.contact / length);
     piezo_begin_slope = normalised.slope(places.piezo_begin / length);
     piezo_end_slope = normalised.slope(places.piezo_end / length);
-    pinned_inverse_square = normalised.pinned_inverse_square(places.contact / length);
+    pinned_inverse_square = normalised.pinned_inverse_square(places.contact / length,
+                                                             near ? std::optional(near->pinned_inverse_square) : std::nullopt);
     shapes.resize(positions.size(), contact_shape.size());
     for (Eigen::Index p = 0; p < positions.size(); ++p) shapes.row(p) = normalised.value(positions[p] / length).transpose();
   }
@@ -128,7 +132,8 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
     if (like != nullptr && like->frame_->modes == structure.normalised() && like->frame_->places == places) frame_ = like->frame_;
   }
   if (!frame_) {
-    auto frame = std::make_shared<Frame>(*structure.normalised(), structure.length(), std::move(places));
+    auto frame = std::make_shared<Frame>(*structure.normalised(), structure.length(), std::move(places),
+                                         like != nullptr ? like->frame_.get() : nullptr);
     if constexpr (std::same_as<Modes, BeamModes>) frame->modes = structure.normalised();
     frame_ = std::move(frame);
   }

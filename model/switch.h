@@ -41,7 +41,7 @@ enum class DriveKind { electrode, dispersion, piezo };
 class Switch {
  public:
   /// Throws InvalidInput for a device that validate() refuses. Takes normalised modes and quadrature from the switch `like` where
-  /// they are the same, as those of devices that differ in material, width, thickness or gaps are: the same switch, built faster.
+  /// they are the same, and begins with its modes where they are not: the same switch but for rounding, built faster.
   explicit Switch(const Device& device, const SwitchOptions& options = {}, const Switch* like = nullptr);
 
   [[nodiscard]] const Device& device() const { return device_; }

@@ -1,11 +1,16 @@
 #include "model/beam.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "base/literals.h"
@@ -418,6 +423,83 @@ TEST(PiezoMoment, BendsTheBeamIntoACircularArcAsFarAsTheLayerReaches) {
   EXPECT_NEAR(tip(4), -2.109_um, 0.001_um);
   EXPECT_NEAR(tip(40), exact, 1e-4 * std::abs(exact));
   EXPECT_LT(std::abs(tip(12) - exact), std::abs(tip(4) - exact));
+}
+
+// A beam whose sections, support and tension differ from those of the nominal one by about `spread`.
+struct Sample {
+  std::vector<BeamSection> sections;
+  BeamSupport support;
+};
+Sample sampled(int shape, double spread, std::mt19937_64& random) {
+  const auto factor = [&] { return std::exp(spread * std::normal_distribution<>()(random)); };
+  Sample s;
+  s.support.far_clamp = shape % 2 == 1;
+  const double length = 2 * factor(), begin = 0.1 * factor(), end = std::min(1.8 * factor(), 0.99 * length);
+  const double rigidity = 3 * factor(), mass = 5 * factor();
+  if (shape < 2) {
+    s.sections = {{0, begin, rigidity, mass},
+                  {begin, end, 2.5 * rigidity * factor(), 1.6 * mass * factor()},
+                  {end, length, rigidity, mass}};
+  } else {
+    s.sections = {{0, length, rigidity, mass}};
+  }
+  const double unit = rigidity / (length * length);
+  if (shape == 2) s.support.axial_force = -0.8 * factor() * unit;
+  if (shape == 3) s.support.axial_force = 60 * factor() * unit;
+  if (shape == 5) s.support.axial_force = -15 * factor() * unit;
+  return s;
+}
+
+TEST(BeamModes, FromThoseOfASimilarBeamAreTheSame) {
+  // Frequencies to the rounding of a search, which grows as the highest lambda over the lowest; shapes to that over the distance
+  // to the next lambda.
+  constexpr double frequency_rounding = 1e-11, shape_rounding = 1e-10;
+  std::mt19937_64 random(5);
+  for (const int modes : {1, 4, 6}) {
+    for (int shape = 0; shape < 6; ++shape) {
+      const Sample nominal = sampled(shape, 0, random);
+      const BeamModes known(nominal.sections, modes, nominal.support);
+      for (const double spread : {0.0, 0.02, 0.1, 0.4}) {
+        for (int i = 0; i < 20; ++i) {
+          const Sample s = sampled(shape, spread, random);
+          const double length = s.sections.back().end;
+          const auto built = [&](std::shared_ptr<const NormalisedModes> from) -> std::optional<BeamModes> {
+            try {
+              return BeamModes(s.sections, modes, s.support, std::move(from));
+            } catch (const InvalidInput&) {
+              return std::nullopt;
+            }
+          };
+          SCOPED_TRACE(fmt::format("{} modes, shape {}, spread {}, device {}", modes, shape, spread, i));
+          const std::optional<BeamModes> searched = built(nullptr), followed = built(known.normalised());
+          ASSERT_EQ(searched.has_value(), followed.has_value());  // a beam that buckles is refused in both ways
+          if (!searched) continue;
+          const Eigen::ArrayXd ratio = followed->angular_frequencies().array() / searched->angular_frequencies().array();
+          EXPECT_LT((ratio - 1).abs().maxCoeff(), frequency_rounding);
+          EXPECT_NEAR(followed->pinned_frequency(0.55 * length) / searched->pinned_frequency(0.55 * length), 1, 1e-10);
+          for (const double x : {0.05, 0.3, 0.77, 0.93, 1.0}) {
+            const Eigen::VectorXd value = searched->value(x * length), slope = searched->slope(x * length);
+            EXPECT_LT((followed->value(x * length) - value).cwiseAbs().maxCoeff(),
+                      shape_rounding * searched->value(length / 3).norm());
+            EXPECT_LT((followed->slope(x * length) - slope).cwiseAbs().maxCoeff(),
+                      shape_rounding * searched->slope(length / 8).norm());
+          }
+          const Eigen::MatrixXd products = searched->slope_products();
+          EXPECT_LT((followed->slope_products() - products).cwiseAbs().maxCoeff(), shape_rounding * products.maxCoeff());
+        }
+      }
+    }
+  }
+}
+
+TEST(BeamModes, FromThoseOfAnotherBeamAreStillItsOwn) {
+  // A beam that has little in common with the known one: no mode may be skipped, or taken twice.
+  const BeamModes known({{0, 1.9, 1, 1}, {1.9, 2, 1, 1}}, 5);
+  const std::vector<BeamSection> sections{{0, 0.4, 50, 0.1}, {0.4, 2, 0.05, 20}};
+  const BeamModes searched(sections, 5), followed(sections, 5, {}, known.normalised());
+  EXPECT_LT(
+      (followed.angular_frequencies() - searched.angular_frequencies()).cwiseQuotient(searched.angular_frequencies()).norm(),
+      1e-9);
 }
 
 TEST(BeamModes, RefuseSectionsThatAreNoBeam) {

@@ -176,17 +176,24 @@ TEST(Switch, JacobianIsTheDerivativeOfTheAccelerations) {
   }
 }
 
-// Everything that a closing asks of a switch, in bits.
-void expect_same(const Switch& a, const Switch& b) {
+// Everything that a closing asks of a switch. In bits where both have the modes of one normalised beam; else to the rounding of
+// modes, and a beam pressed into its contact by a thousandth of the gap, or near its static fold, magnifies that.
+void expect_same(const Switch& a, const Switch& b, bool in_bits) {
+  const double rounding = in_bits ? 0 : 1e-11, magnified = in_bits ? 0 : 1e-8;
+  const auto expect_close = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y, double relative) {
+    ASSERT_EQ(x.size(), y.size());
+    EXPECT_TRUE((x - y).cwiseAbs().maxCoeff() <= relative * y.cwiseAbs().maxCoeff()) << x.transpose() << "\n" << y.transpose();
+  };
   ASSERT_EQ(a.modes(), b.modes());
   ASSERT_EQ(a.points(), b.points());
-  EXPECT_EQ(a.angular_frequencies(), b.angular_frequencies());
-  EXPECT_EQ(a.contact_shape(), b.contact_shape());
-  EXPECT_EQ(a.piezo_shape(), b.piezo_shape());
-  EXPECT_EQ(a.in_contact_period(), b.in_contact_period());
-  EXPECT_EQ(a.penetration_scale(), b.penetration_scale());
-  EXPECT_EQ(a.bending_energy(), b.bending_energy());
-  EXPECT_EQ(a.rest(), b.rest());
+  expect_close(a.angular_frequencies(), b.angular_frequencies(), rounding);
+  expect_close(a.contact_shape(), b.contact_shape(), rounding);
+  expect_close(a.piezo_shape(), b.piezo_shape(), rounding);
+  EXPECT_NEAR(a.in_contact_period() / b.in_contact_period(), 1, 1e-11);
+  EXPECT_TRUE(std::abs(a.penetration_scale() - b.penetration_scale()) <= rounding * b.penetration_scale());
+  EXPECT_TRUE(std::abs(a.bending_energy() - b.bending_energy()) <= rounding * b.bending_energy());
+  ASSERT_EQ(a.rest().has_value(), b.rest().has_value());
+  if (a.rest()) expect_close(*a.rest(), *b.rest(), magnified);
   EXPECT_TRUE((a.point_positions() == b.point_positions()).all());
   const auto accelerations = [](const Switch& s) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(s.modes()), v = Eigen::VectorXd::Constant(s.modes(), 1e-8), result(s.modes());
@@ -196,7 +203,7 @@ void expect_same(const Switch& a, const Switch& b) {
     s.accelerations(q.data(), v.data(), drives, s.has_contact(), work, result.data());
     return result;
   };
-  EXPECT_EQ(accelerations(a), accelerations(b));
+  expect_close(accelerations(a), accelerations(b), magnified);
 }
 
 TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
@@ -220,9 +227,11 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
       if (changed.electrodes.empty() || !changed.contact) continue;
       changes[k](changed);
       SCOPED_TRACE(fmt::format("{}, change {}", c.name, k));
-      expect_same(Switch(changed, {}, &nominal), Switch(changed));
+      const bool one_shape = changed.structure.kind == StructureKind::plate ||
+                             (changed.structure.kind == StructureKind::cantilever && !c.device.piezo && !changed.surface);
+      expect_same(Switch(changed, {}, &nominal), Switch(changed), one_shape);
     }
-    expect_same(Switch(c.device, {.points_per_length = 17}, &nominal), Switch(c.device, {.points_per_length = 17}));
+    expect_same(Switch(c.device, {.points_per_length = 17}, &nominal), Switch(c.device, {.points_per_length = 17}), true);
   }
 }
 

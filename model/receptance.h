@@ -1,0 +1,95 @@
+// Receptance of a beam: its deflection at a place under a harmonic force of one there, without damping.
+//
+//   a(lambda) = sum over modes of phi_i(x)^2 / (lambda_i - lambda),   lambda = omega^2
+//
+// Its poles are the natural frequencies, its zeros those of the beam held at x as well. All is in the units and the functions of
+// NormalisedModes (model/beam.h). The quadratic form of elastic less kinetic energy is eliminated element by element from the far
+// end to the clamp at x = 0, as in a linear-quadratic control problem: what lies beyond a node is a stiffness of two by two
+// there, and short elements cost no digits. The time is proportional to the number of elements, and the negative pivots are as
+// many as the natural frequencies below (Sylvester's law of inertia; Wittrick & Williams, Q. J. Mech. Appl. Math. 24 (1971) 263).
+// Where the motion is nearly a mode, a over its derivative is the step to the Rayleigh quotient.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "base/lanes.h"
+
+namespace softland {
+
+/// Functions of an element: curvatures up to degree 7, so deflections up to degree 9.
+inline constexpr int element_functions = 8;
+using ElementRow = Eigen::Matrix<double, 1, element_functions>;
+
+/// The functions of one element, at rest left of it, at xi in [-1, 1]: first (derivative 1) or second (0) integrals of P_m from
+/// -1. For m >= 2 both vanish at the right end.
+[[nodiscard]] ElementRow element_integrals(double xi, int derivative);
+
+struct BeamElement {
+  double begin = 0, end = 0;  // in units of the beam's length, as all that follows
+  double rigidity = 0, mass = 0;
+
+  [[nodiscard]] double half() const { return (end - begin) / 2; }
+};
+
+/// Integrals over the beam of the products of slopes of motions, a column of factors of the functions each.
+[[nodiscard]] Eigen::MatrixXd slope_products(const std::vector<BeamElement>& elements, const Eigen::MatrixXd& motions);
+
+/// Of up to four lambda at once.
+class Receptance {
+ public:
+  /// Axial force positive in tension.
+  Receptance(const std::vector<BeamElement>& elements, double axial_force, bool far_clamp);
+
+  struct Answer {
+    Lane deflection;   ///< a
+    Lane inertia;      ///< its derivative by lambda, which is the integral of mu y^2
+    Lane below;        ///< how many natural frequencies lie below
+    Lane least_pivot;  ///< the smallest but for the last, which vanishes at a pole: a small one magnifies the rounding
+  };
+  /// The answer at x in (0, 1].
+  [[nodiscard]] Answer at(const Lane& lambda, double x);
+  /// The motion of the last answer in a lane: factors of the functions, which are orthonormal in the bending energy.
+  [[nodiscard]] Eigen::VectorXd motion(Eigen::Index lane) const;
+
+ private:
+  static constexpr int size = 2 + element_functions;  // deflection and rotation at an element's left end, then its functions
+  static constexpr int kept = 4;                      // of these, those that move the right end
+  // Elements that are alike, with their quadratic form: a lower triangle, what lies below the kept rows eliminated.
+  struct Kind {
+    double half = 0, rigidity = 0, mass = 0;
+    double reach = 0;  // deflection of a function of unit energy, over the universal function
+    std::array<std::array<Lane, size>, size> form;
+    std::array<Lane, size> inverse;  // of the pivots
+    Lane negative, least_pivot;      // of the pivots
+
+    [[nodiscard]] bool holds(const BeamElement& e) const;
+  };
+  // The kept rows of an element with all that is beyond it, and its load.
+  struct Stage {
+    std::size_t kind = 0;
+    std::array<std::array<Lane, kept>, kept> form;
+    std::array<Lane, kept> load, inverse;
+    std::array<Lane, size> motion;
+  };
+
+  void condense(Kind& kind, const Lane& lambda) const;
+  void load(double x);
+  void add_beyond(Stage& stage, const Kind& kind, const Lane* stiffness, const Lane* force) const;
+  void fix_end(Stage& stage, const Kind& kind) const;
+  void sweep_to_clamp(Answer& answer);
+  void sweep_to_end(Answer& answer);
+
+  double axial_force_;
+  bool far_clamp_;
+  std::vector<Kind> kinds_;
+  std::vector<Stage> stages_;
+  std::vector<double> nodes_;         // where the elements end
+  std::size_t loaded_ = 0;            // the element at x
+  std::array<double, size> probe_{};  // its motions' deflection at x
+  std::array<Lane, size> load_;       // the same, condensed as its form is
+};
+
+}  // namespace softland
