@@ -21,7 +21,7 @@ namespace {
 
 constexpr int functions = element_functions;
 constexpr int shortest_count = 6;     // elements over the length, at least
-constexpr double least_pivot = 3e-5;  // of the elimination: it magnifies the rounding by its inverse, to some 1e-11
+constexpr double least_pivot = 2e-3;  // of the elimination: it magnifies the rounding by its inverse
 
 // Orthonormal columns that are orthogonal to those of `held`.
 Eigen::MatrixXd complement(const Eigen::MatrixXd& held) {
@@ -203,7 +203,7 @@ void NormalisedModes::search() {
 
 bool NormalisedModes::follow(const NormalisedModes& near) {
   const int modes = beam_.modes;
-  constexpr double least_end = 0.02;  // of the length: a far clamp that holds a shorter element costs digits
+  constexpr double least_end = 0.05;  // of the length: a far clamp that holds a shorter element costs digits
   if (near.beam_.modes != modes || near.beam_.far_clamp != beam_.far_clamp ||
       near.beam_.sections.size() != beam_.sections.size() || (beam_.far_clamp && 2 * elements_.back().half() < least_end)) {
     return false;

@@ -193,16 +193,20 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       fix_end(stage, kind);
     } else {
       add_beyond(stage, kind, stiffness, force);
-      for (int k = kept - 1; k >= 2; --k) {
-        const Lane& pivot = stage.form[k][k];
-        const Lane inverse = stage.inverse[k] = pivot.inverse();
-        answer.below += (pivot < 0).cast<double>();
-        if (e > 0 || k > 2) answer.least_pivot = answer.least_pivot.min(pivot.abs());
-        for (int i = 0; i < k; ++i) {
-          const Lane factor = stage.form[k][i] * inverse;
-          for (int j = 0; j <= i; ++j) stage.form[i][j] -= factor * stage.form[k][j];
-          stage.load[i] -= factor * stage.load[k];
-        }
+      // Both functions at once: either alone may vanish while nothing beyond is near a pole.
+      auto& f = stage.form;
+      const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();
+      stage.inverse = {f[3][3] * over, -f[3][2] * over, f[2][2] * over, Lane::Zero()};
+      answer.below += (determinant < 0).select(Lane::Ones(), 2 * (f[3][3] < 0).cast<double>());
+      if (e > 0) {
+        const Lane pivot = determinant.abs() / (f[2][2].abs() + f[3][3].abs() + f[3][2].abs());
+        answer.least_pivot = answer.least_pivot.min(pivot);
+      }
+      for (int i = 0; i < 2; ++i) {
+        const Lane first = stage.inverse[0] * f[2][i] + stage.inverse[1] * f[3][i];
+        const Lane second = stage.inverse[1] * f[2][i] + stage.inverse[2] * f[3][i];
+        for (int j = 0; j <= i; ++j) f[i][j] -= first * f[2][j] + second * f[3][j];
+        stage.load[i] -= first * stage.load[2] + second * stage.load[3];
       }
     }
     stiffness[0] = stage.form[0][0];
@@ -226,11 +230,10 @@ void Receptance::sweep_to_end(Answer& answer) {
       y[2] = -y[1] / (kind.reach * first_turn);
       y[3] = -(y[0] + y[1]) / (kind.reach * second_at_end);
     } else {
-      for (int k = 2; k < kept; ++k) {
-        y[k] = stage.load[k];
-        for (int j = 0; j < k; ++j) y[k] -= stage.form[k][j] * y[j];
-        y[k] *= stage.inverse[k];
-      }
+      const Lane first = stage.load[2] - stage.form[2][0] * y[0] - stage.form[2][1] * y[1];
+      const Lane second = stage.load[3] - stage.form[3][0] * y[0] - stage.form[3][1] * y[1];
+      y[2] = stage.inverse[0] * first + stage.inverse[1] * second;
+      y[3] = stage.inverse[1] * first + stage.inverse[2] * second;
     }
     for (int k = kept; k < size; ++k) {
       y[k] = e == loaded_ ? load_[k] : Lane::Zero();
