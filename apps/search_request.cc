@@ -125,8 +125,6 @@ RobustOptions read_robust_options(const OptimizeRequest& request) {
   robust.aim.measure = read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
   robust.aim.conditions = read_conditions(request, figures);
   robust.samples = sample_count(request.samples, robust.samples, 8, most_searched);
-  require(families_of(request.waveform).size() == 1,
-          [&] { return fmt::format("--waveform {}: a search over devices takes one family", request.waveform); });
   require(request.optimizer == "auto",
           [&] { return fmt::format("--optimizer {}: a robust search has a method of its own", request.optimizer); });
   return robust;

@@ -1,5 +1,7 @@
 #include "studies/robust_optimize.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -388,9 +390,15 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   }
 }
 
+void require_one_family(const OptimizeOptions& options) {
+  require(families_of(options.family).size() == 1,
+          [&] { return fmt::format("--waveform {}: a search over devices takes one family", options.family); });
+}
+
 }  // namespace
 
 RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust) {
+  require_one_family(options);
   const Watch watch{.stop = options.stop, .progress = options.on_preparation};
   const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
   setting.check_starts(options.starts);
@@ -445,6 +453,7 @@ SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOpti
   const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
   if (over_devices) {
+    require_one_family(options);
     static_cast<void>(known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch));
     static_cast<void>(Ensemble(setting.given, 1, options.seed));
   }

@@ -165,9 +165,9 @@ TEST_F(Resume, IsNotMadeOfAnExploration) {
                                              {"report", "out/evaluations.sqlite"},
                                              {"slurm", "out/evaluations.sqlite", "--tasks", "2"}})
     refused(words, "out/evaluations.sqlite: holds a search and no exploration; softland table shows its rows");
-  const Outcome table = here.run({"table", "out/evaluations.sqlite", "--csv", "--select", "main_level_1_V,cost"});
+  const Outcome table = here.run({"table", "out/evaluations.sqlite", "--csv", "--select", "knots_main_level_1_V,cost"});
   EXPECT_EQ(table.status, 0) << table.err;
-  EXPECT_THAT(table.out, testing::StartsWith("main_level_1_V,cost\n"));
+  EXPECT_THAT(table.out, testing::StartsWith("knots_main_level_1_V,cost\n"));
 }
 
 class Start : public test::Searches {};

@@ -133,7 +133,7 @@ TEST_F(Seeds, ThatAreInterruptedTellWhatIsDoneAndGoOn) {
 }
 
 TEST_F(Seeds, ThatFailAreNamed) {
-  done(seeds("2", {"--out", "out"}));
+  done(seeds("2", {"--out", "out", "--waveform", "step"}));
   const json missed = test::result_in(at("out"))["seeds"];
   EXPECT_EQ(missed["goal_met"], 0);
   EXPECT_EQ(missed["failed"], (json{{{"reason", "goal not met"}, {"seed", 1}}, {{"reason", "goal not met"}, {"seed", 2}}}));

@@ -41,11 +41,14 @@ TEST(Ensemble, HasTheDevicesThatItsScenesDescribe) {
       const Prepared alone = prepare(SceneFile::parse(ensemble.scene(device.values).text(), "alone.toml"));
       EXPECT_TRUE(alone.scene.spread.empty());
       const Switch own(alone.scene.device, nominal.quadrature);
-      EXPECT_EQ(device.model->angular_frequencies(), own.angular_frequencies());
+      // The modes of a beam of two sections are found from those of the nominal one, and closings agree to their tolerance.
+      const bool has_sections = nominal.model.has_piezo();
+      const double same = has_sections ? 1e-7 : 0;
+      EXPECT_TRUE(device.model->angular_frequencies().isApprox(own.angular_frequencies(), has_sections ? 1e-11 : 0));
       const Metrics ours = closing(*device.model, nominal.signals()), theirs = closing(own, alone.signals());
       ASSERT_TRUE(std::isfinite(theirs.initial_contact_time));
-      EXPECT_EQ(ours.initial_contact_time, theirs.initial_contact_time);
-      EXPECT_EQ(ours.impact_velocity, theirs.impact_velocity);
+      EXPECT_NEAR(ours.initial_contact_time, theirs.initial_contact_time, same * theirs.initial_contact_time);
+      EXPECT_NEAR(ours.impact_velocity, theirs.impact_velocity, same * theirs.impact_velocity);
       EXPECT_NE(ours.initial_contact_time, closing(nominal.model, nominal.signals()).initial_contact_time);
     }
   }
