@@ -1,6 +1,7 @@
 #include "model/receptance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -103,7 +104,7 @@ Receptance::Receptance(const std::vector<BeamElement>& elements, double axial_fo
       kind.reach = std::sqrt(std::pow(kind.half, 3) / e.rigidity);
     }
     stages_[i].kind = kinds_.size() - 1;
-    stages_[i].load.fill(Lane::Zero());
+    std::fill(std::begin(stages_[i].load), std::end(stages_[i].load), Lane::Zero());
     nodes_.push_back(e.end);
   }
 }
@@ -196,7 +197,9 @@ void Receptance::sweep_to_clamp(Answer& answer) {
       // Both functions at once: either alone may vanish while nothing beyond is near a pole.
       auto& f = stage.form;
       const Lane determinant = f[2][2] * f[3][3] - f[3][2].square(), over = determinant.inverse();
-      stage.inverse = {f[3][3] * over, -f[3][2] * over, f[2][2] * over, Lane::Zero()};
+      stage.inverse[0] = f[3][3] * over;
+      stage.inverse[1] = -f[3][2] * over;
+      stage.inverse[2] = f[2][2] * over;
       answer.below += (determinant < 0).select(Lane::Ones(), 2 * (f[3][3] < 0).cast<double>());
       if (e > 0) {
         const Lane pivot = determinant.abs() / (f[2][2].abs() + f[3][3].abs() + f[3][2].abs());

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -61,18 +60,18 @@ class Receptance {
   struct Kind {
     double half = 0, rigidity = 0, mass = 0;
     double reach = 0;  // deflection of a function of unit energy, over the universal function
-    std::array<std::array<Lane, size>, size> form;
-    std::array<Lane, size> inverse;  // of the pivots
-    Lane negative, least_pivot;      // of the pivots
+    Lane form[size][size];
+    Lane inverse[size];          // of the pivots
+    Lane negative, least_pivot;  // of the pivots
 
     [[nodiscard]] bool holds(const BeamElement& e) const;
   };
   // The kept rows of an element with all that is beyond it, and its load.
   struct Stage {
     std::size_t kind = 0;
-    std::array<std::array<Lane, kept>, kept> form;
-    std::array<Lane, kept> load, inverse;
-    std::array<Lane, size> motion;
+    Lane form[kept][kept];
+    Lane load[kept], inverse[3];
+    Lane motion[size];
   };
 
   void condense(Kind& kind, const Lane& lambda) const;
@@ -86,10 +85,10 @@ class Receptance {
   bool far_clamp_;
   std::vector<Kind> kinds_;
   std::vector<Stage> stages_;
-  std::vector<double> nodes_;         // where the elements end
-  std::size_t loaded_ = 0;            // the element at x
-  std::array<double, size> probe_{};  // its motions' deflection at x
-  std::array<Lane, size> load_;       // the same, condensed as its form is
+  std::vector<double> nodes_;  // where the elements end
+  std::size_t loaded_ = 0;     // the element at x
+  double probe_[size] = {};    // its motions' deflection at x
+  Lane load_[size];            // the same, condensed as its form is
 };
 
 }  // namespace softland
