@@ -48,8 +48,7 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
-/// Families whose search together comes nearest to the best of all on the switches that they were compared on
-/// (results/comparison.md).
+/// Families whose search together came within 5 % of the best that is known on the switches of results/comparison.md.
 [[nodiscard]] std::string_view default_families(Actuator actuator);
 /// The families that "knots", or "knots+dual-pulse+staircase:5", names. Throws InvalidInput where one is empty or named twice.
 [[nodiscard]] std::vector<std::string> families_of(const std::string& text);
