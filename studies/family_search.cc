@@ -53,9 +53,10 @@ Prices FamilySearch::price(std::span<const double> own) const {
 
 PriceSlopes FamilySearch::slopes() const {
   using Slope = std::function<std::vector<double>(std::span<const double>)>;
-  const std::vector<ParameterGroup> groups = setting_.parameter_groups();
+  std::vector<ParameterGroup> groups;
   const auto of = [&](const Aim& aim) -> Slope {
     if (!setting_.gradient_refusal(aim).empty()) return {};
+    if (groups.empty()) groups = setting_.parameter_groups();
     return [this, aim, groups](std::span<const double> x) { return setting_.gradient_at(x, aim, groups); };
   };
   return {.leading = of(Target::bounce), .own = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};

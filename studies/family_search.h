@@ -45,7 +45,6 @@ class FamilySearch {
   /// See TwoStages::run.
   [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, long more, long first_index);
 
-  [[nodiscard]] const SearchSetting& setting() const { return setting_; }
   [[nodiscard]] bool holds(const Evaluation& e) const { return block_.holds(e.x); }
   /// The point of these waveforms; empty where the family has none.
   [[nodiscard]] std::vector<double> point(const std::map<std::string, Waveform>& waveforms) const;
