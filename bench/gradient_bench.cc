@@ -1,15 +1,20 @@
 // What the gradient of a search's cost costs, in closings, and how far it is off, by the number of parameters and by the number
 // of arcs that a step of the closing is divided into. Which parameters share a difference of waveforms is found once, beforehand,
-// as a search does it. A second table has the gradients of searches of some families.
+// as a search does it. A second table has the gradients of searches of some families, a third the derivatives by parameters of
+// the device, with the building of the two switches beside it for each.
 //   bench_gradient [SCENE]     (default: mem-gold.toml)
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/require.h"
 #include "objectives/cost_slope.h"
 #include "studies/search_setting.h"
 
@@ -17,19 +22,19 @@ namespace {
 
 using namespace softland;
 
+// Of the processor: what else the machine does takes no part in it.
 template <class F>
 double milliseconds(F&& f) {
   double least = 1e9;
   for (int k = 0; k < 60; ++k) {
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     f();
-    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
-    least = std::min(least, spent.count());
+    least = std::min(least, 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
   return least;
 }
 
-// A slow rise drawn by so many levels, which lands with a few rebounds.
+// A rise drawn by so many levels, which lands with a few rebounds.
 struct Rise {
   std::vector<double> x, lower, upper;
 };
@@ -43,7 +48,7 @@ Rise rise_of(const SearchSetting& s, std::size_t levels) {
     rise.x.push_back((0.7 + 0.2 * static_cast<double>(k) / static_cast<double>(levels)) * hold);
     rise.lower.push_back(limits.min_voltage), rise.upper.push_back(limits.max_voltage);
   }
-  rise.x.push_back(8 * t0), rise.lower.push_back(t0), rise.upper.push_back(10 * t0);
+  rise.x.push_back(2 * t0), rise.lower.push_back(t0), rise.upper.push_back(10 * t0);
   return rise;
 }
 
@@ -61,7 +66,8 @@ void measure(const SearchSetting& s, std::size_t levels) {
   const ClosingOptions run = s.run_of(signals);
   const double closing = milliseconds([&] {
     CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
-    (void)observe_closing(s.given.model, signals, run, observer);
+    const Trajectory end = observe_closing(s.given.model, signals, run, observer);
+    require(observer.figures(end).rebound_height > 0, "the rise must land and rebound");
   });
   const auto gradient = [&](int refinement, bool backward, double tolerance) {
     CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
@@ -87,6 +93,81 @@ void measure(const SearchSetting& s, std::size_t levels) {
     fmt::print("| {} | {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {:.1e} |\n", x.size(), refinement, closing, adjoint / closing,
                forward / closing, waveforms / closing, (found - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff());
   }
+}
+
+// Numbers of the gold cantilever that its figures depend on.
+struct DeviceNumber {
+  double& (*of)(Device&);
+  bool acts_in_flight = true;
+};
+constexpr DeviceNumber device_numbers[] = {
+    {[](Device& d) -> double& { return d.structure.thickness; }},
+    {[](Device& d) -> double& { return d.gap.contact; }, false},
+    {[](Device& d) -> double& { return d.gap.electrode; }},
+    {[](Device& d) -> double& { return d.structure.youngs_modulus; }},
+    {[](Device& d) -> double& { return d.structure.density; }},
+    {[](Device& d) -> double& { return d.structure.width; }},
+    {[](Device& d) -> double& { return d.structure.length; }},
+    {[](Device& d) -> double& { return d.gas->viscosity; }},
+    {[](Device& d) -> double& { return d.contact->effective_modulus; }, false},
+    {[](Device& d) -> double& { return d.contact->asperity_height; }, false},
+    {[](Device& d) -> double& { return d.contact->asperity_radius; }, false},
+    {[](Device& d) -> double& { return d.contact->pad_length; }, false},
+};
+
+SwitchSlopes slopes_by_device(const Prepared& p, std::size_t parameters) {
+  std::vector<std::optional<SwitchSlopes::Neighbours>> all;
+  for (std::size_t k = 0; k < parameters; ++k) {
+    Device above = p.model.device(), below = above;
+    const double step = SwitchSlopes::step * device_numbers[k].of(above);
+    device_numbers[k].of(above) += step;
+    device_numbers[k].of(below) -= step;
+    all.push_back(SwitchSlopes::Neighbours{.above = Switch(above, p.quadrature, &p.model),
+                                           .below = Switch(below, p.quadrature, &p.model),
+                                           .distance = 2 * step,
+                                           .acts_in_flight = device_numbers[k].acts_in_flight});
+  }
+  return SwitchSlopes(p.model, std::move(all));
+}
+
+// The scene's own step, which rebounds, by so many parameters of the device, each over its own size.
+void measure_device(const SearchSetting& s, std::size_t parameters) {
+  const std::vector<Signal> signals = s.given.signals();
+  const ClosingOptions run = s.run_of(signals);
+  const std::vector<double> none(parameters, 0.0);
+  const SignalSlopes fixed([&](std::span<const double>) { return signals; }, none, none, none);
+  const double closing = milliseconds([&] {
+    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    (void)observe_closing(s.given.model, signals, run, observer);
+  });
+  const double building = milliseconds([&] { (void)slopes_by_device(s.given, parameters); });
+  SwitchSlopes by = slopes_by_device(s.given, parameters);
+  const auto derivatives = [&](int refinement, bool backward, double tolerance) {
+    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    MotionTape tape(observer);
+    ClosingOptions own = run;
+    own.tolerance = tolerance;
+    (void)observe_closing(s.given.model, signals, own, tape);
+    const LinearizedClosing motion(s.given.model, signals, tape, refinement, &by);
+    const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
+    const std::vector<FigureSlope> figures{slopes.first_touch, slopes.touch_speed, slopes.rebound_height,
+                                           slopes.last_rebound_end};
+    Eigen::MatrixXd all = backward ? motion.backward(figures, fixed) : motion.forward(figures, fixed);
+    for (Eigen::Index k = 0; k < all.cols(); ++k) {
+      Device device = s.given.model.device();
+      all.col(k) *= device_numbers[static_cast<std::size_t>(k)].of(device);
+    }
+    return all;
+  };
+  const Eigen::MatrixXd exact = derivatives(16, true, 1e-11);
+  const double adjoint = milliseconds([&] { (void)derivatives(1, true, run.tolerance); });
+  const double forward = milliseconds([&] { (void)derivatives(1, false, run.tolerance); });
+  const Eigen::MatrixXd found = derivatives(1, false, run.tolerance);
+  double error = 0;
+  for (Eigen::Index f = 0; f < found.rows(); ++f)
+    error = std::max(error, (found - exact).row(f).cwiseAbs().maxCoeff() / exact.row(f).cwiseAbs().maxCoeff());
+  fmt::print("| {} | {:.2f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1e} |\n", parameters, closing, adjoint / closing,
+             forward / closing, 1 + 0.6 * static_cast<double>(parameters), building / closing, error);
 }
 
 // As a search takes it, at the first of its starting points.
@@ -117,4 +198,8 @@ int main(int argc, char** argv) {
   fmt::print(
       "\n| family | parameters | closing [ms] | gradient [closings] | waveforms alone [closings] |\n|---|---|---|---|---|\n");
   for (const char* family : {"pulse", "dither", "s-curve", "sines:9", "bspline:20", "knots:20"}) measure_search(scene, family);
+  fmt::print(
+      "\n| device parameters | closing [ms] | adjoint [closings] | forward [closings] | aim | building [closings] | error |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const std::size_t parameters : {1U, 4U, 12U}) measure_device(setting, parameters);
 }

@@ -1,10 +1,12 @@
 #include "model/linearized_closing.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
+#include <variant>
 
 #include "base/lanes.h"
 #include "integrators/quintic.h"
@@ -135,13 +137,17 @@ std::string LinearizedClosing::refusal(const Switch& model) {
   return model.film_states() > 0 ? "the states of a compressible gas film have no derivatives here" : "";
 }
 
-LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement)
+LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement,
+                                     SwitchSlopes* by_device)
     : model_(model),
       signals_(signals),
       n_(model.modes()),
       size_(2 * n_),
       stride_((size_ + lane_size - 1) / lane_size * lane_size),
-      inputs_(static_cast<Index>(signals.size()) + 1),
+      by_device_(by_device),
+      dent_(static_cast<Index>(signals.size())),
+      moving_(by_device != nullptr ? static_cast<Index>(by_device->moving().size()) : 0),
+      inputs_(dent_ + 1 + moving_),
       fastest_(model.angular_frequencies().maxCoeff()),
       work_(model.workspace()),
       refinement_(refinement),
@@ -151,6 +157,7 @@ LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal
     node->by_q = node->by_v = MatrixXd(n_, n_);
     node->inputs = MatrixXd(n_, inputs_);
   }
+  begin_at_rest();
   arcs_.reserve(tape.arcs().size());
   auto passage = tape.passages().begin();
   for (std::size_t k = 0; k < tape.arcs().size(); ++k) {
@@ -162,6 +169,22 @@ LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal
     add_step(tape, k, arc.contact.active && after_edge, arc.contact.active && before_edge);
   }
   for (; passage != tape.passages().end(); ++passage) add_passage(*passage);
+}
+
+// The rest that the closing starts from moves so that the forces on it stay 0.
+void LinearizedClosing::begin_at_rest() {
+  rest_ = MatrixXd::Zero(size_, moving_);
+  if (moving_ == 0 || !model_.device().dispersion || !model_.rest()) return;
+  const VectorXd &q = *model_.rest(), still = VectorXd::Zero(n_);
+  const std::vector<double> off(signals_.size(), 0.0);
+  MatrixXd by_q(n_, n_), by_v(n_, n_);
+  model_.jacobian(q.data(), still.data(), off, false, work_, by_q, by_v);
+  VectorXd force(n_);
+  const Eigen::PartialPivLU<MatrixXd> stiffness(by_q);
+  for (Index j = 0; j < moving_; ++j) {
+    by_device_->accelerations(static_cast<std::size_t>(j), q.data(), still.data(), off, false, by_q, force);
+    rest_.col(j).head(n_) = -fastest_ * stiffness.solve(force);
+  }
 }
 
 // Of the drives at present.
@@ -180,12 +203,14 @@ VectorXd LinearizedClosing::rates(double t, const double* q, const double* v, co
 void LinearizedClosing::set_node(Node& node, double t, const double* q, const double* v, const ContactState& contact) {
   set_volts(t);
   model_.jacobian(q, v, volts_, contact, work_, node.by_q, node.by_v);
+  for (Index j = 0; j < moving_; ++j)
+    by_device_->accelerations(static_cast<std::size_t>(j), q, v, volts_, contact, node.by_q, node.inputs.col(dent_ + 1 + j));
   node.by_q /= fastest_;
-  model_.drive_forces(work_, node.inputs.leftCols(inputs_ - 1));
+  model_.drive_forces(work_, node.inputs.leftCols(dent_));
   for (std::size_t k = 0; k < volts_.size(); ++k) {
     if (model_.drive_kind(k) == DriveKind::electrode) node.inputs.col(static_cast<Index>(k)) *= 2 * volts_[k];
   }
-  node.inputs.rightCols<1>().setZero();
+  node.inputs.col(dent_).setZero();
   if (contact.active && contact.unloading) {
     const double d = model_.contact_deflection(q) - model_.device().gap.contact, step = 1e-5 * (std::abs(d) + contact.shift);
     const auto force = [&](double shift) {
@@ -194,7 +219,7 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
       return contact_force(model_.contact(), d, moved, 0);
     };
     const double slope = (force(contact.shift + step) - force(contact.shift - step)) / (2 * step);
-    node.inputs.rightCols<1>() = -slope * model_.contact_shape();
+    node.inputs.col(dent_) = -slope * model_.contact_shape();
   }
 }
 
@@ -321,32 +346,70 @@ void LinearizedClosing::add_passage(const MotionTape::Passage& passage) {
   passages_.push_back({arcs_.size(), change});
   if (arcs_.empty() || change.kind == Kind::leaves) return;
   if (change.kind == Kind::turn) arcs_.back().turns = true;
+  jumps_.push_back(change.kind == Kind::rests ? at_rest() : change.kind == Kind::turn ? turned() : crossed(passage));
+  jumps_.back().arcs = arcs_.size();
+}
+
+// A plate that has come to rest stays on the contact plane.
+LinearizedClosing::Jump LinearizedClosing::at_rest() const {
+  Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
+  for (Index j = 0; j < moving_; ++j) {
+    jump.by_device(0, j) =
+        -fastest_ * by_device_->interference(static_cast<std::size_t>(j), arcs_.back().q.data()) / model_.contact_shape()[0];
+  }
+  return jump;
+}
+
+// A contact with memory that unloads from here on keeps the dent of its deepest interference.
+LinearizedClosing::Jump LinearizedClosing::turned() const {
+  Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   const Arc& before = arcs_.back();
-  MatrixXd matrix = MatrixXd::Identity(size_ + 1, size_ + 1);
+  const double deepest = model_.contact_deflection(before.q.data()) - model_.device().gap.contact, step = 1e-5 * deepest;
+  const auto shift = [&](double d) { return dent(model_.contact(), d).shift; };
+  const double slope = (shift(deepest + step) - shift(deepest - step)) / (2 * step);
+  jump.matrix->bottomRows<1>().setZero();
+  jump.matrix->bottomLeftCorner(1, n_) = slope / fastest_ * model_.contact_shape().transpose();
+  for (Index j = 0; j < moving_; ++j) {
+    const auto parameter = static_cast<std::size_t>(j);
+    jump.by_device(size_, j) = slope * by_device_->interference(parameter, before.q.data()) +
+                               by_device_->of_contact(parameter, [&](const ContactLaw& law) { return dent(law, deepest).shift; });
+  }
+  return jump;
+}
+
+// An edge of the contact's phases, or an impact.
+LinearizedClosing::Jump LinearizedClosing::crossed(const MotionTape::Passage& passage) {
+  const PhaseChange& change = passage.change;
+  const Arc& before = arcs_.back();
+  Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
+  MatrixXd& matrix = *jump.matrix;
   VectorXd normal = VectorXd::Zero(size_);
   normal.head(n_) = model_.contact_shape() / fastest_;
-  if (change.kind == Kind::rests) {
-    matrix.setZero();
-  } else if (change.kind == Kind::turn) {
-    const double deepest = model_.contact_deflection(before.q.data()) - model_.device().gap.contact, step = 1e-5 * deepest;
-    const auto shift = [&](double d) { return dent(model_.contact(), d).shift; };
-    matrix.bottomRows<1>().setZero();
-    matrix.bottomLeftCorner(1, size_) = (shift(deepest + step) - shift(deepest - step)) / (2 * step) * normal.transpose();
-  } else {
-    Modal v = before.v;
-    VectorXd from = rates(passage.time, before.q.data(), v.data(), change.before);
-    const double approach = normal.dot(from);
-    if (change.kind == Kind::impact) {
-      const double restitution = model_.rigid_contact()->restitution;
-      v *= -restitution;
-      from.tail(n_) *= -restitution;
-      matrix.block(n_, n_, n_, n_) *= -restitution;
+  Modal v = before.v;
+  VectorXd from = rates(passage.time, before.q.data(), v.data(), change.before);
+  const double approach = normal.dot(from);
+  if (change.kind == PhaseChange::Kind::impact) {
+    const double restitution = model_.rigid_contact()->restitution;
+    v *= -restitution;
+    from.tail(n_) *= -restitution;
+    matrix.block(n_, n_, n_, n_) *= -restitution;
+    for (Index j = 0; j < moving_; ++j) {
+      const double change_of_it = by_device_->of_contact(
+          static_cast<std::size_t>(j), [](const ContactLaw& law) { return std::get<RigidContact>(law).restitution; });
+      jump.by_device.col(j).segment(n_, n_) = -change_of_it * before.v;
     }
-    const VectorXd to = rates(passage.time, before.q.data(), v.data(), change.after);
-    matrix.topLeftCorner(size_, size_) -= (from - to) * normal.transpose() / approach;
-    if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();  // the dent has healed
   }
-  jumps_.push_back({.arcs = arcs_.size(), .matrix = std::move(matrix), .moved = {}});
+  const VectorXd to = rates(passage.time, before.q.data(), v.data(), change.after);
+  const VectorXd lost = (from - to) / approach;
+  matrix.topLeftCorner(size_, size_) -= lost * normal.transpose();
+  const double level = change.level - model_.device().gap.contact;
+  for (Index j = 0; j < moving_; ++j) {
+    const auto parameter = static_cast<std::size_t>(j);
+    jump.by_device.col(j).head(size_) -=
+        lost * (by_device_->interference(parameter, before.q.data()) - by_device_->edge(parameter, level));
+  }
+  if (change.before.shift != 0 && change.after.shift == 0) matrix.bottomRows<1>().setZero();  // the dent has healed
+  return jump;
 }
 
 VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
@@ -357,17 +420,18 @@ VectorXd LinearizedClosing::scaled(const FigureSlope::Weights& weights) const {
   return all;
 }
 
-// Of figures that are measured at the beginnings of pieces.
+// Of figures that are measured at the beginnings of pieces, or depend on the device at fixed q and v.
 void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, MatrixXd& gradient) const {
   for (std::size_t f = 0; f < figures.size(); ++f) {
     for (const FigureSlope::Moved& m : figures[f].moved) {
       for (const SignalSlopes::Slope& slope : slopes.at(m.drive, m.piece))
         gradient(static_cast<Index>(f), static_cast<Index>(slope.parameter)) += m.rate * slope.begin;
     }
+    for (Index j = 0; j < figures[f].by_device.size(); ++j) gradient(static_cast<Index>(f), column(j)) += figures[f].by_device[j];
   }
 }
 
-// Calls add(drive, parameter, dV/dp at the begin, in the middle and at the end of an arc).
+// Calls add(input, parameter, its derivative at the begin, in the middle and at the end of an arc).
 template <class Add>
 void LinearizedClosing::for_inputs(const Arc& arc, const SignalSlopes& slopes, Add&& add) const {
   const std::vector<std::size_t>& on = pieces(arc);
@@ -377,6 +441,7 @@ void LinearizedClosing::for_inputs(const Arc& arc, const SignalSlopes& slopes, A
           slope.voltage((arc.begin + arc.end) / 2), slope.voltage(arc.end));
     }
   }
+  for (Index j = 0; j < moving_; ++j) add(dent_ + 1 + j, column(j), 1.0, 1.0, 1.0);
 }
 
 // An input on an arc is the parabola through its values at the nodes.
@@ -399,6 +464,7 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
         for (const SignalSlopes::Slope& slope : slopes.at(moved.drive, moved.piece))
           gradient.col(static_cast<Index>(slope.parameter)) += each * slope.begin;
       }
+      for (Index j = 0; j < jump->by_device.cols(); ++j) gradient.col(column(j)) += weights * jump->by_device.col(j);
       if (!jump->matrix) continue;
       weights = weights * *jump->matrix;
       left = left * *jump->matrix;
@@ -416,12 +482,13 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
       at_middle.row(f) = of(h * (4 * w.phi2 - 8 * w.phi3)).lazyProduct(middle);
       at_end.row(f) = of(h * (4 * w.phi3 - w.phi2)).lazyProduct(end);
       add_compensated(weights.row(f), left.row(f), w.gain.head(size_));
-      weights(f, size_) += at_begin(f, inputs_ - 1) + at_middle(f, inputs_ - 1) + at_end(f, inputs_ - 1);
+      weights(f, size_) += at_begin(f, dent_) + at_middle(f, dent_) + at_end(f, dent_);
     }
     for_inputs(arcs_[arc], slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
       gradient.col(parameter) += v0 * at_begin.col(drive) + v1 * at_middle.col(drive) + v2 * at_end.col(drive);
     });
   }
+  for (Index j = 0; j < moving_; ++j) gradient.col(column(j)) += weights.leftCols(size_) * rest_.col(j);
   return gradient;
 }
 
@@ -429,6 +496,7 @@ MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, con
   const auto count = static_cast<Index>(slopes.parameters()), columns = (count + lane_size - 1) / lane_size * lane_size;
   MatrixXd gradient = MatrixXd::Zero(static_cast<Index>(figures.size()), count);
   Columns d = Columns::Zero(size_ + 1, columns), left = d;
+  for (Index j = 0; j < moving_; ++j) d.col(column(j)).head(size_) = rest_.col(j).array();
   ColumnSeries series;
   std::array<Columns, 3> u;
   u.fill(Columns::Zero(n_, columns));
@@ -443,6 +511,7 @@ MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, con
         for (const SignalSlopes::Slope& slope : slopes.at(moved.drive, moved.piece))
           d.col(static_cast<Index>(slope.parameter)) += gained.array() * slope.begin;
       }
+      for (Index j = 0; j < jump->by_device.cols(); ++j) d.col(column(j)) += jump->by_device.col(j).array();
     }
     const Transition t = transition(arc);
     const double h = arcs_[arc].end - arcs_[arc].begin;
@@ -455,10 +524,9 @@ MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, con
       u[1].col(parameter) += 4 * p1 - 3 * p0 - p2;
       u[2].col(parameter) += 2 * (p0 - 2 * p1 + p2);
     });
-    const Index dent = inputs_ - 1;
     if (arcs_[arc].contact.unloading) {
-      const auto p0 = (h * at(t.begin, dent)).matrix(), p1 = (h * at(t.middle, dent)).matrix(),
-                 p2 = (h * at(t.end, dent)).matrix();
+      const auto p0 = (h * at(t.begin, dent_)).matrix(), p1 = (h * at(t.middle, dent_)).matrix(),
+                 p2 = (h * at(t.end, dent_)).matrix();
       const auto shift = d.bottomRows<1>().matrix();
       u[0] += (p0 * shift).array();
       u[1] += ((4 * p1 - 3 * p0 - p2) * shift).array();

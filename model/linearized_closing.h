@@ -11,6 +11,10 @@
 // Forward, d is carried along for all parameters at once. Backward (adjoint), the weights that a figure gives to d are carried
 // from the end to the beginning: its cost hardly depends on the number of parameters. Both take the exponential times vectors, by
 // its Taylor series, and never the exponential itself.
+//
+// A parameter of the device adds F_p (model/switch_slopes.h) to what drives the equations, the derivative of the rest that the
+// closing starts from, and what it does to the times of events at fixed q: an edge is crossed where the interference, which
+// depends on the shape of the modes at the contact and on the contact gap, has a certain value.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,12 +26,14 @@
 
 #include "model/motion_tape.h"
 #include "model/switch.h"
+#include "model/switch_slopes.h"
 #include "waveforms/signal_slopes.h"
 
 namespace softland {
 
 /// The derivative of a figure: weights of d at the end of an arc, before what follows it. What is measured at a time that moves
-/// with the beginning of a piece has a rate for it.
+/// with the beginning of a piece has a rate for it, and what depends on the device at fixed q and v its derivative by each of
+/// SwitchSlopes::moving().
 struct FigureSlope {
   struct Weights {
     std::size_t arc = 0;  ///< of LinearizedClosing::arcs()
@@ -40,6 +46,7 @@ struct FigureSlope {
   };
   std::vector<Weights> weights = {};
   std::vector<Moved> moved = {};
+  Eigen::VectorXd by_device = {};  ///< empty: 0
 };
 
 class LinearizedClosing {
@@ -62,8 +69,10 @@ class LinearizedClosing {
   };
 
   /// Of a closing that was run with restart_at_contact, under these signals. Keeps references to the switch and the signals.
-  /// `refinement`: arcs of a step, at the least.
-  LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement = 1);
+  /// `refinement`: arcs of a step, at the least. `by_device`: how the switch changes with the parameters; none: not at all. They
+  /// are as many as those of the signals.
+  LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement = 1,
+                    SwitchSlopes* by_device = nullptr);
 
   /// Why there is no derivative, in words; empty where there is.
   [[nodiscard]] static std::string refusal(const Switch& model);
@@ -72,6 +81,8 @@ class LinearizedClosing {
   /// Of the drives, all along an arc.
   [[nodiscard]] const std::vector<std::size_t>& pieces(const Arc& arc) const { return pieces_[arc.pieces_entered]; }
   [[nodiscard]] const std::vector<Passage>& passages() const { return passages_; }
+  /// Null where the parameters do not change the switch.
+  [[nodiscard]] const SwitchSlopes* by_device() const { return by_device_; }
 
   /// Derivatives of figures, a row each, with respect to the parameters: adjoint.
   [[nodiscard]] Eigen::MatrixXd backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const;
@@ -84,7 +95,7 @@ class LinearizedClosing {
   // The derivatives of the accelerations at one state, in units in which q is times the fastest frequency.
   struct Node {
     Eigen::MatrixXd by_q, by_v;
-    Eigen::MatrixXd inputs;  // by the drives, then by the dent of a contact with memory
+    Eigen::MatrixXd inputs;  // by the drives, by the dent of a contact with memory, by parameters of the device
   };
   // Magnus' series of an arc and what drives and dents add: places in numbers_.
   struct Transition {
@@ -94,13 +105,15 @@ class LinearizedClosing {
     const double* end;     // and at the end of the arc, modes x inputs each
     int terms = 0;         // of the series of its exponential
   };
-  // d, and the shift's derivative below it, after an event: matrix * d + sum over moved pieces. No matrix: d stays.
+  // d, and the shift's derivative below it, after an event: matrix * d + by_device + sum over moved pieces. No matrix: d stays.
   struct Jump {
     std::size_t arcs = 0;
     std::optional<Eigen::MatrixXd> matrix;                              // 2 modes + 1 square
     std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // d gains the vector times d(begin)/dp
+    Eigen::MatrixXd by_device = {};                                     // a column to each moving parameter, or none
   };
 
+  void begin_at_rest();
   void set_node(Node& node, double t, const double* q, const double* v, const ContactState& contact);
   void set_volts(double t);
   [[nodiscard]] Eigen::VectorXd rates(double t, const double* q, const double* v, const ContactState& contact);
@@ -109,8 +122,15 @@ class LinearizedClosing {
                                                                   bool after_edge, bool before_edge) const;
   void add_transition(double h);
   void add_passage(const MotionTape::Passage& passage);
+  [[nodiscard]] Jump turned() const;
+  [[nodiscard]] Jump at_rest() const;
+  [[nodiscard]] Jump crossed(const MotionTape::Passage& passage);
   void enter_pieces(const MotionTape::Motion& here, const ContactState& contact);
   [[nodiscard]] Transition transition(std::size_t arc) const;
+  // Of the gradient, of a parameter that changes the switch.
+  [[nodiscard]] Index column(Index moving) const {
+    return static_cast<Index>(by_device_->moving()[static_cast<std::size_t>(moving)]);
+  }
   [[nodiscard]] Eigen::VectorXd scaled(const FigureSlope::Weights& weights) const;
   void add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, Eigen::MatrixXd& gradient) const;
   template <class Add>
@@ -118,9 +138,11 @@ class LinearizedClosing {
 
   const Switch& model_;
   std::span<const Signal> signals_;
-  Index n_, size_;         // modes, unknowns: 2 modes
-  Index stride_, inputs_;  // size_ in whole lanes; drives and the dent
-  double fastest_;         // [rad/s]
+  Index n_, size_;  // modes, unknowns: 2 modes
+  Index stride_;    // size_ in whole lanes
+  SwitchSlopes* by_device_;
+  Index dent_, moving_, inputs_;  // drives; parameters of the device; both and the dent
+  double fastest_;                // [rad/s]
   Switch::Workspace work_;
   int refinement_;
   std::vector<std::vector<std::size_t>> pieces_;  // that the drives were on, one set after the other
@@ -130,6 +152,7 @@ class LinearizedClosing {
   std::vector<double> numbers_;  // of the arcs, Magnus' series and inputs
   std::vector<Jump> jumps_;
   std::vector<Passage> passages_;
+  Eigen::MatrixXd rest_;  // derivative of the motion's beginning, a column to each moving parameter
   Node from_, middle_, to_;
   bool goes_on_ = false;  // from_ is where the next arc begins
 };

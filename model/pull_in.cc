@@ -361,11 +361,11 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
 }
 
 DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, const Watch& watch,
-                              double tolerance) {
+                              double tolerance, double precision) {
   if (static_result.status != Status::done) return {.status = static_result.status};
   if (!model.rest()) return {.status = Status::collapsed_at_rest};
   StepTrial steps(model, drive, static_result, tolerance);
-  const double halvings = std::log2(0.5 / dynamic_pull_in_precision);  // of the bracket
+  const double halvings = std::log2(0.5 / precision);  // of the bracket
   double done = 0;
   const auto reaches = [&](double value) {
     return steps.reaches(value, watch.stop,
@@ -379,7 +379,7 @@ DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const Stat
     low /= 2;
     if (low < 1e-9 * static_result.voltage) return {.status = Status::numerical_failure};
   }
-  while (high - low > dynamic_pull_in_precision * high && !watch.stopped()) {
+  while (high - low > precision * high && !watch.stopped()) {
     const double middle = (low + high) / 2;
     (reaches(middle) ? high : low) = middle;
     ++done;

@@ -52,17 +52,18 @@ struct ClosedEquilibrium {
 /// onto the electrode.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts);
 
-/// How closely a dynamic pull-in voltage is bracketed, relative; the upper end is given.
+/// How closely a dynamic pull-in voltage is bracketed, relative, unless more is asked for; the upper end is given.
 inline constexpr double dynamic_pull_in_precision = 1e-7;
 
 /// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest whose contact point reaches the contact plane, whether
-/// or not it stays, within 100 periods of the first mode; to dynamic_pull_in_precision. At most the static pull-in voltage, at
+/// or not it stays, within 100 periods of the first mode, to `precision`. At most the static pull-in voltage, at
 /// which the thickest film gives way in the end. NaN with a status when static pull-in fails, or `watch` asks to stop.
 struct DynamicPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; of the dispersion force its factor less one
 };
 [[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result,
-                                            const Watch& watch = {}, double tolerance = 1e-8);
+                                            const Watch& watch = {}, double tolerance = 1e-8,
+                                            double precision = dynamic_pull_in_precision);
 
 }  // namespace softland

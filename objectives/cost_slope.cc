@@ -22,6 +22,9 @@ void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
     m.rate *= factor;
     to.moved.push_back(m);
   }
+  if (from.by_device.size() == 0) return;
+  if (to.by_device.size() == 0) to.by_device = VectorXd::Zero(from.by_device.size());
+  to.by_device += factor * from.by_device;
 }
 
 // Goes along the motion of the contact point as CostObserver does.
@@ -60,9 +63,27 @@ class SlopeFinder {
   using Arc = LinearizedClosing::Arc;
 
   [[nodiscard]] const Arc& arc(std::size_t i) const { return motion_.arcs()[i]; }
-  // Of the contact point's position at a fixed time [m].
+  // Calls of(j) for every parameter that changes the switch; empty where there are none.
+  template <class Of>
+  [[nodiscard]] VectorXd by_device(Of&& of) const {
+    if (motion_.by_device() == nullptr) return {};
+    VectorXd all(static_cast<Eigen::Index>(motion_.by_device()->moving().size()));
+    for (Eigen::Index j = 0; j < all.size(); ++j) all[j] = of(*motion_.by_device(), static_cast<std::size_t>(j));
+    return all;
+  }
+  // Of the contact point's position over the plane at a fixed time [m].
   [[nodiscard]] FigureSlope position(std::size_t i, double factor) const {
-    return {.weights = {{.arc = i, .by_q = factor * shape_, .by_v = zero_}}, .moved = {}};
+    return {.weights = {{.arc = i, .by_q = factor * shape_, .by_v = zero_}},
+            .moved = {},
+            .by_device =
+                by_device([&](const SwitchSlopes& s, std::size_t j) { return factor * s.interference(j, arc(i).q.data()); })};
+  }
+  // Of the contact point's speed as it crosses the plane at the end of an arc [m/s].
+  [[nodiscard]] FigureSlope crossing_speed(std::size_t i) const {
+    FigureSlope slope = position(i, -shape_.dot(arc(i).accelerations) / shape_.dot(arc(i).v));
+    slope.weights[0].by_v = shape_;
+    slope.by_device += by_device([&](const SwitchSlopes& s, std::size_t j) { return s.velocity(j, arc(i).v.data()); });
+    return slope;
   }
   // Of the time at which the contact point crosses a level at the end of an arc.
   [[nodiscard]] FigureSlope crossing_time(std::size_t i) const { return position(i, -1 / shape_.dot(arc(i).v)); }
@@ -88,15 +109,18 @@ class SlopeFinder {
     const ContactState& law = arc(i).contact;
     if (!law.active || model_.has_pad_contact()) return;
     const double step = 1e-5 * depth;
-    const auto slope = [&](auto&& of) { return (of(depth + step) - of(depth - step)) / (2 * step); };
     force_ = contact_force(model_.contact(), depth, law, 0);
-    const auto slope_of = [&](double by_depth) {
+    const auto slope_of = [&](auto&& of) {
+      const double by_depth = (of(model_.contact(), depth + step) - of(model_.contact(), depth - step)) / (2 * step);
       FigureSlope found = position(i, by_depth);
       if (law.unloading) found.weights[0].by_shift = -by_depth;
+      found.by_device += by_device([&](const SwitchSlopes& s, std::size_t j) {
+        return s.of_contact(j, [&](const ContactLaw& other) { return of(other, depth); });
+      });
       return found;
     };
-    energy_slope_ = slope_of(slope([&](double d) { return stored_energy(model_.contact(), d, law); }));
-    force_slope_ = slope_of(slope([&](double d) { return contact_force(model_.contact(), d, law, 0); }));
+    energy_slope_ = slope_of([&](const ContactLaw& of, double d) { return stored_energy(of, d, law); });
+    force_slope_ = slope_of([&](const ContactLaw& of, double d) { return contact_force(of, d, law, 0); });
   }
 
   // True where a touch begins.
@@ -114,6 +138,7 @@ class SlopeFinder {
     if (!(speed > 0) || touching_) return false;
     if (touches_ == 0) {
       first_speed_ = speed;
+      slopes_.first_touch_speed = crossing_speed(i);
       slopes_.first_touch = slopes_.last_rebound_end = crossing_time(i);
     } else {
       end_rebound(i, true);
@@ -123,12 +148,11 @@ class SlopeFinder {
     depth_ = force_ = 0;
     if (speed > fastest_) {
       fastest_ = speed;
-      slopes_.touch_speed = {.weights = {{.arc = i, .by_q = -shape_.dot(at.accelerations) / speed * shape_, .by_v = shape_}},
-                             .moved = {}};
+      slopes_.touch_speed = crossing_speed(i);
     }
     if (change.kind == Kind::impact || change.kind == Kind::rests) {
-      const FigureSlope energy{.weights = {{.arc = i, .by_q = -at.v.dot(at.accelerations) / speed * shape_, .by_v = at.v}},
-                               .moved = {}};
+      FigureSlope energy = position(i, -at.v.dot(at.accelerations) / speed);
+      energy.weights[0].by_v = at.v;
       add(slopes_.impact_energy, energy);
       if (change.kind == Kind::impact) {
         touching_ = false;

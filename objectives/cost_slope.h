@@ -10,11 +10,15 @@
 
 namespace softland {
 
+/// Of the speed of the first touch: a crossing of the plane that is slower grazes.
+inline constexpr double grazing_share = 0.1;
+
 /// Of the figures of CostFigures of the same name. A crossing of the plane happens at a time that moves with the motion; a height
 /// or a depth is that of a turning point, whose time does not matter. The largest of several is followed.
 struct CostSlopes {
   FigureSlope closest, first_touch, touch_speed, rebound_height, separated, last_rebound_end, impact_energy, landing_excess,
       peak_force;
+  FigureSlope first_touch_speed;  ///< no figure of a cost: Metrics::impact_velocity
   /// False where the peak force is not that of the deepest point: on damped contacts, and along a pad.
   bool has_peak_force = true;
   /// Whether a rebound is under way at the end of the run, which no derivative knows: last_rebound_end and separated leave it

@@ -133,7 +133,8 @@ void DeviceBuilder::describe(SampledDevice& device) {
   device.model.emplace(read_scene(ensemble_->scene(device.values)).device, nominal.quadrature, &nominal.model);
 }
 
-DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in) : nominal_(&nominal), need_pull_in_(need_pull_in) {
+DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in, double precision)
+    : nominal_(&nominal), need_pull_in_(need_pull_in), precision_(precision) {
   if (!need_pull_in) return;
   require(has_pulling_electrode(nominal.scene.device), [&] {
     return fmt::format("{}: Vdp cannot be measured: there is no electrode that pulls in", nominal.scene.file.name());
@@ -148,8 +149,8 @@ DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in) : nominal_(
 double DeviceMeter::frequency() const { return nominal_->model.angular_frequencies()[0] / (2 * pi); }
 
 double DeviceMeter::pull_in(const Switch& model) const {
-  constexpr double tolerance = 1e-6;  // of the integrator: no measurement is as good
-  return dynamic_pull_in(model, electrode_, static_pull_in(model, electrode_), {}, tolerance).voltage;
+  constexpr double looser = 10;  // the integrator: no measurement is as good
+  return dynamic_pull_in(model, electrode_, static_pull_in(model, electrode_), {}, looser * precision_, precision_).voltage;
 }
 
 DeviceUnits DeviceMeter::exact(const Switch& model) const {

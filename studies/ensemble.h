@@ -89,8 +89,8 @@ struct DeviceOutcome {
 class DeviceMeter {
  public:
   /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there
-  /// is none, or it has no pull-in voltage, and `need_pull_in`.
-  DeviceMeter(const Prepared& nominal, bool need_pull_in);
+  /// is none, or it has no pull-in voltage, and `need_pull_in`. `precision`: of pull-in voltages, relative.
+  DeviceMeter(const Prepared& nominal, bool need_pull_in, double precision = dynamic_pull_in_precision);
   /// Of the nominal device [V], [Hz].
   [[nodiscard]] double pull_in() const { return pull_in_; }
   [[nodiscard]] double frequency() const;
@@ -107,6 +107,7 @@ class DeviceMeter {
 
   const Prepared* nominal_;
   bool need_pull_in_;
+  double precision_;
   std::size_t electrode_ = 0;
   double pull_in_ = Metrics::unset;
 };

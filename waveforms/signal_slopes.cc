@@ -8,8 +8,6 @@
 namespace softland {
 namespace {
 
-constexpr double share_of_range = 1e-6;
-
 bool have_same_pieces(const std::vector<Signal>& a, const std::vector<Signal>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Signal& one, const Signal& other) {
     return std::equal(one.pieces().begin(), one.pieces().end(), other.pieces().begin(), other.pieces().end(),

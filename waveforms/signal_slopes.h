@@ -42,6 +42,8 @@ class SignalSlopes {
     double per_step = 0;
   };
 
+  /// Of a parameter's range: the step to either side of it.
+  static constexpr double share_of_range = 1e-6;
   /// `signals` gives one signal per drive for x, whose neighbours from `lower` to `upper` are tried too. Parameters without room
   /// between these have no slopes. `groups` were found at another x: the same numbers, for fewer signals where they hold here.
   using SignalsOf = std::function<std::vector<Signal>(std::span<const double>)>;

@@ -77,7 +77,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
     if (end.status != Status::done) continue;
     const LinearizedClosing motion(s.given.model, signals, tape, 16);
     const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
-    if (slopes.grazing < 0.1) continue;
+    if (slopes.grazing < grazing_share) continue;
     const SignalSlopes by(signals_at, x, lower, upper);
     if (!by.kinks().empty()) continue;
     ++done;
