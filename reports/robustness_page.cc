@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "reports/derivatives_report.h"
 #include "reports/escape.h"
 #include "reports/estimates.h"
 #include "reports/made_with.h"
@@ -326,7 +327,7 @@ std::string keys_of(const Robustness& found) {
 }  // namespace
 
 std::string robustness_html(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
   const internal::Picture drawn = picture_of(report);
   std::string charts;
   for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
@@ -352,6 +353,7 @@ std::string robustness_html(const RobustnessReport& report) {
                          .keys = keys_of(found),
                          .body = section("charts", "How the devices differ", about + charts) + knowledge_table(found) +
                                  section("figures", "Figures", statistics_table(found)) + sensitivity_table(sensitivity) +
+                                 internal::derivatives_html(derivatives, found.drives.back()) +
                                  (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal) : "") +
                                  worst_table(report) + internal::reproduce(result) + internal::scene(result),
                          .style = internal::chart_style(),

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "reports/derivatives_report.h"
 #include "reports/estimates.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
@@ -123,7 +124,7 @@ json sensitivity_json(const Sensitivity& sensitivity) {
 }  // namespace
 
 json robustness_json(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
@@ -160,6 +161,7 @@ json robustness_json(const RobustnessReport& report) {
           {"drives", std::move(drives)},
           {"by_knowledge", std::move(by_knowledge)},
           {"sensitivity", sensitivity_json(sensitivity)},
+          {"derivatives", internal::derivatives_json(derivatives, found.drives.back())},
           {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal) : json(nullptr)},
           {"warnings", nominal.scene.warnings},
           {"scene", scene.json()},
@@ -170,7 +172,7 @@ json robustness_json(const RobustnessReport& report) {
 }
 
 std::string robustness_csv(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
   // Names may hold commas and quotes.

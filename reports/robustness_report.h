@@ -8,18 +8,20 @@
 #include <vector>
 
 #include "reports/result_maker.h"
+#include "studies/derivatives.h"
 #include "studies/other_ways.h"
 #include "studies/robustness.h"
 
 namespace softland {
 
-/// What is reported; `sensitivity` and `courses` are of the last drive and may be left out.
+/// What is reported; `sensitivity`, `derivatives` and `courses` are of the last drive and may be left out.
 struct RobustnessReport {
   const Prepared& nominal;
   const Robustness& found;
   RobustnessOptions options;
   std::string command;  ///< the command line
   Sensitivity sensitivity = {};
+  Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
   std::optional<OtherWays> other_ways = {};  ///< of the last drive as well
   bool interrupted = found.interrupted;      ///< in the study, or in what was to be known beside it
@@ -33,7 +35,8 @@ struct RobustnessReport {
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// A self-contained page, as html_report(): statistics, cumulative distributions and histograms, the closings of typical devices,
-/// what measuring is worth, where the spread comes from, the other ways, the worst devices, failures.
+/// what measuring is worth, where the spread comes from, derivatives at the nominal device, the other ways, the worst devices,
+/// failures.
 [[nodiscard]] std::string robustness_html(const RobustnessReport& report);
 
 }  // namespace softland

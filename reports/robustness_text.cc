@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "reports/derivatives_report.h"
 #include "reports/estimates.h"
 #include "reports/other_ways_report.h"
 #include "reports/quantity.h"
@@ -67,7 +68,7 @@ std::string knowledge_text(const Robustness& found) {
 }  // namespace
 
 std::string robustness_text(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
@@ -100,7 +101,7 @@ std::string robustness_text(const RobustnessReport& report) {
           [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
     }
   }
-  text += knowledge_text(found) + sensitivity_text(sensitivity);
+  text += knowledge_text(found) + sensitivity_text(sensitivity) + internal::derivatives_text(derivatives, found.drives.back());
   if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal);
   text += "\n" +
           wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. A device "

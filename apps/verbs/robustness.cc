@@ -107,7 +107,8 @@ void add_robustness(Verb& verb) {
   verb.with_out("folder for robustness.html, robustness.json, devices.csv and the worst devices as scenes");
   verb.footer(
       "The plain step to the same hold levels is judged beside every drive. Every device gets the volts of the nominal one,\n"
-      "or, where it is calibrated, the same waveform in its own units.\n"
+      "or, where it is calibrated, the same waveform in its own units. Exact derivatives of the nominal device's figures by\n"
+      "what varies stand beside the sample; they know nothing of rebounds that come or go.\n"
       "Examples:\n  softland robustness scenes/mem-gold.toml --samples 500\n"
       "  softland robustness scenes/mem-gold.toml --other-ways --out box\n"
       "  softland robustness scenes/mem-gold.toml softland-out --out robust");

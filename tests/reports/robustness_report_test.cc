@@ -27,6 +27,7 @@ struct Study {
   RobustnessOptions options;
   Robustness found;
   Sensitivity sensitivity;
+  Derivatives derivatives;
   std::vector<DeviceCourse> courses;
   std::optional<OtherWays> other_ways;
 
@@ -36,6 +37,7 @@ struct Study {
             .options = options,
             .command = "softland robustness 'a & b.toml'",
             .sensitivity = sensitivity,
+            .derivatives = derivatives,
             .courses = courses,
             .other_ways = other_ways};
   }
@@ -54,6 +56,7 @@ const Study& study() {
                            .calibration = {.pull_in_error = 0.01, .frequency_error = 0.0}}},
                          s.options);
     s.sensitivity = sensitivity(s.nominal, s.found.drives.back(), 32, s.options);
+    s.derivatives = derivatives(s.nominal, internal::exactly_measured(s.nominal, s.found.drives.back()));
     s.courses = device_courses(s.nominal, s.found.drives.back(), s.found, s.options);
     s.other_ways = other_ways(s.nominal, s.found.drives.back(), s.options, {.closings_per_search = 10, .most_taught = 40});
     return s;
@@ -66,14 +69,16 @@ TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth) {
   for (const char* words : {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
                             "<slow>, \"mine\"", "Known of every device", "\nnothing ", "\nVdp and frequency, 8 classes ",
                             "\nVdp and frequency ", "\nVdp ± 1.0 %, frequency exactly ", "Share of the variance, alone / in all",
-                            "\nstructure.thickness ", "Other ways, under <slow>, \"mine\"",
+                            "\nTo first order", " %/%, ", "\nstructure.thickness ", "Other ways, under <slow>, \"mine\"",
                             "\nWorst in the box: found by search ", "\nWorst B_H: gaps × ", "± 2.39 standard deviations"})
     EXPECT_THAT(text, HasSubstr(words));
   RobustnessReport bare = study().report();
   bare.sensitivity = {};
   bare.other_ways = {};
+  bare.derivatives = {};
   EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Share of the variance")));
   EXPECT_THAT(robustness_text(bare), Not(HasSubstr("Other ways")));
+  EXPECT_THAT(robustness_text(bare), Not(HasSubstr("first order")));
 }
 
 TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound) {
@@ -90,6 +95,13 @@ TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound) {
   EXPECT_EQ(j["drives"][1]["calibration"]["Vdp_error"], 0.01);
   const auto& index = study().sensitivity.figures[1].estimate.indices->total[0];
   EXPECT_EQ(j["sensitivity"]["figures"]["largest_impact_velocity_m_s"]["variables"]["gaps"]["total"]["value"], index.value);
+  const FigureDerivatives& touch = study().derivatives.figures[0];
+  const nlohmann::json& derived = j["derivatives"]["figures"]["initial_contact_time_s"];
+  EXPECT_EQ(derived["by"]["gaps"]["derivative"], touch.by_variable[0]);
+  EXPECT_EQ(derived["by"]["gaps"]["relative"], touch.by_variable[0] / touch.value);
+  EXPECT_EQ(derived["by"]["gaps"]["per_standard_deviation"], touch.by_variable[0] * 0.02);
+  EXPECT_EQ(derived["standard_deviation"], touch.deviation);
+  EXPECT_EQ(j["derivatives"]["grazes"], study().derivatives.grazes());
   for (const DriveRobustness& d : study().found.drives) EXPECT_EQ(d.outcomes.size(), 64U);
   const OtherWays& ways = study().other_ways.value();
   const nlohmann::json& box = j["other_ways"]["box"];
@@ -166,9 +178,38 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge) {
   EXPECT_LT(std::abs(in_box), 50e-9);
 }
 
+// Grazing, what has no derivative, and what is left out are said in words, wherever derivatives are read.
+TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth) {
+  Derivatives told = study().derivatives;
+  told.grazing = 0.03;
+  told.figures[2].by_variable.clear();
+  told.figures[2].why_none = "ill-conditioned: so & so";
+  told.variables[1].why_none = "no device beside it";
+  for (FigureDerivatives& figure : told.figures) {
+    if (figure.is_known()) figure.by_variable[1] = std::numeric_limits<double>::quiet_NaN();
+  }
+  RobustnessReport report = study().report();
+  report.derivatives = told;
+  const std::string text = robustness_text(report), page = robustness_html(report);
+  const nlohmann::json j = robustness_json(report)["derivatives"];
+  EXPECT_THAT(text, HasSubstr("To first order (grazing)"));
+  EXPECT_THAT(page, HasSubstr("has 3.0 % of the speed of the first touch"));
+  EXPECT_THAT(page, HasSubstr("ill-conditioned: so &amp; so"));
+  EXPECT_THAT(page, HasSubstr("structure.thickness is left out: no device beside it."));
+  EXPECT_EQ(j["grazes"], true);
+  EXPECT_EQ(j["figures"]["major_bounce_height_m"]["why_none"], "ill-conditioned: so & so");
+  EXPECT_TRUE(j["figures"]["initial_contact_time_s"]["by"]["structure.thickness"]["derivative"].is_null());
+  told.figures.clear();
+  told.why_none = "there is no gas";
+  report.derivatives = told;
+  EXPECT_THAT(robustness_text(report), HasSubstr("The figures have no derivatives here: there is no gas."));
+  EXPECT_THAT(robustness_html(report), HasSubstr("The figures have no derivatives here: there is no gas."));
+  EXPECT_EQ(robustness_json(report)["derivatives"]["why_none"], "there is no gas");
+}
+
 TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
   const std::string page = robustness_html(study().report());
-  for (const char* id : {"charts", "knowledge", "figures", "sensitivity", "ways", "worst", "reproduce", "scene"})
+  for (const char* id : {"charts", "knowledge", "figures", "sensitivity", "derivatives", "ways", "worst", "reproduce", "scene"})
     EXPECT_THAT(page, HasSubstr(std::string("<section id=\"") + id + "\">")) << id;
   EXPECT_THAT(page, Not(HasSubstr("<slow>")));
   EXPECT_THAT(page, HasSubstr("&lt;slow&gt;, &quot;mine&quot;"));

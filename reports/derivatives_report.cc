@@ -1,0 +1,149 @@
+#include "reports/derivatives_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "reports/escape.h"
+#include "reports/json_number.h"
+#include "reports/page.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
+
+namespace softland::internal {
+namespace {
+
+using nlohmann::json;
+
+const FigureStatistics& statistics_of(const DriveRobustness& drive, std::string_view key) {
+  return drive.figures[static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data())];
+}
+
+// Per cent of the figure for one per cent of the quantity; NaN where one of them is 0.
+double elasticity(const FigureDerivatives& figure, const Derivatives::Variable& variable, double derivative) {
+  const double size = figure.value / variable.nominal;
+  return size != 0 && std::isfinite(size) ? derivative / size : Metrics::unset;
+}
+
+std::string with_sign(const std::string& number, double value) { return (value > 0 ? "+" : "") + number; }
+
+// "+0.52 %/%, +1.2 µs"
+std::string derivative_cell(const Derivatives& derivatives, const FigureDerivatives& figure, std::size_t i) {
+  if (!figure.is_known() || !std::isfinite(figure.by_variable[i])) return "—";
+  const Derivatives::Variable& variable = derivatives.variables[i];
+  const double relative = elasticity(figure, variable, figure.by_variable[i]), step = figure.by_variable[i] * variable.deviation;
+  const std::string change = with_sign(quantity(step, ensemble_figure(figure.key).unit), step);
+  return std::isfinite(relative) ? with_sign(plain_number(relative), relative) + " %/%, " + change : change;
+}
+
+std::string deviation_cell(const FigureDerivatives& figure, double deviation) {
+  return figure.is_known() ? quantity(deviation, ensemble_figure(figure.key).unit) : "—";
+}
+
+// What a derivative says, and what it does not.
+std::string meaning_of(const Derivatives& derivatives, const DriveRobustness& drive) {
+  std::string words = fmt::format(
+      "Exact derivatives at the nominal device under {}: per cent of the figure for one per cent of the quantity, and its change "
+      "for one standard deviation. To first order these add up to the spread; a rebound that comes or goes is no small change, "
+      "and where the two spreads differ the sample is to be believed.",
+      drive.name);
+  if (derivatives.grazes()) {
+    words += fmt::format(
+        " Grazing: the slowest crossing of the contact plane has {} of the speed of the first touch, so that a touch nearly "
+        "comes "
+        "or goes, and figures after the first touch keep these derivatives for much smaller changes only.",
+        percent(derivatives.grazing));
+  }
+  for (const Derivatives::Variable& v : derivatives.variables) {
+    if (!v.why_none.empty()) words += fmt::format(" {} is left out: {}.", v.name, v.why_none);
+  }
+  return words;
+}
+
+std::string why_no_derivatives(const Derivatives& derivatives) {
+  return fmt::format("The figures have no derivatives here: {}.", derivatives.why_none);
+}
+
+}  // namespace
+
+json derivatives_json(const Derivatives& derivatives, const DriveRobustness& drive) {
+  json variables = json::object(), figures = json::object();
+  for (const Derivatives::Variable& v : derivatives.variables) {
+    variables[v.name] = {{"nominal", v.nominal}, {"standard_deviation", v.deviation}};
+    if (!v.why_none.empty()) variables[v.name]["why_none"] = v.why_none;
+  }
+  for (const FigureDerivatives& figure : derivatives.figures) {
+    json by = json::object();
+    for (std::size_t i = 0; i < figure.by_variable.size(); ++i) {
+      const Derivatives::Variable& v = derivatives.variables[i];
+      by[v.name] = {{"derivative", json_number(figure.by_variable[i])},
+                    {"relative", json_number(elasticity(figure, v, figure.by_variable[i]))},
+                    {"per_standard_deviation", json_number(figure.by_variable[i] * v.deviation)}};
+    }
+    json& one = figures[std::string(figure.key)] = {{"nominal", json_number(figure.value)},
+                                                    {"by", std::move(by)},
+                                                    {"standard_deviation", json_number(figure.deviation)},
+                                                    {"error", json_number(figure.error)}};
+    if (!figure.why_none.empty()) one["why_none"] = figure.why_none;
+  }
+  json j{{"drive", drive.name},
+         {"grazes", derivatives.grazes()},
+         {"slowest_crossing", json_number(derivatives.grazing)},
+         {"variables", std::move(variables)},
+         {"figures", std::move(figures)}};
+  if (!derivatives.why_none.empty()) j["why_none"] = derivatives.why_none;
+  return j;
+}
+
+std::string derivatives_text(const Derivatives& derivatives, const DriveRobustness& drive) {
+  if (derivatives.variables.empty()) return {};
+  if (derivatives.figures.empty()) return "\n" + wrapped(why_no_derivatives(derivatives)) + "\n";
+  constexpr std::size_t label = 34, width = 25;
+  std::vector<const FigureDerivatives*> shown;
+  for (const std::string_view key : explained_figures) {
+    const auto has_key = [&](const FigureDerivatives& figure) { return figure.key == key; };
+    shown.push_back(&*std::find_if(derivatives.figures.begin(), derivatives.figures.end(), has_key));
+  }
+  std::string text = "\n";
+  const auto row = [&](const std::string& name, auto&& cell) {
+    text += left_aligned(name, label);
+    for (const FigureDerivatives* figure : shown) text += right_aligned(cell(*figure), width);
+    text += "\n";
+  };
+  row(derivatives.grazes() ? "To first order (grazing)" : "To first order",
+      [](const FigureDerivatives& f) { return std::string(ensemble_figure(f.key).symbol); });
+  for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
+    row(derivatives.variables[i].name, [&](const FigureDerivatives& f) { return derivative_cell(derivatives, f, i); });
+  row("standard deviation", [](const FigureDerivatives& f) { return deviation_cell(f, f.deviation); });
+  row("  of the devices",
+      [&](const FigureDerivatives& f) { return deviation_cell(f, statistics_of(drive, f.key).standard_deviation); });
+  return text + wrapped(meaning_of(derivatives, drive)) + "\n";
+}
+
+std::string derivatives_html(const Derivatives& derivatives, const DriveRobustness& drive) {
+  if (derivatives.variables.empty()) return {};
+  const auto page_section = [](const std::string& body) { return section("derivatives", "To first order", body); };
+  if (derivatives.figures.empty()) return page_section("<p>" + escaped(why_no_derivatives(derivatives)) + "</p>\n");
+  TableRow head{"Figure", "Nominal"};
+  for (const Derivatives::Variable& v : derivatives.variables) head.emplace_back(escaped(v.name));
+  head.insert(head.end(), {"Standard deviation", "of the devices"});
+  std::vector<TableRow> rows;
+  for (const FigureDerivatives& figure : derivatives.figures) {
+    const EnsembleFigure& of = ensemble_figure(figure.key);
+    TableRow& row = rows.emplace_back(TableRow{escaped(of.name), escaped(quantity(figure.value, of.unit))});
+    if (!figure.is_known()) {
+      row.emplace_back(escaped(figure.why_none), "missing", derivatives.variables.size() + 1);
+    } else {
+      for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
+        row.emplace_back(escaped(derivative_cell(derivatives, figure, i)));
+      row.emplace_back(escaped(deviation_cell(figure, figure.deviation)));
+    }
+    row.emplace_back(escaped(quantity(statistics_of(drive, figure.key).standard_deviation, of.unit)));
+  }
+  return page_section(table_html(head, rows) + "<p class=\"below\">" + escaped(meaning_of(derivatives, drive)) + "</p>\n");
+}
+
+}  // namespace softland::internal
