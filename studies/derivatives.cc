@@ -15,9 +15,9 @@
 namespace softland {
 namespace {
 
-constexpr double unknown = Metrics::unset;
-constexpr double loosest_tolerance = 1e-8;
-constexpr double ill_conditioned = 0.05;  // what derivatives may differ by from those of a looser run
+constexpr double no_derivative = Metrics::unset;
+constexpr double usual_tolerance = 1e-8;
+constexpr double largest_disagreement = 0.05;  // what derivatives may differ by from those of a looser run
 constexpr double no_change = 1e-5;  // of a figure: a derivative that is off by this for a standard deviation is as good as 0
 constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
@@ -213,7 +213,7 @@ NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>&
   return closing;
 }
 
-DerivativeOptions looser(const DerivativeOptions& options) {
+DerivativeOptions looser_than(const DerivativeOptions& options) {
   return {.tolerance = 10 * options.tolerance, .refinement = (options.refinement + 1) / 2};
 }
 
@@ -222,7 +222,7 @@ void set_derivatives(FigureDerivatives& figure, const std::vector<Derivatives::V
   const Eigen::VectorXd changes = changes_of(by_variable, variables);
   const double off = (changes - changes_of(judge, variables)).cwiseAbs().maxCoeff(), size = changes.cwiseAbs().maxCoeff();
   figure.error = off > 0 ? off / size : 0;
-  if (!(figure.error <= ill_conditioned || off <= no_change * std::abs(figure.value))) {
+  if (!(figure.error <= largest_disagreement || off <= no_change * std::abs(figure.value))) {
     figure.why_none = "ill-conditioned: its derivatives change with the tolerance of the closing, as after many rebounds";
     return;
   }
@@ -266,9 +266,9 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
   for (const std::size_t k : by.of_signals.kinks()) variables[k]->why_none = other_pieces;
   const std::vector<Signal> signals = near.signals();
   DerivativeOptions own = options;
-  if (!(own.tolerance > 0)) own.tolerance = std::min(nominal.tolerance, loosest_tolerance);
+  if (!(own.tolerance > 0)) own.tolerance = std::min(nominal.tolerance, usual_tolerance);
   const NominalClosing closing = close_nominal(nominal, signals, by, own);
-  const NominalClosing judge = close_nominal(nominal, signals, by, looser(own));
+  const NominalClosing judge = close_nominal(nominal, signals, by, looser_than(own));
   if (closing.gradient.size() == 0 || judge.gradient.size() == 0) {
     found.why_none = "the nominal device does not close";
     return found;
@@ -280,7 +280,7 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
     figure.why_none = why_no_derivative(derived, figure.value, nominal.model, closing.slopes, closing.outcome.metrics);
     if (figure.why_none.empty()) {
       const auto of = [&](const Eigen::MatrixXd& gradient) {
-        std::vector<double> all(found.variables.size(), unknown);
+        std::vector<double> all(found.variables.size(), no_derivative);
         for (std::size_t k = 0; k < places.size(); ++k) {
           if (variables[k]->why_none.empty())
             all[places[k]] = gradient(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
