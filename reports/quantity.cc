@@ -23,8 +23,11 @@ constexpr const char* none = "—";
 constexpr double most_times = 1000;
 constexpr double most_percent = 10;  // a thousand per cent
 
-/// The decimal exponent of the first digit of a value that is not 0.
-int exponent_of(double value) { return static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-12)); }
+/// The decimal exponent of the first digit of a value that is not 0; of one beyond all numbers that of the largest.
+int exponent_of(double value) {
+  const double size = std::min(std::abs(value), std::numeric_limits<double>::max());
+  return static_cast<int>(std::floor(std::log10(size) + 1e-12));
+}
 
 /// `value` rounded to a multiple of 10^place.
 double rounded(double value, int place) {

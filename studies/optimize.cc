@@ -66,13 +66,13 @@ class Search {
     }
   }
 
-  // Of several families each has a share of the budget, the last one from what the others have found; the best goes on with the
+  // Of several families each has a share of the budget, and begins at what those before it have found; the best goes on with the
   // rest.
   OptimizerResult run() {
     const double share = families_.size() > 1 ? opening / static_cast<double>(families_.size()) : 0;
     const auto evaluations = static_cast<long>(share * static_cast<double>(options_.max_evaluations));
     for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
-      if (k + 1 == families_.size()) begin_where_others_are(k);
+      begin_where_others_were(k);
       if (!go_on(k, evaluations, share * options_.max_seconds, 0)) return all_;
     }
     const long rest = options_.max_evaluations - static_cast<long>(families_.size()) * evaluations;
@@ -180,7 +180,7 @@ class Search {
     return leader;
   }
 
-  void begin_where_others_are(std::size_t family) {
+  void begin_where_others_were(std::size_t family) {
     for (std::size_t k = 0; k < families_.size(); ++k) {
       if (k == family) continue;
       if (const std::optional<Evaluation> best = best_of(k)) families_[family].begin_at(families_[k].waveforms(*best));
@@ -246,7 +246,7 @@ class Search {
 }  // namespace
 
 long default_budget(const Aim& target, Actuator actuator) {
-  const long by_bounce = actuator == Actuator::electrostatic ? 2500 : 10000;
+  const long by_bounce = actuator == Actuator::electrostatic ? 5000 : 10000;
   return target.has_own_cost() ? by_bounce + by_bounce / 2 : by_bounce;
 }
 

@@ -70,7 +70,7 @@ class FamilyOfDrives {
 }  // namespace
 
 std::string_view default_families(Actuator actuator) {
-  return actuator == Actuator::pzt ? "sines" : "knots+dual-pulse+staircase:5";
+  return actuator == Actuator::pzt ? "dual-pulse+sines+knots:8" : "knots+dual-pulse+staircase:5+knots:8";
 }
 
 std::vector<std::string> families_of(const std::string& text) {
@@ -97,7 +97,9 @@ bool has_pulling_electrode(const Device& device) {
 
 std::string searched_electrode(const Device& device) {
   require(!device.electrodes.empty(), fmt::format("--actuator electrostatic|both needs an electrode, and the scene has none{}",
-                                                  device.dispersion ? "; the factor of a dispersion force is not searched" : ""));
+                                                  device.piezo        ? "; its piezo layer is searched with --actuator pzt"
+                                                  : device.dispersion ? "; the factor of a dispersion force is not searched"
+                                                                      : ""));
   for (const Electrode& e : device.electrodes) {
     if (e.name == "main" && e.side != Side::far) return e.name;
   }

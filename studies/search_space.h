@@ -50,7 +50,8 @@ static_assert(is_complete<actuators>());
 
 /// Families whose search together came within 5 % of the best that is known on the switches of results/comparison.md.
 [[nodiscard]] std::string_view default_families(Actuator actuator);
-/// The families that "knots", or "knots+dual-pulse+staircase:5", names. Throws InvalidInput where one is empty or named twice.
+/// The families that "knots", or "knots+dual-pulse+staircase:5+knots:8", names. Throws InvalidInput where one is empty or named
+/// twice.
 [[nodiscard]] std::vector<std::string> families_of(const std::string& text);
 /// What the names of a family's parameters begin with: "knots." where there are several, nothing where it is the only one.
 [[nodiscard]] std::string prefix_of(const std::string& families, const std::string& family);

@@ -189,11 +189,34 @@ void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool
   }
   const double moved = std::abs(own.metrics.bounce_time - judge.metrics.bounce_time);
   if (own.metrics.bounce_count != judge.metrics.bounce_count || moved > 0.01 * std::abs(own.metrics.bounce_time)) {
-    c.warnings.push_back(
-        fmt::format("bounce count and permanent contact time are ill-conditioned here: a hundredfold {} run gives {} "
-                    "rebounds instead of {}; past the first large rebound a closing is chaotic",
-                    is_tighter ? "tighter" : "looser", judge.metrics.bounce_count, own.metrics.bounce_count));
+    c.warnings.push_back(fmt::format(
+        "bounce count and permanent contact time are ill-conditioned here: a hundredfold {} run gives {}; past the first "
+        "large rebound a closing is chaotic",
+        is_tighter ? "tighter" : "looser",
+        own.metrics.bounce_count == judge.metrics.bounce_count
+            ? fmt::format("another permanent contact time for the same {} rebounds", own.metrics.bounce_count)
+            : fmt::format("{} rebounds instead of {}", judge.metrics.bounce_count, own.metrics.bounce_count)));
   }
+}
+
+std::optional<ClosedEquilibrium> under_hold_levels(const Prepared& prepared, const std::vector<Signal>& signals) {
+  std::vector<double> hold;
+  for (const Signal& signal : signals) hold.push_back(signal.hold_level());
+  return closed_equilibrium(prepared.model, hold);
+}
+
+std::string warning_without(const std::optional<ClosedEquilibrium>& closed, const Prepared& prepared) {
+  const std::optional<Contact>& contact = prepared.scene.device.contact;
+  if (closed || !contact) return {};
+  if (contact->model == ContactModel::adhesive || contact->model == ContactModel::adhesive_repulsive) return {};
+  return "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
+         "voltage, or so high that the electrode pulls the beam past the contact";
+}
+
+void deny_rest(Metrics& metrics) {
+  metrics.settled = false;
+  metrics.status = Status::not_settled;
+  metrics.permanent_contact_time = metrics.bounce_time = Metrics::unset;
 }
 
 // Errors and warnings of a closing are not known where its runs were interrupted.
@@ -245,15 +268,22 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   c.trajectory = std::move(best.trajectory);
   c.tolerance = best.tolerance;
   c.quadrature = best.quadrature;
-  std::vector<double> hold;
-  for (const Signal& signal : runs.signals()) hold.push_back(signal.hold_level());
-  if (const auto closed = closed_equilibrium(prepared.model, hold)) c.trajectory.hold_force = closed->contact_force;
+  const auto closed = under_hold_levels(prepared, runs.signals());
+  if (closed) c.trajectory.hold_force = closed->contact_force;
   c.metrics = metrics(c.trajectory, prepared.scene.metrics);
+  if (std::string warning = warning_without(closed, prepared); !warning.empty()) {
+    c.warnings.push_back(std::move(warning));
+    if (c.metrics.settled) deny_rest(c.metrics);
+  }
   if (runs.was_interrupted()) say_interrupted(c);
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
   set_drive_figures(c.metrics, prepared, runs.signals());
   return c;
+}
+
+std::string not_held(const Prepared& prepared, const std::vector<Signal>& signals) {
+  return warning_without(under_hold_levels(prepared, signals), prepared);
 }
 
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals) {

@@ -42,6 +42,10 @@ struct Closing {
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const Prepared& prepared);
 
+/// What is to be warned of where the switch has a contact and no closed equilibrium under the hold levels of these drives; empty
+/// where it has one, or the contact holds on by adhesion.
+[[nodiscard]] std::string not_held(const Prepared& prepared, const std::vector<Signal>& signals);
+
 /// Peak voltage and peak slew of these drives in the window.
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);
 
@@ -49,7 +53,8 @@ void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::ve
 /// asks for an accuracy that t_i, v_i, B_H or the peak force do not have (relative; B_H to at least the significant rebound, the
 /// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
 /// helps. No run is its own judge, and no error is 0. Asked to stop, the status of the figures is interrupted: they are those of
-/// the last run that was complete, without errors, or of the part of the first one that was run.
+/// the last run that was complete, without errors, or of the part of the first one that was run. A switch that is not held (see
+/// not_held()) has not settled, however quiet it is at the end of the window.
 [[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

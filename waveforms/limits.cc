@@ -20,6 +20,7 @@ std::string violation(const Signal& signal, const DriverLimits& limits) {
   }
   const double slew = signal.peak_slew();
   if (!(slew <= limits.max_slew * (1 + rounding))) {
+    if (std::isinf(slew)) return fmt::format("the voltage jumps, faster than the driver's max_slew of {} V/s", limits.max_slew);
     return fmt::format("the voltage changes at {} V/s, faster than the driver's max_slew of {} V/s", slew, limits.max_slew);
   }
   return {};

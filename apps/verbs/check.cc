@@ -19,6 +19,7 @@
 #include "reports/quantity.h"
 #include "reports/text.h"
 #include "studies/choices.h"
+#include "studies/simulate.h"
 
 namespace softland::apps {
 namespace {
@@ -97,7 +98,9 @@ int check_verb(const Common& c) {
   }
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
-  for (const std::string& w : p.scene.warnings) text += "\n" + wrapped("warning: " + w) + "\n";
+  std::vector<std::string> warnings = p.scene.warnings;
+  if (std::string w = not_held(p, p.signals()); !w.empty()) warnings.push_back(std::move(w));
+  for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();
   work.reset();
   print(text);

@@ -111,7 +111,7 @@ TEST_F(Resume, RefusesAnotherSearchAndSaysWhatDiffers) {
   };
   refused(with({"--target", "impact"}), before + "it is for --target bounce, not impact");
   refused(with({"--actuator", "both"}), before + "it is for --actuator electrostatic, not both");
-  refused(with({"--waveform", "ramp"}), before + "it is for --waveform knots+dual-pulse+staircase:5, not ramp");
+  refused(with({"--waveform", "ramp"}), before + "it is for --waveform knots+dual-pulse+staircase:5+knots:8, not ramp");
   refused(with({"--optimizer", "bobyqa"}), before + "it is for --optimizer auto, not bobyqa");
   refused(with({"--seed", "2"}), before + "it is for --seed 1, not 2");
   refused(with({"--robust", "worst"}), before + "it is for --robust none, not worst");

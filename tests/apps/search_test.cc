@@ -51,7 +51,7 @@ std::vector<std::string> lines(const std::string& text) {
 }
 
 void expect_complete_log(const std::string& log, const char* first_parameter = "knots.main.level_1_V",
-                         const char* last_parameter = "staircase:5.main.edge_s") {
+                         const char* last_parameter = "knots:8.main.part_8") {
   ASSERT_FALSE(log.empty());
   EXPECT_EQ(log.back(), '\n');
   const auto all = lines(log);

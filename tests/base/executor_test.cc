@@ -53,7 +53,7 @@ class Crowd {
 
 TEST(RunTasks, RunsEachTaskOnceForAnyNumberOfJobs) {
   for (const int jobs : job_counts) {
-    for (const std::size_t count : {0, 1, 2, 7, 100'000}) {
+    for (const std::size_t count : {0U, 1U, 2U, 7U, 100'000U}) {
       std::vector<std::size_t> squares(count);
       const auto task = [&](std::size_t k) { squares[k] += k * k + 1; };
       EXPECT_EQ(run_tasks(count, jobs, task), count);
@@ -98,7 +98,7 @@ std::string message_of(const std::function<void()>& run) {
 
 // Tasks 3 and 5 fail; with eight jobs both are under way at once and fail in either order.
 TEST(RunTasks, ThrowsWhatTheFirstOfSeveralFailingTasksThrewWhicheverFailsSooner) {
-  for (const std::size_t sooner : {3, 5}) {
+  for (const std::size_t sooner : {3U, 5U}) {
     for (const int jobs : job_counts) {
       const auto begin = std::chrono::steady_clock::now();
       std::atomic<int> begun = 0;
@@ -116,7 +116,7 @@ TEST(RunTasks, ThrowsWhatTheFirstOfSeveralFailingTasksThrewWhicheverFailsSooner)
         ++completed[k];
       };
       EXPECT_EQ(message_of([&] { run_tasks(100, jobs, task); }), "task 3") << jobs;
-      for (const std::size_t before : {0, 1, 2}) EXPECT_EQ(completed[before], 1) << jobs << ": tasks before it complete";
+      for (const std::size_t before : {0U, 1U, 2U}) EXPECT_EQ(completed[before], 1) << jobs << ": tasks before it complete";
       EXPECT_EQ(run_tasks(10, jobs, [](std::size_t) {}), 10u) << "the threads are there for the next loop";
     }
   }
@@ -252,7 +252,7 @@ void limit_threads(rlim_t further) {
 // oneTBB itself ends the process there.
 TEST(RunTasks, MakeDoWithTheThreadsThatTheMachineHas) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  for (const rlim_t further : {0, 1, 3}) {
+  for (const rlim_t further : {0U, 1U, 3U}) {
     const auto run = [&] {
       limit_threads(further);
       Crowd crowd;

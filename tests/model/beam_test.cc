@@ -452,8 +452,8 @@ Sample sampled(int shape, double spread, std::mt19937_64& random) {
 
 TEST(BeamModes, FromThoseOfASimilarBeamAreTheSame) {
   // Frequencies to the rounding of a search, which grows as the highest lambda over the lowest; shapes to that over the distance
-  // to the next lambda.
-  constexpr double frequency_rounding = 1e-11, shape_rounding = 1e-10;
+  // to the next lambda. Measured: 1e-11 and 1e-10 of GCC, 5e-11 and 4e-10 of clang, which fuses other products and sums.
+  constexpr double frequency_rounding = 1e-10, shape_rounding = 1e-9;
   std::mt19937_64 random(5);
   for (const int modes : {1, 4, 6}) {
     for (int shape = 0; shape < 6; ++shape) {

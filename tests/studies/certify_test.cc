@@ -66,7 +66,7 @@ TEST(Certify, LeavesTheFiguresThemselvesAsTheyAre) {
     tightened += plain.tolerance < p.tolerance;
   };
   expect_same(prepared_gold("60 us"));
-  for (const std::uint64_t index : {18, 69, 120, 185}) {
+  for (const std::uint64_t index : {18U, 69U, 120U, 185U}) {
     SCOPED_TRACE(index);
     SceneFile file = test::random_scene(3, index);
     file.set("simulate.accuracy=1e-3");
@@ -106,7 +106,7 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
     missed += no;
   }
   EXPECT_GE(covered, 20);
-  EXPECT_LE(missed, 0.05 * covered);
+  EXPECT_LE(missed, 2);  // of a bound for 95 %: of 25 three or more would have a chance of 13 %
 }
 
 TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
@@ -168,6 +168,27 @@ TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn) {
   file.set("structure.damping_ratio=1e-9");
   file.set("simulate.effects=auto");  // the voltages are those of the whole scene, and so are their errors
   EXPECT_NEAR(certify(prepare_and_choose(file)).errors[&Metrics::impact_velocity], all, 0.5 * all);
+}
+
+TEST(Simulate, TakesNoQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed) {
+  const auto closing = [](std::string_view duration) {
+    SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/soft_contact.toml");
+    file.set(fmt::format("simulate.duration={}", duration));
+    return simulate(prepare(file), false);
+  };
+  const Closing c = closing("23 us"), later = closing("60 us");
+  EXPECT_EQ(later.trajectory.status, Status::numerical_failure) << "the electrode has it";
+  EXPECT_EQ(c.trajectory.status, Status::done);
+  EXPECT_EQ(c.metrics.bounce_count, 0);
+  EXPECT_EQ(c.metrics.status, Status::not_settled);
+  EXPECT_FALSE(c.metrics.settled);
+  EXPECT_TRUE(std::isnan(c.metrics.permanent_contact_time));
+  EXPECT_THAT(c.warnings, Contains(testing::HasSubstr("do not keep the switch closed")));
+  const Prepared held = prepare(gold());
+  EXPECT_EQ(not_held(held, held.signals()), "");
+  // A step that closes it by its swing, below the release voltage of so small a gap.
+  const Prepared low = prepare(gold({"gap.contact=0.3 um", "waveform.main.level=1.02 Vdp"}));
+  EXPECT_THAT(not_held(low, low.signals()), testing::HasSubstr("below its release voltage"));
 }
 
 Prepared far_electrode(std::string_view setting) {

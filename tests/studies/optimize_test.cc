@@ -273,7 +273,7 @@ TEST(Optimize, OfSeveralFamiliesGivesTheBest) {
   EXPECT_TRUE(std::isnan(r.parameter(std::string(is_pulse ? "staircase:3" : "pulse") + ".main.level_1_V")));
 }
 
-TEST(Optimize, BeginsTheLastFamilyWhereTheOthersAre) {
+TEST(Optimize, BeginsAFamilyWhereThoseBeforeItWere) {
   const Log log = search(quick(), {.family = two_families}, 120);
   const Evaluation* best_pulse = nullptr;
   for (const auto& [index, e] : log.evaluations) {
@@ -321,6 +321,17 @@ TEST(Optimize, SearchesEveryShippedSceneOrSaysWhyNot) {
         << name;
   }
   EXPECT_GE(scenes, 8);
+}
+
+TEST(Optimize, IsBetterThanAStepThatDoesNotBounceByItsCost) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/soft_contact.toml");
+  file.set("contact.stiffness=1e6 N/m");
+  const OptimizeResult r = optimize(file, {.family = "dual-pulse", .max_evaluations = 60});
+  ASSERT_TRUE(r.best);
+  EXPECT_EQ(r.baseline.metrics.bounce_count, 0);
+  EXPECT_EQ(r.baseline.metrics.major_bounce_height, r.best->metrics.major_bounce_height);
+  EXPECT_LT(r.best_cost, r.baseline_cost);
+  EXPECT_TRUE(r.better_than_baseline);
 }
 
 TEST(Optimize, RefusesAWindowTooShortToJudgeALanding) {
