@@ -173,9 +173,9 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
     EXPECT_NE(all.find(found.at("waveform").get<std::string>()), std::string::npos);
     return all;
   };
-  EXPECT_EQ(family({}), "knots dual-pulse staircase:5 ");
-  EXPECT_EQ(family({"--actuator", "pzt"}), "sines");
-  EXPECT_EQ(family({"--actuator", "both"}), "knots dual-pulse staircase:5 ");
+  EXPECT_EQ(family({}), "knots dual-pulse staircase:5 knots:8 ");
+  EXPECT_EQ(family({"--actuator", "pzt"}), "dual-pulse sines knots:8 ");
+  EXPECT_EQ(family({"--actuator", "both"}), "knots dual-pulse staircase:5 knots:8 ");
   EXPECT_EQ(family({"--actuator", "both", "--waveform", "pulse"}), "pulse");
   const std::vector<std::string> robust{"--robust", "worst", "--samples", "8"};
   const auto with = [&](std::vector<std::string> more) {
