@@ -15,8 +15,8 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 /// Pull-in of electrode `k`, without any waveform of the scene: {"status", "pull_in": {"static_V", ...}}.
 [[nodiscard]] nlohmann::json pull_in_of(const Prepared& prepared, std::size_t k, const Watch& watch);
 
-/// Whether what pull_in_of() has found is a switch that closes by itself.
-[[nodiscard]] bool collapsed(const nlohmann::json& found);
+/// Whether this, as pull_in_of() has found it, is a switch that closes by itself.
+[[nodiscard]] bool collapsed(const nlohmann::json& pull_in);
 
 [[nodiscard]] std::string volts(const nlohmann::json& value);
 

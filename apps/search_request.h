@@ -28,8 +28,11 @@ struct OptimizeRequest {
   std::optional<std::string> seeds;     ///< how many searches; none: one
   std::optional<std::string> jobs;      ///< default: one per core
   bool resume = false;
-  bool limit = false;  ///< compare the winner with the least time of any waveform
+  bool limit = false;  ///< compare the winner with the least time of any waveform, however long that takes
 };
+
+/// Of a search that the least time of any waveform, a second or two, does not make much longer.
+inline constexpr long evaluations_worth_a_limit = 1000;
 
 /// The scene that a search begins with, as its plan keeps it.
 struct StartingScene {
@@ -54,7 +57,7 @@ inline constexpr std::uint64_t most_seeds = 100'000;
 
 /// Reads the options. `known` is the plan of the search that is gone on with, which has the word where an option is not given; a
 /// null value where there is none. Throws InvalidInput with option, value and rule.
-[[nodiscard]] PlannedSearch planned(const Common& common, const OptimizeRequest& request, const nlohmann::json& known);
+[[nodiscard]] PlannedSearch planned(const Common& c, const OptimizeRequest& given, const nlohmann::json& known);
 
 /// Why a search that is asked for does not go on with one of the plan `there`, in words; empty where it does: they differ in
 /// nothing but the budget, or the asked one has more seeds.

@@ -202,6 +202,15 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
              fmt::format("min_voltage of {} V must be less than max_voltage of {} V", limits.min_voltage, limits.max_voltage));
 }
 
+// What a step needs that is faster than its driver, and nothing else is wrong with; to three digits, rounded up.
+std::string missing_rise(const Waveform& waveform, const DriverLimits& limits) {
+  const Step* const step = std::get_if<Step>(&waveform);
+  if (step == nullptr || std::max(step->level, 0.0) > limits.max_voltage || std::min(step->level, 0.0) < limits.min_voltage)
+    return {};
+  constexpr double more = 1.006;
+  return fmt::format("; with a rise_time of {} it is not", engineering(more * std::abs(step->level) / limits.max_slew, "s", 3));
+}
+
 /// The electrode whose hold level a percentage of the piezo's amplitude refers to; empty when there is none.
 std::string_view main_electrode(const Device& device) {
   for (const Electrode& electrode : device.electrodes) {
@@ -240,6 +249,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
       if (std::string broken = violation(compiled, *limits); !broken.empty()) {
         if (!driver.is_present())
           broken += fmt::format("; without [{}] the limits are 0 V and {} Vdp", driver.path(), default_max_voltage);
+        broken += missing_rise(waveform, *limits);
         file.fail_section(in.path(), broken);
       }
     }

@@ -332,7 +332,7 @@ void LinearizedClosing::enter_pieces(const MotionTape::Motion& here, const Conta
     pieces_.push_back(pieces_.back());
     pieces_.back()[k] = piece;
     gained.head(size_) -= rates(here.time, here.q, here.v, contact);
-    jump.moved.push_back({{.drive = k, .piece = piece, .rate = 0}, std::move(gained)});
+    jump.moved.emplace_back(FigureSlope::Moved{.drive = k, .piece = piece, .rate = 0}, std::move(gained));
   }
   if (jump.moved.empty()) return;
   goes_on_ = false;

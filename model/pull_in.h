@@ -21,7 +21,7 @@ enum class StaticKind { fold, contact };
 [[nodiscard]] std::string_view to_string(StaticKind kind);
 
 /// Whether this drive pulls towards the contact: an electrode on the far side has no pull-in voltage.
-[[nodiscard]] bool pulls_in(const Device& model, std::size_t drive);
+[[nodiscard]] bool pulls_in(const Device& device, std::size_t drive);
 
 struct StaticPullIn {
   Status status = Status::not_run;

@@ -43,6 +43,7 @@ class SlopeFinder {
 
   CostSlopes find() {
     slopes_.has_peak_force = model_.has_contact() && !model_.has_damped_contact() && !model_.has_pad_contact();
+    slopes_.has_impact_energy = !model_.has_pad_contact();
     auto passage = motion_.passages().begin();
     for (std::size_t i = 0; i < motion_.arcs().size(); ++i) {
       consider(i);
@@ -244,7 +245,7 @@ CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, con
 std::optional<FigureSlope> cost_slope(const Aim& aim, Status status, const CostFigures& figures, const CostScale& scale,
                                       const MetricsOptions& options, const CostSlopes& slopes) {
   if (aim.is_about(Target::drive) || (aim.is_about(Target::force) && !slopes.has_peak_force) ||
-      !std::isfinite(cost(aim, status, figures, scale, options)))
+      (aim.is_about(Target::energy) && !slopes.has_impact_energy) || !std::isfinite(cost(aim, status, figures, scale, options)))
     return std::nullopt;
   struct Part {
     double CostFigures::*figure;

@@ -21,6 +21,8 @@ struct CostSlopes {
   FigureSlope first_touch_speed;  ///< no figure of a cost: Metrics::impact_velocity
   /// False where the peak force is not that of the deepest point: on damped contacts, and along a pad.
   bool has_peak_force = true;
+  /// False along a pad, which stores its energy all along it.
+  bool has_impact_energy = true;
   /// Whether a rebound is under way at the end of the run, which no derivative knows: last_rebound_end and separated leave it
   /// out.
   bool ends_above = false;

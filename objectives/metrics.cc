@@ -74,7 +74,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   const double rest = course.last_time - permanent;
   // A period that nobody knows matters only after a rebound.
   const bool long_enough = rest >= end.in_contact_period || (result.bounce_count == 0 && std::isnan(end.in_contact_period));
-  result.settled = end.status == Status::done && !course.above && long_enough;
+  result.settled = end.status == Status::done && end.is_held && !course.above && long_enough;
   if (!result.settled) {
     if (end.status == Status::done) result.status = Status::not_settled;
     return result;

@@ -13,7 +13,7 @@ namespace softland::internal {
 [[nodiscard]] nlohmann::json yield_json(const Yield& yield);
 /// "3.4 % (2.7 to 4.3)"
 [[nodiscard]] std::string yield_text(const Yield& yield);
-/// "26.9 mm/s (26.6 to 27.1)"; "not closed" where it is infinite.
+/// "26.9 mm/s (26.6 to 27.1)"; "∞" where it is infinite.
 [[nodiscard]] std::string quantile_text(const EstimatedQuantile& quantile, std::string_view unit);
 
 }  // namespace softland::internal

@@ -18,7 +18,7 @@ namespace softland {
 
 namespace internal {
 /// In one line; empty where nothing is known.
-[[nodiscard]] std::string made_with_text(const MadeWith& made_with);
+[[nodiscard]] std::string made_with_text(const MadeWith& all);
 }  // namespace internal
 
 }  // namespace softland

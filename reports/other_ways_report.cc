@@ -25,7 +25,7 @@ const FigureStatistics& sampled(const DriveRobustness& drive, std::string_view k
 }
 
 std::string figure_text(double value, std::string_view key) {
-  return std::isinf(value) ? "not closed" : quantity(value, ensemble_figure(key).unit);
+  return std::isinf(value) ? "∞" : quantity(value, ensemble_figure(key).unit);
 }
 
 // Other devices know better than those that taught.

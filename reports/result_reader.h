@@ -18,10 +18,10 @@ namespace softland {
 void require_reportable(const nlohmann::json& result, const std::string& name);
 
 /// The result that the JSON describes. Every part of it is optional: what is missing, null or of another type is not available.
-/// Throws InvalidInput when `json` is not an object.
-[[nodiscard]] Result read_result(const nlohmann::json& json);
+/// Throws InvalidInput when `result` is not an object.
+[[nodiscard]] Result read_result(const nlohmann::json& result);
 
-/// What a report shows of a resolved scene; `text` is its file.
-[[nodiscard]] ResultScene read_result_scene(const nlohmann::json& scene, std::string text);
+/// What a report shows of a resolved scene; `file` is its text.
+[[nodiscard]] ResultScene read_result_scene(const nlohmann::json& scene, std::string file);
 
 }  // namespace softland

@@ -28,6 +28,7 @@ using internal::calibration_words;
 using internal::error_words;
 using internal::escaped;
 using internal::is_erring;
+using internal::is_had;
 using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;
@@ -38,6 +39,7 @@ using internal::spread_words;
 using internal::symbol_html;
 using internal::table_html;
 using internal::TableRow;
+using internal::worst_words;
 using internal::yield_text;
 
 constexpr std::array drawn_figures{std::string_view("largest_impact_velocity_m_s"), std::string_view("major_bounce_height_m"),
@@ -87,7 +89,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
     std::sort(values.begin(), values.end());
     const std::string name = fmt::format("{}-{}", chart.id, i);
     internal::CurveTable& table = tables[name];
-    const double all = static_cast<double>(drives[i].outcomes.size());
+    const auto all = static_cast<double>(drives[i].outcomes.size());
     for (std::size_t k = 0; k < values.size(); ++k) {
       table["x"].push_back(values[k]);
       table["y"].push_back(100 * static_cast<double>(k + 1) / all);
@@ -208,13 +210,14 @@ std::string statistics_table(const Robustness& found) {
   add("Devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
   add("Without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
   for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
+    if (!is_had(found, i)) continue;
     const EnsembleFigure& f = ensemble_figures()[i];
     for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
       add(label_html(f) + (q == 1 ? ": median" : ": 95 % below"),
           [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
     }
   }
-  return table_html(head, rows) + "<p class=\"below\">In brackets: 95 % confidence.</p>\n";
+  return table_html(head, rows) + fmt::format("<p class=\"below\">In brackets: 95 % confidence. {}</p>\n", worst_words);
 }
 
 std::string knowledge_table(const Robustness& found) {
@@ -317,7 +320,7 @@ std::string keys_of(const Robustness& found) {
     const EnsembleFigure& f = ensemble_figure(key);
     const auto value = [&](const DriveRobustness& d) {
       const double q = quantile_95(d, key).value;
-      return std::isfinite(q) ? quantity(q, f.unit) : std::string("not closed");
+      return std::isfinite(q) ? quantity(q, f.unit) : std::string("∞");
     };
     keys += internal::key_html(label_html(f) + ", 95\u00a0%", value(own), before(value(step)));
   }

@@ -93,6 +93,7 @@ std::string robustness_text(const RobustnessReport& report) {
   row("devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
   row("without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
   for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
+    if (!internal::is_had(found, i)) continue;
     const EnsembleFigure& f = ensemble_figures()[i];
     const bool has_symbol = !f.symbol.empty() && f.symbol.find(' ') == std::string_view::npos;
     text += fmt::format("{}{}{}\n", f.name, has_symbol ? ", " : "", has_symbol ? f.symbol : "");
@@ -104,10 +105,9 @@ std::string robustness_text(const RobustnessReport& report) {
   text += knowledge_text(found) + sensitivity_text(sensitivity) + internal::derivatives_text(derivatives, found.drives.back());
   if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal);
   text += "\n" +
-          wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. A device "
-                              "that does not close counts as the worst.",
+          wrapped(fmt::format("In brackets: 95 % confidence. Seed {}, {} points, window {}, integrator tolerance {}. {}",
                               options.seed, name_of(point_sets, options.points), quantity(found.duration, "s", 4),
-                              internal::scientific(found.tolerance))) +
+                              internal::scientific(found.tolerance), internal::worst_words)) +
           "\n";
   for (const std::string& warning : nominal.scene.warnings) text += "\n" + wrapped("warning: " + warning) + "\n";
   return text;

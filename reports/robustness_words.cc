@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "reports/quantity.h"
 
 namespace softland::internal {
@@ -38,6 +40,12 @@ bool is_erring(const Calibration& c) { return c.pull_in_error.value_or(0) > 0 ||
 
 std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
   return DeviceDrives(ensemble.nominal()).shown(ensemble.values(k));
+}
+
+bool is_had(const Robustness& found, std::size_t i) {
+  const auto some = [&](auto&& holds) { return std::any_of(found.drives.begin(), found.drives.end(), holds); };
+  return some([&](const DriveRobustness& d) { return d.figures[i].devices > 0; }) ||
+         !some([](const DriveRobustness& d) { return d.closing.devices > 0; });
 }
 
 const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key) {

@@ -20,6 +20,12 @@ namespace softland::internal {
 
 /// The varying quantities of device k, as they are shown.
 [[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);
+/// Whether a table has a row of figure i of ensemble_figures(): not where devices close and none has it, as the peak force on a
+/// rigid contact.
+[[nodiscard]] bool is_had(const Robustness& found, std::size_t i);
+/// What a device without a figure counts as.
+inline constexpr std::string_view worst_words =
+    "A device without a figure, as it does not close or has not settled, counts as the worst: ∞.";
 [[nodiscard]] const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key);
 
 }  // namespace softland::internal

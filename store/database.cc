@@ -125,7 +125,7 @@ void Database::run(const std::string& sql) const {
   if (code != SQLITE_OK) fail(code);
 }
 
-Statement Database::prepare(const std::string& sql) const { return Statement(*this, sql); }
+Statement Database::prepare(const std::string& sql) const { return {*this, sql}; }
 
 std::string Database::text_of(const std::string& sql) const {
   Statement statement = prepare(sql);

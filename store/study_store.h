@@ -199,7 +199,7 @@ struct Merged {
 
 /// Writes one store of the parts of a study to `out`, which must not exist. Throws InvalidInput with the names where parts are of
 /// different plans, or hold a point with different bits.
-[[nodiscard]] Merged merge_studies(const std::vector<std::filesystem::path>& parts, const std::filesystem::path& out,
+[[nodiscard]] Merged merge_studies(const std::vector<std::filesystem::path>& paths, const std::filesystem::path& out,
                                    const StoredOrigin& origin, const MergeOptions& options = {});
 
 }  // namespace softland

@@ -16,13 +16,6 @@ namespace {
 constexpr double shared = 0.01;  // of the tolerance, relative to a figure: what both runs may miss alike
 constexpr double parted = 0.1;   // relative difference of a rebound's height from which runs have parted
 
-double hold_force(const Switch& model, const std::vector<Signal>& signals) {
-  std::vector<double> hold;
-  for (const Signal& signal : signals) hold.push_back(signal.hold_level());
-  const auto closed = closed_equilibrium(model, hold);
-  return closed ? closed->contact_force : Metrics::unset;
-}
-
 // Whether the drives' last digits decide a figure of the closing and of a better one, or whether it has one at all.
 bool ill_conditioned(const Figure& figure, const std::vector<Metrics>& cloud, const Metrics& own, const Metrics& better,
                      const MetricsOptions& options) {
@@ -65,7 +58,7 @@ std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fi
       }
       const std::vector<Signal> signals = moved.signals();
       Trajectory t = simulate_closing(fine, signals, options);
-      t.hold_force = hold_force(fine, signals);
+      set_hold(t, fine, signals);
       found.push_back(metrics(t, prepared.scene.metrics));
     }
   }
@@ -140,9 +133,7 @@ Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
   const Switch fine(prepared.scene.device, quadrature);
   const ClosingOptions options{
       .duration = prepared.duration, .tolerance = std::min(c.judge->tolerance, c.tolerance), .stop = watch.stop};
-  Metrics better = c.judge->metrics;
-  if (std::isfinite(c.metrics.hold_force))
-    better.hold_force = hold_force(Switch(prepared.scene.device, c.judge->quadrature), signals);
+  const Metrics& better = c.judge->metrics;
   const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);
   std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, watch);
   if (watch.stopped()) {
@@ -154,6 +145,7 @@ Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
   std::vector<Metrics> runs;
   for (Trajectory& t : cloud) {
     t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move
+    t.is_held = c.trajectory.is_held;
     runs.push_back(metrics(t, prepared.scene.metrics));
   }
   Certificate certificate{.ill_conditioned = {}, .grazing = {}, .runs = static_cast<int>(runs.size())};

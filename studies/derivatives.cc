@@ -147,10 +147,12 @@ struct Changes {
   SignalSlopes of_signals;
 };
 
-Changes changes_near(Surroundings& near, const Switch& model, std::vector<Derivatives::Variable*>& variables) {
+Changes changes_near(Surroundings& near, const Switch& model, std::vector<Derivatives::Variable*>& variables,
+                     const Watch& watch) {
   std::vector<std::optional<SwitchSlopes::Neighbours>> neighbours(variables.size());
   std::vector<double> lower = near.values(), upper = lower;
-  for (std::size_t i = 0; i < variables.size(); ++i) {
+  for (std::size_t i = 0; i < variables.size() && !watch.stopped(); ++i) {
+    watch.tell("derivatives", static_cast<double>(i) / static_cast<double>(variables.size()));
     std::string& why_none = variables[i]->why_none;
     try {
       if (near.changes_switch(i)) neighbours[i] = near.neighbours(i);
@@ -178,13 +180,12 @@ Eigen::VectorXd changes_of(const std::vector<double>& by_variable, const std::ve
   return changes;
 }
 
-std::string why_no_derivative(const DerivedFigure& figure, double value, const Switch& model, const CostSlopes& slopes,
-                              const Metrics& metrics) {
+std::string why_no_derivative(const DerivedFigure& figure, double value, const CostSlopes& slopes, const Metrics& metrics) {
   if (figure.slope == &CostSlopes::last_rebound_end && !metrics.settled) return "the nominal device has not settled";
   if (!std::isfinite(value)) return "the nominal device does not have it";
   if (figure.slope == &CostSlopes::peak_force && !slopes.has_peak_force)
     return "a damped contact, or one along the pad, does not press hardest at its deepest point";
-  if (figure.slope == &CostSlopes::impact_energy && model.has_pad_contact())
+  if (figure.slope == &CostSlopes::impact_energy && !slopes.has_impact_energy)
     return "a contact along the pad stores its energy all along it";
   return {};
 }
@@ -197,11 +198,11 @@ struct NominalClosing {
 };
 
 NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>& signals, Changes& by,
-                             const DerivativeOptions& options) {
+                             const DerivativeOptions& options, const Watch& watch) {
   MetricsObserver observer(nominal.model.device().gap.contact, nominal.scene.metrics);
   MotionTape tape(observer);
-  const Trajectory end =
-      observe_closing(nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance}, tape);
+  const Trajectory end = observe_closing(
+      nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance, .stop = watch.stop}, tape);
   NominalClosing closing{
       .outcome = {.metrics = observer.metrics(end), .largest_impact_velocity = observer.largest_impact_velocity()}, .slopes = {}};
   if (end.status != Status::done || !closing.outcome.closed()) return closing;
@@ -245,7 +246,7 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
 
 bool Derivatives::grazes() const { return grazing < grazing_share; }
 
-Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const DerivativeOptions& options) {
+Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const DerivativeOptions& options, const Watch& watch) {
   const DeviceSpread& spread = scene.scene.spread;
   Derivatives found{.variables = variables_of(spread), .figures = {}};
   std::vector<std::size_t> places;  // of what is not drawn for every edge
@@ -262,13 +263,17 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
 
   const Prepared nominal = without_jitter(scene);
   Surroundings near(nominal, drive);
-  Changes by = changes_near(near, nominal.model, variables);
+  Changes by = changes_near(near, nominal.model, variables, watch);
   for (const std::size_t k : by.of_signals.kinks()) variables[k]->why_none = other_pieces;
   const std::vector<Signal> signals = near.signals();
   DerivativeOptions own = options;
   if (!(own.tolerance > 0)) own.tolerance = std::min(nominal.tolerance, usual_tolerance);
-  const NominalClosing closing = close_nominal(nominal, signals, by, own);
-  const NominalClosing judge = close_nominal(nominal, signals, by, looser_than(own));
+  const NominalClosing closing = close_nominal(nominal, signals, by, own, watch);
+  const NominalClosing judge = close_nominal(nominal, signals, by, looser_than(own), watch);
+  if (watch.stopped()) {
+    found.why_none = "interrupted";
+    return found;
+  }
   if (closing.gradient.size() == 0 || judge.gradient.size() == 0) {
     found.why_none = "the nominal device does not close";
     return found;
@@ -277,7 +282,7 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
   for (std::size_t f = 0; f < derived_figures.size(); ++f) {
     const DerivedFigure& derived = derived_figures[f];
     FigureDerivatives figure{.key = derived.key, .value = ensemble_figure(derived.key).value(closing.outcome), .by_variable = {}};
-    figure.why_none = why_no_derivative(derived, figure.value, nominal.model, closing.slopes, closing.outcome.metrics);
+    figure.why_none = why_no_derivative(derived, figure.value, closing.slopes, closing.outcome.metrics);
     if (figure.why_none.empty()) {
       const auto of = [&](const Eigen::MatrixXd& gradient) {
         std::vector<double> all(found.variables.size(), no_derivative);

@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/watch.h"
 #include "studies/ensemble.h"
 
 namespace softland {
@@ -54,7 +55,8 @@ struct DerivativeOptions {
 };
 
 /// Under these waveforms, in the units that are known of each device where these do not err. There are none for a compressible
-/// film, where devices are sorted into classes, and where the nominal device does not close.
-[[nodiscard]] Derivatives derivatives(const Prepared& nominal, const EnsembleDrive& drive, const DerivativeOptions& options = {});
+/// film, where devices are sorted into classes, where the nominal device does not close, and when asked to stop.
+[[nodiscard]] Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const DerivativeOptions& options = {},
+                                      const Watch& watch = {});
 
 }  // namespace softland

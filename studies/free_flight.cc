@@ -164,13 +164,6 @@ MatrixXd FreeFlight::curvature(const VectorXd& x, const VectorXd& c, const Vecto
   return result;
 }
 
-VectorXd FreeFlight::hold() const {
-  VectorXd c(controls());
-  for (std::size_t k = 0; k < free_.size(); ++k)
-    c[static_cast<Index>(k)] = free_[k].sign * hold_[free_[k].drive] / free_[k].largest;
-  return c;
-}
-
 double FreeFlight::max_slew(const std::string& drive) const {
   return std::find_if(free_.begin(), free_.end(), [&](const Free& f) { return f.name == drive; })->max_slew;
 }
@@ -185,20 +178,44 @@ std::map<std::string, double> FreeFlight::volts(const VectorXd& c) const {
   return all;
 }
 
-std::optional<VectorXd> FreeFlight::landed() const {
-  const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model_, hold_);
+// What every drive holds, of the free ones this share.
+std::vector<double> FreeFlight::held_levels(double share_of_free) const {
+  std::vector<double> all = hold_;
+  for (const Free& f : free_) all[f.drive] *= share_of_free;
+  return all;
+}
+
+// Of a switch that is closed at share 1. Its closed equilibrium goes where the share falls below that of its release.
+double FreeFlight::least_closing_share() const {
+  constexpr double precision = 1e-9;
+  const auto closes = [&](double share) { return closed_equilibrium(model_, held_levels(share)).has_value(); };
+  if (closes(0)) return 0;
+  double low = 0, high = 1;
+  while (high - low > precision) {
+    const double middle = (low + high) / 2;
+    (closes(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+std::optional<FreeFlight::Landing> FreeFlight::landing() const {
+  if (!closed_equilibrium(model_, hold_)) return std::nullopt;
+  const std::vector<double> levels = held_levels(ramps_ ? least_closing_share() : 1);
+  const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model_, levels);
   if (!closed) return std::nullopt;
   // The contact is as good as rigid: its force is moved to the plane of first touch by what the beam yields.
   std::vector<double> drives;
-  for (std::size_t k = 0; k < hold_.size(); ++k) drives.push_back(strength(k, hold_[k]));
+  for (std::size_t k = 0; k < levels.size(); ++k) drives.push_back(strength(k, levels[k]));
   Switch::Workspace work = model_.workspace();
   const VectorXd still = VectorXd::Zero(modes_), &shape = model_.contact_shape();
   const Switch::FreeMotion motion = model_.free_motion(closed->q.data(), still.data(), drives, work);
   const VectorXd yields = motion.by_q.partialPivLu().solve(shape);
   const double depth = model_.contact_deflection(closed->q.data()) - gap_;
-  VectorXd x = VectorXd::Zero(2 * modes_);
-  x.head(modes_) = (closed->q - depth / shape.dot(yields) * yields).cwiseQuotient(per_q_);
-  return x;
+  Landing landing{.state = VectorXd::Zero(2 * modes_), .controls = VectorXd(controls())};
+  landing.state.head(modes_) = (closed->q - depth / shape.dot(yields) * yields).cwiseQuotient(per_q_);
+  for (std::size_t k = 0; k < free_.size(); ++k)
+    landing.controls[static_cast<Index>(k)] = free_[k].sign * levels[free_[k].drive] / free_[k].largest;
+  return landing;
 }
 
 std::optional<ControlledCourse> FreeFlight::swing(double longest) const {

@@ -44,16 +44,19 @@ class FreeFlight final : public ControlledSystem {
   [[nodiscard]] const Eigen::VectorXd& tip_speed() const { return tip_speed_; }
   [[nodiscard]] double speed_unit() const { return gap_ * omega_[0]; }  ///< [m/s]
   [[nodiscard]] const Eigen::VectorXd& start() const { return start_; }
-  /// The beam at rest on the contact plane under what every drive holds; none where the contact would have to pull.
-  [[nodiscard]] std::optional<Eigen::VectorXd> landed() const;
+  struct Landing {
+    Eigen::VectorXd state, controls;
+  };
+  /// The beam at rest on the contact plane under what every drive holds; none where the contact would have to pull. Where the
+  /// slew is limited, under the least share of the free drives' hold levels that keeps the switch closed: with more of it, a
+  /// contact point that comes to rest on the plane would have come from behind it.
+  [[nodiscard]] std::optional<Landing> landing() const;
 
   /// Full pull, and from a time on full release, so that the contact point turns back as it arrives: the quickest way of a single
   /// swing. None where full pull does not reach the contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
   /// The free drives [V] at a control.
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
-  /// The controls that give the hold levels, where the slew is limited.
-  [[nodiscard]] Eigen::VectorXd hold() const;
   /// Of the driver of a free drive [V/s].
   [[nodiscard]] double max_slew(const std::string& drive) const;
   /// Controls that pull most, and that release most.
@@ -69,6 +72,8 @@ class FreeFlight final : public ControlledSystem {
   };
   [[nodiscard]] double strength(std::size_t drive, double value) const;
   [[nodiscard]] std::vector<double> strengths(const Eigen::VectorXd& c) const;
+  [[nodiscard]] std::vector<double> held_levels(double share_of_free) const;
+  [[nodiscard]] double least_closing_share() const;
   [[nodiscard]] double strength_slope(const Free& f, double c) const;
   void add_free(const Prepared& prepared, const std::string& name, double peak, bool brakes);
 

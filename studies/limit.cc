@@ -83,7 +83,7 @@ std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const Least
   const std::map<std::string, double> pull = flight.volts(flight.pull());
   const double end = found.course.time * flight.time_unit();
   for (auto& [name, waveform] : caught) {
-    Table& table = std::get<Table>(waveform);
+    auto& table = std::get<Table>(waveform);
     const auto hold_of = held.find(name);
     const double hold = hold_of == held.end() ? 0 : signal(hold_of->second).hold_level();
     const auto pass_to = [&](double time, double volts) {
@@ -132,14 +132,14 @@ class LeastTimeSearch {
     std::optional<ControlledCourse> swing = flight_.swing(longest);
     if (!swing) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
     course_ = std::move(*swing);
-    std::optional<VectorXd> landed;
+    std::optional<FreeFlight::Landing> landing;
     if (options_.at_rest) {
-      landed = flight_.landed();
-      if (!landed) return ended(Status::no_contact, "the hold levels do not keep the switch closed");
+      landing = flight_.landing();
+      if (!landing) return ended(Status::no_contact, "the hold levels do not keep the switch closed");
     }
-    pose(longest, landed.has_value());
-    if (landed) {
-      const Status status = come_to_rest(*landed);
+    pose(longest, landing);
+    if (landing) {
+      const Status status = come_to_rest(landing->state);
       if (status != Status::done) return ended(status, status == Status::interrupted ? std::string() : result_.message);
     }
     if (const Status status = improve_with_finer_knots(); status != Status::done) return ended(status, result_.message);
@@ -153,7 +153,7 @@ class LeastTimeSearch {
     return result_;
   }
 
-  void pose(double longest, bool at_rest) {
+  void pose(double longest, const std::optional<FreeFlight::Landing>& landing) {
     const double speed = options_.impact_velocity / flight_.speed_unit();
     const double fastest = prepared_.model.angular_frequencies().maxCoeff() * flight_.time_unit();
     problem_ = {.system = &flight_,
@@ -161,15 +161,15 @@ class LeastTimeSearch {
                 .bounds = flight_.bounds(),
                 .on_the_way = {{.row = flight_.tip(), .upper = 1}},
                 .at_the_end = {{.row = flight_.tip(), .lower = 1, .upper = 1},
-                               {.row = flight_.tip_speed(), .lower = (at_rest ? grazing : 0) * speed, .upper = speed}},
+                               {.row = flight_.tip_speed(), .lower = (landing ? grazing : 0) * speed, .upper = speed}},
                 .shortest = course_.time / 10,
                 .longest = longest / flight_.time_unit(),
                 .knots = uniform_knots(first_knots),
                 .longest_piece = piece_angle / (fastest * course_.time),
                 .stop = options_.watch.stop};
-    // A beam at rest under the hold levels stays so where the drives have come to them.
-    for (Index k = 0; at_rest && flight_.ramps() && k < flight_.controls(); ++k)
-      problem_.bounds[static_cast<std::size_t>(k)].after = flight_.hold()[k];
+    // A beam stays at rest where the drives have come to the levels under which it does.
+    for (Index k = 0; landing && flight_.ramps() && k < flight_.controls(); ++k)
+      problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
   }
 
   // A failure leaves the last course.
@@ -310,14 +310,14 @@ class LimitStudy {
       : result_(result),
         watch_(watch),
         usual_{.actuator = result.options.actuator, .impact_velocity = result.impact_velocity, .watch = watch},
-        parts_(static_cast<double>(3 + quicker.size() + (result.options.curves ? speeds.size() : 0) +
+        parts_(static_cast<double>(3 + (may_be_quicker() ? quicker.size() : 0) + (result.options.curves ? speeds.size() : 0) +
                                    (has_peaks() ? peaks.size() : 0))) {}
 
   void run() {
     if (next("least time of a touch")) result_.touch = at_speed(1);
     if (next("a landing after it")) land(result_.touch, true);
     for (const double more : quicker) {
-      if (next("quicker landings")) land(at_speed(more), true);
+      if (may_be_quicker() && next("quicker landings")) land(at_speed(more), true);
     }
     if (next("least time at rest")) {
       LeastTimeOptions at_rest = usual_;
@@ -338,6 +338,8 @@ class LimitStudy {
   static constexpr std::array speeds = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
   static constexpr std::array peaks = {0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95};
 
+  // A speed that was asked for holds for the landing too.
+  [[nodiscard]] bool may_be_quicker() const { return !result_.options.impact_velocity; }
   [[nodiscard]] bool has_peaks() const { return result_.options.curves && result_.options.actuator != Actuator::pzt; }
 
   bool next(std::string_view what) {

@@ -18,23 +18,23 @@ Step step_of(const Prepared& given, const std::string& drive) {
 
 }  // namespace
 
-std::map<std::string, Waveform> plain_step(const Prepared& given, Actuator actuator) {
+std::map<std::string, Waveform> plain_step(const Prepared& prepared, Actuator actuator) {
   std::map<std::string, Waveform> plain;
   if (actuator != Actuator::pzt) {
-    const std::string electrode = searched_electrode(given.scene.device);
-    plain[electrode] = step_of(given, electrode);
-    for (const std::string& name : braking_electrodes(given)) plain[name] = Step{.level = 0};
+    const std::string electrode = searched_electrode(prepared.scene.device);
+    plain[electrode] = step_of(prepared, electrode);
+    for (const std::string& name : braking_electrodes(prepared)) plain[name] = Step{.level = 0};
   }
-  if (given.model.has_piezo()) {
+  if (prepared.model.has_piezo()) {
     const std::string piezo(piezo_drive);
-    const std::vector<std::string> drives = given.drive_names();
+    const std::vector<std::string> drives = prepared.drive_names();
     // A piezo that nothing else helps has to close the switch itself.
     const bool alone = std::none_of(drives.begin(), drives.end(), [&](const std::string& drive) {
-      const auto& waveforms = plain.contains(drive) ? plain : given.drives.waveforms;
+      const auto& waveforms = plain.contains(drive) ? plain : prepared.drives.waveforms;
       const auto found = waveforms.find(drive);
       return drive != piezo && found != waveforms.end() && !signal(found->second).is_zero();
     });
-    plain[piezo] = alone ? step_of(given, piezo) : Step{.level = 0};
+    plain[piezo] = alone ? step_of(prepared, piezo) : Step{.level = 0};
   }
   return plain;
 }

@@ -151,7 +151,7 @@ SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::
   std::vector<double> lower, upper;
   for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
   const auto signals_at = [&](std::span<const double> at) { return given.driven(signals_of(drives(space.waveforms(at)))); };
-  return SignalSlopes(signals_at, x, lower, upper, groups);
+  return {signals_at, x, lower, upper, groups};
 }
 
 std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
@@ -205,10 +205,9 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
                   .contact_gap = given.scene.device.gap.contact,
                   .free_touch = actuator == Actuator::pzt ? braked_touch : driven_touch};
   ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
-  std::vector<double> rest;
-  for (const Signal& s : baseline_scene.signals()) rest.push_back(s.hold_level());
-  if (const auto closed = closed_equilibrium(given.model, rest)) run.closed_potential = closed->potential;
-  const Trajectory step = simulate_closing(given.model, baseline_scene.signals(), run);
+  const std::vector<Signal> plain = baseline_scene.signals();
+  if (const auto closed = closed_equilibrium(given.model, hold_levels(plain))) run.closed_potential = closed->potential;
+  const Trajectory step = simulate_closing(given.model, plain, run);
   scale.step = cost_figures(step, given.scene.metrics);
   if (!scale.step.touched) scale.step = imagined_step(given, period);
   const double baseline_cost = cost(target, step, scale, given.scene.metrics);
@@ -233,14 +232,11 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
 
 std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
                                            const std::string& families, const Watch& watch, std::vector<Criterion> conditions) {
-  std::vector<SearchSetting> all;
-  for (const std::string& family : families_of(families)) {
-    if (all.empty()) {
-      all.push_back(search_setting(file, target, actuator, family, watch, std::move(conditions)));
-    } else {
-      all.push_back(all.front());
-      all.back().space = SearchSpace(all.front().given, actuator, family, all.front().scale.step.first_touch);
-    }
+  const std::vector<std::string> names = families_of(families);
+  std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), watch, std::move(conditions))};
+  for (std::size_t k = 1; k < names.size(); ++k) {
+    all.push_back(all.front());
+    all.back().space = SearchSpace(all.front().given, actuator, names[k], all.front().scale.step.first_touch);
   }
   return all;
 }

@@ -70,7 +70,9 @@ class FamilyOfDrives {
 }  // namespace
 
 std::string_view default_families(Actuator actuator) {
-  return actuator == Actuator::pzt ? "dual-pulse+sines+knots:8" : "knots+dual-pulse+staircase:5+knots:8";
+  if (actuator == Actuator::pzt) return "dual-pulse+sines:12+knots:8";
+  if (actuator == Actuator::both) return "catch+knots+dual-pulse+staircase:5+knots:8";
+  return "knots+dual-pulse+staircase:5+knots:8";
 }
 
 std::vector<std::string> families_of(const std::string& text) {

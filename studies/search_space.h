@@ -48,7 +48,7 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
-/// Families whose search together came within 5 % of the best that is known on the switches of results/comparison.md.
+/// What is searched where no family is named: families that together land every switch of results/comparison.md.
 [[nodiscard]] std::string_view default_families(Actuator actuator);
 /// The families that "knots", or "knots+dual-pulse+staircase:5+knots:8", names. Throws InvalidInput where one is empty or named
 /// twice.

@@ -91,8 +91,7 @@ Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::spa
 std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepared& p) {
   if (s.brakes) return std::nullopt;
   const std::vector<std::string> names = p.drive_names();
-  std::vector<double> driven;
-  for (const Signal& signal : p.signals()) driven.push_back(signal.hold_level());
+  std::vector<double> driven = hold_levels(p.signals());
   std::vector<double> coasting = driven;
   const bool is_piezo = s.drive == piezo_drive;
   const bool low_pulls = is_piezo && lifting_voltage(p, 1) > 0;

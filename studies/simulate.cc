@@ -136,6 +136,7 @@ class ClosingRuns {
                                      .stop = watch_.stop,
                                      .observer = observer(watch_, what, prepared_.duration)});
     was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
+    set_hold(r.trajectory, model, signals_);
     r.metrics = metrics(r.trajectory, prepared_.scene.metrics);
     return r;
   }
@@ -199,26 +200,6 @@ void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool
   }
 }
 
-std::optional<ClosedEquilibrium> under_hold_levels(const Prepared& prepared, const std::vector<Signal>& signals) {
-  std::vector<double> hold;
-  for (const Signal& signal : signals) hold.push_back(signal.hold_level());
-  return closed_equilibrium(prepared.model, hold);
-}
-
-std::string warning_without(const std::optional<ClosedEquilibrium>& closed, const Prepared& prepared) {
-  const std::optional<Contact>& contact = prepared.scene.device.contact;
-  if (closed || !contact) return {};
-  if (contact->model == ContactModel::adhesive || contact->model == ContactModel::adhesive_repulsive) return {};
-  return "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
-         "voltage, or so high that the electrode pulls the beam past the contact";
-}
-
-void deny_rest(Metrics& metrics) {
-  metrics.settled = false;
-  metrics.status = Status::not_settled;
-  metrics.permanent_contact_time = metrics.bounce_time = Metrics::unset;
-}
-
 // Errors and warnings of a closing are not known where its runs were interrupted.
 void say_interrupted(Closing& c) {
   const bool complete = c.trajectory.status != Status::interrupted;
@@ -268,13 +249,8 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   c.trajectory = std::move(best.trajectory);
   c.tolerance = best.tolerance;
   c.quadrature = best.quadrature;
-  const auto closed = under_hold_levels(prepared, runs.signals());
-  if (closed) c.trajectory.hold_force = closed->contact_force;
-  c.metrics = metrics(c.trajectory, prepared.scene.metrics);
-  if (std::string warning = warning_without(closed, prepared); !warning.empty()) {
-    c.warnings.push_back(std::move(warning));
-    if (c.metrics.settled) deny_rest(c.metrics);
-  }
+  c.metrics = best.metrics;
+  if (!c.trajectory.is_held) c.warnings.emplace_back(not_held);
   if (runs.was_interrupted()) say_interrupted(c);
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
@@ -282,8 +258,13 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   return c;
 }
 
-std::string not_held(const Prepared& prepared, const std::vector<Signal>& signals) {
-  return warning_without(under_hold_levels(prepared, signals), prepared);
+void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals) {
+  const auto closed = closed_equilibrium(model, hold_levels(signals));
+  if (closed) trajectory.hold_force = closed->contact_force;
+  const std::optional<Contact>& contact = model.device().contact;
+  const bool may_stick =
+      contact && (contact->model == ContactModel::adhesive || contact->model == ContactModel::adhesive_repulsive);
+  trajectory.is_held = closed || !contact || may_stick;
 }
 
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/watch.h"
@@ -42,9 +43,14 @@ struct Closing {
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const Prepared& prepared);
 
-/// What is to be warned of where the switch has a contact and no closed equilibrium under the hold levels of these drives; empty
-/// where it has one, or the contact holds on by adhesion.
-[[nodiscard]] std::string not_held(const Prepared& prepared, const std::vector<Signal>& signals);
+/// What is to be warned of where a trajectory is not held.
+inline constexpr std::string_view not_held =
+    "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
+    "voltage, or so high that the electrode pulls the beam past the contact";
+
+/// Sets the hold force of the closed equilibrium under the hold levels of these drives, and whether anything holds the switch:
+/// not where it has a contact and no such equilibrium, unless the contact may hold on by adhesion.
+void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals);
 
 /// Peak voltage and peak slew of these drives in the window.
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);
@@ -54,7 +60,7 @@ void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::ve
 /// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
 /// helps. No run is its own judge, and no error is 0. Asked to stop, the status of the figures is interrupted: they are those of
 /// the last run that was complete, without errors, or of the part of the first one that was run. A switch that is not held (see
-/// not_held()) has not settled, however quiet it is at the end of the window.
+/// set_hold()) has not settled, however quiet it is at the end of the window.
 [[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

@@ -27,8 +27,7 @@ double right_hand_side_seconds(const Switch& model, const std::vector<Signal>& s
     const double* q = &states[size * i];
     touching[i] = model.has_contact() && (model.contact_deflection(q) > model.device().gap.contact || model.untouched(q).active);
   }
-  std::vector<double> volts;
-  for (const Signal& signal : signals) volts.push_back(signal.hold_level());
+  const std::vector<double> volts = hold_levels(signals);
   Switch::Workspace work = model.workspace();
   std::vector<double> result(size), times;
   double sum = 0;

@@ -19,7 +19,7 @@ std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t
   // w, in polynomials of w. Of degree 0 only that of this span, number j + 3, is not 0.
   std::array<Cubic, 5> splines = {};  // numbers j ... j + 4
   splines[3][0] = 1;
-  const double u = static_cast<double>(j);
+  const auto u = static_cast<double>(j);
   for (std::size_t d = 1; d <= 3; ++d) {
     std::array<Cubic, 5> next = {};
     for (std::size_t i = 0; i < 4; ++i) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/engineering.h"
+
 namespace softland {
 
 std::string violation(const Signal& signal, const DriverLimits& limits) {
@@ -11,17 +13,18 @@ std::string violation(const Signal& signal, const DriverLimits& limits) {
   const double slack = rounding * std::fmax(std::abs(limits.min_voltage), std::abs(limits.max_voltage));
   const double maximum = signal.maximum();
   if (!(maximum <= limits.max_voltage + slack)) {
-    return fmt::format("the voltage reaches {} V, above the driver's max_voltage of {} V", maximum, limits.max_voltage);
+    return fmt::format("the voltage reaches {}, above the driver's max_voltage of {}", engineering(maximum, "V"),
+                       engineering(limits.max_voltage, "V"));
   }
   const double minimum = signal.minimum();
   if (!(minimum >= limits.min_voltage - slack)) {
-    return fmt::format("the voltage reaches {} V{}, below the driver's min_voltage of {} V", minimum,
-                       minimum == 0 ? " (where every drive starts)" : "", limits.min_voltage);
+    return fmt::format("the voltage reaches {}{}, below the driver's min_voltage of {}", engineering(minimum, "V"),
+                       minimum == 0 ? " (where every drive starts)" : "", engineering(limits.min_voltage, "V"));
   }
   const double slew = signal.peak_slew();
   if (!(slew <= limits.max_slew * (1 + rounding))) {
-    if (std::isinf(slew)) return fmt::format("the voltage jumps, faster than the driver's max_slew of {} V/s", limits.max_slew);
-    return fmt::format("the voltage changes at {} V/s, faster than the driver's max_slew of {} V/s", slew, limits.max_slew);
+    const std::string changes = std::isinf(slew) ? "jumps" : "changes at " + engineering(slew, "V/s");
+    return fmt::format("the voltage {}, faster than the driver's max_slew of {}", changes, engineering(limits.max_slew, "V/s"));
   }
   return {};
 }

@@ -239,6 +239,12 @@ std::vector<double> Signal::breakpoints() const {
 
 double Signal::hold_level() const { return pieces_.back().value; }
 
+std::vector<double> hold_levels(std::span<const Signal> signals) {
+  std::vector<double> levels;
+  for (const Signal& signal : signals) levels.push_back(signal.hold_level());
+  return levels;
+}
+
 bool Signal::is_zero() const {
   return std::all_of(pieces_.begin(), pieces_.end(),
                      [](const SignalPiece& piece) { return piece.value == 0 && piece.is_level(); });

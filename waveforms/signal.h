@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,9 @@ class Signal {
 
   std::vector<SignalPiece> pieces_;
 };
+
+/// What each signal ends on [V].
+[[nodiscard]] std::vector<double> hold_levels(std::span<const Signal> signals);
 
 /// The signal times a factor, a finite number.
 [[nodiscard]] Signal scaled(const Signal& signal, double factor);

@@ -99,7 +99,9 @@ int check_verb(const Common& c) {
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
   std::vector<std::string> warnings = p.scene.warnings;
-  if (std::string w = not_held(p, p.signals()); !w.empty()) warnings.push_back(std::move(w));
+  Trajectory rest;
+  set_hold(rest, p.model, p.signals());
+  if (!rest.is_held) warnings.emplace_back(not_held);
   for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();
   work.reset();

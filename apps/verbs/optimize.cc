@@ -111,12 +111,20 @@ struct Asked {
   const std::optional<KnownSearch>& known;
   SearchPlaces* places = nullptr;         // of a study of seeds
   std::optional<ResultSeeds> seeds = {};  // that are done
-  bool limit = false;                     // the least time is told too
+  bool limit = false;                     // the least time is told however long it takes
 };
+
+// Whether the least time takes a small part of the search's own time: a second or two, but many times that with a slew limit.
+bool takes_little(const Asked& asked, const OptimizeResult& result) {
+  const auto& limits = result.best_scene->drives.limits;
+  return asked.search.options.max_evaluations >= evaluations_worth_a_limit &&
+         std::none_of(limits.begin(), limits.end(), [](const auto& one) { return std::isfinite(one.second.max_slew); });
+}
 
 // The least time of any waveform of the winner's drives at its impact speed; none where the scene does not fit the question.
 std::optional<ResultLimit> limit_of(const Asked& asked, const OptimizeResult& result) {
-  if (!asked.limit || !result.best || result.search.termination == Termination::interrupted) return std::nullopt;
+  if (!result.best || result.search.termination == Termination::interrupted) return std::nullopt;
+  if (!asked.limit && !takes_little(asked, result)) return std::nullopt;
   constexpr double softest = 1e-3;  // of the plain step's impact speed
   const double own = result.best->metrics.impact_velocity, step = result.baseline.metrics.impact_velocity;
   if (!std::isfinite(own)) return std::nullopt;
@@ -129,7 +137,7 @@ std::optional<ResultLimit> limit_of(const Asked& asked, const OptimizeResult& re
     if (least.status != Status::done) return std::nullopt;
     return ResultLimit{.least_time = least.time, .impact_velocity = velocity};
   } catch (const InvalidInput& error) {
-    say(fmt::format("--limit: {}", error.what()));
+    if (asked.limit) say(fmt::format("--limit: {}", error.what()));
     return std::nullopt;
   }
 }
@@ -281,10 +289,11 @@ void add_optimize(Verb& verb) {
   verb.option(
       "--waveform", request->waveform, "NAME",
       "family to search: step, pulse, catch (default with --robust and --calibrate), harmonic, ramp, staircase, knots (default "
-      "with --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines (default for pzt); with a number of "
-      "levels, knots, pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, of which the best goes on "
-      "and the last begins where the others are: " +
-          std::string(default_families(Actuator::electrostatic)) + " (default)");
+      "with --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines; with a number of levels, knots, "
+      "pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, each begun where those before it ended, "
+      "of which the best goes on: " +
+          fmt::format("{} (default), {} (for both), {} (for pzt)", default_families(Actuator::electrostatic),
+                      default_families(Actuator::both), default_families(Actuator::pzt)));
   verb.option("--robust", request->robust, "MEASURE",
               "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
               "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");
@@ -306,9 +315,10 @@ void add_optimize(Verb& verb) {
   verb.optional(
       "--budget", request->budget, "N|TIME",
       fmt::format(
-          "evaluations, or time (\"90 s\"); default: 2500 for electrostatic, 10000 for pzt and both, half as much again for "
-          "{}; with --robust closings of devices, 60000",
-          targets_with_own_cost()));
+          "evaluations, or time (\"90 s\"); default: {} for electrostatic, {} for pzt and both, half as much again for {}; with "
+          "--robust closings of devices, {}",
+          default_budget(Target::bounce, Actuator::electrostatic), default_budget(Target::bounce, Actuator::pzt),
+          targets_with_own_cost(), default_closings));
   verb.with_seed(request->seed, "same result, whatever --jobs is");
   verb.optional("--seeds", request->seeds, "N",
                 "search from N seeds, --seed and those after it, as one study: the best is reported, and how the others spread");
@@ -317,7 +327,9 @@ void add_optimize(Verb& verb) {
       "go on with the search in the folder of --out that was interrupted, or ended by its budget; what it has evaluated is not "
       "simulated again, and options that are not given are those it began with");
   verb.flag("--limit", request->limit,
-            "tell how near the winner's touch comes to the least time of any waveform of these drives: a few seconds more");
+            fmt::format("tell how near the winner's touch comes to the least time of any waveform of these drives also where a "
+                        "driver has a max_slew, which may take a minute, and with a budget below {}",
+                        evaluations_worth_a_limit));
   verb.with_jobs(request->jobs, "threads (default: one per core)");
   verb.with_out("folder for the report, the waveform found and all data (default: softland-out)");
   verb.footer(

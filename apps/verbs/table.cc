@@ -46,7 +46,7 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
-Column text_column(const char* key, std::function<std::string(const StoredRow&)> text) {
+Column text_column(const char* key, const std::function<std::string(const StoredRow&)>& text) {
   return {.key = key,
           .unit = "",
           .csv = [text](const StoredRow& row) { return csv_cell(text(row)); },
@@ -59,7 +59,12 @@ Column number_column(const StoredColumn& column, std::size_t place) {
       .key = column.key,
       .unit = column.unit,
       .csv = [place](const StoredRow& row) { return std::isnan(row.values[place]) ? "" : fmt::format("{}", row.values[place]); },
-      .shown = [place, unit = column.unit](const StoredRow& row) { return internal::quantity(row.values[place], unit, 5); }};
+      .shown =
+          [place, unit = column.unit](const StoredRow& row) {
+            const double value = row.values[place];
+            if (unit.empty() || internal::takes_prefix(unit)) return internal::quantity(value, unit, 5);
+            return internal::plain_number(value, 5) + (std::isnan(value) ? "" : "\u00a0" + unit);
+          }};
 }
 
 // All that a store has, in the order of the table.

@@ -137,6 +137,19 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs) {
   EXPECT_TRUE(one == two) << json::diff(one, two).dump().substr(0, 2000);
 }
 
+TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle) {
+  const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
+  const auto tells = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"optimize", scene, "--quiet", "--waveform", "pulse", "--json", "told.json", "--out", "told"});
+    const Outcome o = here->run(more);
+    EXPECT_TRUE(o.status == 0 || o.status == 4) << o.err;
+    return json::parse(read(here->path() / "told.json")).contains("limit");
+  };
+  EXPECT_TRUE(tells({"--budget", "1000"}));
+  EXPECT_FALSE(tells({"--budget", "900"}));
+  EXPECT_FALSE(tells({"--budget", "1000", "--set", "driver.main.max_slew=1 kV/us", "--set", "waveform.main.rise_time=1 us"}));
+}
+
 TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked) {
   const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
   const Outcome o =
@@ -174,8 +187,8 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
     return all;
   };
   EXPECT_EQ(family({}), "knots dual-pulse staircase:5 knots:8 ");
-  EXPECT_EQ(family({"--actuator", "pzt"}), "dual-pulse sines knots:8 ");
-  EXPECT_EQ(family({"--actuator", "both"}), "knots dual-pulse staircase:5 knots:8 ");
+  EXPECT_EQ(family({"--actuator", "pzt"}), "dual-pulse sines:12 knots:8 ");
+  EXPECT_EQ(family({"--actuator", "both"}), "catch knots dual-pulse staircase:5 knots:8 ");
   EXPECT_EQ(family({"--actuator", "both", "--waveform", "pulse"}), "pulse");
   const std::vector<std::string> robust{"--robust", "worst", "--samples", "8"};
   const auto with = [&](std::vector<std::string> more) {

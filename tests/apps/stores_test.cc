@@ -122,6 +122,12 @@ TEST_F(Table, HasTheRowsAndColumnsThatAreAskedFor) {
   EXPECT_THAT(people, AllOf(HasSubstr("gap_contact_m"), HasSubstr("1.0068\u00a0µm"), HasSubstr("the tip stays above, \"open\"")));
 }
 
+TEST_F(Table, ShowsMultiplesOfAPullInVoltageWithoutPrefixes) {
+  const Outcome o = here.run({"explore", "gold.toml", "--vary", "waveform.main.level=0.95 Vdp:1.25 Vdp:2", "--out", "a.sqlite"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(printed({"table", "a.sqlite"}), AllOf(HasSubstr(" 0.95\u00a0Vdp"), HasSubstr(" 1.25\u00a0Vdp")));
+}
+
 TEST_F(Table, NamesWhatItCannotTake) {
   make_store(at("a.sqlite"), 10);
   expect_bad({"table", "a.sqlite", "--where", "bounces > 1"},

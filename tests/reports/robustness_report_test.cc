@@ -126,7 +126,7 @@ TEST(RobustnessReport, SaysWhereChaosFails) {
   EXPECT_THAT(text, HasSubstr("3 of them do not close; mean, deviation and quantile of chaos go on"));
   EXPECT_THAT(text, HasSubstr("It predicts t_i of those that close. It fails for v_max (60.0 % of the variance): "));
   EXPECT_THAT(text, HasSubstr("It says nothing of B_H"));
-  EXPECT_THAT(text, HasSubstr("not closed"));
+  EXPECT_THAT(text, HasSubstr("∞"));
   const std::string page = robustness_html(report);
   EXPECT_THAT(page, HasSubstr("It fails for v<sub>max</sub> (60.0"));
   EXPECT_TRUE(robustness_json(report)["other_ways"]["box"]["figures"]["major_bounce_height_m"]["most"]["value"].is_null());
@@ -277,6 +277,21 @@ TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose) {
   EXPECT_THAT(page, HasSubstr("Under the plain step"));
   EXPECT_THAT(page, Not(HasSubstr("id=\"knowledge\"")));
   EXPECT_EQ(robustness_json(bare.report())["drives"][0]["failures"]["gap.contact must be <less>"], 1);
+}
+
+TEST(RobustnessReport, LeavesOutAFigureThatNoDeviceHas) {
+  Study rigid{.nominal = study().nominal, .options = study().options, .found = study().found};
+  const std::string name = "Peak contact force";
+  EXPECT_THAT(robustness_text(rigid.report()), HasSubstr(name));
+  for (DriveRobustness& drive : rigid.found.drives) {
+    for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
+      if (ensemble_figures()[i].name == name) drive.figures[i] = {};
+    }
+  }
+  EXPECT_THAT(robustness_text(rigid.report()), Not(HasSubstr(name)));
+  EXPECT_THAT(robustness_html(rigid.report()), Not(HasSubstr(name)));
+  for (DriveRobustness& drive : rigid.found.drives) drive.closing.devices = 0;
+  EXPECT_THAT(robustness_text(rigid.report()), HasSubstr(name)) << "where none closes nothing is known";
 }
 
 TEST(Sensitivity, SaysWhereFirstContactComesFrom) {

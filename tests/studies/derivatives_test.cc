@@ -174,7 +174,7 @@ void expect_agreement(const Scenes& of, int switches) {
   const Compared all = compare_random(of, switches, 1);
   EXPECT_EQ(all.cases, switches * static_cast<int>(of.keys.size()));
   EXPECT_GE(all.derivatives, 4 * all.cases);
-  EXPECT_LE(3 * all.undecided, all.derivatives);
+  EXPECT_LE(2 * all.undecided, all.derivatives);  // without fused multiplications 12 of 42 of one kind, with them 9
 }
 
 const std::vector<std::string> beam{"structure.length",  "structure.width", "structure.thickness", "structure.youngs_modulus",

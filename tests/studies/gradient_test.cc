@@ -143,6 +143,15 @@ TEST(Gradient, OfAPlasticContact) {
 TEST(Gradient, OfADampedContact) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce, {"contact.damping=0.5 s/m"}), 5);
 }
+TEST(Gradient, IsUnknownOfTheEnergyThatIsStoredAlongAPad) {
+  const SearchSetting s =
+      setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::energy, {"contact.distribution=pad"});
+  std::vector<double> x;
+  for (const Variable& v : s.space.variables()) x.push_back(std::lerp(v.lower, v.upper, 0.4));
+  const auto knows = [&](Target target) { return std::isfinite(s.gradient_at(x, target, s.parameter_groups())[0]); };
+  EXPECT_TRUE(knows(Target::bounce));
+  EXPECT_FALSE(knows(Target::energy));
+}
 
 }  // namespace
 }  // namespace softland

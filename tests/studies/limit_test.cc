@@ -122,6 +122,39 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
       << violation(signal(slow.waveforms.at("main")), ramps.drives.limits.at("main"));
 }
 
+Prepared ramped_plate(const std::string& level) {
+  SceneFile file = SceneFile::parse(plate, "plate.toml");
+  for (const std::string& setting :
+       {"waveform.main.level=" + level, std::string("waveform.main.rise_time=6 us"), std::string("driver.main.max_slew=20 V/us")})
+    file.set(setting);
+  return prepare_and_choose(file, true);
+}
+
+// Pull and spring are equal at the contact: no more than that may act on a plate that comes to rest there without a push.
+TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
+  const Prepared p = ramped_plate("100 V");
+  const auto landing = FreeFlight(p, Actuator::electrostatic).landing();
+  ASSERT_TRUE(landing.has_value());
+  const Structure& s = p.scene.device.structure;
+  const Gap& gap = p.scene.device.gap;
+  const double open = gap.electrode - gap.contact;
+  const double balance = std::sqrt(2 * s.stiffness * gap.contact * open * open / (vacuum_permittivity * s.width * s.length));
+  EXPECT_NEAR(landing->controls[0] * 120, balance, 1e-6 * balance);
+  EXPECT_NEAR(landing->state[0], 1, 1e-9);
+}
+
+TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited) {
+  for (const char* level : {"80 V", "115 V"}) {
+    const Prepared p = ramped_plate(level);
+    const LeastTime touch = least_time(p, {.impact_velocity = 5e-3});
+    const LeastTime rest = least_time(p, {.impact_velocity = 5e-3, .at_rest = true});
+    ASSERT_EQ(rest.status, Status::done) << level << ": " << rest.message;
+    EXPECT_GT(rest.time, touch.time);
+    EXPECT_LT(rest.time, 1.2 * touch.time);
+    EXPECT_EQ(violation(signal(rest.waveforms.at("main")), p.drives.limits.at("main")), "");
+  }
+}
+
 TEST(LeastTime, RefusesWhatItDoesNotFit) {
   EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(scene("hung-senturia.toml"), true), {}); }).find("compressible"),
             std::string::npos);

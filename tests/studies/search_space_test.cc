@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <random>
 #include <set>
@@ -14,6 +16,7 @@
 
 #include "scenes.h"
 #include "studies/bang_bang.h"
+#include "studies/optimize.h"
 #include "studies/swing.h"
 #include "waveforms/signal_slopes.h"
 
@@ -469,6 +472,18 @@ TEST(FamiliesOf, ReadsOneOrSeveral) {
     for (const std::string& family : families_of(std::string(default_families(actuator))))
       EXPECT_EQ(refusal([&] { (void)SearchSpace(plain(), actuator, family, first_touch); }), "");
   }
+}
+
+TEST(Documentation, NamesTheFamiliesAndBudgetsThatAreTheDefault) {
+  std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/figures.md");
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt, Actuator::both})
+    EXPECT_NE(text.find(fmt::format("`{}`", default_families(actuator))), std::string::npos) << default_families(actuator);
+  EXPECT_NE(text.find(fmt::format("(default: {} for `electrostatic`, {} for `pzt` and `both`",
+                                  default_budget(Target::bounce, Actuator::electrostatic),
+                                  default_budget(Target::bounce, Actuator::pzt))),
+            std::string::npos);
+  EXPECT_EQ(default_budget(Target::bounce, Actuator::pzt), default_budget(Target::bounce, Actuator::both));
 }
 
 }  // namespace

@@ -1,0 +1,83 @@
+// What a device costs in a robust search: every figure over that of the plain step on the nominal device.
+#include "studies/robust_cost.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "tests/studies/scenes.h"
+
+namespace softland {
+namespace {
+
+// Of a device whose figures are given, for one target.
+class Score {
+ public:
+  explicit Score(Target target)
+      : setting_(search_setting(gold({"simulate.duration=150 us", "structure.modes=2"}), target, Actuator::electrostatic, "pulse",
+                                {})),
+        cost_(setting_, aim_, {}) {}
+
+  double operator()(const DeviceOutcome& outcome) const { return cost_.score(outcome); }
+
+ private:
+  SearchSetting setting_;
+  RobustAim aim_{.measure = parse_robust_measure("worst", conditioned_figures()), .conditions = {}};
+  RobustCost cost_;
+};
+
+DeviceOutcome device() {
+  DeviceOutcome o{.metrics = {}, .largest_impact_velocity = 0.05};
+  o.metrics.status = Status::done;
+  o.metrics.settled = true;
+  o.metrics.initial_contact_time = 40e-6;
+  o.metrics.permanent_contact_time = 60e-6;
+  o.metrics.major_bounce_height = 100e-9;
+  o.metrics.bounce_count = 6;
+  o.metrics.impact_energy = 1e-15;
+  o.metrics.peak_contact_force = 1e-6;
+  o.metrics.drive_energy = 1e-12;
+  return o;
+}
+
+TEST(RobustCost, IsInProportionToTheFigureThatTheTargetIsAbout) {
+  const std::map<Target, double Metrics::*> figures{{Target::rebound, &Metrics::major_bounce_height},
+                                                    {Target::settling, &Metrics::permanent_contact_time},
+                                                    {Target::energy, &Metrics::impact_energy},
+                                                    {Target::force, &Metrics::peak_contact_force},
+                                                    {Target::drive, &Metrics::drive_energy}};
+  for (const auto& [target, figure] : figures) {
+    const Score score(target);
+    DeviceOutcome other = device();
+    const double own = score(other);
+    EXPECT_GT(own, 0);
+    other.largest_impact_velocity *= 3;
+    other.metrics.bounce_count *= 3;
+    EXPECT_EQ(score(other), own) << "of another target";
+    other.metrics.*figure *= 2;
+    EXPECT_NEAR(score(other), 2 * own, 1e-12 * own) << static_cast<int>(target);
+  }
+  DeviceOutcome more = device(), faster = device();
+  more.metrics.bounce_count *= 2;
+  faster.largest_impact_velocity *= 2;
+  const Score count(Target::count), impact(Target::impact), bounce(Target::bounce), rebound(Target::rebound);
+  EXPECT_NEAR(count(more), 2 * count(device()), 1e-12);
+  EXPECT_NEAR(impact(faster), 2 * impact(device()), 1e-12);
+  EXPECT_NEAR(bounce(device()), (impact(device()) + rebound(device())) / 2, 1e-12);
+}
+
+TEST(RobustCost, TakesWhatHasNotSettledForLater) {
+  const Score score(Target::settling);
+  DeviceOutcome o = device();
+  const double own = score(o);
+  o.metrics.settled = false;
+  o.metrics.permanent_contact_time = Metrics::unset;
+  EXPECT_GT(score(o), own);
+  o.metrics.major_bounce_height = Metrics::unset;
+  EXPECT_GT(score(o), RobustCost::not_closed - 1e-12) << "nor closed";
+}
+
+}  // namespace
+}  // namespace softland
