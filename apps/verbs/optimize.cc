@@ -114,10 +114,14 @@ struct Asked {
   bool limit = false;                     // the least time is told however long it takes
 };
 
-// Whether the least time takes a small part of the search's own time: a second or two, but many times that with a slew limit.
+// Whether the least time takes a small part of the search's own time: a second or two, but many times that with a slew limit, and
+// with more modes than four of a cantilever, whose frequencies are 34 to 1.
 bool takes_little(const Asked& asked, const OptimizeResult& result) {
+  constexpr double widest_band = 40;  // the highest natural frequency over the lowest
   const auto& limits = result.best_scene->drives.limits;
+  const Eigen::VectorXd& omega = result.best_scene->model.angular_frequencies();
   return asked.search.options.max_evaluations >= evaluations_worth_a_limit &&
+         omega.maxCoeff() <= widest_band * omega.minCoeff() &&
          std::none_of(limits.begin(), limits.end(), [](const auto& one) { return std::isfinite(one.second.max_slew); });
 }
 
@@ -327,9 +331,10 @@ void add_optimize(Verb& verb) {
       "go on with the search in the folder of --out that was interrupted, or ended by its budget; what it has evaluated is not "
       "simulated again, and options that are not given are those it began with");
   verb.flag("--limit", request->limit,
-            fmt::format("tell how near the winner's touch comes to the least time of any waveform of these drives also where a "
-                        "driver has a max_slew, which may take a minute, and with a budget below {}",
-                        evaluations_worth_a_limit));
+            fmt::format(
+                "tell how near the winner's touch comes to the least time of any waveform of these drives also where a "
+                "driver has a max_slew or a cantilever more than four modes, which may take minutes, and with a budget below {}",
+                evaluations_worth_a_limit));
   verb.with_jobs(request->jobs, "threads (default: one per core)");
   verb.with_out("folder for the report, the waveform found and all data (default: softland-out)");
   verb.footer(

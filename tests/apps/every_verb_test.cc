@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -188,6 +189,29 @@ TEST_P(EveryVerb, Searches) {
     } else {
       (void)done(words);
     }
+  }
+}
+
+TEST(LimitCurves, FallWithTheVoltageAndTheSpeedAndAreDrawn) {
+  const Workplace here;
+  const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
+  const Outcome o = here.run({"limit", scene, "--quiet", "--out", "out"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("volts up to"), std::string::npos) << o.out;
+  const std::string svg = read(here.path() / "out/limit.svg");
+  for (const char* title : {"Least time against the peak voltage", "Least time against the permitted speed"})
+    EXPECT_NE(svg.find(title), std::string::npos) << title;
+  const json j = json::parse(read(here.path() / "out/limit.json"), nullptr, false);
+  for (const char* curve : {"over_peak_voltage", "over_impact_velocity"}) {
+    double before = std::numeric_limits<double>::infinity();
+    int found = 0;
+    for (const json& least : j[curve]) {
+      if (least["status"] != "done") continue;
+      EXPECT_LT(least["least_time_s"], before) << curve;
+      before = least["least_time_s"];
+      ++found;
+    }
+    EXPECT_GE(found, 6) << curve;
   }
 }
 

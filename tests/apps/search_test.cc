@@ -138,9 +138,9 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs) {
 }
 
 TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle) {
-  const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
-  const auto tells = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"optimize", scene, "--quiet", "--waveform", "pulse", "--json", "told.json", "--out", "told"});
+  const auto tells = [&](std::vector<std::string> more, const std::string& scene = "two-electrodes.toml") {
+    more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--waveform",
+                               "pulse", "--json", "told.json", "--out", "told"});
     const Outcome o = here->run(more);
     EXPECT_TRUE(o.status == 0 || o.status == 4) << o.err;
     return json::parse(read(here->path() / "told.json")).contains("limit");
@@ -148,6 +148,14 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle) {
   EXPECT_TRUE(tells({"--budget", "1000"}));
   EXPECT_FALSE(tells({"--budget", "900"}));
   EXPECT_FALSE(tells({"--budget", "1000", "--set", "driver.main.max_slew=1 kV/us", "--set", "waveform.main.rise_time=1 us"}));
+  const std::vector<std::string> quick{"--budget", "1000", "--set", "simulate.accuracy=1e-3", "--set"};
+  const auto modes = [&](const char* number) {
+    std::vector<std::string> words = quick;
+    words.push_back(std::string("structure.modes=") + number);
+    return tells(words, "mem-gold.toml");
+  };
+  EXPECT_TRUE(modes("4"));
+  EXPECT_FALSE(modes("5")) << "stiff";
 }
 
 TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked) {
