@@ -2,8 +2,10 @@
 // cost weighs them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "model/linearized_closing.h"
 #include "objectives/cost.h"
@@ -33,6 +35,20 @@ struct CostSlopes {
 /// Of the closing whose figures and motion these are. The drive energy has no slope here.
 [[nodiscard]] CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
                                      const MetricsOptions& options);
+
+/// A figure of merit that has a slope, by its key in results.
+struct FigureWithSlope {
+  std::string_view key;
+  FigureSlope CostSlopes::*slope;
+};
+inline constexpr auto figures_with_slopes =
+    std::to_array<FigureWithSlope>({{"initial_contact_time_s", &CostSlopes::first_touch},
+                                    {"permanent_contact_time_s", &CostSlopes::last_rebound_end},
+                                    {"major_bounce_height_m", &CostSlopes::rebound_height},
+                                    {"impact_velocity_m_s", &CostSlopes::first_touch_speed},
+                                    {"largest_impact_velocity_m_s", &CostSlopes::touch_speed},
+                                    {"peak_contact_force_N", &CostSlopes::peak_force},
+                                    {"impact_energy_J", &CostSlopes::impact_energy}});
 
 /// None where the cost is infinite, or about a figure that has no slope.
 [[nodiscard]] std::optional<FigureSlope> cost_slope(const Aim& aim, Status status, const CostFigures& figures,

@@ -1,9 +1,10 @@
-// Ipopt 3.11.9 as a bounded quasi-Newton method. Ipopt answers an objective it cannot evaluate by
+// Ipopt 3.11.9 as a quasi-Newton method under bounds and conditions. Ipopt answers an objective it cannot evaluate by
 // shortening steps, thousands of times; the Strand counts, and its Cut passes through Ipopt, which catches whatever callbacks
 // throw and returns NonIpopt_Exception_Thrown.
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 #include <algorithm>
+#include <vector>
 
 #include "optimizers/backends.h"
 #include "optimizers/ipopt_turn.h"
@@ -11,23 +12,26 @@
 namespace softland::internal {
 namespace {
 
-class BoxProblem final : public Ipopt::TNLP {
+class StrandProblem final : public Ipopt::TNLP {
  public:
-  BoxProblem(const Point& start, Strand& strand) : start_(start), strand_(strand) {}
+  StrandProblem(const Point& start, Strand& strand) : start_(start), strand_(strand) {}
 
   bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,
                     IndexStyleEnum& index_style) override {
     n = static_cast<Ipopt::Index>(start_.size());
-    m = 0;
-    jacobian_entries = 0;
+    m = static_cast<Ipopt::Index>(strand_.conditions());
+    jacobian_entries = n * m;
     hessian_entries = 0;
     index_style = C_STYLE;
     return true;
   }
-  bool get_bounds_info(Ipopt::Index n, Ipopt::Number* lower, Ipopt::Number* upper, Ipopt::Index, Ipopt::Number*,
-                       Ipopt::Number*) override {
+  bool get_bounds_info(Ipopt::Index n, Ipopt::Number* lower, Ipopt::Number* upper, Ipopt::Index m, Ipopt::Number* least,
+                       Ipopt::Number* most) override {
+    constexpr double unbounded = -2e19;  // to Ipopt, from -1e19 on
     std::fill_n(lower, n, 0.0);
     std::fill_n(upper, n, 1.0);
+    std::fill_n(least, m, unbounded);
+    std::fill_n(most, m, 0.0);
     return true;
   }
   bool get_starting_point(Ipopt::Index, bool, Ipopt::Number* x, bool, Ipopt::Number*, Ipopt::Number*, Ipopt::Index, bool,
@@ -36,16 +40,26 @@ class BoxProblem final : public Ipopt::TNLP {
     return true;
   }
   bool eval_f(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Number& value) override {
-    value = strand_(view(x, n)).value;
+    value = strand_.values(view(x, n)).all[0];
     return true;
   }
   bool eval_grad_f(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Number* gradient) override {
-    strand_.gradient(view(x, n), {gradient, static_cast<std::size_t>(n)});
+    std::copy_n(gradients(x, n).begin(), n, gradient);
     return true;
   }
-  bool eval_g(Ipopt::Index, const Ipopt::Number*, bool, Ipopt::Index, Ipopt::Number*) override { return true; }
-  bool eval_jac_g(Ipopt::Index, const Ipopt::Number*, bool, Ipopt::Index, Ipopt::Index, Ipopt::Index*, Ipopt::Index*,
-                  Ipopt::Number*) override {
+  bool eval_g(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Index m, Ipopt::Number* values) override {
+    if (m > 0) std::copy_n(strand_.values(view(x, n)).all.begin() + 1, m, values);
+    return true;
+  }
+  // Without `values` the places of its entries are asked for: all of them, row by row.
+  bool eval_jac_g(Ipopt::Index n, const Ipopt::Number* x, bool, Ipopt::Index m, Ipopt::Index, Ipopt::Index* rows,
+                  Ipopt::Index* columns, Ipopt::Number* values) override {
+    if (m == 0) return true;
+    if (values != nullptr) {
+      std::copy_n(gradients(x, n).begin() + n, n * m, values);
+      return true;
+    }
+    for (Ipopt::Index k = 0; k < n * m; ++k) rows[k] = k / n, columns[k] = k % n;
     return true;
   }
   bool intermediate_callback(Ipopt::AlgorithmMode, Ipopt::Index, Ipopt::Number, Ipopt::Number, Ipopt::Number, Ipopt::Number,
@@ -59,6 +73,12 @@ class BoxProblem final : public Ipopt::TNLP {
 
  private:
   static std::span<const double> view(const Ipopt::Number* x, Ipopt::Index n) { return {x, static_cast<std::size_t>(n)}; }
+  // Of the cost, then of each condition.
+  [[nodiscard]] std::vector<double> gradients(const Ipopt::Number* x, Ipopt::Index n) {
+    std::vector<double> all((1 + strand_.conditions()) * static_cast<std::size_t>(n));
+    strand_.gradients(view(x, n), all);
+    return all;
+  }
 
   const Point& start_;
   Strand& strand_;
@@ -106,7 +126,7 @@ RunReport run_ipopt(const Run& run, Strand& strand) {
   options->SetIntegerValue("max_iter", 1000);
   // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
   if (const auto status = application->Initialize(""); status != Ipopt::Solve_Succeeded) return report_of(status);
-  return report_of(application->OptimizeTNLP(new BoxProblem(run.start, strand)));
+  return report_of(application->OptimizeTNLP(new StrandProblem(run.start, strand)));
 }
 
 }  // namespace softland::internal

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <exception>
+#include <ranges>
 
 #include "base/executor.h"
 #include "base/random.h"
@@ -28,6 +29,13 @@ constexpr double penalty_in_the_dark = 1e15;
 // Short, because the smooth pieces of an objective may be: those of the cost of a closing are narrower than a thousandth of the
 // box. The noise of about 1e-9 that objectives carry is then 1e-4 of a slope of order 1.
 constexpr double difference_step = 1e-5;
+
+// Libraries step over a bound by a rounding error, and into NaN when the objective leads them there. Adding 0 turns -0 to 0.
+Point inside(std::span<const double> point) {
+  Point moved(point.begin(), point.end());
+  for (double& coordinate : moved) coordinate = std::isnan(coordinate) ? 0.5 : std::clamp(coordinate, 0.0, 1.0) + 0.0;
+  return moved;
+}
 
 // A search that is continued first walks through its own past, so the limit grows with what is known.
 constexpr long circles_allowed = 1000;
@@ -55,12 +63,9 @@ bool Strand::over() const {
 
 Answer Strand::operator()(std::span<const double> point) {
   if (cut_) throw Cut{};
-  Point inside(point.begin(), point.end());
-  // Libraries step over a bound by a rounding error, and into NaN when the objective leads them there. Adding 0 turns -0 to 0.
-  for (double& coordinate : inside) coordinate = std::isnan(coordinate) ? 0.5 : std::clamp(coordinate, 0.0, 1.0) + 0.0;
-
+  const Point asked = inside(point);
   const auto recall = [&](const Memory& memory) {
-    const auto found = memory.find(inside);
+    const auto found = memory.find(asked);
     return found == memory.end() ? nullptr : &found->second;
   };
   const Answer* known = recall(ledger_.memory_);
@@ -76,8 +81,8 @@ Answer Strand::operator()(std::span<const double> point) {
     throw Cut{};
   }
   repeats_ = 0;
-  const double value = ledger_.evaluate(*this, inside);
-  const Answer answer = remember(inside, value);
+  const double value = ledger_.evaluate(*this, asked);
+  const Answer answer = remember(asked, value);
   if (answer.feasible && value <= ledger_.options_.target) {
     cut_ = true;
     std::size_t earliest = ledger_.target_task_;
@@ -112,13 +117,25 @@ double Strand::penalty() const {
   return worst_seen_ + (spread > 0 ? std::max(spread, 1e-3 * std::abs(worst_seen_)) : std::max(1.0, std::abs(worst_seen_)));
 }
 
-// False where there is none; its parts are NaN where they are not known.
-bool Strand::known_gradient(const Point& point, std::span<double> gradient) {
-  if (!ledger_.problem_.gradient) return false;
-  const auto recall = [&](const Gradients& gradients) {
-    const auto found = gradients.find(point);
-    if (found == gradients.end()) return false;
-    std::copy(found->second.begin(), found->second.end(), gradient.begin());
+std::size_t Strand::conditions() const { return ledger_.problem_.conditions.count; }
+
+Values Strand::values(std::span<const double> point) {
+  const Answer answer = (*this)(point);
+  if (conditions() == 0) return {{answer.value}, answer.feasible};
+  const Point at = inside(point);
+  if (const auto known = ledger_.values_.find(at); known != ledger_.values_.end()) return {known->second, answer.feasible};
+  const auto [found, is_new] = values_.try_emplace(at);
+  if (is_new) found->second = ledger_.values(*this, at, answer);
+  return {found->second, answer.feasible};
+}
+
+// False where there are none; they are NaN where they are not known.
+bool Strand::known_gradients(const Point& point, std::span<double> gradients) {
+  if (!ledger_.has_gradient()) return false;
+  const auto recall = [&](const Numbers& known) {
+    const auto found = known.find(point);
+    if (found == known.end()) return false;
+    std::copy(found->second.begin(), found->second.end(), gradients.begin());
     return true;
   };
   if (recall(ledger_.gradients_) || recall(gradients_)) return true;
@@ -126,17 +143,20 @@ bool Strand::known_gradient(const Point& point, std::span<double> gradient) {
     cut_ = true;
     throw Cut{};
   }
-  gradients_.emplace(point, ledger_.gradient(*this, point));
+  gradients_.emplace(point, ledger_.gradients(*this, point));
   return recall(gradients_);
 }
 
-void Strand::gradient(std::span<const double> point, std::span<double> gradient) {
-  const Answer here = (*this)(point);
-  Point moved(point.begin(), point.end());
-  for (double& coordinate : moved) coordinate = std::clamp(coordinate, 0.0, 1.0) + 0.0;
-  const bool is_known = here.feasible && known_gradient(moved, gradient);
-  for (std::size_t i = 0; i < point.size(); ++i) {
-    if (is_known && std::isfinite(gradient[i])) continue;
+void Strand::gradients(std::span<const double> point, std::span<double> gradients) {
+  const Values here = values(point);
+  Point moved = inside(point);
+  const bool are_known = here.feasible && known_gradients(moved, gradients);
+  const std::size_t n = point.size();
+  const auto all = std::views::iota(std::size_t{0}, here.all.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto of = [&](std::size_t value) -> double& { return gradients[value * n + i]; };
+    const auto is_finite = [&](std::size_t value) { return std::isfinite(of(value)); };
+    if (are_known && std::ranges::all_of(all, is_finite)) continue;
     // Two offsets from here; both to the same side next to a bound.
     double a = -difference_step;
     double b = difference_step;
@@ -144,19 +164,22 @@ void Strand::gradient(std::span<const double> point, std::span<double> gradient)
     if (point[i] + b > 1) b = -2 * difference_step;
     const auto probe = [&](double offset) {
       moved[i] = point[i] + offset;
-      return (*this)(moved);
+      return values(moved);
     };
-    const Answer at_a = probe(a);
-    const Answer at_b = probe(b);
+    const Values at_a = probe(a);
+    const Values at_b = probe(b);
     moved[i] = point[i];
-    const double slope_a = (at_a.value - here.value) / a;
-    const double slope_b = (at_b.value - here.value) / b;
-    if (!here.feasible) {
-      gradient[i] = at_a.feasible && at_b.feasible ? (at_b.value - at_a.value) / (b - a) : 0;
-    } else if (at_a.feasible && at_b.feasible) {
-      gradient[i] = (slope_a * b - slope_b * a) / (b - a);  // exact for parabolas
-    } else {
-      gradient[i] = at_a.feasible ? slope_a : at_b.feasible ? slope_b : 0;
+    for (const std::size_t value : all) {
+      if (are_known && is_finite(value)) continue;
+      const double slope_a = (at_a.all[value] - here.all[value]) / a;
+      const double slope_b = (at_b.all[value] - here.all[value]) / b;
+      if (!here.feasible) {
+        of(value) = at_a.feasible && at_b.feasible ? (at_b.all[value] - at_a.all[value]) / (b - a) : 0;
+      } else if (at_a.feasible && at_b.feasible) {
+        of(value) = (slope_a * b - slope_b * a) / (b - a);  // exact for parabolas
+      } else {
+        of(value) = at_a.feasible ? slope_a : at_b.feasible ? slope_b : 0;
+      }
     }
   }
 }
@@ -280,14 +303,31 @@ long Ledger::run(const std::vector<Task>& tasks) {
   return evaluations_ - before;
 }
 
-// By the point of the search. An exception leaves it to differences.
-std::vector<double> Ledger::gradient(Strand& strand, const Point& point) const {
-  std::vector<double> scaled(free_.size(), std::numeric_limits<double>::quiet_NaN());
+// With an exception the conditions stand as kept: the value alone tells then.
+std::vector<double> Ledger::values(Strand& strand, const Point& point, const Answer& answer) const {
+  std::vector<double> kept(1 + problem_.conditions.count, 0.0);
+  kept[0] = answer.value;
+  if (!answer.feasible) return kept;
   try {
-    const std::vector<double> x = to_user(point), by_x = problem_.gradient(x);
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      const Variable& variable = problem_.variables[free_[i]];
-      scaled[i] = by_x.at(free_[i]) * (variable.upper - variable.lower);
+    std::vector<double> found = problem_.conditions.values(to_user(point));
+    if (found.size() != kept.size() || !std::ranges::all_of(found, [](double v) { return std::isfinite(v); })) return kept;
+    for (double& value : found) value = compress(value);
+    return found;
+  } catch (const std::exception& error) {
+    if (!strand.first_exception_) strand.first_exception_ = error.what();
+  }
+  return kept;
+}
+
+// By the point of the search. An exception leaves them to differences.
+std::vector<double> Ledger::gradients(Strand& strand, const Point& point) const {
+  std::vector<double> scaled((1 + problem_.conditions.count) * free_.size(), std::numeric_limits<double>::quiet_NaN());
+  try {
+    const std::vector<double> by_x = gradient_of_problem()(to_user(point));
+    for (std::size_t i = 0; i < scaled.size(); ++i) {
+      const std::size_t value = i / free_.size(), variable = free_[i % free_.size()];
+      const Variable& of = problem_.variables[variable];
+      scaled[i] = by_x.at(value * problem_.variables.size() + variable) * (of.upper - of.lower);
     }
   } catch (const std::exception& error) {
     if (!strand.first_exception_) strand.first_exception_ = error.what();
@@ -300,6 +340,7 @@ void Ledger::settle(const std::vector<Strand>& strands) {
   for (const Strand& strand : strands) {
     if (strand.task_ > last) break;
     if (strand.first_exception_ && best_.first_exception.empty()) best_.first_exception = *strand.first_exception_;
+    values_.insert(strand.values_.begin(), strand.values_.end());
     gradients_.insert(strand.gradients_.begin(), strand.gradients_.end());
     for (std::size_t k = 0; k < strand.records_.size(); ++k) {
       const Strand::Record& record = strand.records_[k];

@@ -33,12 +33,18 @@ struct Answer {
   bool feasible;
 };
 
+/// {what is to be minimised, g_1, ... g_n}
+struct Values {
+  std::vector<double> all;
+  bool feasible;
+};
+
 struct PointHash {
   std::size_t operator()(const Point& point) const noexcept;
 };
 using Memory = std::unordered_map<Point, Answer, PointHash>;
-using Gradients = std::unordered_map<Point, std::vector<double>, PointHash>;
-/// What a gradient of the problem counts as, in evaluations.
+using Numbers = std::unordered_map<Point, std::vector<double>, PointHash>;
+/// What the gradients of the problem at one point count as, in evaluations.
 inline constexpr long evaluations_of_gradient = 3;
 
 class Ledger;
@@ -49,9 +55,14 @@ class Strand {
   /// Throws Cut when the share of the budget is used up, the minimisation is over, or the search goes in circles (many times only
   /// points it knows). A point that was seen before is answered from memory and costs nothing.
   Answer operator()(std::span<const double> point);
-  /// Of the problem where it has one, else central differences; these are one-sided at the bounds and next to infeasible points;
-  /// 0 where nothing around is feasible. Throws Cut.
-  void gradient(std::span<const double> point, std::span<double> gradient);
+  /// With the conditions of the problem; the value alone where it has none. At an infeasible point no condition is broken. Throws
+  /// Cut.
+  Values values(std::span<const double> point);
+  /// Of the values, one after the other. Those of the problem where it has them, else central differences; these are one-sided at
+  /// the bounds and next to infeasible points; 0 where nothing around is feasible. Throws Cut.
+  void gradients(std::span<const double> point, std::span<double> gradients);
+  /// Of the problem.
+  [[nodiscard]] std::size_t conditions() const;
 
   /// Whether a further evaluation would be refused for good.
   [[nodiscard]] bool over() const;
@@ -72,7 +83,7 @@ class Strand {
   Strand(Ledger& ledger, std::size_t task, long budget, long first_index);
 
   Answer remember(const Point& point, double value);
-  [[nodiscard]] bool known_gradient(const Point& point, std::span<double> gradient);
+  [[nodiscard]] bool known_gradients(const Point& point, std::span<double> gradients);
   [[nodiscard]] double penalty() const;
 
   Ledger& ledger_;
@@ -87,7 +98,8 @@ class Strand {
   Point best_point_of_task_;
   Memory memory_;
   std::vector<Record> records_;
-  Gradients gradients_;  ///< of the problem
+  Numbers values_;     ///< with conditions
+  Numbers gradients_;  ///< of the problem
   std::optional<std::string> first_exception_;
 };
 
@@ -106,7 +118,7 @@ class Ledger {
   Ledger(const Problem& problem, const OptimizerOptions& options);
 
   [[nodiscard]] std::size_t dimension() const { return free_.size(); }
-  [[nodiscard]] bool has_gradient() const { return problem_.gradient != nullptr; }
+  [[nodiscard]] bool has_gradient() const { return gradient_of_problem() != nullptr; }
   [[nodiscard]] std::uint64_t seed() const { return options_.seed; }
   [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
   /// Runs the tasks, with budgets cut from the end to what remains. Returns the number of new evaluations.
@@ -126,7 +138,11 @@ class Ledger {
  private:
   friend class Strand;
   double evaluate(Strand& strand, const Point& point);
-  [[nodiscard]] std::vector<double> gradient(Strand& strand, const Point& point) const;
+  [[nodiscard]] const std::function<std::vector<double>(std::span<const double>)>& gradient_of_problem() const {
+    return problem_.conditions.count > 0 ? problem_.conditions.gradients : problem_.gradient;
+  }
+  [[nodiscard]] std::vector<double> values(Strand& strand, const Point& point, const Answer& answer) const;
+  [[nodiscard]] std::vector<double> gradients(Strand& strand, const Point& point) const;
   [[nodiscard]] std::vector<double> to_user(const Point& point) const;
   [[nodiscard]] Point to_point(std::span<const double> x) const;
   void report(long index, double value, const std::vector<double>& x);
@@ -143,7 +159,7 @@ class Ledger {
   // Between rounds only.
   std::vector<Known> known_;
   Memory memory_;
-  Gradients gradients_;
+  Numbers values_, gradients_;
   double best_seen_ = std::numeric_limits<double>::infinity();
   double worst_seen_ = -std::numeric_limits<double>::infinity();
   long evaluations_ = 0;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <nlopt.hpp>
+#include <vector>
 
 #include "base/random.h"
 #include "optimizers/backends.h"
@@ -22,6 +23,7 @@ constexpr double step_tolerance_inside_mlsl = 1e-4;
 
 struct Callback {
   Strand& strand;
+  bool with_conditions;             ///< those of the problem are followed
   std::vector<double> bent_middle;  ///< where 0.5 goes; empty for a straight scale
 
   [[nodiscard]] Point to_point(const std::vector<double>& x) const {
@@ -39,9 +41,28 @@ double call(const std::vector<double>& x, std::vector<double>& gradient, void* d
   Callback& callback = *static_cast<Callback*>(data);
   try {
     const Point point = callback.to_point(x);
-    const double value = callback.strand(point).value;
-    if (!gradient.empty()) callback.strand.gradient(point, gradient);
-    return value;
+    if (!gradient.empty()) {
+      std::vector<double> gradients((1 + callback.strand.conditions()) * x.size());
+      callback.strand.gradients(point, gradients);
+      std::copy_n(gradients.begin(), x.size(), gradient.begin());
+    }
+    return callback.with_conditions ? callback.strand.values(point).all[0] : callback.strand(point).value;
+  } catch (const Cut&) {
+    throw nlopt::forced_stop();
+  }
+}
+
+// For methods with a gradient, whose scale is straight.
+void call_conditions(unsigned count, double* values, unsigned dimension, const double* x, double* gradient, void* data) {
+  Strand& strand = static_cast<Callback*>(data)->strand;
+  const std::span<const double> point(x, dimension);
+  try {
+    const std::vector<double> all = strand.values(point).all;
+    std::copy_n(all.begin() + 1, count, values);
+    if (gradient == nullptr) return;
+    std::vector<double> gradients((1 + count) * std::size_t{dimension});
+    strand.gradients(point, gradients);
+    std::copy(gradients.begin() + dimension, gradients.end(), gradient);
   } catch (const Cut&) {
     throw nlopt::forced_stop();
   }
@@ -65,7 +86,8 @@ std::string_view name_of(nlopt::result result) {
 RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
   const auto algorithm = static_cast<nlopt::algorithm>(method.nlopt_algorithm);
   const bool is_mlsl = algorithm == nlopt::G_MLSL;
-  Callback callback{.strand = strand, .bent_middle = {}};
+  const std::size_t conditions = method.uses_gradient ? strand.conditions() : 0;
+  Callback callback{.strand = strand, .with_conditions = conditions > 0, .bent_middle = {}};
   std::vector<double> x = run.start;
   if (algorithm == nlopt::GN_DIRECT_L) {
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -83,6 +105,7 @@ RunReport run_nlopt(const Method& method, const Run& run, Strand& strand) {
     opt.set_lower_bounds(0.0);
     opt.set_upper_bounds(1.0);
     opt.set_min_objective(call, &callback);
+    if (conditions > 0) opt.add_inequality_mconstraint(call_conditions, &callback, std::vector<double>(conditions, 0.0));
     opt.set_initial_step(run.step);
     opt.set_xtol_abs(step_tolerance);
     if (is_mlsl) {

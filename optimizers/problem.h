@@ -18,6 +18,17 @@ struct Variable {
   double upper = 1;
 };
 
+/// Conditions g(x) <= 0 and what is minimised under them. Only the methods with a gradient follow them, by themselves: to the
+/// others, and in every comparison of points, the objective tells: it is to be the higher the more they are broken.
+struct Conditions {
+  std::size_t count = 0;
+  /// {cost, g_1, ... g_count}; called like the objective, where that is finite.
+  std::function<std::vector<double>(std::span<const double>)> values = {};
+  /// The derivatives of all of these by x: those of the cost, then those of g_1 and so on. May be null, or NaN where there is
+  /// none: then differences take their place.
+  std::function<std::vector<double>(std::span<const double>)> gradients = {};
+};
+
 /// minimise objective(x) subject to lower <= x <= upper. Optimizers work on x scaled to [0, 1]; a variable with lower == upper
 /// is held at it.
 struct Problem {
@@ -29,6 +40,8 @@ struct Problem {
   /// Its derivatives by x, where they are known; may be null. NaN where there is none: differences then take its place. Like the
   /// objective it may be called from several threads.
   std::function<std::vector<double>(std::span<const double>)> gradient = {};
+  /// Where there are any, `gradient` is not used.
+  Conditions conditions;
   /// Starting points worth trying first; may be empty. Points outside the bounds are moved to them. Every optimizer evaluates all
   /// of them, as given to the last digit; local methods search from each in turn, `auto` and those with a gradient from the most
   /// promising.
@@ -103,8 +116,8 @@ struct OptimizerResult {
 /// methods with a gradient, which go on from the best points of such a search after its first two fifths. Another local method
 /// runs from the starts in turn and then from points drawn from the seed, each time until it converges, as long as the budget
 /// lasts; infeasible points are passed over. A global method runs once. Where the problem has no gradient it is taken by central
-/// differences, which count as evaluations; one that it has counts as three. Ipopt solves one problem at a time in a process;
-/// others wait, so an objective must not itself minimize with ipopt while ipopt calls it.
+/// differences, which count as evaluations; one that it has counts as three, with those of its conditions. Ipopt solves one
+/// problem at a time in a process; others wait, so an objective must not itself minimize with ipopt while ipopt calls it.
 [[nodiscard]] OptimizerResult minimize(const Problem& problem, const OptimizerOptions& options);
 
 }  // namespace softland

@@ -21,18 +21,6 @@ constexpr double largest_disagreement = 0.05;  // what derivatives may differ by
 constexpr double no_change = 1e-5;  // of a figure: a derivative that is off by this for a standard deviation is as good as 0
 constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
-struct DerivedFigure {
-  std::string_view key;
-  FigureSlope CostSlopes::*slope;
-};
-constexpr std::array derived_figures{DerivedFigure{"initial_contact_time_s", &CostSlopes::first_touch},
-                                     DerivedFigure{"permanent_contact_time_s", &CostSlopes::last_rebound_end},
-                                     DerivedFigure{"major_bounce_height_m", &CostSlopes::rebound_height},
-                                     DerivedFigure{"impact_velocity_m_s", &CostSlopes::first_touch_speed},
-                                     DerivedFigure{"largest_impact_velocity_m_s", &CostSlopes::touch_speed},
-                                     DerivedFigure{"peak_contact_force_N", &CostSlopes::peak_force},
-                                     DerivedFigure{"impact_energy_J", &CostSlopes::impact_energy}};
-
 // The edges of every device are drawn anew: the nominal one has none of it.
 Prepared without_jitter(const Prepared& scene) {
   Prepared own = scene;
@@ -180,7 +168,7 @@ Eigen::VectorXd changes_of(const std::vector<double>& by_variable, const std::ve
   return changes;
 }
 
-std::string why_no_derivative(const DerivedFigure& figure, double value, const CostSlopes& slopes, const Metrics& metrics) {
+std::string why_no_derivative(const FigureWithSlope& figure, double value, const CostSlopes& slopes, const Metrics& metrics) {
   if (figure.slope == &CostSlopes::last_rebound_end && !metrics.settled) return "the nominal device has not settled";
   if (!std::isfinite(value)) return "the nominal device does not have it";
   if (figure.slope == &CostSlopes::peak_force && !slopes.has_peak_force)
@@ -194,7 +182,7 @@ std::string why_no_derivative(const DerivedFigure& figure, double value, const C
 struct NominalClosing {
   DeviceOutcome outcome;
   CostSlopes slopes;
-  Eigen::MatrixXd gradient = {};  // a row to each of derived_figures; empty where the device does not close
+  Eigen::MatrixXd gradient = {};  // a row to each of figures_with_slopes; empty where the device does not close
 };
 
 NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>& signals, Changes& by,
@@ -209,7 +197,7 @@ NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>&
   const LinearizedClosing motion(nominal.model, signals, tape, options.refinement, &by.of_switch);
   closing.slopes = cost_slopes(nominal.model, signals, motion, nominal.scene.metrics);
   std::vector<FigureSlope> wanted;
-  for (const DerivedFigure& figure : derived_figures) wanted.push_back(closing.slopes.*figure.slope);
+  for (const FigureWithSlope& figure : figures_with_slopes) wanted.push_back(closing.slopes.*figure.slope);
   closing.gradient = motion.backward(wanted, by.of_signals);
   return closing;
 }
@@ -279,8 +267,8 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
     return found;
   }
   found.grazing = closing.slopes.grazing;
-  for (std::size_t f = 0; f < derived_figures.size(); ++f) {
-    const DerivedFigure& derived = derived_figures[f];
+  for (std::size_t f = 0; f < figures_with_slopes.size(); ++f) {
+    const FigureWithSlope& derived = figures_with_slopes[f];
     FigureDerivatives figure{.key = derived.key, .value = ensemble_figure(derived.key).value(closing.outcome), .by_variable = {}};
     figure.why_none = why_no_derivative(derived, figure.value, closing.slopes, closing.outcome.metrics);
     if (figure.why_none.empty()) {

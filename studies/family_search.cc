@@ -59,7 +59,12 @@ PriceSlopes FamilySearch::slopes() const {
     if (groups.empty()) groups = setting_.parameter_groups();
     return [this, aim, groups](std::span<const double> x) { return setting_.gradient_at(x, aim, groups); };
   };
-  return {.leading = of(Target::bounce), .own = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};
+  PriceSlopes all{.leading = of(Target::bounce),
+                  .own = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};
+  if (!all.leading || !all.own) return all;
+  all.conditions = setting_.followed_conditions().size();
+  all.apart = [this](std::span<const double> x) { return setting_.price_at(x).apart.value_or(Prices::Apart()); };
+  return all;
 }
 
 void FamilySearch::begin_at(const std::map<std::string, Waveform>& waveforms) {

@@ -21,6 +21,7 @@ constexpr double latest_touch = 2.5;  // times the baseline's first touch
 // Lateness that costs little: an electrode can throw and catch the beam in about the time of the step, a piezo only slows it.
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
+constexpr double most_broken = 10;         // a condition, by a part of its limit
 constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
@@ -48,12 +49,30 @@ struct PricedClosing final : ClosingObserver {
   MetricsObserver metrics;
 };
 
+// Of a condition that a method follows: g. Searches end where it is 0, and are to fulfil it there.
+double excess(const Criterion& one, const Metrics& metrics) {
+  constexpr double margin = 1e-6;
+  return std::clamp(one.violation(all_figures[one.figure].value(metrics)) + margin, -most_broken, most_broken);
+}
+
+// By the figure.
+double excess_rate(const Criterion& one, const Metrics& metrics) {
+  if (std::abs(excess(one, metrics)) >= most_broken) return 0;
+  const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
+  return (one.comparison == Comparison::below || one.comparison == Comparison::at_most ? 1 : -1) / scale;
+}
+
+const FigureWithSlope* figure_with_slope(const Criterion& one) {
+  const auto found = std::ranges::find(figures_with_slopes, all_figures[one.figure].key, &FigureWithSlope::key);
+  return found == figures_with_slopes.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 double broken(const std::vector<Criterion>& conditions, const Metrics& metrics) {
-  constexpr double most = 10;
   double sum = 0;
-  for (const Criterion& one : conditions) sum += std::clamp(one.violation(all_figures[one.figure].value(metrics)), 0.0, most);
+  for (const Criterion& one : conditions)
+    sum += std::clamp(one.violation(all_figures[one.figure].value(metrics)), 0.0, most_broken);
   return sum;
 }
 
@@ -115,10 +134,17 @@ Prices SearchSetting::price(const std::vector<Signal>& signals) const {
   Prices prices{.leading = by(Target::bounce)};
   prices.own = target.has_own_cost() ? by(target) : prices.leading;
   prices.lands = prices.leading < never_touched && figures.rebound_height <= given.scene.metrics.significant_rebound;
-  if (conditions.empty() || !(prices.leading < never_touched)) return prices;
+  if (conditions.empty()) return prices;
+  if (!(prices.leading < never_touched)) {
+    prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
+    prices.apart->excess.assign(followed_conditions().size(), most_broken);
+    return prices;
+  }
   Metrics metrics = observer.metrics.metrics(end);
   metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
   set_drive_figures(metrics, given, signals);
+  prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
+  for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, metrics));
   const double violation = broken(conditions, metrics);
   if (!(violation > 0)) return prices;
   // Less than what separates a landing from none, and for the own cost more than any landing that fulfils them costs.
@@ -143,8 +169,21 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
 
 std::string SearchSetting::gradient_refusal(const Aim& aim) const {
   if (aim.is_about(Target::drive)) return "the energy of the drives has no gradient";
-  if (!conditions.empty()) return "conditions on figures have no gradient";
+  for (const Criterion& one : conditions) {
+    const Figure& figure = all_figures[one.figure];
+    const bool never_slopes = figure.is_count() || figure.conditioning == Conditioning::rest;
+    if (!never_slopes && (one.comparison == Comparison::equal || figure_with_slope(one) == nullptr))
+      return fmt::format("the condition {} has no gradient", one.text);
+  }
   return LinearizedClosing::refusal(given.model);
+}
+
+std::vector<Criterion> SearchSetting::followed_conditions() const {
+  std::vector<Criterion> followed;
+  for (const Criterion& one : conditions) {
+    if (one.comparison != Comparison::equal && figure_with_slope(one) != nullptr) followed.push_back(one);
+  }
+  return followed;
 }
 
 SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups) const {
@@ -164,21 +203,29 @@ std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
 std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const Aim& aim,
                                                const std::vector<ParameterGroup>& groups) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> gradient(x.size(), unknown);
+  const std::vector<Criterion> followed = followed_conditions();
+  std::vector<double> gradient((1 + followed.size()) * x.size(), unknown);
   const std::map<std::string, Waveform> searched = space.waveforms(x);
   if (!is_allowed(searched)) return gradient;
   const std::vector<Signal> signals = given.driven(signals_of(drives(searched)));
-  CostObserver observer(scale.contact_gap, given.scene.metrics);
+  PricedClosing observer(scale.contact_gap, given.scene.metrics);
   MotionTape tape(observer);
   const Trajectory end = observe_closing(given.model, signals, run_of(signals), tape);
   const LinearizedClosing motion(given.model, signals, tape);
   const CostSlopes slopes = cost_slopes(given.model, signals, motion, given.scene.metrics);
-  const auto slope = cost_slope(aim, end.status, observer.figures(end), scale, given.scene.metrics, slopes);
+  const auto slope = cost_slope(aim, end.status, observer.cost.figures(end), scale, given.scene.metrics, slopes);
   if (!slope) return gradient;
+  std::vector<FigureSlope> rows{*slope};
+  for (const Criterion& one : followed) rows.push_back(slopes.*figure_with_slope(one)->slope);
   const SignalSlopes by_parameters = signal_slopes(x, groups);
-  const Eigen::MatrixXd row = motion.backward({*slope}, by_parameters);
-  gradient.assign(row.data(), row.data() + row.size());
-  for (const std::size_t k : by_parameters.kinks()) gradient[k] = unknown;
+  const Eigen::MatrixXd by_x = motion.backward(rows, by_parameters);
+  const Metrics metrics = observer.metrics.metrics(end);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const double rate = row == 0 ? 1 : excess_rate(followed[row - 1], metrics);
+    for (std::size_t k = 0; k < x.size(); ++k)
+      gradient[row * x.size() + k] = rate * by_x(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(k));
+    for (const std::size_t k : by_parameters.kinks()) gradient[row * x.size() + k] = unknown;
+  }
   return gradient;
 }
 

@@ -49,15 +49,19 @@ struct SearchSetting {
   /// Of a point of the search space, on the nominal device; infinite where it leaves the limits of a driver. What `memory` holds
   /// is not simulated again.
   [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr) const;
-  /// The gradient of a cost at a point of the search space, by the parameters: of the nominal device, exact but where touches
-  /// graze. NaN where there is none. The same numbers, sooner, with `groups`, which hold for all points or are not used.
+  /// The gradient of a cost at a point of the search space, by the parameters, and after it that of each of
+  /// followed_conditions(), as Conditions::gradients: of the nominal device, exact but where touches graze. NaN where there is
+  /// none. The same numbers, sooner, with `groups`, which hold for all points or are not used.
   [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim,
                                                 const std::vector<ParameterGroup>& groups = {}) const;
   /// The parameters by the pieces of the signals that they move.
   [[nodiscard]] std::vector<ParameterGroup> parameter_groups() const;
   /// How the signals of all drives change with the parameters.
   [[nodiscard]] SignalSlopes signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups = {}) const;
-  /// Why a cost has no gradient here, in words; empty where it has.
+  /// The conditions that a method with a gradient follows by itself: those on figures that have one. Of a count, which changes by
+  /// jumps, the cost alone tells.
+  [[nodiscard]] std::vector<Criterion> followed_conditions() const;
+  /// Why a cost has no gradient here, or a condition, in words; empty where they have.
   [[nodiscard]] std::string gradient_refusal(const Aim& aim) const;
   /// Throws InvalidInput with the name of the first that a search cannot begin with, and why.
   void check_starts(const std::vector<StartingWaveforms>& starts) const;

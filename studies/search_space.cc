@@ -161,7 +161,11 @@ std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
     for (const auto& [time, value] : course) sum += std::pow(driving(own, time) - value, 2);
     return sum / instants;
   };
-  return minimize({.variables = variables, .objective = difference, .starts = starts}, {.max_evaluations = evaluations}).x;
+  Problem problem;
+  problem.variables = variables;
+  problem.objective = difference;
+  problem.starts = starts;
+  return minimize(problem, {.max_evaluations = evaluations}).x;
 }
 
 std::string DriveSearch::misfit(const Waveform& waveform) const {

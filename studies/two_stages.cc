@@ -28,7 +28,14 @@ OptimizerResult TwoStages::stage(Problem problem, OptimizerOptions options, bool
     known_.emplace(point, prices);
     return leading ? prices.leading : prices.own;
   };
-  problem.gradient = leading ? slopes_.leading : slopes_.own;
+  const auto& slopes = leading ? slopes_.leading : slopes_.own;
+  if (slopes_.conditions > 0) {
+    problem.conditions.count = slopes_.conditions;
+    problem.conditions.values = [this, leading](std::span<const double> x) { return values_apart(x, leading); };
+    problem.conditions.gradients = slopes;
+  } else {
+    problem.gradient = slopes;
+  }
   options.on_evaluation = [this](const Evaluation& e) {
     Evaluation own = e;
     own.index += first_index_;
@@ -41,6 +48,18 @@ OptimizerResult TwoStages::stage(Problem problem, OptimizerOptions options, bool
     log_.emplace(own.index, std::move(own));
   };
   return minimize(problem, options);
+}
+
+std::vector<double> TwoStages::values_apart(std::span<const double> x, bool leading) {
+  std::optional<Prices::Apart> apart;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (const auto found = known_.find({x.begin(), x.end()}); found != known_.end()) apart = found->second.apart;
+  }
+  if (!apart) apart = slopes_.apart(x);
+  std::vector<double> values{leading ? apart->leading : apart->own};
+  values.insert(values.end(), apart->excess.begin(), apart->excess.end());
+  return values;
 }
 
 std::vector<std::vector<double>> TwoStages::promising_points(const std::vector<Variable>& variables) const {

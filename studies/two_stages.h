@@ -21,11 +21,20 @@ struct Prices {
   double leading = std::numeric_limits<double>::infinity();
   double own = std::numeric_limits<double>::infinity();
   bool lands = false;  ///< without a significant rebound
+  /// The same under conditions: costs without what broken ones add, and each g of Conditions.
+  struct Apart {
+    double leading, own;
+    std::vector<double> excess;
+  };
+  std::optional<Apart> apart = {};  ///< none without conditions, and where the prices are remembered from another search
 };
 
-/// Gradients of the two costs as Problem::gradient; null where there is none.
+/// Gradients of the two costs as Problem::gradient, null where there is none; under conditions as Conditions::gradients.
 struct PriceSlopes {
   std::function<std::vector<double>(std::span<const double>)> leading, own;
+  std::size_t conditions = 0;
+  /// Of a point, whatever is remembered.
+  std::function<Prices::Apart(std::span<const double>)> apart = {};
 };
 
 class TwoStages {
@@ -48,6 +57,7 @@ class TwoStages {
 
  private:
   [[nodiscard]] OptimizerResult stage(Problem problem, OptimizerOptions options, bool leading);
+  [[nodiscard]] std::vector<double> values_apart(std::span<const double> x, bool leading);
   [[nodiscard]] std::vector<std::vector<double>> promising_points(const std::vector<Variable>& variables) const;
 
   std::function<Prices(std::span<const double>)> price_;

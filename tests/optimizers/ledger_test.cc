@@ -146,7 +146,7 @@ TEST(Gradient, OfAParabolaIsExactInsideAndAtTheBounds) {
   with_strand(2, parabola, [](Strand& strand) {
     for (const double u : {0.0, 1e-9, 5e-6, 0.3, 1 - 5e-6, 1.0}) {
       std::vector<double> gradient(2);
-      strand.gradient(std::vector{u, 1 - u}, gradient);
+      strand.gradients(std::vector{u, 1 - u}, gradient);
       EXPECT_NEAR(gradient[0], 6 * u - 1, kDifferenceRounding);
       EXPECT_NEAR(gradient[1], 2 - 4 * (1 - u), kDifferenceRounding);
     }
@@ -157,9 +157,9 @@ TEST(Gradient, LooksAwayFromInfeasiblePoints) {
   const auto line = [](std::span<const double> x) { return x[0] < 0.5 ? kNaN : 2 * x[0]; };
   with_strand(1, line, [](Strand& strand) {
     std::vector<double> gradient(1);
-    strand.gradient(std::vector{0.5}, gradient);
+    strand.gradients(std::vector{0.5}, gradient);
     EXPECT_NEAR(gradient[0], 2, kDifferenceRounding);
-    strand.gradient(std::vector{0.1}, gradient);
+    strand.gradients(std::vector{0.1}, gradient);
     EXPECT_EQ(gradient[0], 0);
   });
 }
@@ -170,7 +170,7 @@ TEST(Gradient, OfAnObjectiveOfShortSmoothPiecesIsThatOfThePiece) {
   with_strand(1, pieces, [](Strand& strand) {
     for (const double middle : {0.1001, 0.5003, 0.7777}) {
       std::vector<double> gradient(1);
-      strand.gradient(std::vector{middle}, gradient);
+      strand.gradients(std::vector{middle}, gradient);
       EXPECT_NEAR(gradient[0], 3, kDifferenceRounding) << middle;
     }
   });
@@ -181,7 +181,7 @@ TEST(Gradient, CountsAgainstTheBudget) {
       3, [](auto x) { return x[0]; },
       [](Strand& strand) {
         std::vector<double> gradient(3);
-        strand.gradient(std::vector{0.5, 0.5, 0.5}, gradient);
+        strand.gradients(std::vector{0.5, 0.5, 0.5}, gradient);
         EXPECT_EQ(strand.evaluations(), 7);
       });
 }

@@ -143,6 +143,53 @@ TEST(Gradient, OfAPlasticContact) {
 TEST(Gradient, OfADampedContact) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce, {"contact.damping=0.5 s/m"}), 5);
 }
+TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
+  std::vector<Criterion> conditions;
+  for (const char* text :
+       {"t_i < 30 us", "v_i <= 20 mm/s", "peak force < 50 uN", "impact energy > 1 pJ", "bounce_count == 0", "B_H < 3 nm"})
+    conditions.push_back(parse_criterion(text, figure_names()));
+  const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
+  SearchSetting s = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {}, conditions);
+  EXPECT_EQ(s.gradient_refusal(Target::bounce), "");
+  ASSERT_EQ(s.followed_conditions().size(), 5U) << "all but the count";
+  s.run.tolerance = tight;
+  const std::vector<Variable> variables = s.space.variables();
+  int compared = 0;
+  for (const double place : {0.2, 0.3, 0.4, 0.5, 0.6, 0.7}) {
+    std::vector<double> x;
+    for (const Variable& v : variables) x.push_back(std::lerp(v.lower, v.upper, place));
+    const std::vector<double> gradients = s.gradient_at(x, Target::bounce);
+    ASSERT_EQ(gradients.size(), 6 * x.size());
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const double h = 1e-6 * (variables[k].upper - variables[k].lower);
+      std::vector<double> up = x, down = x;
+      up[k] += h, down[k] -= h;
+      const Prices above = s.price_at(up), below = s.price_at(down);
+      for (std::size_t c = 0; c < 3; ++c) {  // rebounds of such waveforms, and what all touches add up to, are chaotic
+        const double difference = (above.apart->excess[c] - below.apart->excess[c]) / (2 * h);
+        double largest = 0;
+        for (std::size_t i = 0; i < x.size(); ++i)
+          largest = std::max(largest, std::abs(gradients[(1 + c) * x.size() + i]) * (variables[i].upper - variables[i].lower));
+        EXPECT_NEAR(gradients[(1 + c) * x.size() + k] * (variables[k].upper - variables[k].lower),
+                    difference * (variables[k].upper - variables[k].lower), 1e-3 * largest)
+            << conditions[c].text << " by " << variables[k].name << " at " << place;
+        compared += std::isfinite(difference) && difference != 0;
+      }
+    }
+  }
+  EXPECT_GT(compared, 30);
+}
+TEST(Gradient, IsRefusedOfConditionsWithoutOne) {
+  const auto refusal = [](const char* condition) {
+    const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
+    return search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {},
+                          {parse_criterion(condition, figure_names())})
+        .gradient_refusal(Target::bounce);
+  };
+  EXPECT_EQ(refusal("drive energy < 1 pJ"), "the condition drive energy < 1 pJ has no gradient");
+  EXPECT_EQ(refusal("t_i == 30 us"), "the condition t_i == 30 us has no gradient");
+  EXPECT_EQ(refusal("bounce_count == 0"), "");
+}
 TEST(Gradient, IsUnknownOfTheEnergyThatIsStoredAlongAPad) {
   const SearchSetting s =
       setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::energy, {"contact.distribution=pad"});
