@@ -18,9 +18,9 @@ from tables import machine, prefixed, revision
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 GOLD = ["mem-gold.toml", "--robust", "cvar:0.9"]
 PZT = ["mem-gold-pzt.toml", "--robust", "cvar:0.9"]
-BOTH_QUICKLY = PZT + ["--actuator", "both", "--waveform", "knots:6", "--constrain", "initial_contact_time < 45 us"]
+BOTH_QUICKLY = PZT + ["--actuator", "both", "--waveform", "bspline:8", "--constrain", "initial_contact_time < 45 us", "--budget", "150000"]
 UNITS = ["--calibrate", "Vdp,frequency"]
-# What is searched, and its words; further ones search again from the winner.
+# What is searched, and its words; further ones search again, from the winner.
 SEARCHES = {
     "gold-65us": ("gold, nothing known, t_i 95 % below 65 us", GOLD + [
         "--waveform", "knots:4", "--constrain", "initial_contact_time < 65 us", "--budget", "150000"]),
@@ -31,10 +31,11 @@ SEARCHES = {
         "mem-gold.toml", "--robust", "yield:bounce_count == 0", "--waveform", "catch", *UNITS, "--budget", "100000"]),
     "gold-errors": ("gold, Vdp to 1 %, period to 0.5 %", GOLD + [
         "--waveform", "knots:5", "--calibrate", "Vdp:1 %,frequency:0.5 %", "--budget", "150000"]),
-    "pzt-both-45us": ("piezo and electrode, below 45 us", BOTH_QUICKLY + ["--budget", "250000", "--seed", "2"],
-                      BOTH_QUICKLY + ["--budget", "150000", "--seed", "5"]),
+    "pzt-both-45us": ("piezo and electrode, below 45 us", BOTH_QUICKLY, BOTH_QUICKLY + ["--seed", "11"],
+                      BOTH_QUICKLY + ["--seed", "21"]),
     "pzt-both-200us": ("piezo and electrode, below 200 us", PZT + [
-        "--actuator", "both", "--waveform", "knots:4", "--constrain", "initial_contact_time < 200 us", "--budget", "200000"]),
+        "--actuator", "both", "--waveform", "knots:4", "--constrain", "initial_contact_time < 200 us", "--budget", "200000",
+        "--seed", "3"]),
     "pzt-alone": ("piezo alone", PZT + ["--actuator", "pzt", "--waveform", "pulse", "--budget", "100000"]),
     "nem-tin": ("nem-tin, nothing known", ["nem-tin.toml", "--robust", "cvar:0.9", "--waveform", "pulse", "--budget", "60000"]),
     "two-electrodes": ("two electrodes, nothing known", ["two-electrodes.toml", "--robust", "cvar:0.9", "--waveform", "pulse", "--budget", "60000"]),
@@ -51,9 +52,9 @@ def share(part):
     return f"{100 * part['share']:.1f} % ({100 * part['interval'][0]:.1f} to {100 * part['interval'][1]:.1f})"
 
 
-def command(words, first):
+def command(words):
     quoted = [f'"{word}"' if " " in word or "," in word else word for word in words[1:]]
-    return " ".join(["softland optimize", f"scenes/{words[0]}" if first else "softland-out/best.toml", *quoted])
+    return " ".join(["softland optimize", f"scenes/{words[0]}", *quoted])
 
 
 def row(name, drive, *more):
@@ -80,14 +81,16 @@ window. 95 % of the devices are below the given values; in brackets 95 % confide
     with tempfile.TemporaryDirectory() as folder:
         for name in chosen:
             what, *rounds = SEARCHES[name]
-            scene, closings, begin = SCENES / rounds[0][0], 0, time.monotonic()
+            closings, begin = 0, time.monotonic()
             for number, words in enumerate(rounds):
-                out = pathlib.Path(folder) / f"{name}-{number}"
-                done = subprocess.run([program, "optimize", scene, *words[1:], "--out", out, "--quiet"], capture_output=True, text=True)
+                place = f"{name}-{number + 1}"
+                start = ["--start", f"{name}-{number}/best.toml"] if number else []
+                done = subprocess.run([program, "optimize", SCENES / words[0], *words[1:], *start, "--out", place, "--quiet"],
+                                      capture_output=True, text=True, cwd=folder)
                 if done.returncode not in (0, 4):
                     sys.exit(f"{name}: exit status {done.returncode}\n{done.stderr}")
-                commands.append(command(words, number == 0))
-                scene = out / "best.toml"
+                commands.append(command([*words, *start, "--out", place]) if len(rounds) > 1 else command(words))
+                out = pathlib.Path(folder, place)
                 closings += json.loads((out / "result.json").read_text())["robust"]["closings"]
             seconds = time.monotonic() - begin
             found = json.loads((out / "result.json").read_text())

@@ -241,6 +241,10 @@ Trajectory observe_closing(const Switch& model, std::span<const Signal> drives, 
           fmt::format("duration = {} s: must be greater than 0 s and below 1e6 s", options.duration));
   require(options.tolerance > 0 && options.tolerance <= 0.1,
           fmt::format("tolerance = {}: must be in (0, 0.1]", options.tolerance));
+  require(options.begins_closed.empty() ||
+              (model.has_contact() && options.begins_closed.size() == static_cast<std::size_t>(model.modes())),
+          fmt::format("begins_closed: {} coordinates for a switch with {} modes and {} contact", options.begins_closed.size(),
+                      model.modes(), model.has_contact() ? "a" : "no"));
   require(options.restart_at_contact || why_always_restarted(model).empty(),
           fmt::format("restart_at_contact = false: {}", why_always_restarted(model)));
   return Run(model, drives, options, observer).run();

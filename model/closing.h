@@ -1,4 +1,5 @@
 // Time integration of one closing: from rest under 0 V, through every waveform breakpoint and every make and break of contact.
+// An opening is integrated in the same way, from rest on the contact.
 //
 // The integrator restarts at waveform breakpoints, at make and break of contact, and, where the contact law has memory, where it
 // passes from one of its curves to another (turning points while loading among them) or is not smooth, so it only ever sees
@@ -55,6 +56,9 @@ struct ClosingOptions {
   /// Potential of the closed equilibrium under the hold levels [J]: when given, Trajectory::landing_excess is measured against
   /// it.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
+  /// Where given, the run begins at rest on the contact, with these modal coordinates [m kg^(1/2)]: those of a closed equilibrium
+  /// under what the drives have been before t = 0. The touch that holds then counts as one that began at t = 0 at no speed.
+  std::span<const double> begins_closed = {};
   const std::atomic<bool>* stop = nullptr;  ///< set from outside: ends the run as `interrupted`
   /// Called after every step with time [s], q and v, which the states of a compressible film follow; true ends the run (status
   /// done).
@@ -65,7 +69,8 @@ struct ClosingOptions {
 [[nodiscard]] std::string why_always_restarted(const Switch& model);
 
 /// Never throws for numerical trouble: see Trajectory::status. Throws InvalidInput unless there is one signal per drive of the
-/// switch, duration and tolerance are positive and tolerance <= 0.1; or where restart_at_contact is false and cannot be.
+/// switch, duration and tolerance are positive and tolerance <= 0.1; where begins_closed has a coordinate too many or too few, or
+/// the switch no contact; or where restart_at_contact is false and cannot be.
 [[nodiscard]] Trajectory simulate_closing(const Switch& model, std::span<const Signal> drives, const ClosingOptions& options);
 
 /// The same for an observer, who alone receives points and touches: those of the result stay empty.

@@ -15,6 +15,7 @@ void add_effects(Verb& verb);
 void add_accuracy(Verb& verb);
 void add_optimize(Verb& verb);
 void add_limit(Verb& verb);
+void add_release(Verb& verb);
 void add_explore(Verb& verb);
 void add_robustness(Verb& verb);
 void add_calibrate(Verb& verb);
@@ -41,6 +42,7 @@ inline constexpr std::array all_verbs{
     VerbRow{"accuracy", "what accuracy costs in time: errors of the figures for every integrator and setting", add_accuracy},
     VerbRow{"optimize", "search the drive waveform that closes without bounce", add_optimize},
     VerbRow{"limit", "the least time in which any waveform can close the switch softly", add_limit},
+    VerbRow{"release", "search the drive waveform that opens the closed switch without leaving it to swing", add_release},
     VerbRow{"explore", "compute many points of a design space into a store", add_explore},
     VerbRow{"robustness", "how drives do on devices that differ as [spread] says", add_robustness},
     VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},

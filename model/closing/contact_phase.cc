@@ -24,6 +24,16 @@ void ContactPhase::turn(double deepest) {
   enter(Phase::unloading);
 }
 
+void ContactPhase::begin_closed(double interference) {
+  constexpr double rounding = 1e-9;  // a little deeper than where it rests, so that resting there does not load it
+  if (model_.rigid_contact() != nullptr) return enter(Phase::rest);
+  if (!(interference > 0)) return enter(interference > -reach_ ? above() : Phase::flight);
+  if (remembers_) return turn(interference * (1 + rounding));
+  std::size_t zone = 0;
+  while (zone < kinks_.size() && kinks_[zone] <= interference) ++zone;
+  enter(Phase::loading, zone);
+}
+
 void ContactPhase::enter(Phase phase, std::size_t zone) {
   phase_ = phase;
   if (!in_contact() && dent_.heals) {

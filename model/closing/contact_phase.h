@@ -54,6 +54,8 @@ class ContactPhase {
   [[nodiscard]] double lost(double position) const;
 
   void enter(Phase phase, std::size_t zone = 0);
+  /// At rest on the contact, with the contact point this much beyond the plane [m]: a law with memory has been loaded as far.
+  void begin_closed(double interference);
   /// Turns from loading to unloading at this interference [m].
   void turn(double deepest);
 

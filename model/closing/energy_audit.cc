@@ -17,7 +17,11 @@ EnergyAudit::EnergyAudit(const Switch& model, DriveCourse& drives, const Contact
       phase_(phase),
       equations_(equations),
       modes_(static_cast<std::size_t>(model.modes())),
-      rest_energy_(model.potential(start.state.data(), std::vector<double>(drives.size(), 0.0), false, equations.workspace())) {}
+      rest_energy_(model.potential(start.state.data(), std::vector<double>(drives.size(), 0.0), false, equations.workspace())) {
+  if (!phase.in_contact()) return;
+  if (phase.law().active) rest_energy_ += model.contact_stored(start.state.data(), phase.law());
+  dissipated_ = -phase.lost(model.contact_deflection(start.state.data()));
+}
 
 void EnergyAudit::enter_stretch(const Knot& here, bool first) {
   if (!first) add_charges(here, +1);

@@ -18,7 +18,8 @@ namespace softland {
 
 class EnergyAudit {
  public:
-  /// Keeps references. The switch is at rest at `start` under drives of 0.
+  /// Keeps references. The switch is at rest at `start`, under drives of 0 or on its contact; there its drives are charged at
+  /// once.
   EnergyAudit(const Switch& model, DriveCourse& drives, const ContactPhase& phase, ClosingEquations& equations,
               const Knot& start);
 

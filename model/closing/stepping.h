@@ -41,7 +41,11 @@ struct ClosingParts {
         plate(model, drives, equations),
         touches(model, phase, closing_observer),
         course(model.device(), closing_observer),
-        observer(closing_observer) {}
+        observer(closing_observer) {
+    if (options.begins_closed.empty()) return;
+    phase.begin_closed(model.contact_deflection(options.begins_closed.data()) - model.device().gap.contact);
+    if (phase.in_contact()) touches.begin_closed();
+  }
   ClosingParts(const ClosingParts&) = delete;
   ClosingParts& operator=(const ClosingParts&) = delete;
 
@@ -51,7 +55,7 @@ struct ClosingParts {
 
 class Stepping {
  public:
-  /// At rest under drives of 0. Keeps a reference.
+  /// At rest under drives of 0, or on the contact. Keeps a reference.
   explicit Stepping(ClosingParts& parts);
 
   [[nodiscard]] Knot& here() { return here_; }

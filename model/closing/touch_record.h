@@ -22,6 +22,8 @@ class TouchRecord {
   /// The touch under way, or the last one.
   [[nodiscard]] Touch& last() { return touch_; }
 
+  /// The switch begins in contact, at rest.
+  void begin_closed() { begin(0, 0); }
   /// Enters an event that the contact point has reached, before its next phase begins; true when a touch begins.
   bool note(const Event& event, const TrajectoryPoint& at);
   void end(double time) { touch_.end = time; }

@@ -144,6 +144,23 @@ TEST_P(EveryVerb, FindsTheLimit) {
   EXPECT_GT(fs::file_size(here.path() / "out/limit.svg"), 100U);
 }
 
+TEST_P(EveryVerb, OpensAgain) {
+  const std::vector<std::string> words = scene().quickly({"release", scene().name, "--budget", "300", "--quiet", "--out", "out"});
+  if (!scene().has("\\[contact\\]")) return refused(words, "release needs a [contact]");
+  if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
+  EXPECT_NE(done(words).out.find("open for good"), std::string::npos);
+  const json j = json::parse(read(here.path() / "out/release.json"), nullptr, false);
+  EXPECT_LT(j["best"]["figures"]["residual_vibration_m"], j["plain"]["figures"]["residual_vibration_m"]);
+  EXPECT_GT(fs::file_size(here.path() / "out/release.svg"), 1000U);
+  // The drives begin at their hold levels, and end at 0 V.
+  const std::string csv = read(here.path() / "out/release.csv");
+  const json drive = j["best"]["waveforms"].begin().value();
+  EXPECT_EQ(drive.front()[1], j["hold_levels"][j["best"]["waveforms"].begin().key()]);
+  EXPECT_EQ(csv.rfind("time_s,", 0), 0U);
+  EXPECT_NE(csv.find("\n0,"), std::string::npos);
+  EXPECT_TRUE(csv.ends_with(",0\n")) << csv;
+}
+
 TEST_P(EveryVerb, Compares) {
   (void)done(scene().quickly({"effects", scene().name, "--quiet", "--json", "effects.json"}));
   const std::string written = read(here.path() / "effects.json");

@@ -12,6 +12,7 @@
 
 #include "base/literals.h"
 #include "integrators/quintic.h"
+#include "model/pull_in.h"
 #include "objectives/metrics.h"
 #include "tests/model/expect_refused.h"
 #include "tests/model/gold.h"
@@ -46,6 +47,45 @@ TEST(Closing, BeginsAtRestAndKeepsItsKnotsInOrder) {
   EXPECT_GT(t.work.rhs_evaluations, t.work.steps);
   EXPECT_TRUE(t.message.empty());
   EXPECT_TRUE(t.warnings.empty());
+}
+
+TEST(Closing, BeginsOnTheContactWhereItIsTold) {
+  int closed_ones = 0;
+  for (const Contact& contact : test::contacts()) {
+    SCOPED_TRACE(name_of(contact_laws, contact.model));
+    Device device = test::gold_cantilever();
+    device.contact = contact;
+    const Switch model(device);
+    const std::vector<double> holds{step_level};
+    const auto closed = closed_equilibrium(model, holds);
+    if (!closed) continue;
+    ++closed_ones;
+    const std::span<const double> q(closed->q.data(), static_cast<std::size_t>(closed->q.size()));
+    const auto run = [&](const Signal& drive) {
+      return simulate_closing(model, std::vector{drive}, {.duration = 100_us, .tolerance = 1e-9, .begins_closed = q});
+    };
+    // Under the voltage that holds it nothing moves.
+    const Trajectory held = run(Signal::constant(step_level));
+    ASSERT_EQ(held.status, Status::done) << held.message;
+    const double rests = held.points.front().position;
+    EXPECT_GE(rests, held.contact_gap);
+    for (const TrajectoryPoint& p : held.points)
+      EXPECT_NEAR(p.position, rests, 1e-6 * (rests - held.contact_gap) + 1e-15) << p.time;
+    ASSERT_EQ(held.touches.size(), 1U);
+    EXPECT_EQ(held.touches[0].begin, 0);
+    EXPECT_EQ(held.touches[0].impact_velocity, 0);
+    EXPECT_TRUE(std::isnan(held.touches[0].end));
+    EXPECT_NEAR(held.points.back().contact_force, closed->contact_force, 1e-6 * closed->contact_force);
+    EXPECT_LT(held.energy_error, 1e-6 * model.bending_energy());
+
+    const Trajectory open = run(Signal());
+    ASSERT_EQ(open.status, Status::done) << open.message;
+    EXPECT_LT(open.energy_error, 1e-5 * model.bending_energy());
+    EXPECT_LT(open.points.back().position, open.contact_gap);
+    ASSERT_FALSE(open.touches.empty());
+    EXPECT_GT(open.touches.back().end, 0);
+  }
+  EXPECT_EQ(closed_ones, static_cast<int>(test::contacts().size()));
 }
 
 TEST(Closing, TouchesAreKnotsOnThePlaneAndForceActsOnlyInside) {

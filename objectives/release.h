@@ -1,0 +1,34 @@
+// Figures of an opening: how a closed switch lets go, and how long it swings once it has. Taken at the contact point, like those
+// of a closing.
+#pragma once
+
+#include <limits>
+
+#include "model/trajectory.h"
+
+namespace softland {
+
+struct ReleaseBand {
+  double open_position = 0;  ///< of the contact point at rest under the open drives [m]
+  double width = 0;          ///< the switch is open for good once it stays this near [m]
+  double drives_end = 0;     ///< from when on the drives stand at their open levels [s]
+};
+
+struct ReleaseFigures {
+  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
+  /// done: it opens, and stays in the band until the end of the window. not_settled: it is closed at the end, or outside the
+  /// band. Else that of the run.
+  Status status = Status::not_run;
+  double release_time = unset;        ///< the contact point leaves the contact for good [s]; NaN while it is closed at the end
+  double settling_time = unset;       ///< from when on it stays in the band [s]; NaN where it does not
+  double overshoot = unset;           ///< furthest beyond its open position, away from the contact [m]; 0 if never
+  double residual_vibration = unset;  ///< largest distance from the open position once the drives stand [m]; NaN before that
+  int touches = 0;                    ///< of the contact after it has first left it
+};
+
+/// Of an opening (ClosingOptions::begins_closed). Between knots the motion is the quintic through them. Of a run that did not
+/// come to its end the status alone.
+[[nodiscard]] ReleaseFigures release_figures(const Trajectory& opening, const ReleaseBand& band);
+
+}  // namespace softland

@@ -1,0 +1,263 @@
+#include "reports/release_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "reports/chart.h"
+#include "reports/json_number.h"
+#include "reports/made_with.h"
+#include "reports/quantity.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+#include "version.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+using internal::json_number;
+using internal::left_aligned;
+using internal::quantity;
+using internal::right_aligned;
+using nlohmann::json;
+
+constexpr const char* plain_words = "plain opening";
+constexpr std::size_t label_width = 44, number_width = 16;
+constexpr double curve_tolerance = 1e-4;  // of the largest voltage, where a drive is no straight line
+
+json figures_json(const ReleaseFigures& f) {
+  return {{"status", to_string(f.status)},
+          {"release_time_s", json_number(f.release_time)},
+          {"settling_time_s", json_number(f.settling_time)},
+          {"overshoot_m", json_number(f.overshoot)},
+          {"residual_vibration_m", json_number(f.residual_vibration)},
+          {"touches_again", f.touches}};
+}
+
+// Drives that are voltages, with their signals.
+std::map<std::string, Signal> voltages(const Release& r, const Opening& o) {
+  std::map<std::string, Signal> all;
+  const std::vector<std::string> names = r.given.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] != dispersion_drive) all.emplace(names[k], o.signals[k]);
+  }
+  return all;
+}
+
+double hold_of(const Release& r, const std::string& drive) {
+  const std::vector<std::string> names = r.given.drive_names();
+  return r.holds[static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin())];
+}
+
+// A drive from its hold level on.
+std::vector<std::pair<double, double>> line_of(const Release& r, const std::string& drive, const Signal& signal, double end) {
+  const double hold = hold_of(r, drive);
+  const double size = std::max({std::abs(hold), signal.peak(), 1e-9});
+  std::vector<std::pair<double, double>> points = polyline(signal, end, curve_tolerance * size, 0);
+  if (points.size() > 1 && points[0].first == 0 && points[1].first == 0)
+    points.erase(points.begin());  // from 0 V, which it was not at
+  if (points.front().second != hold) points.insert(points.begin(), {0, hold});
+  return points;
+}
+
+json opening_json(const Release& r, const Opening& o) {
+  json waveforms = json::object();
+  for (const auto& [drive, signal] : voltages(r, o)) {
+    json points = json::array();
+    for (const auto& [time, voltage] : line_of(r, drive, signal, o.voltages_end)) points.push_back({time, voltage});
+    waveforms[drive] = points;
+  }
+  return {{"figures", figures_json(o.figures)},
+          {"message", o.trajectory.message},
+          {"drives_end_s", json_number(o.voltages_end)},
+          {"waveforms", waveforms}};
+}
+
+std::string row(const std::string& name, const std::string& plain, const std::string& best, const std::string& rest = {}) {
+  std::string line = "  " + left_aligned(name, label_width) + right_aligned(plain, number_width);
+  if (!best.empty()) line += right_aligned(best, number_width);
+  if (!rest.empty()) line += "  " + rest;
+  return line + "\n";
+}
+
+std::string gain(double plain, double best) {
+  if (!(plain > 0) || !(best > 0) || !std::isfinite(plain) || best >= plain) return {};
+  return internal::times(plain / best) + " less";
+}
+
+std::string quantity_row(const Release& r, const std::string& name, double ReleaseFigures::*member, std::string_view unit,
+                         bool lower) {
+  const double plain = r.plain.figures.*member;
+  if (!r.best) return row(name, quantity(plain, unit), "");
+  const double best = r.best->figures.*member;
+  return row(name, quantity(plain, unit), quantity(best, unit), lower ? gain(plain, best) : "");
+}
+
+std::string finding(const Release& r) {
+  const ReleaseFigures& plain = r.plain.figures;
+  const auto ends = [](const ReleaseFigures& f) {
+    if (!std::isfinite(f.release_time)) return std::string("stays closed");
+    return std::isfinite(f.settling_time) ? fmt::format("is open for good after {}", quantity(f.settling_time, "s"))
+                                          : std::string("still swings at the end of the window");
+  };
+  std::string words = fmt::format("Dropped to 0 V at once the switch {}", ends(plain));
+  if (r.best) words += fmt::format("; braked it {}", ends(r.best->figures));
+  return words + ".";
+}
+
+// Where the figures are from, what confirms them.
+std::string remarks(const Release& r) {
+  std::string words = fmt::format(
+      "Open for good: the contact point stays within {} of its open position ({} of the contact gap). Residual vibration: how "
+      "far it "
+      "still swings from there once all drives stand at 0 V.",
+      quantity(r.band, "m"), internal::percent(r.options.band));
+  if (!r.best) return words + " No waveform was found that opens the switch.";
+  words += fmt::format(" Searched: {} waveforms, seed {}.", r.search.evaluations, r.options.seed);
+  for (const ConfirmingOpening& c : r.checks) {
+    words += fmt::format(" With {}: {}.", c.name,
+                         std::isfinite(c.figures.residual_vibration)
+                             ? "residual vibration " + quantity(c.figures.residual_vibration, "m")
+                             : std::string(to_string(c.figures.status)));
+  }
+  return words;
+}
+
+internal::CurveTable gap_table(const Release& r, const Opening& o) {
+  internal::CurveTable table;
+  const ResultCurve curve = curve_of(o.trajectory, r.given.scene.metrics);
+  table["time_s"] = curve.time;
+  table["tip_gap_m"] = curve.gap;
+  return table;
+}
+
+// Until the braked switch is quiet and a little longer.
+double shown_until(const Release& r, double window) {
+  constexpr double longer = 3;
+  if (!r.best) return window;
+  const double end = std::fmax(r.best->voltages_end, r.best->figures.settling_time);
+  return std::min(window, longer * end);
+}
+
+}  // namespace
+
+json release_json(const Release& r, const Provenance& provenance) {
+  json checks = json::array();
+  for (const ConfirmingOpening& c : r.checks) checks.push_back({{"name", c.name}, {"figures", figures_json(c.figures)}});
+  json holds = json::object();
+  const std::vector<std::string> names = r.given.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) holds[names[k]] = json_number(r.holds[k]);
+  return {{"kind", "release"},
+          {"status", r.interrupted ? "interrupted" : to_string((r.best ? *r.best : r.plain).trajectory.status)},
+          {"actuator", name_of(actuators, r.options.actuator)},
+          {"hold_levels", holds},
+          {"contact_force_N", json_number(r.contact_force)},
+          {"open_position_m", json_number(r.open_position)},
+          {"band_m", json_number(r.band)},
+          {"plain", opening_json(r, r.plain)},
+          {"best", r.best ? opening_json(r, *r.best) : json()},
+          {"parameters", r.parameters},
+          {"confirmed_by", checks},
+          {"goal_met", r.goal_met},
+          {"confirmed", r.confirmed},
+          {"evaluations", r.search.evaluations},
+          {"seed", r.options.seed},
+          {"termination", to_string(r.search.termination)},
+          {"scene", resolved(r.given.scene, r.given.voltage_units()).json()},
+          {"version", version},
+          {"made_with", made_with_json()},
+          {"command", provenance.command}};
+}
+
+std::string release_text(const Release& r) {
+  std::string text = r.interrupted ? "Interrupted: what follows is the best so far.\n\n" : "";
+  text += wrapped(finding(r)) + "\n\n";
+  text += row("", plain_words, r.best ? "found" : "");
+  text += quantity_row(r, "leaves its contact", &ReleaseFigures::release_time, "s", false);
+  text += quantity_row(r, "open for good", &ReleaseFigures::settling_time, "s", true);
+  text += quantity_row(r, "residual vibration", &ReleaseFigures::residual_vibration, "m", true);
+  text += quantity_row(r, "furthest beyond its open position", &ReleaseFigures::overshoot, "m", true);
+  text += row("touches again", std::to_string(r.plain.figures.touches), r.best ? std::to_string(r.best->figures.touches) : "");
+  if (r.best) {
+    text += "\n" + row("parameter", "value", "");
+    for (const auto& [name, value] : r.parameters)
+      text += row(name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4), "");
+  }
+  return text + "\n" + wrapped(remarks(r)) + "\n";
+}
+
+std::string release_svg(const Release& r) {
+  internal::Picture drawn;
+  const double window = r.plain.trajectory.points.empty() ? r.window : r.plain.trajectory.points.back().time;
+  const double shown = shown_until(r, window);
+  struct Drawn {
+    const Opening* opening;
+    const char *name, *words;
+    internal::Role role;
+  };
+  std::vector<Drawn> runs{{&r.plain, "plain", plain_words, internal::Role::baseline}};
+  if (r.best) runs.push_back({&*r.best, "best", "found", internal::Role::best});
+  internal::Chart gap{.id = "gap",
+                      .title = "Gap: the opening",
+                      .x_column = "time_s",
+                      .x_label = "Time",
+                      .x_unit = "s",
+                      .y_label = "Gap",
+                      .y_unit = "m"};
+  gap.x_home = gap.x_whole = {0, shown};
+  gap.zero_line = true;
+  gap.zero_label = "contact plane";
+  gap.height = 320;
+  for (const Drawn& run : runs) {
+    drawn.tables[run.name] = gap_table(r, *run.opening);
+    gap.series.push_back({run.name, "tip_gap_m", run.words, run.role});
+  }
+  drawn.charts.push_back(gap);
+  for (const auto& [drive, first] : voltages(r, r.plain)) {
+    internal::Chart chart{.id = "drive-" + drive,
+                          .title = "Drive: " + drive,
+                          .x_column = "time_s",
+                          .x_label = "Time",
+                          .x_unit = "s",
+                          .y_label = "Voltage",
+                          .y_unit = "V"};
+    chart.x_home = chart.x_whole = {0, shown};
+    chart.height = 210;
+    for (const Drawn& run : runs) {
+      const std::string table = fmt::format("{}/{}", run.name, drive);
+      for (const auto& [time, voltage] :
+           line_of(r, drive, voltages(r, *run.opening).at(drive), std::max(shown, run.opening->voltages_end))) {
+        drawn.tables[table]["time_s"].push_back(time);
+        drawn.tables[table]["level"].push_back(voltage);
+      }
+      chart.series.push_back({table, "level", run.words, run.role});
+    }
+    drawn.charts.push_back(chart);
+  }
+  return svg_page(finding(r), r.given.scene.title, drawn, 1);
+}
+
+std::string release_csv(const Release& r) {
+  const Opening& o = r.best ? *r.best : r.plain;
+  const std::map<std::string, Signal> signals = voltages(r, o);
+  const std::string whole = csv(signals, o.voltages_end);
+  const auto row_end = [&](std::size_t from) { return whole.find('\n', from) + 1; };
+  const std::size_t first = row_end(0), second = row_end(first);
+  // A closing's drives begin at 0 V, which these did not.
+  const bool jumps = whole.compare(second, 2, "0,") == 0;
+  std::string held = "0";
+  bool begins_held = true;
+  for (const auto& [drive, signal] : signals) {
+    const double hold = hold_of(r, drive);
+    held += fmt::format(",{}", hold);
+    begins_held = begins_held && signal.voltage(0) == hold;
+  }
+  return whole.substr(0, first) + (begins_held ? "" : held + "\n") + whole.substr(jumps ? second : first);
+}
+
+}  // namespace softland

@@ -1,0 +1,20 @@
+// What `softland release` found: JSON with SI units in the names, a table for a terminal, the drives as CSV, and a picture.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reports/result_maker.h"
+#include "studies/release.h"
+
+namespace softland {
+
+[[nodiscard]] nlohmann::json release_json(const Release& release, const Provenance& provenance);
+[[nodiscard]] std::string release_text(const Release& release);
+/// Gap of the plain opening and of the best, and the drives.
+[[nodiscard]] std::string release_svg(const Release& release);
+/// The drives of the best opening, or where there is none of the plain one, from the hold levels on: a header
+/// `time_s,<drive>,...` [s, V], straight lines between the rows; rows of the same time are a jump.
+[[nodiscard]] std::string release_csv(const Release& release);
+
+}  // namespace softland
