@@ -29,6 +29,7 @@ using nlohmann::json;
 json least_json(const LeastTime& least) {
   return {{"status", to_string(least.status)},
           {"message", least.message},
+          {"from_start", least.from_start},
           {"least_time_s", json_number(least.time)},
           {"impact_velocity_m_s", json_number(least.impact_velocity)},
           {"peak_voltage_V", json_number(least.peak)},
@@ -80,7 +81,8 @@ std::string why_not(const LeastTime& least) {
 
 std::string least_row(const std::string& name, const LeastTime& least) {
   if (least.status != Status::done) return row(name, "—", "—", why_not(least));
-  return row(name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"));
+  return row(name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"),
+             least.from_start ? "found from the waveform of --start" : "");
 }
 
 // What follows the touch of a landing.
@@ -167,7 +169,8 @@ std::string limit_text(const Limit& limit) {
          wrapped(
              "No waveform of these drives touches earlier at that speed, as far as Ipopt can tell: the optimum is a local one, "
              "found from the "
-             "quickest single swing. A beam whose modes still ring may bounce after a soft touch: the landing was simulated.") +
+             "quickest single swing or from the waveform of --start. A beam whose modes still ring may bounce after a soft "
+             "touch: the landing was simulated.") +
          "\n";
 }
 

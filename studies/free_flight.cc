@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/require.h"
+#include "model/closing.h"
 #include "model/pull_in.h"
 #include "studies/plain_step.h"
 #include "studies/swing.h"
@@ -115,6 +116,12 @@ std::vector<double> FreeFlight::strengths(const VectorXd& c) const {
     all[free_[k].drive] = ramps_ ? strength(free_[k].drive, value) : value;
   }
   return all;
+}
+
+// Without the bounds.
+double FreeFlight::control(const Free& f, double volts) const {
+  const bool squared = !ramps_ && model_.drive_kind(f.drive) == DriveKind::electrode;
+  return (squared ? volts * volts : f.sign * volts) / f.largest;
 }
 
 double FreeFlight::strength_slope(const Free& f, double c) const {
@@ -239,6 +246,47 @@ std::optional<ControlledCourse> FreeFlight::swing(double longest) const {
     course.points.push_back(static_cast<double>(p) / points);
     course.states.col(static_cast<Index>(p)) << best->states[p].head(modes_).cwiseQuotient(per_q_),
         best->states[p].tail(modes_).cwiseQuotient(per_v_);
+  }
+  return course;
+}
+
+std::optional<ControlledCourse> FreeFlight::flown(std::span<const Signal> signals, int intervals, double longest) const {
+  constexpr double tolerance = 1e-6;
+  constexpr int looks = 16;  // at a signal in an interval
+  std::vector<double> times{0};
+  std::vector<VectorXd> states{start_};
+  ClosingOptions options{.duration = longest, .tolerance = tolerance, .after_contact = 0};
+  options.observer = [&](double time, const double* q, const double* v) {
+    VectorXd state(2 * modes_);
+    state << Eigen::Map<const VectorXd>(q, modes_).cwiseQuotient(per_q_),
+        Eigen::Map<const VectorXd>(v, modes_).cwiseQuotient(per_v_);
+    if (time > times.back()) times.push_back(time), states.push_back(std::move(state));
+    return false;
+  };
+  const Trajectory run = simulate_closing(model_, signals, options);
+  if (run.touches.empty()) return std::nullopt;
+  const double end = run.touches.front().begin;
+  ControlledCourse course;
+  course.time = end / time_unit();
+  for (int k = 0; k <= intervals; ++k) course.knots.push_back(static_cast<double>(k) / intervals);
+  course.controls.resize(controls(), ramps_ ? intervals + 1 : intervals);
+  for (Index column = 0; column < course.controls.cols(); ++column) {
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto at = [&](double interval) {
+        return control(free_[k], signals[free_[k].drive].voltage(interval / intervals * end));
+      };
+      double value = 0;
+      if (ramps_) value = at(static_cast<double>(column));
+      for (int look = 0; look < looks && !ramps_; ++look) value += at(static_cast<double>(column) + (look + 0.5) / looks) / looks;
+      course.controls(static_cast<Index>(k), column) = std::clamp(value, bounds_[k].lower, bounds_[k].upper);
+    }
+  }
+  std::size_t points = 0;
+  while (points < times.size() && times[points] <= end) ++points;
+  course.states.resize(2 * modes_, static_cast<Index>(points));
+  for (std::size_t p = 0; p < points; ++p) {
+    course.points.push_back(times[p] / end);
+    course.states.col(static_cast<Index>(p)) = states[p];
   }
   return course;
 }

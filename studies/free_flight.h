@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "optimizers/collocation.h"
 #include "studies/prepared.h"
 #include "studies/search_space.h"
+#include "waveforms/signal.h"
 
 namespace softland {
 
@@ -55,6 +57,9 @@ class FreeFlight final : public ControlledSystem {
   /// Full pull, and from a time on full release, so that the contact point turns back as it arrives: the quickest way of a single
   /// swing. None where full pull does not reach the contact within `longest` [s].
   [[nodiscard]] std::optional<ControlledCourse> swing(double longest) const;
+  /// The flight under signals of all drives until it first touches, as a course of so many intervals of the controls, which are
+  /// those of the free drives as far as they are within their bounds. None where it does not touch within `longest` [s].
+  [[nodiscard]] std::optional<ControlledCourse> flown(std::span<const Signal> signals, int intervals, double longest) const;
   /// The free drives [V] at a control.
   [[nodiscard]] std::map<std::string, double> volts(const Eigen::VectorXd& c) const;
   /// Of the driver of a free drive [V/s].
@@ -74,6 +79,7 @@ class FreeFlight final : public ControlledSystem {
   [[nodiscard]] std::vector<double> strengths(const Eigen::VectorXd& c) const;
   [[nodiscard]] std::vector<double> held_levels(double share_of_free) const;
   [[nodiscard]] double least_closing_share() const;
+  [[nodiscard]] double control(const Free& f, double volts) const;
   [[nodiscard]] double strength_slope(const Free& f, double c) const;
   void add_free(const Prepared& prepared, const std::string& name, double peak, bool brakes);
 

@@ -127,11 +127,25 @@ class LeastTimeSearch {
     result_.peak = std::min(options.peak, std::max(std::abs(limits.max_voltage), std::abs(limits.min_voltage)));
   }
 
-  LeastTime run() {
+  LeastTime from_swing() {
     const double longest = longest_swing * 2 * pi / prepared_.model.angular_frequencies()[0];
     std::optional<ControlledCourse> swing = flight_.swing(longest);
     if (!swing) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
-    course_ = std::move(*swing);
+    return from(std::move(*swing), longest);
+  }
+
+  LeastTime from_start() {
+    result_.from_start = true;
+    const std::vector<Signal> signals = driven(prepared_, options_.start, plain_step(prepared_, options_.actuator));
+    std::optional<ControlledCourse> flown = flight_.flown(signals, first_knots, prepared_.duration);
+    if (!flown) return ended(Status::no_contact, "the waveform to start with does not bring the switch to its contact");
+    const double longest = 2 * flown->time * flight_.time_unit();
+    return from(std::move(*flown), longest);
+  }
+
+ private:
+  LeastTime from(ControlledCourse guess, double longest) {
+    course_ = std::move(guess);
     std::optional<FreeFlight::Landing> landing;
     if (options_.at_rest) {
       landing = flight_.landing();
@@ -146,7 +160,6 @@ class LeastTimeSearch {
     return refine_until_simulated();
   }
 
- private:
   LeastTime ended(Status status, std::string why) {
     result_.status = status;
     result_.message = std::move(why);
@@ -253,7 +266,11 @@ class LeastTimeSearch {
 LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options) {
   require(options.impact_velocity > 0 && std::isfinite(options.impact_velocity),
           "the permitted impact velocity must be positive");
-  return LeastTimeSearch(prepared, options).run();
+  LeastTime swung = LeastTimeSearch(prepared, options).from_swing();
+  if (options.start.empty() || options.watch.stopped()) return swung;
+  LeastTime started = LeastTimeSearch(prepared, options).from_start();
+  const bool better = started.status == Status::done && (swung.status != Status::done || started.time < swung.time);
+  return better ? started : swung;
 }
 
 namespace {
@@ -309,7 +326,10 @@ class LimitStudy {
   LimitStudy(Limit& result, const Watch& watch)
       : result_(result),
         watch_(watch),
-        usual_{.actuator = result.options.actuator, .impact_velocity = result.impact_velocity, .watch = watch},
+        usual_{.actuator = result.options.actuator,
+               .impact_velocity = result.impact_velocity,
+               .start = result.options.start,
+               .watch = watch},
         parts_(static_cast<double>(3 + (may_be_quicker() ? quicker.size() : 0) + (result.options.curves ? speeds.size() : 0) +
                                    (has_peaks() ? peaks.size() : 0))) {}
 

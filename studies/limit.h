@@ -4,7 +4,8 @@
 //
 // The contact point may cross its plane at the end only. The optimum is local: it begins with the quickest single swing (full
 // pull, then full release, as a mass on a spring is stopped: Leus & Elata 2008, J. MEMS 17, 236) and is as good as any that was
-// found from there. Drives that the actuator does not shape stand at their hold levels from t = 0 on.
+// found from there, or from the flight under a waveform that is given. Drives that the actuator does not shape stand at their
+// hold levels from t = 0 on.
 #pragma once
 
 #include <atomic>
@@ -29,6 +30,8 @@ struct LeastTimeOptions {
   double impact_velocity = 1e-3;                          ///< of the first touch, at most [m/s]
   bool at_rest = false;                                   ///< all modes at the closed equilibrium, not the contact point alone
   double peak = std::numeric_limits<double>::infinity();  ///< of the electrode that pulls, where it is less than its driver's [V]
+  /// Waveforms of the drives, of a search for example: the optimum is looked for from their flight too, where that touches.
+  std::map<std::string, Waveform> start = {};
   Watch watch = {};
 };
 
@@ -37,6 +40,7 @@ struct LeastTime {
   /// found, or a simulation of the waveform does not agree with it; interrupted.
   Status status = Status::not_run;
   std::string message = {};
+  bool from_start = false;                                            ///< found from LeastTimeOptions::start
   double time = std::numeric_limits<double>::quiet_NaN();             ///< least time of the first touch [s]
   double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< there [m/s]
   /// Of a landing at rest: how far any mode is from its place in the closed equilibrium, in contact gaps.
@@ -66,6 +70,7 @@ struct LimitLanding {
 struct LimitOptions {
   Actuator actuator = Actuator::electrostatic;
   std::optional<double> impact_velocity = {};  ///< permitted [m/s]; none: a hundredth of the plain step's
+  std::map<std::string, Waveform> start = {};  ///< see LeastTimeOptions
   bool curves = true;                          ///< over the peak voltage, and over the permitted speed
 };
 

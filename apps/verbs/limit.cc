@@ -26,6 +26,7 @@ namespace {
 struct LimitRequest {
   std::string actuator = "electrostatic";
   std::optional<std::string> impact_velocity;  ///< default: a hundredth of the plain step's
+  std::optional<std::string> start;
   bool no_curves = false;
 };
 
@@ -49,6 +50,10 @@ int limit_verb(const Common& c, const LimitRequest& request) {
   LimitOptions options{.actuator = actuator->value, .curves = !request.no_curves};
   if (request.impact_velocity) options.impact_velocity = speed_of(*request.impact_velocity);
   const SceneFile file = load_scene(c);
+  if (request.start) {
+    require(!request.start->empty(), "--start: must not be empty");
+    options.start = prepare(scene_of_result(*request.start), false, {.stop = c.stop}).drives.waveforms;
+  }
   std::optional<ResultFolder> folder = claim_places(c, {"limit.json", "limit.svg", "best.toml", "best.csv"});
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Limit found = limit(file, options, work->watch());
@@ -82,6 +87,9 @@ void add_limit(Verb& verb) {
   verb.option("--actuator", request->actuator, "NAME", "drives that may be shaped: " + first_is_default(listed(actuators)));
   verb.optional("--impact-velocity", request->impact_velocity, "SPEED",
                 "of the first touch, at most: \"1 mm/s\" (default: a hundredth of the plain step's)");
+  verb.optional(
+      "--start", request->start, "FILE",
+      "a scene or result whose waveform the optimum is looked for from too: of a switch that one swing does not close, say");
   verb.flag("--no-curves", request->no_curves, "leave out the least times over the peak voltage and over the permitted speed");
   verb.with_out("folder for limit.json, limit.svg and the landing as best.toml and best.csv");
   verb.footer(
@@ -89,7 +97,8 @@ void add_limit(Verb& verb) {
       "the yardstick for every searched waveform. It is a lower bound for landings of these volts at that speed; the landing\n"
       "that is reported has been simulated, and may take longer where a beam must come to rest.\n"
       "Examples:\n  softland limit scenes/mem-gold.toml\n"
-      "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit");
+      "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
+      "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves");
   verb.runs([request](const Common& common) { return limit_verb(common, *request); });
 }
 
