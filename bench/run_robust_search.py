@@ -25,7 +25,7 @@ SEARCHES = {
     "gold-65us": ("gold, nothing known, t_i 95 % below 65 us", GOLD + [
         "--waveform", "knots:4", "--constrain", "initial_contact_time < 65 us", "--budget", "150000"]),
     "gold-220us": ("gold, nothing known, below 220 us", GOLD + [
-        "--waveform", "knots:6", "--constrain", "initial_contact_time < 220 us", "--budget", "150000"]),
+        "--waveform", "knots:6", "--constrain", "initial_contact_time < 220 us", "--budget", "150000", "--seed", "2"]),
     "gold-units": ("gold, Vdp and period known", GOLD + ["--waveform", "catch", *UNITS, "--budget", "100000", "--seed", "2"]),
     "gold-units-yield": ("gold, Vdp and period known, by yield", [
         "mem-gold.toml", "--robust", "yield:bounce_count == 0", "--waveform", "catch", *UNITS, "--budget", "100000"]),
@@ -36,9 +36,10 @@ SEARCHES = {
     "pzt-both-200us": ("piezo and electrode, below 200 us", PZT + [
         "--actuator", "both", "--waveform", "knots:4", "--constrain", "initial_contact_time < 200 us", "--budget", "200000",
         "--seed", "3"]),
-    "pzt-alone": ("piezo alone", PZT + ["--actuator", "pzt", "--waveform", "pulse", "--budget", "100000"]),
+    "pzt-alone": ("piezo alone", PZT + ["--actuator", "pzt", "--budget", "100000"]),
     "nem-tin": ("nem-tin, nothing known", ["nem-tin.toml", "--robust", "cvar:0.9", "--waveform", "pulse", "--budget", "60000"]),
-    "two-electrodes": ("two electrodes, nothing known", ["two-electrodes.toml", "--robust", "cvar:0.9", "--waveform", "pulse", "--budget", "60000"]),
+    "two-electrodes": ("two electrodes, nothing known", ["two-electrodes.toml", "--robust", "cvar:0.9", "--waveform", "pulse", "--budget", "60000",
+                                                        "--seed", "2"]),
 }
 
 
