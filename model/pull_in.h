@@ -46,6 +46,8 @@ struct ClosedEquilibrium {
   Eigen::VectorXd q;         ///< modal coordinates [m kg^(1/2)]
   double contact_force = 0;  ///< [N]
   double potential = 0;      ///< Switch::potential there [J]
+  /// For ClosingOptions::begins_closed; valid as long as this.
+  [[nodiscard]] std::span<const double> coordinates() const { return {q.data(), static_cast<std::size_t>(q.size())}; }
 };
 /// The closed equilibrium under constant voltages nearest to the contact plane, if there is one with a contact force above zero.
 /// With one electrode at V and all other drives at 0 V there is one above the release voltage, up to where the beam is pulled

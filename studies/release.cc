@@ -236,17 +236,6 @@ class ReleaseSearch {
   std::vector<Variable> variables_;
 };
 
-struct ClosedSwitch {
-  ClosedEquilibrium at;
-  [[nodiscard]] std::span<const double> coordinates() const { return {at.q.data(), static_cast<std::size_t>(at.q.size())}; }
-};
-
-std::optional<ClosedSwitch> closed_switch(const Switch& model, const std::vector<double>& holds) {
-  std::optional<ClosedEquilibrium> found = closed_equilibrium(model, holds);
-  if (!found) return std::nullopt;
-  return ClosedSwitch{std::move(*found)};
-}
-
 bool is_open_with_drives(const Opening& o, double band) {
   return o.figures.status == Status::done && o.figures.residual_vibration <= band;
 }
@@ -274,9 +263,9 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
   r.open_position = given.model.contact_deflection(given.model.rest()->data());
   r.band = options.band * gap;
   r.window = given.duration;
-  const std::optional<ClosedSwitch> closed = closed_switch(given.model, r.holds);
+  const std::optional<ClosedEquilibrium> closed = closed_equilibrium(given.model, r.holds);
   require(closed.has_value(), std::string(not_held));
-  r.contact_force = closed->at.contact_force;
+  r.contact_force = closed->contact_force;
   const auto open = [&](std::vector<Signal> signals) {
     return search.open(given.model, closed->coordinates(), std::move(signals), given.tolerance, r.window, watch.stop);
   };
@@ -289,7 +278,7 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
   r.best = search.open(given.model, closed->coordinates(), search.signals(r.search.x), given.tolerance, r.window);
   r.parameters = search.named(r.search.x);
   const auto check = [&](const std::string& name, const Switch& model, double tolerance) {
-    const std::optional<ClosedSwitch> its = closed_switch(model, r.holds);
+    const std::optional<ClosedEquilibrium> its = closed_equilibrium(model, r.holds);
     ReleaseFigures figures{.status = Status::numerical_failure};
     if (its && model.rest()) figures = search.open(model, its->coordinates(), r.best->signals, tolerance, r.window).figures;
     r.checks.push_back({name, figures});

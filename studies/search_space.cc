@@ -71,7 +71,7 @@ class FamilyOfDrives {
 
 std::string_view default_families(Actuator actuator) {
   if (actuator == Actuator::pzt) return "dual-pulse+sines:12+knots:8";
-  if (actuator == Actuator::both) return "catch+knots+dual-pulse+staircase:5+knots:8";
+  if (actuator == Actuator::both) return "catch+dual-pulse+staircase:5";
   return "knots+dual-pulse+staircase:5+knots:8";
 }
 

@@ -60,9 +60,9 @@ TEST(Closing, BeginsOnTheContactWhereItIsTold) {
     const auto closed = closed_equilibrium(model, holds);
     if (!closed) continue;
     ++closed_ones;
-    const std::span<const double> q(closed->q.data(), static_cast<std::size_t>(closed->q.size()));
     const auto run = [&](const Signal& drive) {
-      return simulate_closing(model, std::vector{drive}, {.duration = 100_us, .tolerance = 1e-9, .begins_closed = q});
+      return simulate_closing(model, std::vector{drive},
+                              {.duration = 100_us, .tolerance = 1e-9, .begins_closed = closed->coordinates()});
     };
     // Under the voltage that holds it nothing moves.
     const Trajectory held = run(Signal::constant(step_level));

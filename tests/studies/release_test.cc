@@ -76,10 +76,9 @@ TEST(Release, OfAnUndampedPlateIsThatOfItsClosedForm) {
   const std::vector<double> holds{100};
   const auto closed = closed_equilibrium(p.model, holds);
   ASSERT_TRUE(closed);
-  const std::span<const double> q(closed->q.data(), 1);
   const auto open = [&](const Signal& signal, double drives_end, double window) {
-    const Trajectory t =
-        simulate_closing(p.model, std::vector{signal}, {.duration = window, .tolerance = 1e-10, .begins_closed = q});
+    const Trajectory t = simulate_closing(p.model, std::vector{signal},
+                                          {.duration = window, .tolerance = 1e-10, .begins_closed = closed->coordinates()});
     EXPECT_LT(t.energy_error, 1e-8 * p.model.bending_energy());
     return release_figures(t, {.open_position = 0, .width = 0.05 * 2.6e-6, .drives_end = drives_end});
   };
