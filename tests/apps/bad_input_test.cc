@@ -54,7 +54,8 @@ class BadInput : public ::testing::Test {
 
 TEST_F(BadInput, Verbs) {
   const std::string missing =
-      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, limit, explore, robustness, calibrate, "
+      "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, limit, release, explore, robustness, "
+      "calibrate, "
       "table, "
       "status, merge, slurm, new, "
       "export or report (see softland --help)";
