@@ -70,8 +70,10 @@ ReleaseFigures release_figures(const Trajectory& opening, const ReleaseBand& ban
   }
   const bool open = std::isfinite(figures.release_time);
   figures.overshoot = course.overshoot();
-  figures.residual_vibration = course.residual();
-  if (open) figures.settling_time = course.settled_from();
+  if (open) {
+    figures.residual_vibration = course.residual();
+    figures.settling_time = course.settled_from();
+  }
   if (!std::isfinite(figures.settling_time)) figures.status = Status::not_settled;
   return figures;
 }

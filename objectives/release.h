@@ -20,11 +20,12 @@ struct ReleaseFigures {
   /// done: it opens, and stays in the band until the end of the window. not_settled: it is closed at the end, or outside the
   /// band. Else that of the run.
   Status status = Status::not_run;
-  double release_time = unset;        ///< the contact point leaves the contact for good [s]; NaN while it is closed at the end
-  double settling_time = unset;       ///< from when on it stays in the band [s]; NaN where it does not
-  double overshoot = unset;           ///< furthest beyond its open position, away from the contact [m]; 0 if never
-  double residual_vibration = unset;  ///< largest distance from the open position once the drives stand [m]; NaN before that
-  int touches = 0;                    ///< of the contact after it has first left it
+  double release_time = unset;   ///< the contact point leaves the contact for good [s]; NaN while it is closed at the end
+  double settling_time = unset;  ///< from when on it stays in the band [s]; NaN where it does not
+  double overshoot = unset;      ///< furthest beyond its open position, away from the contact [m]; 0 if never
+  double residual_vibration =
+      unset;        ///< largest distance from the open position once the drives stand [m]; NaN before that, or while closed
+  int touches = 0;  ///< of the contact after it has first left it
 };
 
 /// Of an opening (ClosingOptions::begins_closed). Between knots the motion is the quintic through them. Of a run that did not

@@ -168,9 +168,9 @@ std::string limit_text(const Limit& limit) {
   return text + "\n" +
          wrapped(
              "No waveform of these drives touches earlier at that speed, as far as Ipopt can tell: the optimum is a local one, "
-             "found from the "
-             "quickest single swing or from the waveform of --start. A beam whose modes still ring may bounce after a soft "
-             "touch: the landing was simulated.") +
+             "found from the quickest single swing" +
+             std::string(limit.options.start.empty() ? "" : " or from the waveform of --start") +
+             ". A beam whose modes still ring may bounce after a soft touch: the landing was simulated.") +
          "\n";
 }
 

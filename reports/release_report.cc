@@ -136,6 +136,14 @@ internal::CurveTable gap_table(const Release& r, const Opening& o) {
   return table;
 }
 
+internal::Chart over_time(const std::string& id, const std::string& title, const char* y_label, const char* y_unit,
+                          double until) {
+  internal::Chart chart{
+      .id = id, .title = title, .x_column = "time_s", .x_label = "Time", .x_unit = "s", .y_label = y_label, .y_unit = y_unit};
+  chart.x_home = chart.x_whole = {0, until};
+  return chart;
+}
+
 // Until the braked switch is quiet and a little longer.
 double shown_until(const Release& r, double window) {
   constexpr double longer = 3;
@@ -192,7 +200,6 @@ std::string release_text(const Release& r) {
 }
 
 std::string release_svg(const Release& r) {
-  internal::Picture drawn;
   const double window = r.plain.trajectory.points.empty() ? r.window : r.plain.trajectory.points.back().time;
   const double shown = shown_until(r, window);
   struct Drawn {
@@ -202,14 +209,8 @@ std::string release_svg(const Release& r) {
   };
   std::vector<Drawn> runs{{&r.plain, "plain", plain_words, internal::Role::baseline}};
   if (r.best) runs.push_back({&*r.best, "best", "found", internal::Role::best});
-  internal::Chart gap{.id = "gap",
-                      .title = "Gap: the opening",
-                      .x_column = "time_s",
-                      .x_label = "Time",
-                      .x_unit = "s",
-                      .y_label = "Gap",
-                      .y_unit = "m"};
-  gap.x_home = gap.x_whole = {0, shown};
+  internal::Picture drawn;
+  internal::Chart gap = over_time("gap", "Gap: the opening", "Gap", "m", shown);
   gap.zero_line = true;
   gap.zero_label = "contact plane";
   gap.height = 320;
@@ -218,26 +219,20 @@ std::string release_svg(const Release& r) {
     gap.series.push_back({run.name, "tip_gap_m", run.words, run.role});
   }
   drawn.charts.push_back(gap);
-  for (const auto& [drive, first] : voltages(r, r.plain)) {
-    internal::Chart chart{.id = "drive-" + drive,
-                          .title = "Drive: " + drive,
-                          .x_column = "time_s",
-                          .x_label = "Time",
-                          .x_unit = "s",
-                          .y_label = "Voltage",
-                          .y_unit = "V"};
-    chart.x_home = chart.x_whole = {0, shown};
-    chart.height = 210;
-    for (const Drawn& run : runs) {
+  for (const Drawn& run : runs) {
+    std::size_t place = 1;  // of the drive's chart
+    for (const auto& [drive, signal] : voltages(r, *run.opening)) {
       const std::string table = fmt::format("{}/{}", run.name, drive);
-      for (const auto& [time, voltage] :
-           line_of(r, drive, voltages(r, *run.opening).at(drive), std::max(shown, run.opening->voltages_end))) {
+      for (const auto& [time, voltage] : line_of(r, drive, signal, std::max(shown, run.opening->voltages_end))) {
         drawn.tables[table]["time_s"].push_back(time);
         drawn.tables[table]["level"].push_back(voltage);
       }
-      chart.series.push_back({table, "level", run.words, run.role});
+      if (drawn.charts.size() == place) {
+        drawn.charts.push_back(over_time("drive-" + drive, "Drive: " + drive, "Voltage", "V", shown));
+        drawn.charts.back().height = 210;
+      }
+      drawn.charts[place++].series.push_back({table, "level", run.words, run.role});
     }
-    drawn.charts.push_back(chart);
   }
   return svg_page(finding(r), r.given.scene.title, drawn, 1);
 }

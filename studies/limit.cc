@@ -403,6 +403,11 @@ class LimitStudy {
 Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch) {
   Prepared given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "limit needs a [contact] section: without contact there is nothing to land on");
+  const std::vector<std::string> names = given.drive_names();
+  for (const auto& [name, waveform] : options.start) {
+    require(std::find(names.begin(), names.end(), name) != names.end(),
+            fmt::format("the waveform to start with is of a drive \"{}\", which the switch does not have", name));
+  }
   Limit result{.given = std::move(given), .options = options};
   const Prepared& prepared = result.given;
   result.step =

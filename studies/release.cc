@@ -16,6 +16,7 @@
 #include "model/pull_in.h"
 #include "studies/choices.h"
 #include "studies/simulate.h"
+#include "studies/verification.h"
 
 namespace softland {
 namespace {
@@ -28,8 +29,6 @@ constexpr double outside_share = 5;         // of the vibration beyond the band,
 constexpr double stays_closed = 10;         // cost of a switch that stays closed
 constexpr double touched_again = 0.5;       // cost of every touch after the switch has let go
 constexpr double opening_tolerance = 1e-5;  // of the integrator
-constexpr double tight_opening = 1e-9;      // of the confirming run
-constexpr int richer_by = 2;                // of the confirming run
 constexpr double seen_for = 1;              // periods after the drives stand in which a candidate's vibration is measured
 constexpr double watched_for = 3;           // the same, at least, of a run that is believed
 
@@ -63,19 +62,17 @@ class ReleaseSearch {
         options_(options),
         gap_(given.scene.device.gap.contact),
         period_(2 * pi / given.model.angular_frequencies()[0]),
+        names_(given.drive_names()),
         told_holds_(hold_levels(signals_of(given.in_drive_order(given.drives.waveforms)))) {
     add_brakes();
+    for (std::size_t k = 0; k < names_.size(); ++k)
+      plain_.push_back(driven(k, {{0, told_holds_[k]}, {fall_time(k, told_holds_[k]), 0}}));
   }
 
   /// Every drive to 0 V at once.
-  [[nodiscard]] std::vector<Signal> plain() const {
-    std::vector<Signal> all;
-    for (std::size_t k = 0; k < told_holds_.size(); ++k)
-      all.push_back(driven(k, {{0, told_holds_[k]}, {fall_time(k, told_holds_[k]), 0}}));
-    return all;
-  }
+  [[nodiscard]] const std::vector<Signal>& plain() const { return plain_; }
   [[nodiscard]] std::vector<Signal> signals(std::span<const double> x) const {
-    std::vector<Signal> all = plain();
+    std::vector<Signal> all = plain_;
     for (const Brake& brake : brakes_) all[brake.drive] = driven(brake.drive, points(brake, x));
     return all;
   }
@@ -131,19 +128,18 @@ class ReleaseSearch {
  private:
   void add_brakes() {
     const Device& device = given_.scene.device;
-    const std::vector<std::string> names = given_.drive_names();
     const bool electrodes = options_.actuator != Actuator::pzt, piezo = options_.actuator != Actuator::electrostatic;
     require(!electrodes || !device.electrodes.empty(),
             "release --actuator electrostatic|both needs an electrode, and the scene has none");
     require(!piezo || device.piezo, "release --actuator pzt|both needs a [piezo] section, and the scene has none");
-    for (std::size_t k = 0; k < names.size(); ++k) {
+    for (std::size_t k = 0; k < names_.size(); ++k) {
       const bool is_electrode = k < device.electrodes.size();
-      if (!(is_electrode ? electrodes : piezo && names[k] == piezo_drive)) continue;
-      const auto limits = given_.drives.limits.find(names[k]);
+      if (!(is_electrode ? electrodes : piezo && names_[k] == piezo_drive)) continue;
+      const auto limits = given_.drives.limits.find(names_[k]);
       if (is_electrode && limits == given_.drives.limits.end()) continue;
       require(limits != given_.drives.limits.end(),
               "release --actuator pzt|both needs limits for the piezo: write min_voltage and max_voltage under [driver.piezo]");
-      add_brake(k, names[k], limits->second);
+      add_brake(k, names_[k], limits->second);
     }
     require(!brakes_.empty(), "release needs a drive with limits: write max_voltage under [driver.NAME] of an electrode");
   }
@@ -207,17 +203,16 @@ class ReleaseSearch {
   }
 
   [[nodiscard]] double fall_time(std::size_t k, double from) const {
-    const auto limits = given_.drives.limits.find(given_.drive_names()[k]);
+    const auto limits = given_.drives.limits.find(names_[k]);
     return limits == given_.drives.limits.end() ? 0 : std::abs(from) / limits->second.max_slew;
   }
 
   // What the source of drive k gives when it is told these points after it has stood at the first one for long.
   [[nodiscard]] Signal driven(std::size_t k, Line points) const {
-    const std::string name = given_.drive_names()[k];
-    const auto found = given_.drives.models.find(name);
+    const auto found = given_.drives.models.find(names_[k]);
     if (found == given_.drives.models.end() || found->second.is_ideal()) return Signal::piecewise_linear(points);
     const DriverModel& source = found->second;
-    const auto load = given_.loads.find(name);
+    const auto load = given_.loads.find(names_[k]);
     double stands = period_;
     if (source.bandwidth) stands += settled_after / (2 * pi * *source.bandwidth);
     if (source.source_resistance && load != given_.loads.end())
@@ -231,13 +226,15 @@ class ReleaseSearch {
   const Prepared& given_;
   const ReleaseOptions& options_;
   double gap_, period_;
+  std::vector<std::string> names_;  // of the drives
   std::vector<double> told_holds_;  // [V]
+  std::vector<Signal> plain_;
   std::vector<Brake> brakes_;
   std::vector<Variable> variables_;
 };
 
-bool is_open_with_drives(const Opening& o, double band) {
-  return o.figures.status == Status::done && o.figures.residual_vibration <= band;
+bool is_open_with_drives(const ReleaseFigures& f, double band) {
+  return f.status == Status::done && f.residual_vibration <= band;
 }
 
 // Sooner open for good; with equal ends, or none, by the vibration that is left.
@@ -283,17 +280,13 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
     if (its && model.rest()) figures = search.open(model, its->coordinates(), r.best->signals, tolerance, r.window).figures;
     r.checks.push_back({name, figures});
   };
-  check("tolerance " + engineering(tight_opening, ""), given.model, tight_opening);
-  Device richer = given.scene.device;
-  if (richer.structure.kind != StructureKind::plate) {
-    richer.structure.modes = std::min(20, richer.structure.modes + richer_by);
-    check(fmt::format("{} modes", richer.structure.modes), Switch(richer, given.quadrature), given.tolerance);
-  }
+  check("tolerance " + engineering(tight_tolerance, ""), given.model, tight_tolerance);
+  if (const std::optional<Device> richer = with_more_modes(given.scene.device))
+    check(fmt::format("{} modes", richer->structure.modes), Switch(*richer, given.quadrature), given.tolerance);
   r.better = better(r.best->figures, r.plain.figures);
-  r.goal_met = is_open_with_drives(*r.best, r.band);
-  r.confirmed = r.goal_met && std::all_of(r.checks.begin(), r.checks.end(), [&](const ConfirmingOpening& c) {
-                  return c.figures.status == Status::done && c.figures.residual_vibration <= r.band;
-                });
+  const auto meets_goal = [&](const auto& run) { return is_open_with_drives(run.figures, r.band); };
+  r.goal_met = meets_goal(*r.best);
+  r.confirmed = r.goal_met && std::all_of(r.checks.begin(), r.checks.end(), meets_goal);
   return r;
 }
 

@@ -14,9 +14,6 @@
 namespace softland {
 namespace {
 
-constexpr double tight_tolerance = 1e-9;  // of the confirming run
-constexpr int more_modes = 2;             // of the confirming run
-
 // The target's own figure, infinite where the closing has none; of a sum, the mean of figures over those of the baseline, of
 // settling over its first touch: it may not settle at all.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
@@ -108,12 +105,16 @@ std::vector<ConfirmingRun> confirm(const Prepared& winner) {
     return metrics(simulate_closing(model, signals, {.duration = winner.duration, .tolerance = tolerance}), winner.scene.metrics);
   };
   std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.model, tight_tolerance)}};
-  Device richer = winner.scene.device;
-  if (richer.structure.kind != StructureKind::plate) {
-    richer.structure.modes = std::min(20, richer.structure.modes + more_modes);
-    runs.push_back({fmt::format("{} modes", richer.structure.modes), run(Switch(richer, winner.quadrature), winner.tolerance)});
-  }
+  if (const std::optional<Device> richer = with_more_modes(winner.scene.device))
+    runs.push_back({fmt::format("{} modes", richer->structure.modes), run(Switch(*richer, winner.quadrature), winner.tolerance)});
   return runs;
+}
+
+std::optional<Device> with_more_modes(Device device) {
+  constexpr int more = 2, most = 20;
+  if (device.structure.kind == StructureKind::plate) return std::nullopt;
+  device.structure.modes = std::min(most, device.structure.modes + more);
+  return device;
 }
 
 bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {

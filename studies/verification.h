@@ -13,6 +13,11 @@
 
 namespace softland {
 
+/// Of the integrator, in a run that confirms another.
+inline constexpr double tight_tolerance = 1e-9;
+/// The richer beam of a run that confirms another; none of a plate, which has one mode.
+[[nodiscard]] std::optional<Device> with_more_modes(Device device);
+
 /// Verifies candidates, and keeps the best.
 class Verification {
  public:

@@ -59,6 +59,7 @@ TEST(ReleaseFigures, SayWhatHasNotSettledOrIsStillClosed) {
   stuck.touches.back().end = ReleaseFigures::unset;
   EXPECT_EQ(release_figures(stuck, band).status, Status::not_settled);
   EXPECT_TRUE(std::isnan(release_figures(stuck, band).release_time));
+  EXPECT_TRUE(std::isnan(release_figures(stuck, band).residual_vibration));
   stuck.touches = {{.begin = 0, .end = 1e-6}, {.begin = 2e-6, .end = 3e-6}};
   EXPECT_EQ(release_figures(stuck, band).touches, 1);
   EXPECT_EQ(release_figures(stuck, band).release_time, 3e-6);

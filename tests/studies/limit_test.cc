@@ -17,32 +17,6 @@
 namespace softland {
 namespace {
 
-// A rigid plate on a spring without gas: one degree of freedom.
-constexpr const char* plate = R"(
-[structure]
-kind = "plate"
-area = "1e-8 m^2"
-mass = "2.4e-9 kg"
-stiffness = "42 N/m"
-[gap]
-electrode = "3.8 um"
-contact = "2.6 um"
-[electrode.main]
-fringing = "none"
-[contact]
-model = "linear"
-stiffness = "1e5 N/m"
-[waveform.main]
-family = "step"
-level = "100 V"
-[driver.main]
-min_voltage = "0 V"
-max_voltage = "120 V"
-[simulate]
-duration = "300 us"
-accuracy = 1e-6
-)";
-
 // Full voltage to x_s, 0 V from there: the plate arrives at the contact with speed v. The field's work is the energy there.
 double bang_bang(const Structure& s, const Gap& gap, double volts, double v) {
   const double area = s.width * s.length, force = vacuum_permittivity * area * volts * volts / 2;
@@ -62,7 +36,7 @@ double bang_bang(const Structure& s, const Gap& gap, double volts, double v) {
 }
 
 TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
-  const Prepared p = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
+  const Prepared p = prepare_and_choose(spring_plate(), true);
   for (const double v : {1e-3, 0.05}) {
     const LeastTime found = least_time(p, {.impact_velocity = v});
     ASSERT_EQ(found.status, Status::done) << found.message;
@@ -107,7 +81,7 @@ double two_swings(const Structure& s, const Gap& gap, double volts, double v) {
 }
 
 TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
-  SceneFile file = SceneFile::parse(plate, "plate.toml");
+  SceneFile file = spring_plate();
   for (const char* change : {"driver.main.max_voltage=70 V", "waveform.main.level=70 V"}) file.set(change);
   const Prepared p = prepare_and_choose(file, true);
   const LeastTime alone = least_time(p, {.impact_velocity = 0.01});
@@ -121,7 +95,7 @@ TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
   EXPECT_GT(found.time, 0.97 * known);
   EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
   // Where one swing is quicker it stays the answer.
-  const Prepared strong = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
+  const Prepared strong = prepare_and_choose(spring_plate(), true);
   const LeastTime quick = least_time(strong, {.impact_velocity = 0.01}),
                   both = least_time(strong, {.impact_velocity = 0.01, .start = {{"main", swing}}});
   EXPECT_LE(both.time, quick.time);
@@ -131,7 +105,7 @@ TEST(LeastTime, OfASwitchThatOnePullDoesNotCloseIsFoundFromASwingThatDoes) {
 }
 
 TEST(LeastTime, GrowsWhereThereIsLessToPullWith) {
-  const Prepared p = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
+  const Prepared p = prepare_and_choose(spring_plate(), true);
   double last = 0;
   for (const double peak : {120.0, 110.0, 100.0}) {
     const LeastTime found = least_time(p, {.impact_velocity = 0.01, .peak = peak});
@@ -146,20 +120,20 @@ TEST(LeastTime, GrowsWhereThereIsLessToPullWith) {
 }
 
 TEST(LeastTime, PullsWithTheSignThatTheDriverHas) {
-  SceneFile file = SceneFile::parse(plate, "plate.toml");
+  SceneFile file = spring_plate();
   for (const char* change : {"driver.main.min_voltage=-120 V", "driver.main.max_voltage=5 V", "waveform.main.level=-100 V"})
     file.set(change);
   const Prepared negative = prepare_and_choose(file, true);
   const LeastTime found = least_time(negative, {.impact_velocity = 0.01});
-  const LeastTime usual = least_time(prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true), {.impact_velocity = 0.01});
+  const LeastTime usual = least_time(prepare_and_choose(spring_plate(), true), {.impact_velocity = 0.01});
   ASSERT_EQ(found.status, Status::done) << found.message;
   EXPECT_NEAR(found.time / usual.time, 1, 1e-6);
   EXPECT_EQ(violation(signal(found.waveforms.at("main")), negative.drives.limits.at("main")), "");
 }
 
 TEST(LeastTime, KeepsTheSlewOfTheDriver) {
-  const Prepared jumps = prepare_and_choose(SceneFile::parse(plate, "plate.toml"), true);
-  SceneFile file = SceneFile::parse(plate, "plate.toml");
+  const Prepared jumps = prepare_and_choose(spring_plate(), true);
+  SceneFile file = spring_plate();
   file.set("driver.main.max_slew=40 V/us");
   file.set("waveform.main.rise_time=5 us");
   const Prepared ramps = prepare_and_choose(file, true);
@@ -172,7 +146,7 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
 }
 
 Prepared ramped_plate(const std::string& level) {
-  SceneFile file = SceneFile::parse(plate, "plate.toml");
+  SceneFile file = spring_plate();
   for (const std::string& setting :
        {"waveform.main.level=" + level, std::string("waveform.main.rise_time=6 us"), std::string("driver.main.max_slew=20 V/us")})
     file.set(setting);
@@ -205,6 +179,10 @@ TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited) {
 }
 
 TEST(LeastTime, RefusesWhatItDoesNotFit) {
+  EXPECT_NE(refusal([] {
+              (void)limit(spring_plate(), {.start = {{"upper", Step{.level = 1}}}});
+            }).find("\"upper\""),
+            std::string::npos);
   EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(scene("hung-senturia.toml"), true), {}); }).find("compressible"),
             std::string::npos);
   EXPECT_NE(refusal([] { (void)least_time(prepare_and_choose(gold(), true), {.actuator = Actuator::pzt}); }).find("[piezo]"),

@@ -16,32 +16,7 @@
 namespace softland {
 namespace {
 
-constexpr const char* opened_plate = R"(
-[structure]
-kind = "plate"
-area = "1e-8 m^2"
-mass = "2.4e-9 kg"
-stiffness = "42 N/m"
-[gap]
-electrode = "3.8 um"
-contact = "2.6 um"
-[electrode.main]
-fringing = "none"
-[contact]
-model = "linear"
-stiffness = "1e5 N/m"
-[waveform.main]
-family = "step"
-level = "100 V"
-[driver.main]
-min_voltage = "0 V"
-max_voltage = "100 V"
-[simulate]
-duration = "300 us"
-accuracy = 1e-6
-)";
-
-// The plate of above, let go at t = 0: it leaves its contact, swings on its spring, and is pulled from x_1 to rest at 0.
+// The plate on its spring, let go at t = 0: it leaves its contact, swings on its spring, and is pulled from x_1 to rest at 0.
 struct ExactOpening {
   double leaves = 0, brakes = 0, rests = 0;  // [s]
   double swing = 0;                          // where it would swing to, unbraked [m]
@@ -71,7 +46,7 @@ ExactOpening exact_opening(const Structure& s, const Gap& gap, double contact_st
 }
 
 TEST(Release, OfAnUndampedPlateIsThatOfItsClosedForm) {
-  const Prepared p = prepare(SceneFile::parse(opened_plate, "plate.toml"));
+  const Prepared p = prepare(spring_plate({"driver.main.max_voltage=100 V"}));
   const ExactOpening exact = exact_opening(p.scene.device.structure, p.scene.device.gap, 1e5, 100);
   const std::vector<double> holds{100};
   const auto closed = closed_equilibrium(p.model, holds);
@@ -95,7 +70,7 @@ TEST(Release, OfAnUndampedPlateIsThatOfItsClosedForm) {
   EXPECT_LT(braked.settling_time, exact.rests);
 
   // The quickest way to rest jumps between the bounds once: a search for the band comes as near as its edges permit.
-  const Release found = release(SceneFile::parse(opened_plate, "plate.toml"), {});
+  const Release found = release(spring_plate({"driver.main.max_voltage=100 V"}), {});
   ASSERT_TRUE(found.best);
   EXPECT_TRUE(found.confirmed);
   EXPECT_LT(found.best->figures.settling_time, 1.03 * exact.rests);

@@ -44,6 +44,37 @@ inline const std::vector<Target> every_target = [] {
   return all;
 }();
 
+/// A rigid plate on a spring without gas: one degree of freedom.
+inline SceneFile spring_plate(std::initializer_list<std::string_view> changes = {}) {
+  SceneFile file = SceneFile::parse(R"(
+[structure]
+kind = "plate"
+area = "1e-8 m^2"
+mass = "2.4e-9 kg"
+stiffness = "42 N/m"
+[gap]
+electrode = "3.8 um"
+contact = "2.6 um"
+[electrode.main]
+fringing = "none"
+[contact]
+model = "linear"
+stiffness = "1e5 N/m"
+[waveform.main]
+family = "step"
+level = "100 V"
+[driver.main]
+min_voltage = "0 V"
+max_voltage = "120 V"
+[simulate]
+duration = "300 us"
+accuracy = 1e-6
+)",
+                                    "plate.toml");
+  for (const std::string_view change : changes) file.set(change);
+  return file;
+}
+
 /// The scene without one of its sections.
 inline SceneFile without(const SceneFile& file, std::string_view section) {
   std::string text = file.text();
