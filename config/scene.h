@@ -87,7 +87,7 @@ struct Drives {
 };
 
 struct SimulateOptions {
-  double duration = 0;              ///< [s]; 0: choose (six periods of the first mode)
+  double duration = 0;              ///< [s]; 0: choose (six periods of the first mode, or four closings by a step)
   double accuracy = 1e-6;           ///< target relative error of t_i, v_i and B_H
   double tolerance = 0;             ///< relative tolerance of the integrator; 0: derived from accuracy
   bool automatic_effects = false;   ///< leave out what changes no figure by more than effects_tolerance

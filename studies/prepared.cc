@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/engineering.h"
+#include "model/closing.h"
 #include "model/constants.h"
 #include "model/timoshenko.h"
 
@@ -65,6 +66,8 @@ SwitchOptions quadrature_for(double accuracy, int modes) {
 
 namespace {
 
+constexpr double longest_window = 1e3;  // [s], as the longest simulate.duration
+
 /// At most, of a waveform's sine in the window.
 double periods_of(const Waveform& waveform, double window) {
   const auto lasts = [&](const auto& sine) { return std::min(sine.end, window) - sine.start; };
@@ -76,15 +79,28 @@ double periods_of(const Waveform& waveform, double window) {
   return 0;
 }
 
+/// The window of a scene that names none [s]: it shows the closing of steps to the hold levels, which gas may slow down, and what
+/// follows. Steps that do not close the switch in ten times that window are not waited for.
+double default_window(const Switch& model, const std::vector<Signal>& signals) {
+  constexpr double periods = 6, closings = 4, longest = 10, loose = 1e-4;
+  constexpr long most_steps = 100'000;
+  const double usual = periods * 2 * pi / model.angular_frequencies()[0];
+  if (!(usual <= longest_window)) return usual;
+  std::vector<Signal> steps;
+  for (const double level : hold_levels(signals)) steps.push_back(Signal::constant(level));
+  const Trajectory closing = simulate_closing(
+      model, steps, {.duration = longest * usual, .tolerance = loose, .after_contact = 0, .max_steps = most_steps});
+  return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
+}
+
 /// Windows and waveforms that no computer would see the end of.
 void check_window(const Prepared& p) {
-  constexpr double longest = 1e3;  // [s], as the longest simulate.duration
   const SceneFile& file = p.scene.file;
-  if (!(p.duration <= longest)) {
+  if (!(p.duration <= longest_window)) {
     file.refuse("structure.kind",
-                fmt::format("the window, where simulate.duration is absent six periods of the first mode, is {} "
+                fmt::format("the window, where simulate.duration is absent six periods of the first mode or more, is {} "
                             "and must be at most {}: what moves is too soft or too heavy",
-                            engineering(p.duration, "s"), engineering(longest, "s")));
+                            engineering(p.duration, "s"), engineering(longest_window, "s")));
   }
   constexpr double most_periods = 1e5;
   for (const auto& [name, waveform] : p.drives.waveforms) {
@@ -155,7 +171,8 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch,
   }
   p.drives = scene.drives(p.voltage_units());
   load_sources(p);
-  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : 6 * 2 * pi / p.model.angular_frequencies()[0];
+  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration
+                                           : default_window(p.model, signals_of(p.in_drive_order(p.drives.waveforms)));
   check_window(p);
   check_sources(p);
   p.tolerance =

@@ -387,7 +387,8 @@ Waveform sines_at(const DriveSearch& s, std::span<const double> x) {
   Sines alone = sines;
   alone.base = 0;
   const Signal swing = signal(alone);
-  const double up = swing.maximum(), down = -swing.minimum(), steepest = std::isfinite(s.limits.max_slew) ? swing.peak_slew() : 0;
+  const auto [minimum, up] = swing.range();
+  const double down = -minimum, steepest = std::isfinite(s.limits.max_slew) ? swing.peak_slew() : 0;
   double share = 1;
   if (up > s.limits.max_voltage - s.hold) share = std::min(share, (s.limits.max_voltage - s.hold) / up);
   if (down > s.hold - s.limits.min_voltage) share = std::min(share, (s.hold - s.limits.min_voltage) / down);

@@ -35,6 +35,12 @@ struct Differentiated {
     cosine = c, sine = s;
   }
 
+  /// Whether it is a sine that stays as large as it is, whose bound is the same at all times.
+  [[nodiscard]] bool is_steady() const {
+    bool is_constant = decay == 0;
+    for (std::size_t k = 1; k < size; ++k) is_constant = is_constant && cosine[k] == 0 && sine[k] == 0;
+    return is_constant;
+  }
   /// On times from `first` to `last` after the piece began.
   [[nodiscard]] double bound(double first, double last) const {
     const double longest = std::max(std::abs(first), std::abs(last));
@@ -42,6 +48,40 @@ struct Differentiated {
     for (std::size_t k = 0; k < size; ++k, power *= longest) sum += (std::abs(cosine[k]) + std::abs(sine[k])) * power;
     return sum * std::exp(-decay * (decay > 0 ? first : last));
   }
+};
+
+/// A bound on a derivative of a piece, made once for all intervals.
+class DerivativeBound {
+ public:
+  DerivativeBound(const SignalPieceOf<double>& piece, int order) : piece_(piece), order_(order) {
+    for (const TermOf<double>& term : piece.terms) {
+      Differentiated d(term);
+      for (int i = 0; i < order; ++i) d.differentiate();
+      if (d.is_steady()) {
+        steady_ += d.bound(0, 0);
+      } else {
+        others_.push_back(d);
+      }
+    }
+  }
+
+  double operator()(double from, double to) const {
+    double sum = steady_;
+    for (const Differentiated& d : others_) sum += d.bound(from - piece_.begin, to - piece_.begin);
+    if (piece_.oscillates()) {
+      const double w = piece_.angular_frequency;
+      const double envelope = std::max(std::abs(piece_.amplitude + piece_.amplitude_slope * (from - piece_.begin)),
+                                       std::abs(piece_.amplitude + piece_.amplitude_slope * (to - piece_.begin)));
+      sum += (envelope * w + order_ * std::abs(piece_.amplitude_slope)) * std::pow(w, order_ - 1);
+    }
+    return sum;
+  }
+
+ private:
+  const SignalPieceOf<double>& piece_;
+  int order_;
+  double steady_ = 0;
+  std::vector<Differentiated> others_;
 };
 
 /// What the voltage or the rate is made of, at most.
@@ -61,7 +101,7 @@ double size_of(const SignalPieceOf<double>& piece, bool of_rate, double from, do
 /// A time in [from, to] at which the function is within `tolerance` of its maximum; `curvature(a, b)` bounds its second
 /// derivative between a and b. A chord of length h is at most h^2 / 8 of that below the function.
 template <typename Function, typename Curvature>
-double time_of_maximum(Function function, Curvature curvature, double from, double to, double tolerance) {
+double time_of_maximum(Function function, const Curvature& curvature, double from, double to, double tolerance) {
   struct Interval {
     double begin, end, at_begin, at_end;
   };
@@ -86,26 +126,14 @@ double time_of_maximum(Function function, Curvature curvature, double from, doub
 }  // namespace
 
 double derivative_bound(const SignalPieceOf<double>& piece, int order, double from, double to) {
-  double sum = 0;
-  for (const TermOf<double>& term : piece.terms) {
-    Differentiated d(term);
-    for (int i = 0; i < order; ++i) d.differentiate();
-    sum += d.bound(from - piece.begin, to - piece.begin);
-  }
-  if (piece.oscillates()) {
-    const double w = piece.angular_frequency;
-    const double envelope = std::max(std::abs(piece.amplitude + piece.amplitude_slope * (from - piece.begin)),
-                                     std::abs(piece.amplitude + piece.amplitude_slope * (to - piece.begin)));
-    sum += (envelope * w + order * std::abs(piece.amplitude_slope)) * std::pow(w, order - 1);
-  }
-  return sum;
+  return DerivativeBound(piece, order)(from, to);
 }
 
 void append_extrema_of_terms(std::vector<double>& times, const SignalPieceOf<double>& piece, bool of_rate, double from,
                              double to) {
   constexpr double promised = 1e-9;
   const double tolerance = promised * size_of(piece, of_rate, from, to);
-  const auto curvature = [&](double a, double b) { return derivative_bound(piece, of_rate ? 3 : 2, a, b); };
+  const DerivativeBound curvature(piece, of_rate ? 3 : 2);
   for (const double sign : {1.0, -1.0}) {
     const auto function = [&](double time) { return sign * (of_rate ? piece.rate(time) : piece.voltage(time)); };
     times.push_back(time_of_maximum(function, curvature, from, to, tolerance));

@@ -250,21 +250,20 @@ bool Signal::is_zero() const {
                      [](const SignalPiece& piece) { return piece.value == 0 && piece.is_level(); });
 }
 
-double Signal::maximum(double end) const {
-  double largest = 0;
-  for_each_extreme(pieces_, end, Of::voltage,
-                   [&](const SignalPiece& piece, double time) { largest = std::max(largest, piece.voltage(time)); });
-  return largest;
+Signal::Range Signal::range(double end) const {
+  Range range;
+  for_each_extreme(pieces_, end, Of::voltage, [&](const SignalPiece& piece, double time) {
+    const double voltage = piece.voltage(time);
+    range.minimum = std::min(range.minimum, voltage);
+    range.maximum = std::max(range.maximum, voltage);
+  });
+  return range;
 }
 
-double Signal::minimum(double end) const {
-  double smallest = 0;
-  for_each_extreme(pieces_, end, Of::voltage,
-                   [&](const SignalPiece& piece, double time) { smallest = std::min(smallest, piece.voltage(time)); });
-  return smallest;
+double Signal::peak(double end) const {
+  const Range all = range(end);
+  return std::max(all.maximum, -all.minimum);
 }
-
-double Signal::peak(double end) const { return std::max(maximum(end), -minimum(end)); }
 
 double Signal::peak_slew(double end) const {
   double largest = 0;

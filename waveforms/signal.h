@@ -47,11 +47,15 @@ class Signal {
   [[nodiscard]] double hold_level() const;
   [[nodiscard]] bool is_zero() const;
 
-  /// Largest and smallest voltage on [0, end] [V], the starting 0 V included, sines to 1e-9 of their amplitude and terms to 1e-9
+  struct Range {
+    double minimum = 0, maximum = 0;  ///< [V]
+  };
+  /// Smallest and largest voltage on [0, end] [V], the starting 0 V included, sines to 1e-9 of their amplitude and terms to 1e-9
   /// of their size.
-  /// These four throw InvalidInput unless end >= 0.
-  [[nodiscard]] double maximum(double end = std::numeric_limits<double>::infinity()) const;
-  [[nodiscard]] double minimum(double end = std::numeric_limits<double>::infinity()) const;
+  /// These five throw InvalidInput unless end >= 0.
+  [[nodiscard]] Range range(double end = std::numeric_limits<double>::infinity()) const;
+  [[nodiscard]] double maximum(double end = std::numeric_limits<double>::infinity()) const { return range(end).maximum; }
+  [[nodiscard]] double minimum(double end = std::numeric_limits<double>::infinity()) const { return range(end).minimum; }
   /// Largest |V| on [0, end] [V].
   [[nodiscard]] double peak(double end = std::numeric_limits<double>::infinity()) const;
   /// Largest |dV/dt| on [0, end] [V/s]; infinity if there is a jump (one at t = 0 counts).

@@ -20,7 +20,7 @@ Section simulate_section() {
   return {.name = "simulate",
           .always_in_force = true,
           .keys = {OfSimulate::number<&SimulateOptions::duration>("duration", dimension::time, positive,
-                                                                  "absent: six periods of the first mode"),
+                                                                  "absent: six periods of the first mode, or four times what a step takes to close the switch"),
                    OfSimulate::number<&SimulateOptions::accuracy>("accuracy", dimension::none, small_error,
                                                                   "relative error of t_i, v_i, B_H and the peak force")
                        .by_default("1e-06")
