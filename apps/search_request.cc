@@ -73,14 +73,14 @@ std::string word_of(const json& known, const char* key, const std::string& other
 
 // The families that do best where none is given. Devices that differ want one that is slow and free, or, where each is driven in
 // its own units, a quick one that holds fast.
-std::string waveform_of(const OptimizeRequest& r) {
+std::string waveform_of(const OptimizeRequest& r, const SceneFile& scene) {
   if (!r.robust.empty()) return r.calibration.empty() || r.calibration == "none" ? "knots" : "catch";
   const Named<Actuator>* actuator = find_named(actuators, r.actuator);
-  return actuator == nullptr ? std::string() : std::string(default_families(actuator->value));
+  return actuator == nullptr ? std::string() : std::string(default_families(shaped_drives(scene, actuator->value)));
 }
 
 // The request with the words of the plan where none were given.
-OptimizeRequest with_known(OptimizeRequest r, const json& known) {
+OptimizeRequest with_known(OptimizeRequest r, const json& known, const SceneFile& scene) {
   const auto fill = [&](std::string& value, const char* key, const std::string& otherwise) {
     if (value.empty()) value = word_of(known, key, otherwise);
   };
@@ -89,7 +89,7 @@ OptimizeRequest with_known(OptimizeRequest r, const json& known) {
   fill(r.optimizer, "optimizer", "auto");
   fill(r.robust, "robust", "");
   fill(r.calibration, "calibrate", "");
-  fill(r.waveform, "waveform", waveform_of(r));
+  fill(r.waveform, "waveform", waveform_of(r, scene));
   if (!known.is_object()) return r;
   if (r.conditions.empty() && known.contains("constrain")) known.at("constrain").get_to(r.conditions);
   const auto fill_given = [&](std::optional<std::string>& value, const char* key) {
@@ -102,7 +102,7 @@ OptimizeRequest with_known(OptimizeRequest r, const json& known) {
   return r;
 }
 
-OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
+OptimizeOptions read_options(const Common& c, const OptimizeRequest& request, const SceneFile& scene) {
   const Named<Actuator>* actuator = find_named(actuators, request.actuator);
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
   OptimizeOptions options{.target = read("--target " + request.target, [&] { return parse_aim(request.target); }),
@@ -112,7 +112,8 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request) {
                           .stop = c.stop};
   options.jobs = job_count(request.jobs);
   options.seed = seed_of(request.seed, options.seed);
-  options.max_evaluations = request.robust.empty() ? default_budget(options.target, options.actuator) : default_closings;
+  options.max_evaluations =
+      request.robust.empty() ? default_budget(options.target, shaped_drives(scene, options.actuator)) : default_closings;
   if (request.robust.empty() && !request.budget) options.more_evaluations = options.max_evaluations / 2;
   if (request.robust.empty()) options.conditions = read_conditions(request, figure_names());
   if (request.budget) read_budget(*request.budget, options);
@@ -232,17 +233,17 @@ std::string start_names(const json& plan) {
 }  // namespace
 
 PlannedSearch planned(const Common& c, const OptimizeRequest& given, const json& known) {
-  const OptimizeRequest request = with_known(given, known);
+  const json as_given = given_scene(c, known);
+  SceneFile scene = c.scene.empty() ? scene_of(as_given) : load_scene(c);
+  const OptimizeRequest request = with_known(given, known, scene);
   const bool is_robust = !request.robust.empty();
   for (const bool of_devices : {!request.calibration.empty(), request.samples.has_value()})
     require(is_robust || !of_devices,
             "--calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
-  OptimizeOptions options = read_options(c, request);
+  OptimizeOptions options = read_options(c, request, scene);
   std::optional<RobustOptions> robust;
   if (is_robust) robust = read_robust_options(request);
   const std::uint64_t seeds = seed_count(request, options);
-  const json as_given = given_scene(c, known);
-  SceneFile scene = c.scene.empty() ? scene_of(as_given) : load_scene(c);
   if (is_robust) set_calibration(scene, request.calibration);
   PlannedSearch search{.scene = std::move(scene),
                        .options = std::move(options),

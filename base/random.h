@@ -31,6 +31,7 @@ enum class Stream : std::uint64_t {
   classes = 14,      ///< the devices that classes are made of, and where their search begins
   plan = 15,         ///< the points of an exploration
   offspring = 16,    ///< which members of a population are parents, and how their child differs from them
+  hop = 17,          ///< how far a local search begins from the best point
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

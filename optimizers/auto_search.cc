@@ -14,6 +14,7 @@ namespace {
 // Shares of the budget of an epoch.
 constexpr double refining = 0.2;  // of what is given; as much again with a gradient
 constexpr double sampling = 0.15;
+constexpr double hopping = 0.6;  // of what is left after that, where a search goes on with a gradient
 constexpr double first_heat = 0.4;
 constexpr double later_heat = 0.2;
 
@@ -24,6 +25,12 @@ constexpr std::size_t starts_refined = 2;
 constexpr long shortest_refinement = 125;  // evaluations
 constexpr long shortest_heat = 20;  // evaluations: less than it takes to build a simplex or a model of 7 variables is wasted
 
+// Hops, each a local search from beside the best point: standard deviations of the variables, fractions of the box.
+constexpr std::array hop_sizes = {0.0005, 0.002, 0.008, 0.03};
+constexpr std::size_t fewest_hopping = 16;  // variables: boxes of fewer are sampled with more success
+constexpr long iterations_of_hop = 8;       // and one for each variable, for a model of the curvature
+constexpr long evaluations_of_iteration = 1 + evaluations_of_gradient;
+
 // Fractions of the box.
 constexpr double largest_separation = 0.15;
 constexpr double first_step = 0.25;
@@ -32,9 +39,12 @@ constexpr double polishing_step = 0.02;
 struct Search {
   const Method* method;
   Run run;
-  double best = std::numeric_limits<double>::infinity();
   Point best_point;
+  double best = std::numeric_limits<double>::infinity();
   bool converged = false;
+
+  Search(const Method& of, const Point& start, double step, std::uint64_t seed)
+      : method(&of), run{.start = start, .step = step, .seed = seed}, best_point(start) {}
 };
 
 double distance(const Point& a, const Point& b) {
@@ -60,6 +70,15 @@ std::vector<Point> promising_points(std::vector<Ledger::Known> known, const std:
     }
   }
   return chosen;
+}
+
+/// Empty before a point was feasible.
+Point best_point(const Ledger& ledger) {
+  const auto& known = ledger.known();
+  const auto best =
+      std::min_element(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
+  if (best == known.end() || !best->answer.feasible) return {};
+  return best->point;
 }
 
 void sample(Ledger& ledger, std::uint64_t first, std::size_t count) {
@@ -90,14 +109,39 @@ long share_of(long budget, double share, std::size_t searches) {
   return std::max(shortest_heat, static_cast<long>(share * static_cast<double>(budget) / static_cast<double>(searches)));
 }
 
+/// Monotonic basin hopping (Leary 2000, J. Glob. Optim. 18, 367): local searches from around the best point, and again from the
+/// better ones that they find, within a budget.
+void hop(Ledger& ledger, const Method& method, long budget) {
+  const long each =
+      std::max(shortest_heat, evaluations_of_iteration * (iterations_of_hop + static_cast<long>(ledger.dimension())));
+  const long end = std::max(0L, ledger.remaining() - budget);
+  std::uint64_t hops = 0;
+  while (!ledger.over() && ledger.remaining() - end >= each) {
+    const Point best = best_point(ledger);
+    if (best.empty()) return;
+    const auto affordable = static_cast<std::size_t>((ledger.remaining() - end) / each);
+    std::vector<Search> beside;
+    for (const double size : hop_sizes) {
+      if (beside.size() == affordable) break;
+      Point start = best;
+      const std::uint64_t seed = random_bits(ledger.seed(), Stream::hop, hops++);
+      for (std::size_t i = 0; i < start.size(); ++i)
+        start[i] = std::clamp(start[i] + size * random_normal(seed, Stream::hop, i), 0.0, 1.0);
+      beside.emplace_back(method, start, polishing_step, seed);
+    }
+    const long before = ledger.remaining();
+    advance(ledger, beside, each);
+    if (ledger.remaining() == before) return;
+  }
+}
+
 /// `finisher`: takes over from the searches after their first heat, where it is another method.
 void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& methods, const Method* finisher,
             const Method& polisher) {
   std::uint64_t points_sampled = 0;
   std::uint64_t searches_begun = 0;
   const auto begin_search = [&](const Method& method, const Point& start, double step) {
-    const std::uint64_t seed = random_bits(ledger.seed(), Stream::library_seed, searches_begun++);
-    return Search{.method = &method, .run = {.start = start, .step = step, .seed = seed}, .best_point = start};
+    return Search(method, start, step, random_bits(ledger.seed(), Stream::library_seed, searches_begun++));
   };
   std::vector<Point> explored;
   // With a gradient a search ends sooner, and more of them find more valleys.
@@ -121,6 +165,8 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
     if (finisher != nullptr) {
       for (Search& each : refined) each = begin_search(*finisher, each.best_point, polishing_step);
       go_on();
+      if (ledger.has_gradient() && ledger.goes_on() && ledger.dimension() >= fewest_hopping)
+        hop(ledger, *finisher, static_cast<long>(hopping * static_cast<double>(ledger.remaining())));
     }
   }
 
@@ -141,18 +187,15 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
       for (const Search& search : running) explored.push_back(search.best_point);
       if (running.size() == 1) break;
       std::stable_sort(running.begin(), running.end(), [](const Search& a, const Search& b) { return a.best < b.best; });
-      running.resize((running.size() + 1) / 2);
+      running.erase(running.begin() + static_cast<std::ptrdiff_t>((running.size() + 1) / 2), running.end());
       if (finisher != nullptr && share == first_heat) {
         for (Search& each : running) each = begin_search(*finisher, each.best_point, polishing_step);
       }
       share = later_heat;
     }
 
-    const auto& known = ledger.known();
-    const auto best = std::min_element(known.begin(), known.end(),
-                                       [](const auto& a, const auto& b) { return a.answer.value < b.answer.value; });
-    if (best != known.end() && best->answer.feasible) {
-      std::vector<Search> polish{begin_search(polisher, best->point, polishing_step)};
+    if (const Point best = best_point(ledger); !best.empty()) {
+      std::vector<Search> polish{begin_search(polisher, best, polishing_step)};
       advance(ledger, polish, budget);
     }
     if (ledger.remaining() == before) return;

@@ -49,7 +49,7 @@ std::uint64_t whole_number(const std::string& text, std::uint64_t least, std::ui
 }
 
 /// Options of a search with their defaults.
-void complete_search(std::map<std::string, std::string>& given, const auto& checked) {
+void complete_search(std::map<std::string, std::string>& given, const SceneFile& scene, const auto& checked) {
   given.try_emplace("target", name_of(targets, Target::bounce));
   given.try_emplace("actuator", name_of(actuators, Actuator::electrostatic));
   given.try_emplace("optimizer", "auto");
@@ -57,9 +57,10 @@ void complete_search(std::map<std::string, std::string>& given, const auto& chec
   checked("target", [&] { target = parse_aim(given["target"]); });
   const auto* actuator = find_named(actuators, given["actuator"]);
   checked("actuator", [&] { require(actuator != nullptr, [] { return fmt::format("must be {}", listed(actuators)); }); });
-  given.try_emplace("waveform", default_families(actuator->value));
+  const Shaped drives = shaped_drives(scene, actuator->value);
+  given.try_emplace("waveform", default_families(drives));
   checked("optimizer", [&] { static_cast<void>(optimizer_description(given["optimizer"])); });
-  given.try_emplace("budget", std::to_string(default_budget(target, actuator->value)));
+  given.try_emplace("budget", std::to_string(default_budget(target, drives)));
   checked("budget", [&] {
     constexpr std::uint64_t most = 1'000'000'000;
     try {
@@ -184,7 +185,7 @@ void complete(PlanRequest& request) {
       checked("samples", [&] { static_cast<void>(whole_number(request.options["samples"], 1, SamplePoints::largest_size)); });
       break;
     case PointStudy::optimize:
-      complete_search(request.options, checked);
+      complete_search(request.options, request.scene, checked);
       break;
   }
 }

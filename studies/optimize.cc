@@ -11,6 +11,7 @@
 
 #include "base/random.h"
 #include "studies/family_search.h"
+#include "studies/joint_swings.h"
 #include "studies/plain_step.h"
 #include "studies/search_setting.h"
 #include "studies/verification.h"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
 constexpr std::size_t most_sure = 4;        // more, where those did not stand up
+constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
 constexpr double distinct = 1.01;           // ratio of the costs of two candidates
 constexpr double opening = 0.6;             // share of the budget that several families divide before the best goes on
 
@@ -32,6 +34,16 @@ std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) 
     if (chosen.empty() || e->value > distinct * chosen.back().value) chosen.push_back(*e);
   }
   return chosen;
+}
+
+// Of evaluations in order those that are better than all before them.
+std::vector<Evaluation> improvements_of(std::vector<Evaluation> log) {
+  std::vector<Evaluation> improvements;
+  for (Evaluation& e : log) {
+    if (std::isfinite(e.value) && (improvements.empty() || e.value < improvements.back().value))
+      improvements.push_back(std::move(e));
+  }
+  return improvements;
 }
 
 // One search: its families, and what is told of it while it runs.
@@ -64,6 +76,11 @@ class Search {
       const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
       refine(signals_of(setting.drives(searched)), searched, setting.scene(searched));
     }
+    for (const auto& swing : joint_swings(setting.given, setting.space)) {
+      for (FamilySearch& family : families_) {
+        if (!family.point(swing).empty()) family.begin_at(swing);
+      }
+    }
   }
 
   // Of several families each has a share of the budget, and begins at what those before it have found; the best goes on with the
@@ -73,10 +90,10 @@ class Search {
     const auto evaluations = static_cast<long>(share * static_cast<double>(options_.max_evaluations));
     for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
       begin_where_others_were(k);
-      if (!go_on(k, evaluations, share * options_.max_seconds, 0)) return all_;
+      if (!go_on(k, evaluations, share * options_.max_seconds, 0, false)) return all_;
     }
     const long rest = options_.max_evaluations - static_cast<long>(families_.size()) * evaluations;
-    go_on(leader(), rest, options_.max_seconds - seconds(), options_.more_evaluations);
+    go_on(leader(), rest, options_.max_seconds - seconds(), options_.more_evaluations, true);
     return all_;
   }
 
@@ -85,14 +102,26 @@ class Search {
     Verification all(settings_.front(), options_);
     for (const Landing& given : landings_) all.add(given.scene, given.cost, given.family, given.parameters);
     std::vector<std::vector<double>> tried;
+    std::vector<long> numbers;  // theirs
     const auto add = [&](const Evaluation& e) {
       const std::size_t k = family_of(e);
       tried.push_back(e.x);
+      numbers.push_back(e.index);
       all.add(families_[k].scene(e), e.value, k, families_[k].named(e));
     };
     for (const Evaluation& e : candidates(all_.improvements)) {
       add(e);
       if (all.decided(e.value)) break;
+    }
+    // Neighbours ring the same modes that the scene does not have: other families may not.
+    for (std::size_t k = 0; k < families_.size() && families_.size() > 1 && !all.confirmed(); ++k) {
+      std::size_t added = 0;
+      for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
+        if (added == most_of_family || all.decided(e.value)) break;
+        if (std::ranges::find(numbers, e.index) != numbers.end()) continue;
+        add(e);
+        ++added;
+      }
     }
     // Where the best by the own cost did not stand up to the full run, others that promise more than what did: the surest
     // landings first, among which are the winners of a search for another target.
@@ -188,7 +217,7 @@ class Search {
   }
 
   // One run of a family, whose result is added to that of all. False where the search is to end.
-  bool go_on(std::size_t family, long evaluations, double time, long more) {
+  bool go_on(std::size_t family, long evaluations, double time, long more, bool is_last) {
     if (!(time > 0)) return false;
     const OptimizerResult now =
         families_[family].run({.optimizer = options_.optimizer,
@@ -196,6 +225,7 @@ class Search {
                                .max_seconds = time,
                                .seed = runs_ == 0 ? options_.seed : random_bits(options_.seed, Stream::library_seed, runs_),
                                .jobs = options_.jobs,
+                               .goes_on = is_last && families_.size() > 1,
                                .stop = options_.stop},
                               more, next_index_);
     ++runs_;
@@ -216,11 +246,7 @@ class Search {
     }
     std::sort(log.begin(), log.end(), [](const Evaluation& a, const Evaluation& b) { return a.index < b.index; });
     if (!log.empty()) next_index_ = log.back().index + 1;
-    all_.improvements.clear();
-    for (Evaluation& e : log) {
-      if (std::isfinite(e.value) && (all_.improvements.empty() || e.value < all_.improvements.back().value))
-        all_.improvements.push_back(std::move(e));
-    }
+    all_.improvements = improvements_of(std::move(log));
     if (all_.improvements.empty()) return;
     all_.x = all_.improvements.back().x;
     all_.value = all_.improvements.back().value;
@@ -245,8 +271,8 @@ class Search {
 
 }  // namespace
 
-long default_budget(const Aim& target, Actuator actuator) {
-  const long by_bounce = actuator == Actuator::electrostatic ? 5000 : 10000;
+long default_budget(const Aim& target, Shaped drives) {
+  const long by_bounce = drives == Shaped::electrode ? 5000 : drives == Shaped::several ? 12000 : 20000;
   return target.has_own_cost() ? by_bounce + by_bounce / 2 : by_bounce;
 }
 

@@ -34,7 +34,7 @@ struct OptimizeProgress {
 /// Evaluations that found bounce-free waveforms from every seed tried, on the shipped scenes and their variants: the landscape of
 /// a weak piezo is the harder one. A target with a cost of its own has half as much again for it, after the same search as
 /// `bounce`.
-[[nodiscard]] long default_budget(const Aim& target, Actuator actuator);
+[[nodiscard]] long default_budget(const Aim& target, Shaped drives);
 
 /// Evaluation::index of the scene's own waveform, and of those to start with.
 inline constexpr long given_index = -1;

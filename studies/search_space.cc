@@ -69,10 +69,28 @@ class FamilyOfDrives {
 
 }  // namespace
 
-std::string_view default_families(Actuator actuator) {
-  if (actuator == Actuator::pzt) return "dual-pulse+sines:12+knots:8";
-  if (actuator == Actuator::both) return "catch+dual-pulse+staircase:5";
-  return "knots+dual-pulse+staircase:5+knots:8";
+Shaped shaped_drives(const SceneFile& scene, Actuator actuator) {
+  if (actuator == Actuator::pzt) return Shaped::piezo;
+  if (actuator == Actuator::both) return Shaped::several;
+  const nlohmann::json all = scene.json();
+  const nlohmann::json none = nlohmann::json::object(), electrodes = all.value("electrode", none),
+                       drivers = all.value("driver", none);
+  for (const auto& [name, electrode] : electrodes.items()) {
+    if (electrode.is_object() && electrode.value("side", "near") == "far" && drivers.contains(name)) return Shaped::several;
+  }
+  return Shaped::electrode;
+}
+
+std::string_view default_families(Shaped drives) {
+  switch (drives) {
+    case Shaped::electrode:
+      return "knots+dual-pulse+staircase:5+knots:8";
+    case Shaped::piezo:
+      return "catch+sines:12+knots:8+sines:16+knots:12";
+    case Shaped::several:
+      break;
+  }
+  return "catch+dual-pulse+staircase:5+knots:12";
 }
 
 std::vector<std::string> families_of(const std::string& text) {

@@ -48,8 +48,12 @@ inline constexpr auto actuators = std::to_array<Named<Actuator>>(
     {{Actuator::electrostatic, "electrostatic"}, {Actuator::pzt, "pzt"}, {Actuator::both, "both"}});
 static_assert(is_complete<actuators>());
 
+/// Which drives a search shapes, as far as its defaults depend on it.
+enum class Shaped { electrode, piezo, several };
+/// Several: an electrode and a piezo, or one with electrodes on the far side whose drivers the scene describes.
+[[nodiscard]] Shaped shaped_drives(const SceneFile& scene, Actuator actuator);
 /// What is searched where no family is named: families that together land every switch of results/comparison.md.
-[[nodiscard]] std::string_view default_families(Actuator actuator);
+[[nodiscard]] std::string_view default_families(Shaped drives);
 /// The families that "knots", or "knots+dual-pulse+staircase:5+knots:8", names. Throws InvalidInput where one is empty or named
 /// twice.
 [[nodiscard]] std::vector<std::string> families_of(const std::string& text);
@@ -93,6 +97,7 @@ class SearchSpace {
   /// be searched.
   SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch);
 
+  [[nodiscard]] const std::vector<DriveSearch>& drives() const { return drives_; }
   [[nodiscard]] std::vector<Variable> variables() const;
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Waveforms of the searched drives.

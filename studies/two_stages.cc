@@ -107,6 +107,7 @@ OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool o
   const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
   OptimizerOptions second = options;
   second.seed = ~options.seed;  // other points than the first stage sampled
+  second.goes_on = options.goes_on || own_cost_differs;
   second.max_evaluations -= result.evaluations;
   const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.lands; });
   if (!own_cost_differs) second.max_evaluations = lands || result.termination != Termination::evaluation_budget ? 0 : more;

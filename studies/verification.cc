@@ -66,7 +66,7 @@ void Verification::add(const SceneFile& text, double cost, std::size_t family, s
 
 double Verification::best_cost() const { return best_ ? best_->cost : std::numeric_limits<double>::infinity(); }
 
-bool Verification::decided(double cost) const { return best_ && best_->belief == Belief::confirmed && best_->cost <= cost; }
+bool Verification::decided(double cost) const { return confirmed() && best_->cost <= cost; }
 
 std::optional<std::size_t> Verification::family() const { return best_ ? std::optional(best_->family) : std::nullopt; }
 

@@ -28,6 +28,8 @@ class Verification {
   void add(const SceneFile& text, double cost, std::size_t family, std::map<std::string, double> parameters);
   /// The cost of the best so far; infinite where there is none.
   [[nodiscard]] double best_cost() const;
+  /// Whether the best was confirmed by a tighter integrator and a richer beam.
+  [[nodiscard]] bool confirmed() const { return best_ && best_->belief == Belief::confirmed; }
   /// Whether no candidate that costs as much or more can be better.
   [[nodiscard]] bool decided(double cost) const;
   /// The family of the best; none where there is no candidate.

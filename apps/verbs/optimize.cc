@@ -296,8 +296,8 @@ void add_optimize(Verb& verb) {
       "with --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines; with a number of levels, knots, "
       "pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, each begun where those before it ended, "
       "of which the best goes on: " +
-          fmt::format("{} (default), {} (for both), {} (for pzt)", default_families(Actuator::electrostatic),
-                      default_families(Actuator::both), default_families(Actuator::pzt)));
+          fmt::format("{} (default), {} (for both, and electrodes on both sides), {} (for pzt)",
+                      default_families(Shaped::electrode), default_families(Shaped::several), default_families(Shaped::piezo)));
   verb.option("--robust", request->robust, "MEASURE",
               "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
               "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");
@@ -316,13 +316,11 @@ void add_optimize(Verb& verb) {
                 "begin with the waveform of this scene or result (of softland limit, say), which must be of the searched drives; "
                 "from another family, with the nearest waveform of the searched one; it stays the best unless a better one is "
                 "found, and without --robust the search never ends worse; may be repeated");
-  verb.optional(
-      "--budget", request->budget, "N|TIME",
-      fmt::format(
-          "evaluations, or time (\"90 s\"); default: {} for electrostatic, {} for pzt and both, half as much again for {}; with "
-          "--robust closings of devices, {}",
-          default_budget(Target::bounce, Actuator::electrostatic), default_budget(Target::bounce, Actuator::pzt),
-          targets_with_own_cost(), default_closings));
+  verb.optional("--budget", request->budget, "N|TIME",
+                fmt::format("evaluations, or time (\"90 s\"); default: {} for an electrode, {} for several drives, {} for a "
+                            "piezo, half as much again for {}; with --robust closings of devices, {}",
+                            default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
+                            default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), default_closings));
   verb.with_seed(request->seed, "same result, whatever --jobs is");
   verb.optional("--seeds", request->seeds, "N",
                 "search from N seeds, --seed and those after it, as one study: the best is reported, and how the others spread");

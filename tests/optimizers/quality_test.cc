@@ -1,7 +1,9 @@
 // How well the optimizers search. Rates were measured over 20 seeds (bench/optimizers prints the table); the thresholds leave
 // room of two or three runs in ten for a change of compiler to fall on other points.
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "tests/optimizers/landscapes.h"
 #include "tests/optimizers/support.h"
@@ -48,6 +50,60 @@ TEST(Auto, SearchesNearItsStartsBeforeItLooksElsewhere) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const OptimizerResult result = minimize(problem, {.max_evaluations = 1000, .seed = seed});
     EXPECT_LT(result.value, depth) << seed;
+  }
+}
+
+TEST(Auto, StaysAroundTheBestPointWhereItGoesOn) {
+  // A narrow well full of ripples askew to the variables, in which a method with a gradient ends at the first one.
+  constexpr std::size_t variables = 20;
+  constexpr double centre = 0.8, wide = 0.1, ripple = 0.02, high = 0.05, askew = 0.7;
+  const auto turned = [](std::span<const double> x) {
+    std::vector<double> y;
+    for (std::size_t i = 0; i < x.size(); ++i) y.push_back(x[i] - centre + askew * (x[(i + 1) % x.size()] - centre));
+    return y;
+  };
+  const auto depth = [](const std::vector<double>& y) {
+    double square = 0;
+    for (const double v : y) square += std::pow(v / wide, 2);
+    return 10 * std::exp(-square / static_cast<double>(y.size()));
+  };
+  Problem problem = box(variables, -1, 1, [&](std::span<const double> x) {
+    const std::vector<double> y = turned(x);
+    double sum = -depth(y);
+    for (const double v : y) sum += high * (1 - std::cos(2 * std::numbers::pi * v / ripple));
+    return sum;
+  });
+  problem.gradient = [&](std::span<const double> x) {
+    const std::vector<double> y = turned(x);
+    std::vector<double> g(y.size(), 0.0);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      const double by_y = 2 * depth(y) * y[i] / (wide * wide * static_cast<double>(y.size())) +
+                          high * 2 * std::numbers::pi / ripple * std::sin(2 * std::numbers::pi * y[i] / ripple);
+      g[i] += by_y;
+      g[(i + 1) % y.size()] += askew * by_y;
+    }
+    return g;
+  };
+  problem.starts = {std::vector<double>(variables, 0.86)};
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const auto share_near = [&](bool goes_on) {
+      std::vector<std::vector<double>> points;
+      const OptimizerResult result = minimize(
+          problem, {.max_evaluations = 6000, .seed = seed, .goes_on = goes_on, .on_evaluation = [&](const Evaluation& e) {
+                      points.push_back(e.x);
+                    }});
+      EXPECT_LT(result.value, problem.objective(problem.starts[0]) - 1);
+      const auto is_near = [&](const std::vector<double>& x) {
+        constexpr double near = 0.15;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          if (std::abs(x[i] - result.x[i]) > near) return false;
+        }
+        return true;
+      };
+      return static_cast<double>(std::ranges::count_if(points, is_near)) / static_cast<double>(points.size());
+    };
+    const double going_on = share_near(true), otherwise = share_near(false);
+    EXPECT_GT(going_on, 1.5 * otherwise) << seed;
   }
 }
 

@@ -227,9 +227,9 @@ TEST(Optimize, ForAFigureBeginsWithTheSearchForBounce) {
     ASSERT_GT(log.evaluations.size(), reference().evaluations.size()) << to_string(target);
     for (const auto& [index, e] : reference().evaluations) EXPECT_EQ(log.evaluations.at(index).x, e.x) << index;
   }
-  for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt, Actuator::both}) {
-    const long own = default_budget(Target::settling, actuator);
-    EXPECT_EQ(own - own / 3, default_budget(Target::bounce, actuator)) << "the whole search for bounce comes first";
+  for (const Shaped drives : {Shaped::electrode, Shaped::piezo, Shaped::several}) {
+    const long own = default_budget(Target::settling, drives);
+    EXPECT_EQ(own - own / 3, default_budget(Target::bounce, drives)) << "the whole search for bounce comes first";
   }
 }
 

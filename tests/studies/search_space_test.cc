@@ -469,21 +469,34 @@ TEST(FamiliesOf, ReadsOneOrSeveral) {
               fmt::format("--waveform {}: a family before or after '+' is missing", text));
   EXPECT_EQ(refusal([] { (void)families_of("catch+catch"); }), "--waveform catch+catch: 'catch' is named twice");
   for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt, Actuator::both}) {
-    for (const std::string& family : families_of(std::string(default_families(actuator))))
+    for (const std::string& family : families_of(std::string(default_families(shaped_drives(plain().scene.file, actuator)))))
       EXPECT_EQ(refusal([&] { (void)SearchSpace(plain(), actuator, family, first_touch); }), "");
   }
+}
+
+TEST(ShapedDrives, AreSeveralWhereAnElectrodeBrakes) {
+  EXPECT_EQ(shaped_drives(gold(), Actuator::electrostatic), Shaped::electrode);
+  EXPECT_EQ(shaped_drives(gold(), Actuator::pzt), Shaped::piezo);
+  EXPECT_EQ(shaped_drives(gold(), Actuator::both), Shaped::several);
+  const SceneFile plate = scene("two-electrodes.toml");
+  EXPECT_EQ(shaped_drives(plate, Actuator::electrostatic), Shaped::several);
+  SceneFile unlimited = plate;
+  unlimited.erase("driver.upper");
+  EXPECT_EQ(shaped_drives(unlimited, Actuator::electrostatic), Shaped::electrode) << "what has no limits keeps its waveform";
+  EXPECT_EQ(braking_electrodes(prepare(plate)).size(), 1u);
+  EXPECT_EQ(braking_electrodes(prepare(unlimited)).size(), 0u);
 }
 
 TEST(Documentation, NamesTheFamiliesAndBudgetsThatAreTheDefault) {
   std::ifstream stream(std::string(SOFTLAND_SOURCE_DIR) + "/docs/figures.md");
   const std::string text(std::istreambuf_iterator<char>(stream), {});
-  for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt, Actuator::both})
-    EXPECT_NE(text.find(fmt::format("`{}`", default_families(actuator))), std::string::npos) << default_families(actuator);
-  EXPECT_NE(text.find(fmt::format("(default: {} for `electrostatic`, {} for `pzt` and `both`",
-                                  default_budget(Target::bounce, Actuator::electrostatic),
-                                  default_budget(Target::bounce, Actuator::pzt))),
-            std::string::npos);
-  EXPECT_EQ(default_budget(Target::bounce, Actuator::pzt), default_budget(Target::bounce, Actuator::both));
+  for (const Shaped drives : {Shaped::electrode, Shaped::piezo, Shaped::several})
+    EXPECT_NE(text.find(fmt::format("`{}`", default_families(drives))), std::string::npos) << default_families(drives);
+  EXPECT_NE(
+      text.find(fmt::format("(default: {} for an electrode, {} for several drives, {} for a piezo",
+                            default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
+                            default_budget(Target::bounce, Shaped::piezo))),
+      std::string::npos);
 }
 
 }  // namespace

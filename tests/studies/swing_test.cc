@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "objectives/metrics.h"
 #include "scenes.h"
 #include "studies/bang_bang.h"
+#include "studies/joint_swings.h"
 #include "studies/prepared.h"
 
 namespace softland {
@@ -50,6 +52,52 @@ TEST(Swing, BringsEveryModeOfTheGoldSwitchThroughItsFilmToASlowTouch) {
   EXPECT_LT(touch(swing->driven_time * (1 + 1e-4)).impact_velocity, 5e-3);
   EXPECT_TRUE(std::isnan(touch(swing->driven_time * (1 - 1e-4)).impact_velocity));
   EXPECT_NEAR(touch(swing->driven_time * (1 + 1e-4)).initial_contact_time, swing->driven_time + swing->releasing_time, 1e-6);
+}
+
+// The waveform with jumps, and driven by a thousandth longer, so that it surely arrives.
+std::map<std::string, Waveform> without_edges(std::map<std::string, Waveform> swing) {
+  for (auto& [drive, waveform] : swing) {
+    auto& pulse = std::get<Pulse>(waveform);
+    const double longer = 1e-3 * pulse.times.front();
+    for (double& time : pulse.times) time += longer;
+    pulse.edge = 0;
+  }
+  return swing;
+}
+
+// Each touches far more slowly than the step that goes to the same hold levels.
+void expect_soft_touches(const Prepared& p, const SearchSpace& space, std::size_t least) {
+  const auto landing = [&](std::map<std::string, Waveform> searched) {
+    searched.insert(p.drives.waveforms.begin(), p.drives.waveforms.end());
+    return metrics(simulate_closing(p.model, signals_of(p.in_drive_order(searched)),
+                                    {.duration = p.duration, .tolerance = 1e-6, .after_contact = 0}));
+  };
+  std::map<std::string, Waveform> steps;
+  for (const DriveSearch& s : space.drives()) steps.emplace(s.drive, Step{.level = s.hold});
+  const double of_step = landing(steps).impact_velocity;
+  const auto swings = joint_swings(p, space);
+  std::size_t soft = 0;
+  for (const auto& swing : swings) {
+    EXPECT_EQ(space.misfit(swing), "");
+    EXPECT_TRUE(space.parameters(swing).has_value()) << "a catch describes it";
+    if (landing(without_edges(swing)).impact_velocity < of_step / 3) ++soft;
+  }
+  EXPECT_GE(soft, least) << "of " << swings.size();
+}
+
+TEST(JointSwings, OfAnElectrodeAndAPiezoTouchSoftly) {
+  const Prepared p = prepare(gold_pzt(), true);
+  expect_soft_touches(p, SearchSpace(p, Actuator::both, "catch", 23.2e-6), 8);
+}
+
+TEST(JointSwings, OfElectrodesOnBothSidesTouchSoftly) {
+  const Prepared p = prepare(scene("two-electrodes.toml"), true);
+  expect_soft_touches(p, SearchSpace(p, Actuator::electrostatic, "catch", 29.6e-6), 8);
+}
+
+TEST(JointSwings, AreNoneOfAnElectrodeAlone) {
+  const Prepared p = prepare(gold(), true);
+  EXPECT_TRUE(joint_swings(p, SearchSpace(p, Actuator::electrostatic, "catch", 34.3e-6)).empty());
 }
 
 TEST(Swing, IsNoneWhereThePullDoesNotReachTheContact) {
