@@ -82,8 +82,14 @@ std::vector<double> FamilySearch::point(const std::map<std::string, Waveform>& w
   return own ? block_.point(*own) : std::vector<double>();
 }
 
-OptimizerResult FamilySearch::run(const OptimizerOptions& share, long more, long first_index) {
-  return stages_.run(problem_, share, options_.target.has_own_cost(), more, first_index);
+OptimizerResult FamilySearch::run(const OptimizerOptions& share, Costs costs, long more, long first_index) {
+  return stages_.run(problem_, share, costs, more, first_index);
+}
+
+std::optional<TwoStages::Best> FamilySearch::best(Costs costs) const {
+  std::optional<TwoStages::Best> found = stages_.best(costs);
+  if (found) found->evaluation = among_all(std::move(found->evaluation));
+  return found;
 }
 
 Evaluation FamilySearch::among_all(Evaluation e) const {

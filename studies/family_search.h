@@ -43,7 +43,9 @@ class FamilySearch {
   /// by itself. Those that it cannot begin with are passed over.
   void begin_at(const std::map<std::string, Waveform>& waveforms);
   /// See TwoStages::run.
-  [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, long more, long first_index);
+  [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, Costs costs, long more, long first_index);
+  /// See TwoStages::best.
+  [[nodiscard]] std::optional<TwoStages::Best> best(Costs costs) const;
 
   [[nodiscard]] bool holds(const Evaluation& e) const { return block_.holds(e.x); }
   /// The point of these waveforms; empty where the family has none.

@@ -24,6 +24,7 @@ constexpr std::size_t most_sure = 4;        // more, where those did not stand u
 constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
 constexpr double distinct = 1.01;           // ratio of the costs of two candidates
 constexpr double opening = 0.6;             // share of the budget that several families divide before the best goes on
+constexpr long own_share = 3;               // the budget of a target with a cost of its own is divided by this
 
 // The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
 // reason.
@@ -83,17 +84,22 @@ class Search {
     }
   }
 
-  // Of several families each has a share of the budget, and begins at what those before it have found; the best goes on with the
-  // rest.
   OptimizerResult run() {
-    const double share = families_.size() > 1 ? opening / static_cast<double>(families_.size()) : 0;
-    const auto evaluations = static_cast<long>(share * static_cast<double>(options_.max_evaluations));
-    for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
-      begin_where_others_were(k);
-      if (!go_on(k, evaluations, share * options_.max_seconds, 0, false)) return all_;
+    const bool has_own = options_.target.has_own_cost();
+    if (families_.size() == 1) {
+      go_on(0, options_.max_evaluations, options_.max_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same,
+            false);
+      return all_;
     }
-    const long rest = options_.max_evaluations - static_cast<long>(families_.size()) * evaluations;
-    go_on(leader(), rest, options_.max_seconds - seconds(), options_.more_evaluations, true);
+    // The whole search for bounce first: no winner of that is then better than one for another target.
+    const long own = has_own ? options_.max_evaluations / own_share : 0;
+    if (!run_families(options_.max_evaluations - own, options_.max_seconds * (has_own ? 1 - 1.0 / own_share : 1),
+                      has_own ? Costs::leading : Costs::same) ||
+        !has_own)
+      return all_;
+    const std::size_t best = leader(Costs::own);
+    begin_where_others_were(best, Costs::own);
+    go_on(best, own, options_.max_seconds - seconds(), 0, Costs::own, true);
     return all_;
   }
 
@@ -141,10 +147,10 @@ class Search {
   [[nodiscard]] std::vector<SearchedFamilyResult> families() const {
     std::vector<SearchedFamilyResult> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
-      const std::optional<Evaluation> best = best_of(k);
+      const std::optional<TwoStages::Best> best = families_[k].best(Costs::own);
       all.push_back({.family = names_[k],
                      .evaluations = static_cast<long>(families_[k].log().size()),
-                     .cost = best ? best->value : std::numeric_limits<double>::quiet_NaN()});
+                     .cost = best ? best->cost : std::numeric_limits<double>::quiet_NaN()});
     }
     return all;
   }
@@ -157,6 +163,19 @@ class Search {
     std::size_t family;
     std::map<std::string, double> parameters;
   };
+
+  // Each family has a share of the budget, and begins at what those before it have found; the best goes on with the rest. False
+  // where the search is to end.
+  bool run_families(long all_evaluations, double all_seconds, Costs costs) {
+    const double share = opening / static_cast<double>(families_.size());
+    const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
+    for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
+      begin_where_others_were(k, costs);
+      if (!go_on(k, evaluations, share * all_seconds, 0, costs, false)) return false;
+    }
+    const long rest = all_evaluations - static_cast<long>(families_.size()) * evaluations;
+    return go_on(leader(costs), rest, all_seconds - seconds(), options_.more_evaluations, costs, true);
+  }
 
   void refine(const std::vector<Signal>& drives, const std::map<std::string, Waveform>& waveforms, const SceneFile& scene) {
     const double cost = settings_.front().price(drives).own;
@@ -191,33 +210,25 @@ class Search {
     return k;
   }
 
-  [[nodiscard]] std::optional<Evaluation> best_of(std::size_t family) const {
-    std::optional<Evaluation> best;
-    for (Evaluation& e : families_[family].log()) {
-      if (std::isfinite(e.value) && (!best || e.value < best->value)) best = std::move(e);
-    }
-    return best;
-  }
-
   // The family of the least cost; of equals the first.
-  [[nodiscard]] std::size_t leader() const {
+  [[nodiscard]] std::size_t leader(Costs costs) const {
     std::size_t leader = 0;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; families_.size() > 1 && k < families_.size(); ++k) {
-      if (const std::optional<Evaluation> best = best_of(k); best && best->value < least) least = best->value, leader = k;
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      if (const auto best = families_[k].best(costs); best && best->cost < least) least = best->cost, leader = k;
     }
     return leader;
   }
 
-  void begin_where_others_were(std::size_t family) {
+  void begin_where_others_were(std::size_t family, Costs costs) {
     for (std::size_t k = 0; k < families_.size(); ++k) {
       if (k == family) continue;
-      if (const std::optional<Evaluation> best = best_of(k)) families_[family].begin_at(families_[k].waveforms(*best));
+      if (const auto best = families_[k].best(costs)) families_[family].begin_at(families_[k].waveforms(best->evaluation));
     }
   }
 
   // One run of a family, whose result is added to that of all. False where the search is to end.
-  bool go_on(std::size_t family, long evaluations, double time, long more, bool is_last) {
+  bool go_on(std::size_t family, long evaluations, double time, long more, Costs costs, bool goes_on) {
     if (!(time > 0)) return false;
     const OptimizerResult now =
         families_[family].run({.optimizer = options_.optimizer,
@@ -225,9 +236,9 @@ class Search {
                                .max_seconds = time,
                                .seed = runs_ == 0 ? options_.seed : random_bits(options_.seed, Stream::library_seed, runs_),
                                .jobs = options_.jobs,
-                               .goes_on = is_last && families_.size() > 1,
+                               .goes_on = goes_on,
                                .stop = options_.stop},
-                              more, next_index_);
+                              costs, more, next_index_);
     ++runs_;
     all_.termination = now.termination;
     all_.message = families_.size() > 1 ? fmt::format("{}: {}", names_[family], now.message) : now.message;

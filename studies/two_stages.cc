@@ -62,12 +62,27 @@ std::vector<double> TwoStages::values_apart(std::span<const double> x, bool lead
   return values;
 }
 
-std::vector<std::vector<double>> TwoStages::promising_points(const std::vector<Variable>& variables) const {
-  std::vector<const Evaluation*> ranked;
+double TwoStages::cost_of(const Evaluation& e, Costs costs) const {
+  return costs == Costs::leading && std::isfinite(e.value) ? known_.at(e.x).leading : e.value;
+}
+
+std::optional<TwoStages::Best> TwoStages::best(Costs costs) const {
+  const Evaluation* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
   for (const auto& [index, e] : log_) {
-    if (std::isfinite(e.value)) ranked.push_back(&e);
+    if (const double cost = cost_of(e, costs); cost < least) best = &e, least = cost;
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const Evaluation* a, const Evaluation* b) { return a->value < b->value; });
+  return best ? std::optional<Best>({.evaluation = *best, .cost = least}) : std::nullopt;
+}
+
+std::vector<std::vector<double>> TwoStages::promising_points(const std::vector<Variable>& variables, Costs costs) const {
+  std::vector<std::pair<double, const Evaluation*>> by_cost;
+  for (const auto& [index, e] : log_) {
+    if (std::isfinite(e.value)) by_cost.emplace_back(cost_of(e, costs), &e);
+  }
+  std::stable_sort(by_cost.begin(), by_cost.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<const Evaluation*> ranked;
+  for (const auto& [cost, e] : by_cost) ranked.push_back(e);
   const auto apart = [&](const std::vector<double>& a, const std::vector<double>& b) {
     for (std::size_t k = 0; k < variables.size(); ++k) {
       if (std::abs(a[k] - b[k]) > separation * (variables[k].upper - variables[k].lower)) return true;
@@ -93,31 +108,32 @@ std::optional<Evaluation> TwoStages::surest_below(double own, const std::vector<
   return surest ? std::optional(*surest) : std::nullopt;
 }
 
-OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more, long first_index) {
+OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, Costs costs, long more, long first_index) {
   const auto begin = std::chrono::steady_clock::now();
   options.on_improvement = {};
   first_index_ = first_index;
-  if (!log_.empty()) problem.starts = promising_points(problem.variables);
+  if (!log_.empty()) problem.starts = promising_points(problem.variables, costs);
   OptimizerOptions first = options;
-  if (own_cost_differs) {
+  if (costs == Costs::both) {
     first.max_evaluations -= options.max_evaluations / own_share;
     first.max_seconds *= 1 - 1.0 / own_share;
   }
-  OptimizerResult result = stage(problem, first, own_cost_differs);
+  OptimizerResult result = stage(problem, first, costs == Costs::both || costs == Costs::leading);
   const bool goes_on = result.termination != Termination::interrupted && result.termination != Termination::failure;
   OptimizerOptions second = options;
   second.seed = ~options.seed;  // other points than the first stage sampled
-  second.goes_on = options.goes_on || own_cost_differs;
+  second.goes_on = options.goes_on || costs == Costs::both;
   second.max_evaluations -= result.evaluations;
   const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.lands; });
-  if (!own_cost_differs) second.max_evaluations = lands || result.termination != Termination::evaluation_budget ? 0 : more;
+  if (costs == Costs::leading || costs == Costs::own) second.max_evaluations = 0;
+  if (costs == Costs::same) second.max_evaluations = lands || result.termination != Termination::evaluation_budget ? 0 : more;
   second.max_seconds -= std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (goes_on && second.max_evaluations > 0 && second.max_seconds > 0) {
     if (!log_.empty()) first_index_ = log_.rbegin()->first + 1;
-    problem.starts = promising_points(problem.variables);
+    problem.starts = promising_points(problem.variables, Costs::own);
     OptimizerResult own = stage(problem, second, false);
     own.evaluations += result.evaluations;
-    own.message = own_cost_differs
+    own.message = costs == Costs::both
                       ? fmt::format("first by the cost of bounce: {}; then by the target's own: {}", result.message, own.message)
                       : fmt::format("without a landing: {}; then from the best points: {}", result.message, own.message);
     if (own.first_exception.empty()) own.first_exception = result.first_exception;

@@ -37,6 +37,10 @@ struct PriceSlopes {
   std::function<Prices::Apart(std::span<const double>)> apart = {};
 };
 
+/// What a run minimises: the two costs are the same, the leading one, the own one, or two thirds of the budget the leading one
+/// and then the own.
+enum class Costs { same, leading, own, both };
+
 class TwoStages {
  public:
   /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
@@ -48,8 +52,13 @@ class TwoStages {
   /// Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by the own cost.
   /// Where both costs are the same and no point lands, a second stage of `more` evaluations goes on from the best points. So does
   /// a further run, whose result is that of all.
-  [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, bool own_cost_differs, long more = 0,
-                                    long first_index = 0);
+  [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
+  struct Best {
+    Evaluation evaluation;  ///< with the own cost as value
+    double cost = 0;        ///< the leading or the own one
+  };
+  /// Of every evaluation that of the least cost, the own or, for Costs::leading, the leading one. Nothing where none is feasible.
+  [[nodiscard]] std::optional<Best> best(Costs costs) const;
   /// Every evaluation, by index, with the own cost as value.
   [[nodiscard]] const std::map<long, Evaluation>& log() const { return log_; }
   /// Of the points whose own cost is below `own`, and that differ from the `others`, the one of the least leading cost.
@@ -58,7 +67,8 @@ class TwoStages {
  private:
   [[nodiscard]] OptimizerResult stage(Problem problem, OptimizerOptions options, bool leading);
   [[nodiscard]] std::vector<double> values_apart(std::span<const double> x, bool leading);
-  [[nodiscard]] std::vector<std::vector<double>> promising_points(const std::vector<Variable>& variables) const;
+  [[nodiscard]] std::vector<std::vector<double>> promising_points(const std::vector<Variable>& variables, Costs costs) const;
+  [[nodiscard]] double cost_of(const Evaluation& e, Costs costs) const;
 
   std::function<Prices(std::span<const double>)> price_;
   std::function<void(const Evaluation&)> on_evaluation_;

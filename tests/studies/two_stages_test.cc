@@ -22,11 +22,11 @@ struct StagesLog {
   OptimizerResult result;
 };
 
-StagesLog search_in_stages(OptimizerOptions options, bool own_cost_differs = true,
+StagesLog search_in_stages(OptimizerOptions options, Costs costs = Costs::both,
                            const std::function<Prices(std::span<const double>)>& f = prices) {
   StagesLog log;
   TwoStages stages(f, [&](const Evaluation& e) { EXPECT_TRUE(log.evaluations.emplace(e.index, e).second) << e.index; });
-  log.result = stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, options, own_cost_differs);
+  log.result = stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, options, costs);
   return log;
 }
 
@@ -65,7 +65,7 @@ TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs) {
 
 TEST(TwoStages, AreOneWhereTheCostsAreTheSame) {
   const auto bowl = [](std::span<const double> x) { return Prices{.leading = x[0] * x[0] + x[1], .own = x[0] * x[0] + x[1]}; };
-  const StagesLog log = search_in_stages({.max_evaluations = 80}, false, bowl);
+  const StagesLog log = search_in_stages({.max_evaluations = 80}, Costs::same, bowl);
   const OptimizerResult alone = minimize({.variables = {{"a", -1, 1}, {"b", -1, 1}},
                                           .objective = [&](std::span<const double> x) { return bowl(x).own; },
                                           .starts = {{-0.6, 0.9}}},
@@ -84,8 +84,8 @@ TEST(TwoStages, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
     };
     std::map<long, Evaluation> seen;
     TwoStages stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
-    const OptimizerResult result =
-        stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, {.max_evaluations = 40}, false, 25);
+    const OptimizerResult result = stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}},
+                                              {.max_evaluations = 40}, Costs::same, 25);
     EXPECT_EQ(result.evaluations, lands ? 40 : 65);
     EXPECT_EQ(seen.size(), lands ? 40U : 65U);
   }
@@ -94,7 +94,7 @@ TEST(TwoStages, GoOnFromTheBestPointsWhereNoneHasLandedAndMoreIsGranted) {
 TEST(TwoStages, KnowTheSurestOfThePromisingPoints) {
   TwoStages stages(prices, [](const Evaluation&) {});
   const OptimizerResult result =
-      stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, {.max_evaluations = 300}, true);
+      stages.run({.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}}, {.max_evaluations = 300}, Costs::both);
   const double below = result.value + 0.3;
   const auto surest = stages.surest_below(below, {});
   ASSERT_TRUE(surest);
@@ -114,13 +114,30 @@ TEST(TwoStages, GoOnFromTheBestPointsInAFurtherRun) {
   };
   TwoStages stages(bowl, [&](const Evaluation& e) { seen.emplace(e.index, e); });
   const Problem problem{.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}};
-  const OptimizerResult first = stages.run(problem, {.max_evaluations = 40}, false);
+  const OptimizerResult first = stages.run(problem, {.max_evaluations = 40}, Costs::same);
   const long next = 1000;
-  const OptimizerResult all = stages.run(problem, {.max_evaluations = 40}, false, 0, next);
+  const OptimizerResult all = stages.run(problem, {.max_evaluations = 40}, Costs::same, 0, next);
   EXPECT_EQ(seen.at(next).x, first.x);
   EXPECT_EQ(stages.log().size(), 80U);
   EXPECT_LE(all.value, first.value);
   EXPECT_EQ(all.improvements.front().index, 0) << "of both runs";
+}
+
+TEST(TwoStages, FollowOneCostAloneWhereTold) {
+  TwoStages stages(prices, [](const Evaluation&) {});
+  const Problem problem{.variables = {{"a", -1, 1}, {"b", -1, 1}}, .starts = {{-0.6, 0.9}}};
+  const OptimizerResult first = stages.run(problem, {.max_evaluations = 400}, Costs::leading);
+  EXPECT_EQ(first.evaluations, 400);
+  const auto leading = stages.best(Costs::leading);
+  ASSERT_TRUE(leading);
+  EXPECT_NEAR(leading->cost, 0, 1e-6);
+  EXPECT_EQ(leading->cost, prices(leading->evaluation.x).leading);
+  const OptimizerResult all = stages.run(problem, {.max_evaluations = 400}, Costs::own, 0, 400);
+  const auto own = stages.best(Costs::own);
+  ASSERT_TRUE(own);
+  EXPECT_NEAR(own->cost, -1, 1e-3);
+  EXPECT_EQ(all.value, own->cost);
+  EXPECT_LT(own->cost, prices(leading->evaluation.x).own);
 }
 
 TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
@@ -130,7 +147,7 @@ TEST(TwoStages, EndWithTheFirstWhenToldToStop) {
     if (++calls == 12) stop = true;
     return prices(x);
   };
-  const StagesLog log = search_in_stages({.max_evaluations = 1000, .stop = &stop}, true, counting);
+  const StagesLog log = search_in_stages({.max_evaluations = 1000, .stop = &stop}, Costs::both, counting);
   EXPECT_EQ(log.result.termination, Termination::interrupted);
   EXPECT_EQ(log.result.evaluations, 12);
 }
@@ -141,14 +158,14 @@ TEST(TwoStages, KeepAnInfeasiblePointAndOneThatThrows) {
     if (x[0] > 0.2) return {};
     return {.leading = x[0] * x[0], .own = x[1] * x[1]};
   };
-  const StagesLog log = search_in_stages({.max_evaluations = 600}, true, failing);
+  const StagesLog log = search_in_stages({.max_evaluations = 600}, Costs::both, failing);
   EXPECT_EQ(log.result.first_exception, "too far");
   EXPECT_TRUE(std::isfinite(log.result.value));
   for (const auto& [index, e] : log.evaluations) EXPECT_EQ(std::isfinite(e.value), e.x[0] <= 0.2) << index;
 }
 
 TEST(TwoStages, WithoutAFeasiblePointSaySo) {
-  const StagesLog log = search_in_stages({.max_evaluations = 20}, true, [](std::span<const double>) { return Prices{}; });
+  const StagesLog log = search_in_stages({.max_evaluations = 20}, Costs::both, [](std::span<const double>) { return Prices{}; });
   EXPECT_EQ(log.result.termination, Termination::no_feasible_point);
   EXPECT_TRUE(log.result.x.empty());
 }
