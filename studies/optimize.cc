@@ -97,9 +97,9 @@ class Search {
                       has_own ? Costs::leading : Costs::same) ||
         !has_own)
       return all_;
-    const std::size_t best = leader(Costs::own);
-    begin_where_others_were(best, Costs::own);
-    go_on(best, own, options_.max_seconds - seconds(), 0, Costs::own, true);
+    // With what gradients have counted as well: they led to landings, and the own cost now takes the time that it needs.
+    const long rest = options_.max_evaluations - all_.evaluations;
+    if (rest > 0) go_on(leader(Costs::own), rest, options_.max_seconds - seconds(), 0, Costs::own, true);
     return all_;
   }
 
