@@ -97,9 +97,9 @@ class Search {
                       has_own ? Costs::leading : Costs::same) ||
         !has_own)
       return all_;
-    // With what gradients have counted as well: they led to landings, and the own cost now takes the time that it needs.
+    // Then the own cost, from the best points of every family, with what gradients have counted as well.
     const long rest = options_.max_evaluations - all_.evaluations;
-    if (rest > 0) go_on(leader(Costs::own), rest, options_.max_seconds - seconds(), 0, Costs::own, true);
+    if (rest > 0) run_families(rest, options_.max_seconds - seconds(), Costs::own);
     return all_;
   }
 
@@ -167,14 +167,14 @@ class Search {
   // Each family has a share of the budget, and begins at what those before it have found; the best goes on with the rest. False
   // where the search is to end.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
-    const double share = opening / static_cast<double>(families_.size());
+    const double share = opening / static_cast<double>(families_.size()), begun = seconds();
     const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
     for (std::size_t k = 0; evaluations > 0 && k < families_.size(); ++k) {
-      begin_where_others_were(k, costs);
+      if (costs != Costs::own) begin_where_others_were(k, costs);
       if (!go_on(k, evaluations, share * all_seconds, 0, costs, false)) return false;
     }
     const long rest = all_evaluations - static_cast<long>(families_.size()) * evaluations;
-    return go_on(leader(costs), rest, all_seconds - seconds(), options_.more_evaluations, costs, true);
+    return go_on(leader(costs), rest, all_seconds - (seconds() - begun), options_.more_evaluations, costs, true);
   }
 
   void refine(const std::vector<Signal>& drives, const std::map<std::string, Waveform>& waveforms, const SceneFile& scene) {
