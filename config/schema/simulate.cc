@@ -19,8 +19,9 @@ Section simulate_section() {
   constexpr Range useful{.least = 1e-14, .most = 0.1};
   return {.name = "simulate",
           .always_in_force = true,
-          .keys = {OfSimulate::number<&SimulateOptions::duration>("duration", dimension::time, positive,
-                                                                  "absent: six periods of the first mode, or four times what a step takes to close the switch"),
+          .keys = {OfSimulate::number<&SimulateOptions::duration>(
+                       "duration", dimension::time, positive,
+                       "absent: six periods of the first mode, or four times what a step takes to close the switch"),
                    OfSimulate::number<&SimulateOptions::accuracy>("accuracy", dimension::none, small_error,
                                                                   "relative error of t_i, v_i, B_H and the peak force")
                        .by_default("1e-06")
