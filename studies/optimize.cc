@@ -24,7 +24,6 @@ constexpr std::size_t most_sure = 4;        // more, where those did not stand u
 constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
 constexpr double distinct = 1.01;           // ratio of the costs of two candidates
 constexpr double opening = 0.6;             // share of the budget that several families divide before the best goes on
-constexpr long own_share = 3;               // the budget of a target with a cost of its own is divided by this
 
 // The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
 // reason.

@@ -9,7 +9,6 @@
 namespace softland {
 namespace {
 
-constexpr long own_share = 3;  // the budget is divided by this
 constexpr std::size_t starts_of_the_second = 8;
 constexpr double separation = 0.05;  // of two such starts in some variable, as a part of its bounds' distance
 

@@ -41,6 +41,9 @@ struct PriceSlopes {
 /// and then the own.
 enum class Costs { same, leading, own, both };
 
+/// The budget of a target with a cost of its own is divided by this: so much of it goes to that cost.
+inline constexpr long own_share = 3;
+
 class TwoStages {
  public:
   /// `price` as Problem::objective; `on_evaluation` as OptimizerOptions::on_evaluation, with the own cost as value.
