@@ -75,7 +75,7 @@ void measure(const SearchSetting& s, std::size_t levels) {
     ClosingOptions own = run;
     own.tolerance = tolerance;
     const Trajectory end = observe_closing(s.given.model, signals, own, tape);
-    const LinearizedClosing motion(s.given.model, signals, tape, refinement);
+    LinearizedClosing motion(s.given.model, signals, tape, refinement);
     const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
     const auto slope = cost_slope(Target::bounce, end.status, observer.figures(end), s.scale, s.given.scene.metrics, slopes);
     const SignalSlopes by(signals_at, x, lower, upper, groups);
@@ -148,7 +148,7 @@ void measure_device(const SearchSetting& s, std::size_t parameters) {
     ClosingOptions own = run;
     own.tolerance = tolerance;
     (void)observe_closing(s.given.model, signals, own, tape);
-    const LinearizedClosing motion(s.given.model, signals, tape, refinement, &by);
+    LinearizedClosing motion(s.given.model, signals, tape, refinement, &by);
     const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
     const std::vector<FigureSlope> figures{slopes.first_touch, slopes.touch_speed, slopes.rebound_height,
                                            slopes.last_rebound_end};

@@ -120,8 +120,8 @@ struct ColumnSeries {
   }
 };
 
-// Shares of a step at which its arcs end. A contact's stiffness begins and ends like a root of the time from the edge.
-std::vector<double> ends_of_parts(int parts, bool after_edge, bool before_edge) {
+// Shares of a step at which its parts end. A contact's stiffness begins and ends like a root of the time from the edge.
+std::vector<double> shares_of_parts(int parts, bool after_edge, bool before_edge) {
   std::vector<double> ends;
   for (int k = 1; k <= parts; ++k) {
     const double x = static_cast<double>(k) / parts;
@@ -129,6 +129,17 @@ std::vector<double> ends_of_parts(int parts, bool after_edge, bool before_edge) 
     ends.push_back(after_edge && before_edge ? both : after_edge ? x * x : before_edge ? 1 - (1 - x) * (1 - x) : x);
   }
   return ends;
+}
+
+// Where a step that is known at its ends is at a time in it.
+template <class Modal>
+void move_to(double t, const MotionTape::Motion& from, const MotionTape::Motion& to, Modal& q, Modal& v, Modal& accelerations) {
+  for (Index i = 0; i < q.size(); ++i) {
+    const Quintic mode(from.time, from.q[i], from.v[i], from.accelerations[i], to.time, to.q[i], to.v[i], to.accelerations[i]);
+    q[i] = mode.position(t);
+    v[i] = mode.velocity(t);
+    accelerations[i] = mode.acceleration(t);
+  }
 }
 
 }  // namespace
@@ -141,6 +152,7 @@ LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal
                                      SwitchSlopes* by_device)
     : model_(model),
       signals_(signals),
+      tape_(tape),
       n_(model.modes()),
       size_(2 * n_),
       stride_((size_ + lane_size - 1) / lane_size * lane_size),
@@ -157,18 +169,90 @@ LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal
     node->by_q = node->by_v = MatrixXd(n_, n_);
     node->inputs = MatrixXd(n_, inputs_);
   }
-  begin_at_rest();
-  arcs_.reserve(tape.arcs().size());
-  auto passage = tape.passages().begin();
-  for (std::size_t k = 0; k < tape.arcs().size(); ++k) {
-    for (; passage != tape.passages().end() && passage->arc <= k; ++passage) add_passage(*passage);
-    const MotionTape::Arc& arc = tape.arcs()[k];
-    enter_pieces(tape.begin(k), arc.contact);
-    const bool after_edge = passage != tape.passages().begin() && std::prev(passage)->arc == k;
-    const bool before_edge = passage != tape.passages().end() && passage->arc == k + 1;
-    add_step(tape, k, arc.contact.active && after_edge, arc.contact.active && before_edge);
+  follow_tape();
+}
+
+void LinearizedClosing::follow_tape() {
+  arcs_.reserve(tape_.arcs().size() + tape_.passages().size());
+  auto passage = tape_.passages().begin();
+  for (std::size_t k = 0; k < tape_.arcs().size(); ++k) {
+    for (; passage != tape_.passages().end() && passage->arc <= k; ++passage) note_passage(passage->change);
+    enter_pieces(tape_.arcs()[k].begin);
+    add_arcs(k);
   }
-  for (; passage != tape.passages().end(); ++passage) add_passage(*passage);
+  for (; passage != tape_.passages().end(); ++passage) note_passage(passage->change);
+}
+
+void LinearizedClosing::note_passage(const PhaseChange& change) {
+  passages_.push_back({arcs_.size(), change});
+  if (!arcs_.empty() && change.kind == PhaseChange::Kind::turn) arcs_.back().turns = true;
+}
+
+// One set of pieces for each drive that goes on to another one.
+void LinearizedClosing::enter_pieces(double t) {
+  for (std::size_t k = 0; k < signals_.size(); ++k) {
+    const std::vector<SignalPiece>& all = signals_[k].pieces();
+    std::size_t piece = pieces_.back()[k];
+    while (piece + 1 < all.size() && all[piece + 1].begin <= t) ++piece;
+    if (piece == pieces_.back()[k]) continue;
+    pieces_.push_back(pieces_.back());
+    pieces_.back()[k] = piece;
+  }
+}
+
+void LinearizedClosing::add_arcs(std::size_t step) {
+  using Known = Eigen::Map<const VectorXd>;
+  const MotionTape::Motion from = tape_.begin(step), to = tape_.end(step);
+  Arc whole{.begin = from.time,
+            .end = to.time,
+            .q = Known(to.q, n_),
+            .v = Known(to.v, n_),
+            .accelerations = Known(to.accelerations, n_),
+            .contact = tape_.arcs()[step].contact,
+            .step = step,
+            .pieces_entered = pieces_.size() - 1};
+  const auto tip = [&](const double* of) { return model_.contact_deflection(of); };
+  if (tip(from.v) * tip(to.v) < 0) {
+    const Quintic contact_point(from.time, tip(from.q), tip(from.v), tip(from.accelerations), to.time, tip(to.q), tip(to.v),
+                                tip(to.accelerations));
+    const double turn = bracketed_zero([&](double t) { return contact_point.velocity(t); }, from.time, to.time);
+    if (turn > from.time && turn < to.time) {
+      Arc first = whole;
+      first.end = turn;
+      first.turns = true;
+      move_to(turn, from, to, first.q, first.v, first.accelerations);
+      arcs_.push_back(std::move(first));
+      whole.begin = turn;
+    } else if (turn > from.time) {
+      whole.turns = true;
+    } else if (!arcs_.empty()) {
+      arcs_.back().turns = true;
+    }
+  }
+  arcs_.push_back(std::move(whole));
+}
+
+void LinearizedClosing::linearize_for(const std::vector<FigureSlope>& figures) {
+  std::size_t needed = 0;
+  for (const FigureSlope& figure : figures) {
+    for (const FigureSlope::Weights& w : figure.weights) needed = std::max(needed, arcs_[w.arc].step + 1);
+  }
+  if (steps_ == 0) begin_at_rest();
+  while (steps_ < needed) linearize_step();
+}
+
+void LinearizedClosing::linearize_step() {
+  const std::vector<MotionTape::Passage>& passages = tape_.passages();
+  const std::size_t step = steps_++;
+  const bool after_edge = next_passage_ < passages.size() && passages[next_passage_].arc <= step;
+  for (; next_passage_ < passages.size() && passages[next_passage_].arc <= step; ++next_passage_) {
+    goes_on_ = false;
+    if (next_arc_ > 0) jump_at(passages[next_passage_], arcs_[next_arc_ - 1]);
+  }
+  const bool before_edge = next_passage_ < passages.size() && passages[next_passage_].arc == step + 1;
+  const ContactState& contact = tape_.arcs()[step].contact;
+  jump_at_pieces(tape_.begin(step), contact, arcs_[next_arc_].pieces_entered);
+  add_parts(step, contact.active && after_edge, contact.active && before_edge);
 }
 
 // The rest that the closing starts from moves so that the forces on it stay 0.
@@ -189,7 +273,7 @@ void LinearizedClosing::begin_at_rest() {
 
 // Of the drives at present.
 void LinearizedClosing::set_volts(double t) {
-  for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_.back()[k]].voltage(t);
+  for (std::size_t k = 0; k < volts_.size(); ++k) volts_[k] = signals_[k].pieces()[pieces_[on_][k]].voltage(t);
 }
 
 VectorXd LinearizedClosing::rates(double t, const double* q, const double* v, const ContactState& contact) {
@@ -224,7 +308,7 @@ void LinearizedClosing::set_node(Node& node, double t, const double* q, const do
 }
 
 // With A = (0, fastest; K, D) at the nodes, h / 6 (A0 + 4 A1 + A2) - h^2 / 12 [A1, A2 - A0] block by block.
-void LinearizedClosing::add_transition(double h) {
+void LinearizedClosing::add_transition(double begin, double end, std::size_t arc) {
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_modes, most_modes>;
   const std::size_t at = numbers_.size();
   numbers_.resize(at + static_cast<std::size_t>(size_ * stride_ + 3 * n_ * inputs_), 0.0);
@@ -232,138 +316,107 @@ void LinearizedClosing::add_transition(double h) {
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> x(here, size_, stride_);
   const MatrixXd &k = middle_.by_q, &d = middle_.by_v;
   const Block dk = to_.by_q - from_.by_q, dd = to_.by_v - from_.by_v;
-  const double c = h * h / 12;
+  const double h = end - begin, c = h * h / 12;
   x.topLeftCorner(n_, n_) = -c * fastest_ * dk;
   x.block(0, n_, n_, n_) = -c * fastest_ * dd;
   x.block(0, n_, n_, n_).diagonal().array() += h * fastest_;
   x.bottomLeftCorner(n_, n_) = h / 6 * (from_.by_q + 4 * k + to_.by_q) - c * (d.lazyProduct(dk) - dd.lazyProduct(k));
   x.block(n_, n_, n_, n_) = h / 6 * (from_.by_v + 4 * d + to_.by_v) - c * (d.lazyProduct(dd) - dd.lazyProduct(d) - fastest_ * dk);
-  terms_.push_back(terms_of_exponential(column_norm(here, size_, stride_)));
+  parts_.push_back({.begin = begin,
+                    .end = end,
+                    .arc = arc,
+                    .ends_arc = end == arcs_[arc].end,
+                    .terms = terms_of_exponential(column_norm(here, size_, stride_))});
   here += size_ * stride_;
   for (const Node* node : {&from_, &middle_, &to_}) here = std::copy_n(node->inputs.data(), n_ * inputs_, here);
 }
 
-LinearizedClosing::Transition LinearizedClosing::transition(std::size_t arc) const {
+LinearizedClosing::Transition LinearizedClosing::transition(std::size_t part) const {
   const Index magnus = size_ * stride_, each = n_ * inputs_;
-  const double* here = numbers_.data() + static_cast<Index>(arc) * (magnus + 3 * each);
-  return {.magnus = here,
-          .begin = here + magnus,
-          .middle = here + magnus + each,
-          .end = here + magnus + 2 * each,
-          .terms = terms_[arc]};
+  const double* here = numbers_.data() + static_cast<Index>(part) * (magnus + 3 * each);
+  return {.magnus = here, .begin = here + magnus, .middle = here + magnus + each, .end = here + magnus + 2 * each};
 }
 
-// Times at which the arcs of a step end, and whether the contact point turns there: short enough, of a step from from_ on.
-std::vector<std::pair<double, bool>> LinearizedClosing::ends_of_arcs(const MotionTape::Motion& from, const MotionTape::Motion& to,
-                                                                     bool after_edge, bool before_edge) const {
-  const double t0 = from.time, t1 = to.time, h = t1 - t0;
+// Times at which the parts of a step from from_ on end, short enough.
+std::vector<double> LinearizedClosing::ends_of_parts(double t0, double t1, bool after_edge, bool before_edge) const {
+  const double h = t1 - t0;
   const double norm =
       h * std::max(from_.by_q.cwiseAbs().colwise().sum().maxCoeff(), fastest_ + from_.by_v.cwiseAbs().colwise().sum().maxCoeff());
   const int least = refinement_ * (after_edge || before_edge ? parts_at_edge : 1);
   const int parts = std::min(most_parts, std::max(least, static_cast<int>(std::ceil(norm / longest_angle))));
-  std::vector<std::pair<double, bool>> ends;
-  for (const double share : ends_of_parts(parts, after_edge, before_edge))
-    ends.emplace_back(share < 1 ? t0 + h * share : t1, false);
-  const auto tip = [&](const double* of) { return model_.contact_deflection(of); };
-  if (tip(from.v) * tip(to.v) < 0) {
-    const Quintic contact_point(t0, tip(from.q), tip(from.v), tip(from.accelerations), t1, tip(to.q), tip(to.v),
-                                tip(to.accelerations));
-    const double turn = bracketed_zero([&](double t) { return contact_point.velocity(t); }, t0, t1);
-    ends.emplace_back(turn, true);
-    std::sort(ends.begin(), ends.end());
-  }
+  std::vector<double> ends;
+  for (const double share : shares_of_parts(parts, after_edge, before_edge)) ends.push_back(share < 1 ? t0 + h * share : t1);
   return ends;
 }
 
-void LinearizedClosing::add_step(const MotionTape& tape, std::size_t step, bool after_edge, bool before_edge) {
-  const MotionTape::Motion from = tape.begin(step), to = tape.end(step);
-  const ContactState& contact = tape.arcs()[step].contact;
+void LinearizedClosing::add_parts(std::size_t step, bool after_edge, bool before_edge) {
+  const MotionTape::Motion from = tape_.begin(step), to = tape_.end(step);
+  const ContactState& contact = tape_.arcs()[step].contact;
   if (!goes_on_) set_node(from_, from.time, from.q, from.v, contact);
   goes_on_ = true;
+  const std::vector<double> ends = ends_of_parts(from.time, to.time, after_edge, before_edge);
   double begin = from.time;
-  Arc at{.q = Modal(n_), .v = Modal(n_), .accelerations = Modal(n_), .contact = contact, .pieces_entered = pieces_.size() - 1};
-  const auto move_to = [&](double t) {
-    for (Index i = 0; i < n_; ++i) {
-      const Quintic mode(from.time, from.q[i], from.v[i], from.accelerations[i], to.time, to.q[i], to.v[i], to.accelerations[i]);
-      at.q[i] = mode.position(t);
-      at.v[i] = mode.velocity(t);
-      at.accelerations[i] = mode.acceleration(t);
-    }
-  };
-  for (const auto& [end, turns] : ends_of_arcs(from, to, after_edge, before_edge)) {
-    if (!(end > begin)) {
-      if (turns && !arcs_.empty()) arcs_.back().turns = true;
-      continue;
-    }
-    move_to((begin + end) / 2);
-    set_node(middle_, (begin + end) / 2, at.q.data(), at.v.data(), contact);
-    if (end == to.time) {
-      at.q = Eigen::Map<const VectorXd>(to.q, n_);
-      at.v = Eigen::Map<const VectorXd>(to.v, n_);
-      at.accelerations = Eigen::Map<const VectorXd>(to.accelerations, n_);
+  Modal q(n_), v(n_), accelerations(n_);
+  const auto add = [&](double end) {
+    if (!(end > begin)) return;
+    move_to((begin + end) / 2, from, to, q, v, accelerations);
+    set_node(middle_, (begin + end) / 2, q.data(), v.data(), contact);
+    if (end < to.time) {
+      move_to(end, from, to, q, v, accelerations);
+      set_node(to_, end, q.data(), v.data(), contact);
     } else {
-      move_to(end);
+      set_node(to_, end, to.q, to.v, contact);
     }
-    set_node(to_, end, at.q.data(), at.v.data(), contact);
-    at.begin = begin;
-    at.end = end;
-    at.turns = turns;
-    add_transition(end - begin);
-    arcs_.push_back(at);
+    add_transition(begin, end, next_arc_);
     std::swap(from_, to_);
     begin = end;
+  };
+  auto next = ends.begin();
+  for (; next_arc_ < arcs_.size() && arcs_[next_arc_].step == step; ++next_arc_) {
+    const double end = arcs_[next_arc_].end;
+    for (; next != ends.end() && *next < end; ++next) add(*next);
+    add(end);
   }
 }
 
 // Where drives go on to other pieces, f jumps at times that the waveform decides.
-void LinearizedClosing::enter_pieces(const MotionTape::Motion& here, const ContactState& contact) {
-  const auto next = [&](std::size_t k) {
-    const std::vector<SignalPiece>& all = signals_[k].pieces();
-    std::size_t piece = pieces_.back()[k];
-    while (piece + 1 < all.size() && all[piece + 1].begin <= here.time) ++piece;
-    return piece;
-  };
-  Jump jump{.arcs = arcs_.size(), .matrix = {}, .moved = {}};
-  for (std::size_t k = 0; k < signals_.size(); ++k) {
-    const std::size_t piece = next(k);
-    if (piece == pieces_.back()[k]) continue;
+void LinearizedClosing::jump_at_pieces(const MotionTape::Motion& here, const ContactState& contact, std::size_t entered) {
+  if (on_ == entered) return;
+  Jump jump{.parts = parts_.size(), .matrix = {}, .moved = {}};
+  while (on_ < entered) {
     VectorXd gained = VectorXd::Zero(size_ + 1);
     gained.head(size_) = rates(here.time, here.q, here.v, contact);
-    pieces_.push_back(pieces_.back());
-    pieces_.back()[k] = piece;
+    ++on_;
     gained.head(size_) -= rates(here.time, here.q, here.v, contact);
-    jump.moved.emplace_back(FigureSlope::Moved{.drive = k, .piece = piece, .rate = 0}, std::move(gained));
+    std::size_t k = 0;
+    while (pieces_[on_][k] == pieces_[on_ - 1][k]) ++k;
+    jump.moved.emplace_back(FigureSlope::Moved{.drive = k, .piece = pieces_[on_][k], .rate = 0}, std::move(gained));
   }
-  if (jump.moved.empty()) return;
   goes_on_ = false;
-  if (!arcs_.empty()) jumps_.push_back(std::move(jump));
+  if (!parts_.empty()) jumps_.push_back(std::move(jump));
 }
 
-void LinearizedClosing::add_passage(const MotionTape::Passage& passage) {
+void LinearizedClosing::jump_at(const MotionTape::Passage& passage, const Arc& before) {
   using Kind = PhaseChange::Kind;
-  const PhaseChange& change = passage.change;
-  goes_on_ = false;
-  passages_.push_back({arcs_.size(), change});
-  if (arcs_.empty() || change.kind == Kind::leaves) return;
-  if (change.kind == Kind::turn) arcs_.back().turns = true;
-  jumps_.push_back(change.kind == Kind::rests ? at_rest() : change.kind == Kind::turn ? turned() : crossed(passage));
-  jumps_.back().arcs = arcs_.size();
+  const Kind kind = passage.change.kind;
+  if (kind == Kind::leaves) return;
+  jumps_.push_back(kind == Kind::rests ? at_rest(before) : kind == Kind::turn ? turned(before) : crossed(passage, before));
+  jumps_.back().parts = parts_.size();
 }
 
 // A plate that has come to rest stays on the contact plane.
-LinearizedClosing::Jump LinearizedClosing::at_rest() const {
+LinearizedClosing::Jump LinearizedClosing::at_rest(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Zero(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   for (Index j = 0; j < moving_; ++j) {
     jump.by_device(0, j) =
-        -fastest_ * by_device_->interference(static_cast<std::size_t>(j), arcs_.back().q.data()) / model_.contact_shape()[0];
+        -fastest_ * by_device_->interference(static_cast<std::size_t>(j), before.q.data()) / model_.contact_shape()[0];
   }
   return jump;
 }
 
 // A contact with memory that unloads from here on keeps the dent of its deepest interference.
-LinearizedClosing::Jump LinearizedClosing::turned() const {
+LinearizedClosing::Jump LinearizedClosing::turned(const Arc& before) const {
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
-  const Arc& before = arcs_.back();
   const double deepest = model_.contact_deflection(before.q.data()) - model_.device().gap.contact, step = 1e-5 * deepest;
   const auto shift = [&](double d) { return dent(model_.contact(), d).shift; };
   const double slope = (shift(deepest + step) - shift(deepest - step)) / (2 * step);
@@ -378,9 +431,8 @@ LinearizedClosing::Jump LinearizedClosing::turned() const {
 }
 
 // An edge of the contact's phases, or an impact.
-LinearizedClosing::Jump LinearizedClosing::crossed(const MotionTape::Passage& passage) {
+LinearizedClosing::Jump LinearizedClosing::crossed(const MotionTape::Passage& passage, const Arc& before) {
   const PhaseChange& change = passage.change;
-  const Arc& before = arcs_.back();
   Jump jump{.matrix = MatrixXd::Identity(size_ + 1, size_ + 1), .moved = {}, .by_device = MatrixXd::Zero(size_ + 1, moving_)};
   MatrixXd& matrix = *jump.matrix;
   VectorXd normal = VectorXd::Zero(size_);
@@ -431,21 +483,22 @@ void LinearizedClosing::add_moved(const std::vector<FigureSlope>& figures, const
   }
 }
 
-// Calls add(input, parameter, its derivative at the begin, in the middle and at the end of an arc).
+// Calls add(input, parameter, its derivative at the begin, in the middle and at the end of a part).
 template <class Add>
-void LinearizedClosing::for_inputs(const Arc& arc, const SignalSlopes& slopes, Add&& add) const {
-  const std::vector<std::size_t>& on = pieces(arc);
+void LinearizedClosing::for_inputs(const Part& part, const SignalSlopes& slopes, Add&& add) const {
+  const std::vector<std::size_t>& on = pieces(arcs_[part.arc]);
   for (std::size_t k = 0; k < signals_.size(); ++k) {
     for (const SignalSlopes::Slope& slope : slopes.at(k, on[k])) {
-      add(static_cast<Index>(k), static_cast<Index>(slope.parameter), slope.voltage(arc.begin),
-          slope.voltage((arc.begin + arc.end) / 2), slope.voltage(arc.end));
+      add(static_cast<Index>(k), static_cast<Index>(slope.parameter), slope.voltage(part.begin),
+          slope.voltage((part.begin + part.end) / 2), slope.voltage(part.end));
     }
   }
   for (Index j = 0; j < moving_; ++j) add(dent_ + 1 + j, column(j), 1.0, 1.0, 1.0);
 }
 
-// An input on an arc is the parabola through its values at the nodes.
-MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const {
+// An input on a part is the parabola through its values at the nodes.
+MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) {
+  linearize_for(figures);
   const auto count = static_cast<Index>(figures.size());
   MatrixXd gradient = MatrixXd::Zero(count, static_cast<Index>(slopes.parameters()));
   MatrixXd weights = MatrixXd::Zero(count, size_ + 1), left = weights;
@@ -457,8 +510,9 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
   std::stable_sort(given.begin(), given.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   MatrixXd at_begin(count, inputs_), at_middle(count, inputs_), at_end(count, inputs_);
   auto jump = jumps_.rbegin();
-  for (std::size_t arc = arcs_.size(); arc-- > 0;) {
-    for (; jump != jumps_.rend() && jump->arcs == arc + 1; ++jump) {
+  for (std::size_t k = parts_.size(); k-- > 0;) {
+    const Part& part = parts_[k];
+    for (; jump != jumps_.rend() && jump->parts == k + 1; ++jump) {
       for (const auto& [moved, gained] : jump->moved) {
         const VectorXd each = weights * gained;
         for (const SignalSlopes::Slope& slope : slopes.at(moved.drive, moved.piece))
@@ -469,14 +523,14 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
       weights = weights * *jump->matrix;
       left = left * *jump->matrix;
     }
-    for (; !given.empty() && given.back().first == arc; given.pop_back())
+    for (; part.ends_arc && !given.empty() && given.back().first == part.arc; given.pop_back())
       weights.row(given.back().second.first) += given.back().second.second.transpose();
-    const Transition t = transition(arc);
-    const double h = arcs_[arc].end - arcs_[arc].begin;
+    const Transition t = transition(k);
+    const double h = part.end - part.begin;
     using Inputs = Eigen::Map<const MatrixXd>;
     const Inputs begin(t.begin, n_, inputs_), middle(t.middle, n_, inputs_), end(t.end, n_, inputs_);
     for (Index f = 0; f < count; ++f) {
-      const RowSeries w(t.magnus, size_, stride_, t.terms, weights.row(f).head(size_).array());
+      const RowSeries w(t.magnus, size_, stride_, part.terms, weights.row(f).head(size_).array());
       const auto of = [&](const auto& row) { return row.matrix().segment(n_, n_); };
       at_begin.row(f) = of(h * (w.phi1 - 3 * w.phi2 + 4 * w.phi3)).lazyProduct(begin);
       at_middle.row(f) = of(h * (4 * w.phi2 - 8 * w.phi3)).lazyProduct(middle);
@@ -484,7 +538,7 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
       add_compensated(weights.row(f), left.row(f), w.gain.head(size_));
       weights(f, size_) += at_begin(f, dent_) + at_middle(f, dent_) + at_end(f, dent_);
     }
-    for_inputs(arcs_[arc], slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
+    for_inputs(part, slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
       gradient.col(parameter) += v0 * at_begin.col(drive) + v1 * at_middle.col(drive) + v2 * at_end.col(drive);
     });
   }
@@ -492,7 +546,8 @@ MatrixXd LinearizedClosing::backward(const std::vector<FigureSlope>& figures, co
   return gradient;
 }
 
-MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const {
+MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) {
+  linearize_for(figures);
   const auto count = static_cast<Index>(slopes.parameters()), columns = (count + lane_size - 1) / lane_size * lane_size;
   MatrixXd gradient = MatrixXd::Zero(static_cast<Index>(figures.size()), count);
   Columns d = Columns::Zero(size_ + 1, columns), left = d;
@@ -501,8 +556,9 @@ MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, con
   std::array<Columns, 3> u;
   u.fill(Columns::Zero(n_, columns));
   auto jump = jumps_.begin();
-  for (std::size_t arc = 0; arc < arcs_.size(); ++arc) {
-    for (; jump != jumps_.end() && jump->arcs <= arc; ++jump) {
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const Part& part = parts_[k];
+    for (; jump != jumps_.end() && jump->parts <= k; ++jump) {
       if (jump->matrix) {
         d = (*jump->matrix * d.matrix()).array().eval();
         left = (*jump->matrix * left.matrix()).array().eval();
@@ -513,18 +569,18 @@ MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, con
       }
       for (Index j = 0; j < jump->by_device.cols(); ++j) d.col(column(j)) += jump->by_device.col(j).array();
     }
-    const Transition t = transition(arc);
-    const double h = arcs_[arc].end - arcs_[arc].begin;
+    const Transition t = transition(k);
+    const double h = part.end - part.begin;
     using Input = Eigen::Map<const Eigen::ArrayXd>;
-    const auto at = [&](const double* inputs, Index k) { return Input(inputs + k * n_, n_); };
+    const auto at = [&](const double* inputs, Index input) { return Input(inputs + input * n_, n_); };
     for (Columns& each : u) each.setZero();
-    for_inputs(arcs_[arc], slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
+    for_inputs(part, slopes, [&](Index drive, Index parameter, double v0, double v1, double v2) {
       const auto p0 = h * v0 * at(t.begin, drive), p1 = h * v1 * at(t.middle, drive), p2 = h * v2 * at(t.end, drive);
       u[0].col(parameter) += p0;
       u[1].col(parameter) += 4 * p1 - 3 * p0 - p2;
       u[2].col(parameter) += 2 * (p0 - 2 * p1 + p2);
     });
-    if (arcs_[arc].contact.unloading) {
+    if (arcs_[part.arc].contact.unloading) {
       const auto p0 = (h * at(t.begin, dent_)).matrix(), p1 = (h * at(t.middle, dent_)).matrix(),
                  p2 = (h * at(t.end, dent_)).matrix();
       const auto shift = d.bottomRows<1>().matrix();
@@ -532,11 +588,11 @@ MatrixXd LinearizedClosing::forward(const std::vector<FigureSlope>& figures, con
       u[1] += ((4 * p1 - 3 * p0 - p2) * shift).array();
       u[2] += (2 * (p0 - 2 * p1 + p2) * shift).array();
     }
-    series.carry(t.magnus, stride_, t.terms, u, d);
+    series.carry(t.magnus, stride_, part.terms, u, d);
     add_compensated(d, left, series.gain);
-    for (std::size_t f = 0; f < figures.size(); ++f) {
+    for (std::size_t f = 0; part.ends_arc && f < figures.size(); ++f) {
       for (const FigureSlope::Weights& w : figures[f].weights) {
-        if (w.arc == arc) gradient.row(static_cast<Index>(f)) += scaled(w).transpose() * d.leftCols(count).matrix();
+        if (w.arc == part.arc) gradient.row(static_cast<Index>(f)) += scaled(w).transpose() * d.leftCols(count).matrix();
       }
     }
   }

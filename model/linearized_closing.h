@@ -8,6 +8,8 @@
 // by (f before - f after) dt/dp; at an impact the velocity's part is reflected too (saltation: Aizerman and Gantmacher 1958,
 // Hiskens and Pai 2000, eq. 26). A contact with memory adds its residual interference to the state.
 //
+// What a closing does after the last moment that a figure depends on is not linearised.
+//
 // Forward, d is carried along for all parameters at once. Backward (adjoint), the weights that a figure gives to d are carried
 // from the end to the beginning: its cost hardly depends on the number of parameters. Both take the exponential times vectors, by
 // its Taylor series, and never the exponential itself.
@@ -53,13 +55,14 @@ class LinearizedClosing {
  public:
   using Modal = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_modes, 1>;  ///< a number to each mode, without an allocation
 
-  /// A stretch of a step, short enough for the series; a step in which the contact point turns back ends one there.
+  /// A step of the tape, or the part of one until the contact point turns back in it, and the rest.
   struct Arc {
     double begin = 0, end = 0;  ///< [s]
     Modal q, v;                 ///< at its end
     Modal accelerations;        ///< at its end
     bool turns = false;         ///< the contact point turns back at its end
     ContactState contact;
+    std::size_t step = 0;            ///< of the tape
     std::size_t pieces_entered = 0;  ///< see pieces()
   };
   /// A passage of the tape after so many arcs.
@@ -68,8 +71,8 @@ class LinearizedClosing {
     PhaseChange change;
   };
 
-  /// Of a closing that was run with restart_at_contact, under these signals. Keeps references to the switch and the signals.
-  /// `refinement`: arcs of a step, at the least. `by_device`: how the switch changes with the parameters; none: not at all. They
+  /// Of a closing that was run with restart_at_contact, under these signals. Keeps references to all but the number.
+  /// `refinement`: parts of a step, at the least. `by_device`: how the switch changes with the parameters; none: not at all. They
   /// are as many as those of the signals.
   LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement = 1,
                     SwitchSlopes* by_device = nullptr);
@@ -85,9 +88,9 @@ class LinearizedClosing {
   [[nodiscard]] const SwitchSlopes* by_device() const { return by_device_; }
 
   /// Derivatives of figures, a row each, with respect to the parameters: adjoint.
-  [[nodiscard]] Eigen::MatrixXd backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const;
+  [[nodiscard]] Eigen::MatrixXd backward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
   /// The same numbers: forward.
-  [[nodiscard]] Eigen::MatrixXd forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes) const;
+  [[nodiscard]] Eigen::MatrixXd forward(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes);
 
  private:
   using Index = Eigen::Index;
@@ -97,36 +100,49 @@ class LinearizedClosing {
     Eigen::MatrixXd by_q, by_v;
     Eigen::MatrixXd inputs;  // by the drives, by the dent of a contact with memory, by parameters of the device
   };
-  // Magnus' series of an arc and what drives and dents add: places in numbers_.
+  // A part of an arc, short enough for the series.
+  struct Part {
+    double begin = 0, end = 0;  // [s]
+    std::size_t arc = 0;
+    bool ends_arc = false;
+    int terms = 0;  // of the series of its exponential
+  };
+  // Magnus' series of a part and what drives and dents add: places in numbers_.
   struct Transition {
     const double* magnus;  // rows of whole lanes
     const double* begin;   // inputs at the begin,
     const double* middle;  // in the middle
-    const double* end;     // and at the end of the arc, modes x inputs each
-    int terms = 0;         // of the series of its exponential
+    const double* end;     // and at the end of the part, modes x inputs each
   };
   // d, and the shift's derivative below it, after an event: matrix * d + by_device + sum over moved pieces. No matrix: d stays.
   struct Jump {
-    std::size_t arcs = 0;
+    std::size_t parts = 0;                                              // before it
     std::optional<Eigen::MatrixXd> matrix;                              // 2 modes + 1 square
     std::vector<std::pair<FigureSlope::Moved, Eigen::VectorXd>> moved;  // d gains the vector times d(begin)/dp
     Eigen::MatrixXd by_device = {};                                     // a column to each moving parameter, or none
   };
 
+  // The course, without derivatives.
+  void follow_tape();
+  void enter_pieces(double t);
+  void add_arcs(std::size_t step);
+  void note_passage(const PhaseChange& change);
+  // The derivatives, as far as the figures ask for them.
+  void linearize_for(const std::vector<FigureSlope>& figures);
+  void linearize_step();
   void begin_at_rest();
   void set_node(Node& node, double t, const double* q, const double* v, const ContactState& contact);
   void set_volts(double t);
   [[nodiscard]] Eigen::VectorXd rates(double t, const double* q, const double* v, const ContactState& contact);
-  void add_step(const MotionTape& tape, std::size_t step, bool after_edge, bool before_edge);
-  [[nodiscard]] std::vector<std::pair<double, bool>> ends_of_arcs(const MotionTape::Motion& from, const MotionTape::Motion& to,
-                                                                  bool after_edge, bool before_edge) const;
-  void add_transition(double h);
-  void add_passage(const MotionTape::Passage& passage);
-  [[nodiscard]] Jump turned() const;
-  [[nodiscard]] Jump at_rest() const;
-  [[nodiscard]] Jump crossed(const MotionTape::Passage& passage);
-  void enter_pieces(const MotionTape::Motion& here, const ContactState& contact);
-  [[nodiscard]] Transition transition(std::size_t arc) const;
+  [[nodiscard]] std::vector<double> ends_of_parts(double t0, double t1, bool after_edge, bool before_edge) const;
+  void add_parts(std::size_t step, bool after_edge, bool before_edge);
+  void add_transition(double begin, double end, std::size_t arc);
+  void jump_at_pieces(const MotionTape::Motion& here, const ContactState& contact, std::size_t entered);
+  void jump_at(const MotionTape::Passage& passage, const Arc& before);
+  [[nodiscard]] Jump turned(const Arc& before) const;
+  [[nodiscard]] Jump at_rest(const Arc& before) const;
+  [[nodiscard]] Jump crossed(const MotionTape::Passage& passage, const Arc& before);
+  [[nodiscard]] Transition transition(std::size_t part) const;
   // Of the gradient, of a parameter that changes the switch.
   [[nodiscard]] Index column(Index moving) const {
     return static_cast<Index>(by_device_->moving()[static_cast<std::size_t>(moving)]);
@@ -134,10 +150,11 @@ class LinearizedClosing {
   [[nodiscard]] Eigen::VectorXd scaled(const FigureSlope::Weights& weights) const;
   void add_moved(const std::vector<FigureSlope>& figures, const SignalSlopes& slopes, Eigen::MatrixXd& gradient) const;
   template <class Add>
-  void for_inputs(const Arc& arc, const SignalSlopes& slopes, Add&& add) const;
+  void for_inputs(const Part& part, const SignalSlopes& slopes, Add&& add) const;
 
   const Switch& model_;
   std::span<const Signal> signals_;
+  const MotionTape& tape_;
   Index n_, size_;  // modes, unknowns: 2 modes
   Index stride_;    // size_ in whole lanes
   SwitchSlopes* by_device_;
@@ -146,15 +163,20 @@ class LinearizedClosing {
   Switch::Workspace work_;
   int refinement_;
   std::vector<std::vector<std::size_t>> pieces_;  // that the drives were on, one set after the other
-  std::vector<double> volts_;                     // of the drives, at present
   std::vector<Arc> arcs_;
-  std::vector<int> terms_;       // of the arcs' series
-  std::vector<double> numbers_;  // of the arcs, Magnus' series and inputs
-  std::vector<Jump> jumps_;
   std::vector<Passage> passages_;
+
+  std::size_t steps_ = 0;         // of the tape that are linearised,
+  std::size_t next_arc_ = 0;      // the arc that follows them,
+  std::size_t next_passage_ = 0;  // and the passage of the tape
+  std::size_t on_ = 0;            // of pieces_, at present
+  std::vector<double> volts_;     // of the drives, at present
+  std::vector<Part> parts_;
+  std::vector<double> numbers_;  // of the parts, Magnus' series and inputs
+  std::vector<Jump> jumps_;
   Eigen::MatrixXd rest_;  // derivative of the motion's beginning, a column to each moving parameter
   Node from_, middle_, to_;
-  bool goes_on_ = false;  // from_ is where the next arc begins
+  bool goes_on_ = false;  // from_ is where the next part begins
 };
 
 }  // namespace softland

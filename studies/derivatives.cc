@@ -194,7 +194,7 @@ NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>&
   NominalClosing closing{
       .outcome = {.metrics = observer.metrics(end), .largest_impact_velocity = observer.largest_impact_velocity()}, .slopes = {}};
   if (end.status != Status::done || !closing.outcome.closed()) return closing;
-  const LinearizedClosing motion(nominal.model, signals, tape, options.refinement, &by.of_switch);
+  LinearizedClosing motion(nominal.model, signals, tape, options.refinement, &by.of_switch);
   closing.slopes = cost_slopes(nominal.model, signals, motion, nominal.scene.metrics);
   std::vector<FigureSlope> wanted;
   for (const FigureWithSlope& figure : figures_with_slopes) wanted.push_back(closing.slopes.*figure.slope);

@@ -46,9 +46,15 @@ FamilySearch::FamilySearch(const SearchSetting& setting, const ParameterBlock& b
               [this, told = std::move(on_evaluation)](const Evaluation& e) { told(among_all(e)); }, slopes()) {}
 
 Prices FamilySearch::price(std::span<const double> own) const {
-  if (options_.memory == nullptr) return setting_.price_at(own);
+  LastClosing& last = last_of_thread();
+  if (options_.memory == nullptr) return setting_.price_at(own, nullptr, &last);
   MemoryOfFamily memory(*options_.memory, block_);
-  return setting_.price_at(own, &memory);
+  return setting_.price_at(own, &memory, &last);
+}
+
+LastClosing& FamilySearch::last_of_thread() const {
+  const std::lock_guard lock(last_mutex_);
+  return last_[std::this_thread::get_id()];
 }
 
 PriceSlopes FamilySearch::slopes() const {
@@ -57,7 +63,7 @@ PriceSlopes FamilySearch::slopes() const {
   const auto of = [&](const Aim& aim) -> Slope {
     if (!setting_.gradient_refusal(aim).empty()) return {};
     if (groups.empty()) groups = setting_.parameter_groups();
-    return [this, aim, groups](std::span<const double> x) { return setting_.gradient_at(x, aim, groups); };
+    return [this, aim, groups](std::span<const double> x) { return setting_.gradient_at(x, aim, groups, &last_of_thread()); };
   };
   PriceSlopes all{.leading = of(Target::bounce),
                   .own = of(setting_.target.has_own_cost() ? setting_.target : Aim(Target::bounce))};

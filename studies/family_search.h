@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "optimizers/problem.h"
@@ -61,12 +63,15 @@ class FamilySearch {
 
  private:
   [[nodiscard]] Prices price(std::span<const double> own) const;
+  [[nodiscard]] LastClosing& last_of_thread() const;
   [[nodiscard]] PriceSlopes slopes() const;
   [[nodiscard]] Evaluation among_all(Evaluation e) const;
 
   const SearchSetting& setting_;
   ParameterBlock block_;
   const OptimizeOptions& options_;
+  mutable std::mutex last_mutex_;
+  mutable std::map<std::thread::id, LastClosing> last_;
   Problem problem_;
   TwoStages stages_;
 };

@@ -34,21 +34,6 @@ CostFigures imagined_step(const Prepared& given, double period) {
           .impact_energy = 0};
 }
 
-/// One run for the cost and for the figures of merit.
-struct PricedClosing final : ClosingObserver {
-  PricedClosing(double contact_gap, const MetricsOptions& options) : cost(contact_gap, options), metrics(contact_gap, options) {}
-  void knot(const TrajectoryPoint& point) override {
-    cost.knot(point);
-    metrics.knot(point);
-  }
-  void touch(const Touch& touch) override {
-    cost.touch(touch);
-    metrics.touch(touch);
-  }
-  CostObserver cost;
-  MetricsObserver metrics;
-};
-
 // Of a condition that a method follows: g. Searches end where it is 0, and are to fulfil it there.
 double excess(const Criterion& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
@@ -68,6 +53,40 @@ const FigureWithSlope* figure_with_slope(const Criterion& one) {
 }
 
 }  // namespace
+
+struct RecordedClosing {
+  RecordedClosing(const SearchSetting& setting, std::vector<Signal> under)
+      : signals(std::move(under)), observer(setting.scale.contact_gap, setting.given.scene.metrics), tape(observer) {
+    const Trajectory end = observe_closing(setting.given.model, signals, setting.run_of(signals), tape);
+    status = end.status;
+    figures = observer.cost.figures(end);
+    metrics = observer.metrics.metrics(end);
+  }
+  RecordedClosing(const RecordedClosing&) = delete;
+  RecordedClosing& operator=(const RecordedClosing&) = delete;
+
+  // One run for the cost and for the figures of merit.
+  struct Observer final : ClosingObserver {
+    Observer(double contact_gap, const MetricsOptions& options) : cost(contact_gap, options), metrics(contact_gap, options) {}
+    void knot(const TrajectoryPoint& point) override {
+      cost.knot(point);
+      metrics.knot(point);
+    }
+    void touch(const Touch& touch) override {
+      cost.touch(touch);
+      metrics.touch(touch);
+    }
+    CostObserver cost;
+    MetricsObserver metrics;
+  };
+
+  std::vector<Signal> signals;
+  Observer observer;
+  MotionTape tape;
+  Status status = Status::done;
+  CostFigures figures;
+  Metrics metrics;
+};
 
 double broken(const std::vector<Criterion>& conditions, const Metrics& metrics) {
   double sum = 0;
@@ -126,11 +145,11 @@ ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   return own;
 }
 
-Prices SearchSetting::price(const std::vector<Signal>& signals) const {
-  PricedClosing observer(scale.contact_gap, given.scene.metrics);
-  const Trajectory end = observe_closing(given.model, signals, run_of(signals), observer);
-  const CostFigures figures = observer.cost.figures(end);
-  const auto by = [&](const Aim& one) { return cost(one, end.status, figures, scale, given.scene.metrics); };
+Prices SearchSetting::price(const std::vector<Signal>& signals) const { return price(RecordedClosing(*this, signals)); }
+
+Prices SearchSetting::price(const RecordedClosing& closing) const {
+  const CostFigures& figures = closing.figures;
+  const auto by = [&](const Aim& one) { return cost(one, closing.status, figures, scale, given.scene.metrics); };
   Prices prices{.leading = by(Target::bounce)};
   prices.own = target.has_own_cost() ? by(target) : prices.leading;
   prices.lands = prices.leading < never_touched && figures.rebound_height <= given.scene.metrics.significant_rebound;
@@ -140,9 +159,9 @@ Prices SearchSetting::price(const std::vector<Signal>& signals) const {
     prices.apart->excess.assign(followed_conditions().size(), most_broken);
     return prices;
   }
-  Metrics metrics = observer.metrics.metrics(end);
+  Metrics metrics = closing.metrics;
   metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
-  set_drive_figures(metrics, given, signals);
+  set_drive_figures(metrics, given, closing.signals);
   prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
   for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, metrics));
   const double violation = broken(conditions, metrics);
@@ -154,14 +173,16 @@ Prices SearchSetting::price(const std::vector<Signal>& signals) const {
   return prices;
 }
 
-Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory) const {
+Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memory, LastClosing* last) const {
   const std::map<std::string, Waveform> searched = space.waveforms(x);
   if (!is_allowed(searched)) return {};
   const EvaluationKey key{.x = {x.begin(), x.end()}};
   if (memory != nullptr) {
     if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
   }
-  Prices found = price(given.driven(signals_of(drives(searched))));
+  auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(signals_of(drives(searched))));
+  Prices found = price(*closing);
+  if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
   found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
   if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
   return found;
@@ -201,25 +222,27 @@ std::vector<ParameterGroup> SearchSetting::parameter_groups() const {
 }
 
 std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const Aim& aim,
-                                               const std::vector<ParameterGroup>& groups) const {
+                                               const std::vector<ParameterGroup>& groups, const LastClosing* last) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Criterion> followed = followed_conditions();
   std::vector<double> gradient((1 + followed.size()) * x.size(), unknown);
-  const std::map<std::string, Waveform> searched = space.waveforms(x);
-  if (!is_allowed(searched)) return gradient;
-  const std::vector<Signal> signals = given.driven(signals_of(drives(searched)));
-  PricedClosing observer(scale.contact_gap, given.scene.metrics);
-  MotionTape tape(observer);
-  const Trajectory end = observe_closing(given.model, signals, run_of(signals), tape);
-  const LinearizedClosing motion(given.model, signals, tape);
-  const CostSlopes slopes = cost_slopes(given.model, signals, motion, given.scene.metrics);
-  const auto slope = cost_slope(aim, end.status, observer.cost.figures(end), scale, given.scene.metrics, slopes);
+  std::shared_ptr<const RecordedClosing> closing;
+  if (last != nullptr && std::equal(x.begin(), x.end(), last->x.begin(), last->x.end())) {
+    closing = last->closing;
+  } else {
+    const std::map<std::string, Waveform> searched = space.waveforms(x);
+    if (!is_allowed(searched)) return gradient;
+    closing = std::make_shared<const RecordedClosing>(*this, given.driven(signals_of(drives(searched))));
+  }
+  LinearizedClosing motion(given.model, closing->signals, closing->tape);
+  const CostSlopes slopes = cost_slopes(given.model, closing->signals, motion, given.scene.metrics);
+  const auto slope = cost_slope(aim, closing->status, closing->figures, scale, given.scene.metrics, slopes);
   if (!slope) return gradient;
   std::vector<FigureSlope> rows{*slope};
   for (const Criterion& one : followed) rows.push_back(slopes.*figure_with_slope(one)->slope);
   const SignalSlopes by_parameters = signal_slopes(x, groups);
   const Eigen::MatrixXd by_x = motion.backward(rows, by_parameters);
-  const Metrics metrics = observer.metrics.metrics(end);
+  const Metrics& metrics = closing->metrics;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const double rate = row == 0 ? 1 : excess_rate(followed[row - 1], metrics);
     for (std::size_t k = 0; k < x.size(); ++k)

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,6 +26,13 @@ namespace softland {
 
 /// Costs from here on are of waveforms that never touch: see cost().
 inline constexpr double never_touched = 10;
+
+struct RecordedClosing;
+/// The point that was priced last, and its closing: the gradient there needs no other.
+struct LastClosing {
+  std::vector<double> x = {};
+  std::shared_ptr<const RecordedClosing> closing = {};
+};
 
 struct SearchSetting {
   Aim target;
@@ -46,14 +54,16 @@ struct SearchSetting {
   /// How a candidate under these signals is run.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
   [[nodiscard]] Prices price(const std::vector<Signal>& signals) const;
+  [[nodiscard]] Prices price(const RecordedClosing& closing) const;
   /// Of a point of the search space, on the nominal device; infinite where it leaves the limits of a driver. What `memory` holds
-  /// is not simulated again.
-  [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr) const;
+  /// is not simulated again; what is, becomes `last`.
+  [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr, LastClosing* last = nullptr) const;
   /// The gradient of a cost at a point of the search space, by the parameters, and after it that of each of
   /// followed_conditions(), as Conditions::gradients: of the nominal device, exact but where touches graze. NaN where there is
-  /// none. The same numbers, sooner, with `groups`, which hold for all points or are not used.
+  /// none. The same numbers, sooner, with `groups`, which hold for all points or are not used, and where `last` is of this point.
   [[nodiscard]] std::vector<double> gradient_at(std::span<const double> x, const Aim& aim,
-                                                const std::vector<ParameterGroup>& groups = {}) const;
+                                                const std::vector<ParameterGroup>& groups = {},
+                                                const LastClosing* last = nullptr) const;
   /// The parameters by the pieces of the signals that they move.
   [[nodiscard]] std::vector<ParameterGroup> parameter_groups() const;
   /// How the signals of all drives change with the parameters.

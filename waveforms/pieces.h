@@ -88,6 +88,9 @@ struct SignalPieceOf {
   P angular_frequency = 0;            ///< [rad/s]
   P phase = 0;                        ///< [rad]; the sine's argument is angular_frequency t + phase with t from 0, not from begin
   std::vector<TermOf<P>> terms = {};  ///< their times count from begin
+  /// Whether the terms are a Fourier series: sines and cosines of 1, 2, 3 ... times the first one's angular frequency, of fixed
+  /// sizes. They are found by turning on, one sine and cosine for all.
+  bool is_series = false;
 
   [[nodiscard]] bool oscillates() const { return !internal::vanishes(amplitude) || !internal::vanishes(amplitude_slope); }
   /// Whether it is a straight line and nothing else.
@@ -105,7 +108,11 @@ struct SignalPieceOf {
     }
     P sum = straight;
     if (oscillates()) sum = sum + (amplitude + amplitude_slope * elapsed) * sin(angular_frequency * time + phase);
-    for (const TermOf<P>& term : terms) sum = sum + term.voltage(elapsed);
+    if (is_series) {
+      turn_on(elapsed, [&](const TermOf<P>& term, const P& c, const P& s) { sum = sum + term.cosine[0] * c + term.sine[0] * s; });
+    } else {
+      for (const TermOf<P>& term : terms) sum = sum + term.voltage(elapsed);
+    }
     return sum;
   }
   /// dV/dt [V/s]
@@ -117,10 +124,31 @@ struct SignalPieceOf {
       return slope + amplitude_slope * sin(angle) + envelope * angular_frequency * cos(angle);
     };
     P sum = oscillates() ? swinging() : slope;
-    for (const TermOf<P>& term : terms) sum = sum + term.rate(time - begin);
+    if (is_series) {
+      turn_on(time - begin, [&](const TermOf<P>& term, const P& c, const P& s) {
+        sum = sum + term.angular_frequency * (term.sine[0] * c - term.cosine[0] * s);
+      });
+    } else {
+      for (const TermOf<P>& term : terms) sum = sum + term.rate(time - begin);
+    }
     return sum;
   }
   bool operator==(const SignalPieceOf&) const = default;
+
+ private:
+  // Calls see(term, cosine, sine) for every term of a series.
+  template <class See>
+  void turn_on(const P& elapsed, See&& see) const {
+    using std::cos, std::sin;
+    const P angle = terms.front().angular_frequency * elapsed, c1 = cos(angle), s1 = sin(angle);
+    P c = c1, s = s1;
+    for (const TermOf<P>& term : terms) {
+      see(term, c, s);
+      const P next = c * c1 - s * s1;
+      s = s * c1 + c * s1;
+      c = next;
+    }
+  }
 };
 template <class P>
 using Pieces = std::vector<SignalPieceOf<P>>;

@@ -51,6 +51,35 @@ std::array<double, 4> cubic_about(const SignalPiece& piece, double origin) {
   return {c[0] + by * (c[1] + by * (c[2] + by * c[3])), c[1] + by * (2 * c[2] + by * 3 * c[3]), c[2] + 3 * by * c[3], c[3]};
 }
 
+// The derivative of a piece of which sizes alone change, with the terms that do; none where its times or angles change too.
+std::shared_ptr<const SignalPiece> derivative(const SignalPiece& above, const SignalPiece& below, double step) {
+  const auto turns_alike = [](const SignalTerm& a, const SignalTerm& b) {
+    return a.decay == b.decay && a.angular_frequency == b.angular_frequency && a.sweep == b.sweep;
+  };
+  if (above.begin != below.begin || above.angular_frequency != below.angular_frequency || above.phase != below.phase ||
+      !std::equal(above.terms.begin(), above.terms.end(), below.terms.begin(), below.terms.end(), turns_alike))
+    return nullptr;
+  SignalPiece piece = below;
+  piece.terms.clear();
+  piece.is_series = false;
+  for (double SignalPiece::*size :
+       {&SignalPiece::value, &SignalPiece::slope, &SignalPiece::amplitude, &SignalPiece::amplitude_slope}) {
+    piece.*size = (above.*size - below.*size) / step;
+  }
+  for (std::size_t i = 0; i < above.terms.size(); ++i) {
+    const SignalTerm &a = above.terms[i], &b = below.terms[i];
+    if (are_equal(a, b)) continue;
+    SignalTerm term = b;
+    for (std::size_t k = 0; k < term.cosine.size(); ++k) {
+      term.cosine[k] = (a.cosine[k] - b.cosine[k]) / step;
+      term.sine[k] = (a.sine[k] - b.sine[k]) / step;
+    }
+    piece.terms.push_back(term);
+  }
+  piece.is_series = below.is_series && piece.terms.size() == below.terms.size();
+  return std::make_shared<const SignalPiece>(std::move(piece));
+}
+
 // Time inside a piece, for ever after which the last one holds.
 double inner_time(const std::vector<SignalPiece>& pieces, std::size_t k) {
   constexpr double share = 0.4;
@@ -185,7 +214,7 @@ bool SignalSlopes::add(Mover&& mover, Signals above, Signals below) {
         slope.origin = b.begin;
         const std::array<double, 4> high = cubic_about(a, b.begin), low = cubic_about(b, b.begin);
         for (std::size_t k = 0; k < high.size(); ++k) slope.cubic[k] = (high[k] - low[k]) / step;
-      } else {
+      } else if ((slope.piece = derivative(a, b, step)) == nullptr) {
         slope.above = &a;
         slope.below = &b;
         keeps = true;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,6 +32,7 @@ class SignalSlopes {
     double begin = 0;  ///< d(begin of the piece) / dp [s]
     /// [V] by the formula of the piece, at a time from 0
     [[nodiscard]] double voltage(double time) const {
+      if (piece != nullptr) return piece->voltage(time);
       if (above != nullptr) return (above->voltage(time) - below->voltage(time)) * per_step;
       const double s = time - origin;
       return cubic[0] + s * (cubic[1] + s * (cubic[2] + s * cubic[3]));
@@ -38,7 +40,8 @@ class SignalSlopes {
 
     double origin = 0;                                     // where the piece is a polynomial of s = time - origin
     std::array<double, 4> cubic = {};                      // of the derivative
-    const SignalPiece *above = nullptr, *below = nullptr;  // where it is not
+    std::shared_ptr<const SignalPiece> piece = nullptr;    // where only sizes of a sine or of terms change: the derivative
+    const SignalPiece *above = nullptr, *below = nullptr;  // where more does
     double per_step = 0;
   };
 

@@ -54,6 +54,7 @@ template <class P>
   for (SignalPieceOf<P>& piece : all) {
     piece.amplitude = piece.amplitude_slope = piece.angular_frequency = piece.phase = P(0);
     if (internal::decided(piece.begin < sines.start) || !internal::decided(piece.begin < end)) continue;
+    piece.is_series = true;
     for (std::size_t k = 0; k < sines.amplitudes.size(); ++k) {
       using std::cos, std::sin;
       const P omega = P(static_cast<double>(k + 1) * std::numbers::pi) / sines.duration;

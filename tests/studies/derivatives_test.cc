@@ -351,7 +351,7 @@ TEST(Derivatives, ForwardAreThoseBackward) {
     const SignalSlopes fixed([&](std::span<const double>) { return signals; }, none, none, none);
     MotionTape tape;
     (void)observe_closing(p.model, signals, {.duration = p.duration, .tolerance = 1e-8}, tape);
-    const LinearizedClosing motion(p.model, signals, tape, 1, &by);
+    LinearizedClosing motion(p.model, signals, tape, 1, &by);
     const CostSlopes slopes = cost_slopes(p.model, signals, motion, p.scene.metrics);
     const std::vector<FigureSlope> figures{slopes.first_touch, slopes.first_touch_speed, slopes.rebound_height,
                                            slopes.impact_energy, slopes.peak_force};

@@ -75,7 +75,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
     run.tolerance = 1e-11;
     const Trajectory end = observe_closing(s.given.model, signals, run, tape);
     if (end.status != Status::done) continue;
-    const LinearizedClosing motion(s.given.model, signals, tape, 16);
+    LinearizedClosing motion(s.given.model, signals, tape, 16);
     const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
     if (slopes.grazing < grazing_share) continue;
     const SignalSlopes by(signals_at, x, lower, upper);
@@ -133,6 +133,7 @@ TEST(Gradient, OfPulsesOnTheGoldSwitch) { expect_agreement(setting_of("mem-gold.
 TEST(Gradient, OfBothDrives) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::both, "pulse"), 15); }
 TEST(Gradient, OfDithers) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "dither"), 10); }
 TEST(Gradient, OfSplines) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "bspline:6"), 10); }
+TEST(Gradient, OfSines) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "sines:6"), 5); }
 TEST(Gradient, OfTwoElectrodes) { expect_agreement(setting_of("two-electrodes.toml", Actuator::electrostatic, "coast"), 10); }
 TEST(Gradient, OfANanometreSwitch) { expect_agreement(setting_of("nem-tin.toml", Actuator::electrostatic, "pulse"), 5); }
 TEST(Gradient, OfAPlasticContact) {
@@ -142,6 +143,48 @@ TEST(Gradient, OfAPlasticContact) {
 }
 TEST(Gradient, OfADampedContact) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce, {"contact.damping=0.5 s/m"}), 5);
+}
+// What follows the last moment that a figure depends on is not linearised, and changes nothing.
+TEST(Gradient, OfOneFigureIsThatOfAll) {
+  const SearchSetting s = setting_of("mem-gold.toml", Actuator::electrostatic, "pulse");
+  std::vector<double> x;
+  for (const Variable& v : s.space.variables()) x.push_back(std::lerp(v.lower, v.upper, 0.4));
+  const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
+  MotionTape tape;
+  (void)observe_closing(s.given.model, signals, s.run_of(signals), tape);
+  LinearizedClosing motion(s.given.model, signals, tape);
+  const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
+  ASSERT_LT(slopes.first_touch.weights.front().arc, slopes.last_rebound_end.weights.front().arc);
+  const SignalSlopes by = s.signal_slopes(x);
+  const Eigen::MatrixXd first = motion.backward({slopes.first_touch}, by);
+  const Eigen::MatrixXd both = motion.backward({slopes.first_touch, slopes.last_rebound_end}, by);
+  const Eigen::MatrixXd again = motion.backward({slopes.first_touch}, by);
+  EXPECT_GT(first.cwiseAbs().maxCoeff(), 0);
+  EXPECT_TRUE(first == both.topRows(1));
+  EXPECT_TRUE(first == again);
+  const Eigen::MatrixXd forward = LinearizedClosing(s.given.model, signals, tape).forward({slopes.first_touch}, by);
+  EXPECT_LT((forward - first).cwiseAbs().maxCoeff(), 1e-8 * first.cwiseAbs().maxCoeff());
+}
+TEST(Gradient, IsThatOfTheClosingThatWasPricedLast) {
+  const SearchSetting s = setting_of("mem-gold-pzt.toml", Actuator::both, "pulse");
+  const auto at = [&](double place) {
+    std::vector<double> x;
+    for (const Variable& v : s.space.variables()) x.push_back(std::lerp(v.lower, v.upper, place));
+    return x;
+  };
+  const std::vector<double> here = at(0.4), elsewhere = at(0.45);
+  LastClosing last;
+  EXPECT_EQ(s.price_at(here, nullptr, &last).leading, s.price_at(here).leading);
+  EXPECT_EQ(last.x, here);
+  const std::vector<double> alone = s.gradient_at(here, Target::bounce);
+  ASSERT_TRUE(std::isfinite(alone[0]));
+  EXPECT_EQ(s.gradient_at(here, Target::bounce, {}, &last), alone);
+  EXPECT_EQ(s.gradient_at(elsewhere, Target::bounce, {}, &last), s.gradient_at(elsewhere, Target::bounce)) << "of another point";
+  const auto known = last.closing;
+  std::vector<double> outside = here;
+  outside[0] = 1e6;
+  (void)s.price_at(outside, nullptr, &last);
+  EXPECT_EQ(last.closing, known) << "nothing was closed";
 }
 TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
   std::vector<Criterion> conditions;

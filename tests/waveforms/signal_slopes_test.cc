@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "waveforms/bspline.h"
+#include "waveforms/sines.h"
 
 namespace softland {
 namespace {
@@ -61,6 +63,27 @@ TEST(SignalSlopes, OfASplineByALevelAreItsBSpline) {
         if (slope.parameter == k) found = slope.voltage(time);
       }
       EXPECT_NEAR(found, basis.pieces()[piece].voltage(time), differences) << k << " " << piece;
+    }
+  }
+}
+
+TEST(SignalSlopes, OfSinesByAnAmplitudeAreItsSine) {
+  constexpr double differences = 1e-8;
+  const std::vector<double> x{5, -8, 1, 50e-6}, lower{-20, -20, -20, 20e-6}, upper{20, 20, 20, 80e-6};
+  const auto signals = [](std::span<const double> at) {
+    return std::vector{signal(Sines{.base = 30, .amplitudes = {at.begin(), at.end() - 1}, .duration = at.back()})};
+  };
+  const SignalSlopes slopes(signals, x, lower, upper);
+  EXPECT_TRUE(slopes.kinks().empty());
+  for (double t = 1e-6; t < 50e-6; t += 0.7e-6) {
+    const double angle = std::numbers::pi * t / 50e-6;
+    double by_duration = 0;
+    for (int k = 1; k <= 3; ++k) by_duration -= x[static_cast<std::size_t>(k) - 1] * k * angle / 50e-6 * std::cos(k * angle);
+    const std::vector<SignalSlopes::Slope>& all = slopes.at(0, 0);
+    ASSERT_EQ(all.size(), 4U);
+    for (const SignalSlopes::Slope& slope : all) {
+      const double expected = slope.parameter < 3 ? std::sin(static_cast<double>(slope.parameter + 1) * angle) : by_duration;
+      EXPECT_NEAR(slope.voltage(t), expected, differences * (slope.parameter < 3 ? 1 : 1e6)) << slope.parameter << " at " << t;
     }
   }
 }

@@ -32,6 +32,29 @@ TEST(Sines, FollowTheirFormula) {
   }
 }
 
+// Found by turning on from the first sine, at any time from a piece's beginning on.
+TEST(Sines, OfASeriesAreTheSumOfItsTerms) {
+  Sines sines{.base = 30_V, .rise_time = 20_us, .start = 6_us, .duration = 50_us};
+  double size = 30;
+  for (int k = 0; k < 24; ++k)
+    sines.amplitudes.push_back(k % 3 == 0 ? -4_V : 3_V / (1 + k)), size += std::abs(sines.amplitudes.back());
+  int series = 0;
+  const Signal compiled = signal(sines);
+  for (const SignalPiece& piece : compiled.pieces()) {
+    if (piece.terms.empty()) continue;
+    EXPECT_TRUE(piece.is_series);
+    ++series;
+    SignalPiece plain = piece;
+    plain.is_series = false;
+    const double fastest = piece.terms.back().angular_frequency;
+    for (double t = piece.begin; t < 60_us; t += 0.37_us) {
+      EXPECT_NEAR(piece.voltage(t), plain.voltage(t), size * kSinesRounding) << t;
+      EXPECT_NEAR(piece.rate(t), plain.rate(t), size * fastest * kSinesRounding) << t;
+    }
+  }
+  EXPECT_EQ(series, 2) << "before and after the end of the rise";
+}
+
 TEST(Sines, BeginAndEndWithoutAJump) {
   const Signal sines = signal(Sines{.amplitudes = {5, -8, 1, 2}, .start = 6_us, .duration = 50_us});
   EXPECT_TRUE(std::isfinite(sines.peak_slew()));
