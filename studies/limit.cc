@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -134,6 +135,16 @@ class LeastTimeSearch {
     return from(std::move(*swing), longest);
   }
 
+  // The waveforms that were found on the way to rest, ever nearer to it, on the hold levels from the touch on.
+  [[nodiscard]] std::vector<std::map<std::string, Waveform>> ways_to_rest(const std::map<std::string, Waveform>& plain) const {
+    std::vector<std::map<std::string, Waveform>> all;
+    for (const ControlledCourse& course : on_the_way_) {
+      all.push_back(with_catch(flight_, {.waveforms = tables_of(flight_, course), .course = course},
+                               course.time * flight_.time_unit(), plain));
+    }
+    return all;
+  }
+
   LeastTime from_start() {
     result_.from_start = true;
     const std::vector<Signal> signals = driven(prepared_, options_.start, plain_step(prepared_, options_.actuator));
@@ -156,6 +167,7 @@ class LeastTimeSearch {
       const Status status = come_to_rest(landing->state);
       if (status != Status::done) return ended(status, status == Status::interrupted ? std::string() : result_.message);
     }
+    if (options_.rough) return ended(Status::done, {});
     if (const Status status = improve_with_finer_knots(); status != Status::done) return ended(status, result_.message);
     return refine_until_simulated();
   }
@@ -222,6 +234,7 @@ class LeastTimeSearch {
       if (status == Status::interrupted) return status;
       if (status != Status::done) break;
       result_.room = room;
+      if (options_.rough) on_the_way_.push_back(course_);
     }
     if (std::isnan(result_.room)) return Status::numerical_failure;
     leave(result_.room);
@@ -258,6 +271,7 @@ class LeastTimeSearch {
   FreeFlight flight_;
   ControlProblem problem_;
   ControlledCourse course_;
+  std::vector<ControlledCourse> on_the_way_;  // to rest, of a rough search
   LeastTime result_;
 };
 
@@ -271,6 +285,31 @@ LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options) 
   LeastTime started = LeastTimeSearch(prepared, options).from_start();
   const bool better = started.status == Status::done && (swung.status != Status::done || started.time < swung.time);
   return better ? started : swung;
+}
+
+std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& prepared, Actuator actuator, double impact_velocity,
+                                                              const Watch& watch) {
+  constexpr int most_modes_followed = 4;
+  constexpr std::array ramps = {1.0 / 9, 1.0 / 18};  // periods of the first mode from one end of a range to the other
+  const double period = 2 * pi / prepared.model.angular_frequencies()[0];
+  std::vector<std::map<std::string, Waveform>> found;
+  if (prepared.model.modes() > most_modes_followed) return found;
+  for (const double ramp : ramps) {
+    if (watch.stopped()) break;
+    Prepared smooth = prepared;
+    for (auto& [name, limits] : smooth.drives.limits)
+      limits.max_slew = std::min(limits.max_slew, (limits.max_voltage - limits.min_voltage) / (ramp * period));
+    try {
+      const LeastTimeOptions options{
+          .actuator = actuator, .impact_velocity = impact_velocity, .at_rest = true, .rough = true, .watch = watch};
+      LeastTimeSearch search(smooth, options);
+      (void)search.from_swing();
+      std::ranges::move(search.ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
+    } catch (const InvalidInput&) {
+      return {};  // free_flight.h says of what
+    }
+  }
+  return found;
 }
 
 namespace {

@@ -32,6 +32,8 @@ struct LeastTimeOptions {
   double peak = std::numeric_limits<double>::infinity();  ///< of the electrode that pulls, where it is less than its driver's [V]
   /// Waveforms of the drives, of a search for example: the optimum is looked for from their flight too, where that touches.
   std::map<std::string, Waveform> start = {};
+  /// On the first knots and mesh, and not simulated: a place to begin at, no least time.
+  bool rough = false;
   Watch watch = {};
 };
 
@@ -55,6 +57,14 @@ struct LeastTime {
 
 /// Throws InvalidInput for a scene that the question does not fit (free_flight.h).
 [[nodiscard]] LeastTime least_time(const Prepared& prepared, const LeastTimeOptions& options);
+
+/// Waveforms of the drives that are shaped which bring every mode to rest on the contact, in about the least time for drives that
+/// take a ninth, and an eighteenth, of the first mode's period from one end of their range to the other: without the jumps that
+/// ring modes which the model leaves out. Where a search of a piezo, or of several drives, begins. `impact_velocity` as in
+/// LeastTimeOptions. Those that are not found are left out; none where free_flight.h does not follow the switch, and of more
+/// than four modes, which would take minutes.
+[[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& prepared, Actuator actuator,
+                                                                            double impact_velocity, const Watch& watch);
 
 /// A landing under a waveform that begins as one of least time does. Then it goes on pulling, to keep the beam on its contact
 /// while its modes ring down (the catch), and ends on the hold levels.

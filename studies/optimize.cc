@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "studies/family_search.h"
 #include "studies/joint_swings.h"
+#include "studies/limit.h"
 #include "studies/plain_step.h"
 #include "studies/search_setting.h"
 #include "studies/verification.h"
@@ -22,6 +23,8 @@ namespace {
 constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
 constexpr std::size_t most_sure = 4;        // more, where those did not stand up
 constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
+constexpr long fewest_for_landings = 1000;  // evaluations, for which landings at rest are worth their seconds
+constexpr double soft_touch = 0.01;         // of the plain step's impact velocity, at which they touch
 constexpr double distinct = 1.01;           // ratio of the costs of two candidates
 constexpr double opening = 0.6;             // share of the budget that several families divide before the best goes on
 
@@ -76,11 +79,24 @@ class Search {
       const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
       refine(signals_of(setting.drives(searched)), searched, setting.scene(searched));
     }
+    for (const auto& landing : landings_at_rest()) {
+      for (FamilySearch& family : families_) family.begin_at(landing);
+    }
     for (const auto& swing : joint_swings(setting.given, setting.space)) {
       for (FamilySearch& family : families_) {
         if (!family.point(swing).empty()) family.begin_at(swing);
       }
     }
+  }
+
+  // Of a piezo and of several drives, which can bring all modes to rest.
+  [[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest() const {
+    const SearchSetting& setting = settings_.front();
+    const std::vector<DriveSearch>& shaped = setting.space.drives();
+    const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
+    if (!can_rest || options_.max_evaluations < fewest_for_landings) return {};
+    return softland::landings_at_rest(setting.given, options_.actuator, soft_touch * setting.scale.step.touch_speed,
+                                      {.stop = options_.stop});
   }
 
   OptimizerResult run() {

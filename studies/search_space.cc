@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +13,9 @@
 
 namespace softland {
 namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr double rounding = 1e-9;  // of the distance of two bounds: a scene file writes rounded numbers
 
@@ -67,6 +72,51 @@ class FamilyOfDrives {
   std::map<std::string, std::string> named_;
 };
 
+// Least squares of `apart` from a start on, within the bounds: steps of Gauss and Newton, shortened until they help (Marquardt
+// 1963).
+template <class Apart>
+std::vector<double> fitted(std::vector<double> x, const std::vector<Variable>& variables, const Apart& apart) {
+  constexpr int most_steps = 40;
+  constexpr double step_of_range = 1e-6, enough = 1e-4, hardest = 1e6;
+  const auto n = static_cast<Eigen::Index>(x.size());
+  VectorXd left = apart(x);
+  double damping = 1e-3;
+  for (int step = 0; step < most_steps && damping < hardest; ++step) {
+    MatrixXd slopes(left.size(), n);
+    std::vector<double> near = x;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const double range = variables[i].upper - variables[i].lower;
+      slopes.col(k).setZero();
+      if (!(range > 0)) continue;
+      near[i] = x[i] + (x[i] + step_of_range * range <= variables[i].upper ? 1 : -1) * step_of_range * range;
+      slopes.col(k) = (apart(near) - left) * (range / (near[i] - x[i]));
+      near[i] = x[i];
+    }
+    const MatrixXd squares = slopes.transpose() * slopes;
+    const VectorXd downhill = -slopes.transpose() * left;
+    const double size = squares.diagonal().maxCoeff();
+    for (bool helps = false; !helps && damping < hardest;) {
+      const MatrixXd damped = squares + damping * size * MatrixXd::Identity(n, n);
+      const VectorXd move = damped.ldlt().solve(downhill);
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        const double range = variables[i].upper - variables[i].lower;
+        near[i] = std::clamp(x[i] + range * move[static_cast<Eigen::Index>(i)], variables[i].lower, variables[i].upper);
+      }
+      const VectorXd nearer = apart(near);
+      helps = nearer.squaredNorm() < left.squaredNorm();
+      if (!helps) {
+        damping = std::max(1e-9, 10 * damping);
+        continue;
+      }
+      const bool is_enough = nearer.squaredNorm() > (1 - enough) * left.squaredNorm();
+      x = near, left = nearer, damping /= 10;
+      if (is_enough) return x;
+    }
+  }
+  return x;
+}
+
 }  // namespace
 
 Shaped shaped_drives(const SceneFile& scene, Actuator actuator) {
@@ -86,11 +136,11 @@ std::string_view default_families(Shaped drives) {
     case Shaped::electrode:
       return "knots+dual-pulse+staircase:5+knots:8";
     case Shaped::piezo:
-      return "catch+sines:12+knots:8+sines:16+knots:12";
+      return "bspline:16+bspline:18+catch+knots:12";
     case Shaped::several:
       break;
   }
-  return "catch+dual-pulse+staircase:5+knots:12";
+  return "bspline:16+dual-pulse+knots:12";
 }
 
 std::vector<std::string> families_of(const std::string& text) {
@@ -158,9 +208,10 @@ std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& wavef
 
 std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
   if (std::optional<std::vector<double>> own = parameters(waveform)) return *own;
-  constexpr int instants = 500;
+  constexpr int instants = 250;
   constexpr double beyond = 1.25, least = 2.5;  // of its last breakpoint; of the first touch
-  constexpr long evaluations = 4000;
+  constexpr double near_enough = 0.01;          // of the squares of what the waveform does about its hold level
+  constexpr long evaluations = 3000;
   const bool squared = drive != piezo_drive;
   const auto driving = [&](const Signal& s, double time) {
     const double volts = s.voltage(time);
@@ -168,22 +219,32 @@ std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
   };
   const Signal given = signal(waveform);
   const double end = std::max(beyond * given.breakpoints().back(), least * first_touch);
-  std::vector<std::pair<double, double>> course;
-  for (int i = 0; i < instants; ++i) {
-    const double time = (i + 0.5) / instants * end;
-    course.emplace_back(time, driving(given, time));
-  }
-  const auto difference = [&](std::span<const double> x) {
-    const Signal own = signal(this->waveform(x));
-    double sum = 0;
-    for (const auto& [time, value] : course) sum += std::pow(driving(own, time) - value, 2);
-    return sum / instants;
+  const auto course = [&](const Signal& s) {
+    VectorXd all(instants);
+    for (int i = 0; i < instants; ++i) all[i] = driving(s, (i + 0.5) / instants * end);
+    return all;
   };
-  Problem problem;
-  problem.variables = variables;
-  problem.objective = difference;
-  problem.starts = starts;
-  return minimize(problem, {.max_evaluations = evaluations}).x;
+  const VectorXd wanted = course(given);
+  const auto apart = [&](std::span<const double> x) -> VectorXd { return course(signal(this->waveform(x))) - wanted; };
+  const auto difference = [&](std::span<const double> x) { return apart(x).squaredNorm() / instants; };
+  std::vector<double> best;
+  double fewest = std::numeric_limits<double>::infinity();
+  const auto fit_from = [&](const std::vector<double>& start) {
+    std::vector<double> fit = fitted(start, variables, apart);
+    const double left = difference(fit);
+    if (left < fewest) fewest = left, best = std::move(fit);
+  };
+  for (const std::vector<double>& start : starts) fit_from(start);
+  // Of steps, whose times have no slope.
+  const double all = (wanted.array() - wanted[instants - 1]).matrix().squaredNorm() / instants;
+  if (fewest > near_enough * all) {
+    Problem problem;
+    problem.variables = variables;
+    problem.objective = difference;
+    problem.starts = starts;
+    fit_from(minimize(problem, {.max_evaluations = evaluations}).x);
+  }
+  return best;
 }
 
 std::string DriveSearch::misfit(const Waveform& waveform) const {

@@ -195,8 +195,8 @@ TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
     return all;
   };
   EXPECT_EQ(family({}), "knots dual-pulse staircase:5 knots:8 ");
-  EXPECT_EQ(family({"--actuator", "pzt"}), "catch sines:12 knots:8 sines:16 knots:12 ");
-  EXPECT_EQ(family({"--actuator", "both"}), "catch dual-pulse staircase:5 knots:12 ");
+  EXPECT_EQ(family({"--actuator", "pzt"}), "bspline:16 bspline:18 catch knots:12 ");
+  EXPECT_EQ(family({"--actuator", "both"}), "bspline:16 dual-pulse knots:12 ");
   EXPECT_EQ(family({"--actuator", "both", "--waveform", "pulse"}), "pulse");
   const std::vector<std::string> robust{"--robust", "worst", "--samples", "8"};
   const auto with = [&](std::vector<std::string> more) {

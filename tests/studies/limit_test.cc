@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -12,6 +13,8 @@
 #include "model/constants.h"
 #include "studies/choices.h"
 #include "studies/free_flight.h"
+#include "studies/plain_step.h"
+#include "studies/search_setting.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
@@ -143,6 +146,42 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
   EXPECT_GT(slow.time, fast.time);
   EXPECT_TRUE(violation(signal(slow.waveforms.at("main")), ramps.drives.limits.at("main")).empty())
       << violation(signal(slow.waveforms.at("main")), ramps.drives.limits.at("main"));
+}
+
+// The nearer to rest all modes are when the contact point touches, the less it rebounds.
+TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps) {
+  const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
+  const Prepared p = prepare_and_choose(file, true);
+  const auto found = landings_at_rest(p, Actuator::pzt, 1.3e-3, {});
+  ASSERT_GE(found.size(), 4U);
+  const DriverLimits& limits = p.drives.limits.at("piezo");
+  const double period = 2 * pi / p.model.angular_frequencies()[0],
+               steepest = (limits.max_voltage - limits.min_voltage) / period * 18;
+  std::vector<double> heights;
+  for (const auto& landing : found) {
+    ASSERT_EQ(landing.size(), 1U);
+    const Signal piezo = signal(landing.at("piezo"));
+    EXPECT_EQ(violation(piezo, limits), "");
+    EXPECT_LE(piezo.peak_slew(), 1.0001 * steepest);
+    EXPECT_EQ(piezo.hold_level(), 0);
+    std::map<std::string, Waveform> all = plain_step(p, Actuator::pzt);
+    all["piezo"] = landing.at("piezo");
+    const Prepared scene = read_back(with_waveforms(p, all), "landing.toml", p);
+    heights.push_back(
+        metrics(simulate_closing(scene.model, scene.signals(), {.duration = 100e-6, .tolerance = 1e-8})).major_bounce_height);
+  }
+  const double least = *std::min_element(heights.begin(), heights.end());
+  EXPECT_LT(least, 1e-9) << "of beams that rebound by up to a micrometre under a step";
+  EXPECT_GT(heights.front(), 10 * least) << "far from rest yet";
+}
+TEST(LandingsAtRest, AreNoneWhereTheFlightIsNotFollowed) {
+  const auto of = [](std::initializer_list<const char*> settings) {
+    SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
+    for (const char* setting : settings) file.set(setting);
+    return landings_at_rest(prepare_and_choose(file, true), Actuator::pzt, 1.3e-3, {}).size();
+  };
+  EXPECT_EQ(of({"structure.modes=5"}), 0U);
+  EXPECT_EQ(of({"driver.piezo.bandwidth=2 MHz"}), 0U);
 }
 
 Prepared ramped_plate(const std::string& level) {
