@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -129,19 +130,23 @@ class LeastTimeSearch {
   }
 
   LeastTime from_swing() {
-    const double longest = longest_swing * 2 * pi / prepared_.model.angular_frequencies()[0];
-    std::optional<ControlledCourse> swing = flight_.swing(longest);
+    std::optional<ControlledCourse> swing = flight_.swing(longest_time());
     if (!swing) return ended(Status::no_contact, "full pull does not bring the switch to its contact");
-    return from(std::move(*swing), longest);
+    return from(std::move(*swing), longest_time());
   }
 
-  // The waveforms that were found on the way to rest, ever nearer to it, on the hold levels from the touch on.
-  [[nodiscard]] std::vector<std::map<std::string, Waveform>> ways_to_rest(const std::map<std::string, Waveform>& plain) const {
+  // Waveforms of courses ever nearer to rest, on the first knots and mesh; from the touch on they hold as the plain ones.
+  std::vector<std::map<std::string, Waveform>> ways_to_rest(const std::map<std::string, Waveform>& plain) {
     std::vector<std::map<std::string, Waveform>> all;
-    for (const ControlledCourse& course : on_the_way_) {
-      all.push_back(with_catch(flight_, {.waveforms = tables_of(flight_, course), .course = course},
-                               course.time * flight_.time_unit(), plain));
-    }
+    std::optional<ControlledCourse> swing = flight_.swing(longest_time());
+    const std::optional<FreeFlight::Landing> landing = flight_.landing();
+    if (!swing || !landing) return all;
+    course_ = std::move(*swing);
+    pose(longest_time(), landing);
+    (void)come_to_rest(landing->state, [&] {
+      const LeastTime way{.waveforms = tables_of(flight_, course_), .course = course_};
+      all.push_back(with_catch(flight_, way, course_.time * flight_.time_unit(), plain));
+    });
     return all;
   }
 
@@ -155,6 +160,8 @@ class LeastTimeSearch {
   }
 
  private:
+  [[nodiscard]] double longest_time() const { return longest_swing * 2 * pi / prepared_.model.angular_frequencies()[0]; }
+
   LeastTime from(ControlledCourse guess, double longest) {
     course_ = std::move(guess);
     std::optional<FreeFlight::Landing> landing;
@@ -167,7 +174,6 @@ class LeastTimeSearch {
       const Status status = come_to_rest(landing->state);
       if (status != Status::done) return ended(status, status == Status::interrupted ? std::string() : result_.message);
     }
-    if (options_.rough) return ended(Status::done, {});
     if (const Status status = improve_with_finer_knots(); status != Status::done) return ended(status, result_.message);
     return refine_until_simulated();
   }
@@ -218,7 +224,7 @@ class LeastTimeSearch {
   }
 
   // The modes are brought to rest little by little: at once Ipopt finds no way.
-  Status come_to_rest(const VectorXd& landed) {
+  Status come_to_rest(const VectorXd& landed, const std::function<void()>& nearer = {}) {
     const Index n = flight_.states();
     for (Index r = 0; r < n; ++r) problem_.at_the_end.push_back({.row = VectorXd::Unit(n, r)});
     const auto leave = [&](double room) {
@@ -234,7 +240,7 @@ class LeastTimeSearch {
       if (status == Status::interrupted) return status;
       if (status != Status::done) break;
       result_.room = room;
-      if (options_.rough) on_the_way_.push_back(course_);
+      if (nearer) nearer();
     }
     if (std::isnan(result_.room)) return Status::numerical_failure;
     leave(result_.room);
@@ -271,7 +277,6 @@ class LeastTimeSearch {
   FreeFlight flight_;
   ControlProblem problem_;
   ControlledCourse course_;
-  std::vector<ControlledCourse> on_the_way_;  // to rest, of a rough search
   LeastTime result_;
 };
 
@@ -300,11 +305,8 @@ std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& pr
     for (auto& [name, limits] : smooth.drives.limits)
       limits.max_slew = std::min(limits.max_slew, (limits.max_voltage - limits.min_voltage) / (ramp * period));
     try {
-      const LeastTimeOptions options{
-          .actuator = actuator, .impact_velocity = impact_velocity, .at_rest = true, .rough = true, .watch = watch};
-      LeastTimeSearch search(smooth, options);
-      (void)search.from_swing();
-      std::ranges::move(search.ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
+      const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = watch};
+      std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
     } catch (const InvalidInput&) {
       return {};  // free_flight.h says of what
     }

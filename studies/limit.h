@@ -32,8 +32,6 @@ struct LeastTimeOptions {
   double peak = std::numeric_limits<double>::infinity();  ///< of the electrode that pulls, where it is less than its driver's [V]
   /// Waveforms of the drives, of a search for example: the optimum is looked for from their flight too, where that touches.
   std::map<std::string, Waveform> start = {};
-  /// On the first knots and mesh, and not simulated: a place to begin at, no least time.
-  bool rough = false;
   Watch watch = {};
 };
 
