@@ -57,6 +57,8 @@ void append_halved(std::vector<std::pair<double, double>>& points, const SignalP
 void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   if (piece.is_straight() || !(end > begin)) return;
+  // Of a spline whose levels are all the same, a share of whose range is no tolerance.
+  if (!piece.terms.empty() && internal::derivative_bound(piece, 2, begin, end) == 0) return;
   require(tolerance > 0, fmt::format("the tolerance of the polyline of a curve is {} V; it must be > 0", tolerance));
   if (!piece.terms.empty()) return append_halved(points, piece, begin, end, tolerance);
   const double w = piece.angular_frequency;

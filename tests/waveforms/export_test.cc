@@ -40,6 +40,13 @@ double interpolated(const Points& points, double time) {
   return points.back().second;
 }
 
+TEST(Polyline, OfASplineThatStaysWhereItIsHasNoCurve) {
+  for (const double level : {0.0, 0.7}) {
+    const Signal still = signal(BSpline{.levels = std::vector<double>(8, level), .duration = 20e-6});
+    for (const auto& [time, voltage] : polyline(still, 30e-6, 0, 0)) EXPECT_EQ(voltage, level) << time;
+  }
+}
+
 TEST(Polyline, HasTheExactBreakpointsOfAPulse) {
   EXPECT_EQ(
       polyline(signal(kPulse), 60_us, 0, 0),
