@@ -57,8 +57,10 @@ void append_halved(std::vector<std::pair<double, double>>& points, const SignalP
 void append_inside(std::vector<std::pair<double, double>>& points, const SignalPiece& piece, double begin, double end,
                    double tolerance) {
   if (piece.is_straight() || !(end > begin)) return;
-  // Of a spline whose levels are all the same, a share of whose range is no tolerance.
-  if (!piece.terms.empty() && internal::derivative_bound(piece, 2, begin, end) == 0) return;
+  // Of a spline whose levels are all the same no share of its range is a tolerance: it is a line but for rounding.
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  const double size = std::max(std::abs(piece.voltage(begin)), std::abs(piece.voltage(end))), length = end - begin;
+  if (!piece.terms.empty() && length * length / 8 * internal::derivative_bound(piece, 2, begin, end) <= rounding * size) return;
   require(tolerance > 0, fmt::format("the tolerance of the polyline of a curve is {} V; it must be > 0", tolerance));
   if (!piece.terms.empty()) return append_halved(points, piece, begin, end, tolerance);
   const double w = piece.angular_frequency;
