@@ -191,7 +191,7 @@ int main(int argc, char** argv) {
   const std::string scene = argc > 1 ? argv[1] : std::string(SOFTLAND_SCENES) + "/mem-gold.toml";
   const SearchSetting setting = search_setting(SceneFile::load(scene), Target::bounce, Actuator::electrostatic, "pulse", {});
   fmt::print(
-      "| parameters | arcs of a step | closing [ms] | adjoint [closings] | forward [closings] | waveforms alone [closings] | "
+      "| parameters | parts of a step | closing [ms] | adjoint [closings] | forward [closings] | waveforms alone [closings] | "
       "error |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");
   for (const std::size_t parameters : {4U, 40U, 200U}) measure(setting, parameters - 1);

@@ -51,7 +51,7 @@ struct Derivatives {
 
 struct DerivativeOptions {
   double tolerance = 0;  ///< of the integrator; 0: the scene's, or 1e-8 if that is looser
-  int refinement = 4;    ///< arcs of a step: see LinearizedClosing
+  int refinement = 4;    ///< parts of a step: see LinearizedClosing
 };
 
 /// Under these waveforms, in the units that are known of each device where these do not err. There are none for a compressible
