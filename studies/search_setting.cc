@@ -227,7 +227,7 @@ std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const 
   const std::vector<Criterion> followed = followed_conditions();
   std::vector<double> gradient((1 + followed.size()) * x.size(), unknown);
   std::shared_ptr<const RecordedClosing> closing;
-  if (last != nullptr && std::equal(x.begin(), x.end(), last->x.begin(), last->x.end())) {
+  if (last != nullptr && last->closing != nullptr && std::equal(x.begin(), x.end(), last->x.begin(), last->x.end())) {
     closing = last->closing;
   } else {
     const std::map<std::string, Waveform> searched = space.waveforms(x);
