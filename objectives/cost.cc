@@ -105,7 +105,7 @@ double cost(const Aim& aim, Status status, const CostFigures& f, const CostScale
       case Target::impact:
         return v;
       case Target::energy:
-        return ratio(f.impact_energy, scale.step.impact_energy);
+        return std::sqrt(ratio(f.impact_energy, scale.step.impact_energy));
       case Target::force:
         return ratio(f.peak_force, scale.step.peak_force);
       case Target::drive:

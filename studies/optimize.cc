@@ -179,8 +179,9 @@ class Search {
     std::map<std::string, double> parameters;
   };
 
-  // Each family has a share of the budget, and begins at what those before it have found; the best goes on with the rest. False
-  // where the search is to end.
+  // Each family has a share of the budget; the best goes on with the rest. By the cost of bounce each begins at what those before
+  // it have found; by the own cost, where that would draw all into one valley, only the best does. False where the search is to
+  // end.
   bool run_families(long all_evaluations, double all_seconds, Costs costs) {
     const double share = opening / static_cast<double>(families_.size()), begun = seconds();
     const auto evaluations = static_cast<long>(share * static_cast<double>(all_evaluations));
@@ -189,6 +190,7 @@ class Search {
       if (!go_on(k, evaluations, share * all_seconds, 0, costs, false)) return false;
     }
     const long rest = all_evaluations - static_cast<long>(families_.size()) * evaluations;
+    if (costs == Costs::own) begin_where_others_were(leader(costs), costs);
     return go_on(leader(costs), rest, all_seconds - (seconds() - begun), options_.more_evaluations, costs, true);
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 namespace softland {
 namespace {
@@ -111,7 +112,11 @@ OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, Costs 
   const auto begin = std::chrono::steady_clock::now();
   options.on_improvement = {};
   first_index_ = first_index;
-  if (!log_.empty()) problem.starts = promising_points(problem.variables, costs);
+  if (!log_.empty()) {
+    std::vector<std::vector<double>> starts = promising_points(problem.variables, costs);
+    std::ranges::copy_if(problem.starts, std::back_inserter(starts), [&](const auto& start) { return !known_.contains(start); });
+    problem.starts = std::move(starts);
+  }
   OptimizerOptions first = options;
   if (costs == Costs::both) {
     first.max_evaluations -= options.max_evaluations / own_share;

@@ -54,7 +54,7 @@ class TwoStages {
   /// Minimises over the variables of `problem` from its starts; its objective is not used, nor are the callbacks of `options`.
   /// Throws as minimize() does. Result, improvements and indices, from `first_index` on, are those of one search by the own cost.
   /// Where both costs are the same and no point lands, a second stage of `more` evaluations goes on from the best points. So does
-  /// a further run, whose result is that of all.
+  /// a further run, which begins at starts that were not tried as well, and whose result is that of all.
   [[nodiscard]] OptimizerResult run(Problem problem, OptimizerOptions options, Costs costs, long more = 0, long first_index = 0);
   struct Best {
     Evaluation evaluation;  ///< with the own cost as value

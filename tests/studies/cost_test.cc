@@ -93,6 +93,14 @@ TEST(Cost, BelowOneIsThatOfALandingWithoutSignificantReboundByItsOwnFigureAlone)
   EXPECT_FALSE(prefers_early(Target::energy));
 }
 
+TEST(Cost, OfTheEnergyOfSoftTouchesIsLedByItAndNotByTheirLateness) {
+  Trajectory early = landing(28e-6, 0.001, 0, 0, 0), late = landing(36e-6, 0.001, 0, 0, 0);
+  early.touches[0].peak_energy = 2.6e-4 * scale().step.impact_energy;
+  late.touches[0].peak_energy = 0.95 * early.touches[0].peak_energy;
+  EXPECT_LT(cost(Target::energy, late, scale(), options), cost(Target::energy, early, scale(), options));
+  EXPECT_LT(cost(Target::bounce, early, scale(), options), cost(Target::bounce, late, scale(), options));
+}
+
 TEST(Cost, OfForceAndDriveFollowTheirFigures) {
   Trajectory one = landing(20e-6, 0.1, 0, 0, 0), other = one;
   other.touches[0].peak_force *= 0.99;
