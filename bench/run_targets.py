@@ -4,7 +4,7 @@
     bench/run_targets.py BUILD/apps/softland [--seeds N] [--targets A,B] [--searches SCENE:ACTUATOR,...] [--optimizer NAME] [--keep FILE] > results/targets.md
 
 Runs `softland optimize` with the default budget for every shipped scene that allows a search, every target and the seeds 1 to N (default 3).
-With --keep the searches are kept in a file and not run again. Takes about ten minutes on two idle cores.
+With --keep the searches are kept in a file and not run again. Takes about ten minutes a seed on two idle cores.
 """
 import argparse
 import datetime

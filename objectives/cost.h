@@ -16,8 +16,8 @@
 //   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 where the closing
 //   force, drive               rebounds higher; F is the target's own figure over that of the step. settling: end of the last
 //                              significant rebound, first touch if none, over first touch of the step; impact: V; energy: root
-//                              of impact energy over that of the step (of a soft touch the energy itself is a few thousandths,
-//                              and B / 1000 would lead); force: largest contact force; drive: energy that the drives give
+//                              of impact energy over that of the step (of a soft touch that ratio itself can be some 1e-4, and
+//                              B / 1000 would lead); force: largest contact force; drive: energy that the drives give
 //                              within the score
 //
 // A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B.
