@@ -160,11 +160,15 @@ void search(Ledger& ledger, const std::array<const Method*, searches_at_once>& m
       advance(ledger, refined, std::max(share_of(budget, refining, refined.size()), shortest_refinement));
       for (const Search& search : refined) explored.push_back(search.best_point);
     };
-    for (const Point& start : starts) refined.push_back(begin_search(find_method("sbplx"), start, polishing_step));
+    const bool by_values = finisher == nullptr || !(ledger.has_gradient() && ledger.smooth());
+    const Method& first = by_values ? find_method("sbplx") : *finisher;
+    for (const Point& start : starts) refined.push_back(begin_search(first, start, polishing_step));
     go_on();
     if (finisher != nullptr) {
-      for (Search& each : refined) each = begin_search(*finisher, each.best_point, polishing_step);
-      go_on();
+      if (by_values) {
+        for (Search& each : refined) each = begin_search(*finisher, each.best_point, polishing_step);
+        go_on();
+      }
       if (ledger.has_gradient() && ledger.goes_on() && ledger.dimension() >= fewest_hopping)
         hop(ledger, *finisher, static_cast<long>(hopping * static_cast<double>(ledger.remaining())));
     }

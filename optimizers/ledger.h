@@ -120,6 +120,7 @@ class Ledger {
   [[nodiscard]] std::size_t dimension() const { return free_.size(); }
   [[nodiscard]] bool has_gradient() const { return gradient_of_problem() != nullptr; }
   [[nodiscard]] bool goes_on() const { return options_.goes_on; }
+  [[nodiscard]] bool smooth() const { return options_.smooth; }
   [[nodiscard]] std::uint64_t seed() const { return options_.seed; }
   [[nodiscard]] const std::vector<Point>& starts() const { return starts_; }
   /// Runs the tasks, with budgets cut from the end to what remains. Returns the number of new evaluations.

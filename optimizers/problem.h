@@ -65,6 +65,8 @@ struct OptimizerOptions {
   int jobs = 1;        ///< threads, the calling one among them; `auto` makes use of them
   /// The starts are the best of an earlier search: with a gradient `auto` spends most on hops from the best of them.
   bool goes_on = false;
+  /// The objective is smooth around the starts: `auto` follows its gradient from them at once.
+  bool smooth = false;
   double target = -std::numeric_limits<double>::infinity();  ///< good enough: stop once a value is at or below it
   const std::atomic<bool>* stop = nullptr;                   ///< set from outside (Ctrl-C): ends the search with what there is
   /// Called (under a lock) after every evaluation, as they happen; with jobs > 1 the order of calls may vary between runs, and

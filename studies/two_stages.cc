@@ -118,6 +118,7 @@ OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, Costs 
     problem.starts = std::move(starts);
   }
   OptimizerOptions first = options;
+  first.smooth = costs == Costs::own;
   if (costs == Costs::both) {
     first.max_evaluations -= options.max_evaluations / own_share;
     first.max_seconds *= 1 - 1.0 / own_share;
@@ -127,6 +128,7 @@ OptimizerResult TwoStages::run(Problem problem, OptimizerOptions options, Costs 
   OptimizerOptions second = options;
   second.seed = ~options.seed;  // other points than the first stage sampled
   second.goes_on = options.goes_on || costs == Costs::both;
+  second.smooth = costs == Costs::both;
   second.max_evaluations -= result.evaluations;
   const bool lands = std::any_of(known_.begin(), known_.end(), [](const auto& one) { return one.second.lands; });
   if (costs == Costs::leading || costs == Costs::own) second.max_evaluations = 0;

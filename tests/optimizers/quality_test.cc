@@ -107,6 +107,30 @@ TEST(Auto, StaysAroundTheBestPointWhereItGoesOn) {
   }
 }
 
+TEST(Auto, FollowsTheGradientAtOnceWhereTheObjectiveIsSmoothAroundTheStarts) {
+  Problem problem = box(6, -1, 1, [](std::span<const double> x) {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) sum += static_cast<double>(1 + i * i) * std::pow(x[i] - 0.1, 2);
+    return sum;
+  });
+  problem.starts = {std::vector<double>(6, 0.3)};
+  const auto evaluations_before_a_gradient = [&](bool smooth) {
+    int evaluations = 0, before = -1;
+    problem.gradient = [&](std::span<const double> x) {
+      if (before < 0) before = evaluations;
+      std::vector<double> g;
+      for (std::size_t i = 0; i < x.size(); ++i) g.push_back(2 * static_cast<double>(1 + i * i) * (x[i] - 0.1));
+      return g;
+    };
+    const OptimizerResult result = minimize(
+        problem, {.max_evaluations = 2000, .smooth = smooth, .on_evaluation = [&](const Evaluation&) { ++evaluations; }});
+    EXPECT_LT(result.value, 1e-8);
+    return before;
+  };
+  EXPECT_EQ(evaluations_before_a_gradient(true), 1);
+  EXPECT_GE(evaluations_before_a_gradient(false), 100);
+}
+
 TEST_P(Quality, AMinimumInACornerIsFound) {
   const auto slope = [](std::span<const double> x) { return 2 * x[0] - x[1] + 0.5 * x[2]; };
   const OptimizerResult result = minimize(box(3, -1, 1, slope), {.optimizer = GetParam(), .max_evaluations = 500});
