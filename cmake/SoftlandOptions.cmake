@@ -6,9 +6,9 @@ add_library(softland_options INTERFACE)
 # Files that are compiled as one see each other's names, and would be warned of shadows.
 set(shadow $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>)
 target_compile_options(softland_options INTERFACE -Wall -Wextra ${shadow} -Wconversion -Wno-missing-field-initializers)
-# GCC 12 takes assignments of literals to std::string for overlapping copies (GCC PR 105651).
+# GCC 12 takes assignments of literals to std::string for overlapping copies (GCC PR 105651), at -O1 for copies without end.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(softland_options INTERFACE -Wno-restrict)
+  target_compile_options(softland_options INTERFACE -Wno-restrict -Wno-stringop-overflow)
 endif()
 if(CMAKE_UNITY_BUILD)  # files compiled as one see each other's names
   target_compile_options(softland_options INTERFACE -Wno-shadow)
@@ -17,7 +17,7 @@ if(SOFTLAND_WERROR)
   target_compile_options(softland_options INTERFACE -Werror)
   # The same fault of GCC 12 has other names, as other code is put around the literal.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    target_compile_options(softland_options INTERFACE -Wno-error=stringop-overflow -Wno-error=stringop-overread -Wno-error=array-bounds)
+    target_compile_options(softland_options INTERFACE -Wno-error=stringop-overread -Wno-error=array-bounds)
   endif()
 endif()
 
@@ -54,14 +54,18 @@ function(softland_offers target scope folder)
   target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${view}>)
 endfunction()
 
-# softland_library(NAME [FOLDER folder] SOURCES ... USES ...): a static library of the folder, NAME unless it is given, linked only
-# to what it names.
+# softland_library(NAME [FOLDER folder] [KIND hot|cold] SOURCES ... USES ...): a static library of the folder, NAME unless it is given,
+# linked only to what it names; hot, to run fast, unless it is cold, to be compiled fast.
 function(softland_library name)
-  cmake_parse_arguments(ARG "" "FOLDER" "SOURCES;USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "FOLDER;KIND" "SOURCES;USES" ${ARGN})
   if(NOT ARG_FOLDER)
     set(ARG_FOLDER ${name})
+  endif()
+  if(NOT ARG_KIND)
+    set(ARG_KIND hot)
   endif()
   add_library(softland_${name} STATIC ${ARG_SOURCES})
   target_link_libraries(softland_${name} PUBLIC $<BUILD_INTERFACE:softland_options> ${ARG_USES})
   softland_offers(softland_${name} PUBLIC ${ARG_FOLDER})
+  softland_compiled_as(softland_${name} ${ARG_KIND})
 endfunction()

@@ -126,7 +126,8 @@ TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks) {
 TEST(Optimize, MinimisesASumByTheMeanOfItsFigures) {
   const Aim sum({{Target::settling, 1}, {Target::energy, 2}});
   const Log log = search(quick(), {.target = sum}, 90);
-  EXPECT_EQ(log.evaluations.size(), 90U);
+  EXPECT_GT(log.evaluations.size(), 60U);  // of the second stage, by the sum, as well
+  EXPECT_LE(log.evaluations.size(), 90U);  // with what its gradients count for
   Metrics step;
   step.settled = true;
   step.bounce_count = 5;
