@@ -126,6 +126,7 @@ TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks) {
 TEST(Optimize, MinimisesASumByTheMeanOfItsFigures) {
   const Aim sum({{Target::settling, 1}, {Target::energy, 2}});
   const Log log = search(quick(), {.target = sum}, 90);
+  EXPECT_EQ(log.result.search.termination, Termination::evaluation_budget);
   EXPECT_GT(log.evaluations.size(), 60U);  // of the second stage, by the sum, as well
   EXPECT_LE(log.evaluations.size(), 90U);  // with what its gradients count for
   Metrics step;
