@@ -37,8 +37,8 @@ EvaluationValues values_of(const StoredRow& row) {
   return {.cost = figure[0], .leading = figure[1], .lands = figure[2] == 1, .closings = static_cast<long>(figure[6])};
 }
 
-StoredPlan stored_plan(const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
-                       const std::vector<std::string>& variables) {
+StoredPlan evaluation_plan(const nlohmann::json& plan, std::int64_t points, std::uint64_t seed,
+                           const std::vector<std::string>& variables) {
   return {.text = plan.dump(1), .points = points, .columns = columns_for(variables), .seed = seed};
 }
 
@@ -46,7 +46,7 @@ StoredPlan stored_plan(const nlohmann::json& plan, std::int64_t points, std::uin
 
 EvaluationStore::EvaluationStore(const std::filesystem::path& file, const nlohmann::json& plan, std::int64_t points,
                                  std::uint64_t seed, const std::vector<std::string>& variables, const StoredOrigin& origin)
-    : store_(file, stored_plan(plan, points, seed, variables), origin, StudyStore::Opening::resume), points_(points) {
+    : store_(file, evaluation_plan(plan, points, seed, variables), origin, StudyStore::Opening::resume), points_(points) {
   StudyReader(file).read([&](const StoredRow& row) {
     known_.emplace(row.content, values_of(row));
     next_ = row.point + 1;

@@ -33,7 +33,7 @@ StoredColumn column_of(const PointFigure& figure) {
   return {.key = column_key(figure.quantity, figure.unit), .name = figure.name, .unit = figure.unit, .kind = ColumnKind::figure};
 }
 
-StoredPlan stored_plan(const PlannedSearch& search, const std::vector<std::string>& variables) {
+StoredPlan seed_plan(const PlannedSearch& search, const std::vector<std::string>& variables) {
   StoredPlan plan{.text = search.plan.dump(1),
                   .points = static_cast<std::int64_t>(search.seeds),
                   .columns = {{.key = "seed", .name = "seed", .unit = {}, .kind = ColumnKind::variable}},
@@ -74,7 +74,7 @@ SeedStudy::SeedStudy(const Common& c, const PlannedSearch& search, SearchPlaces&
       places_(places),
       variables_(std::move(variables)),
       file_(places.store(seeds_file)),
-      store_(file_, stored_plan(search, variables_), origin_of(c), StudyStore::Opening::resume),
+      store_(file_, seed_plan(search, variables_), origin_of(c), StudyStore::Opening::resume),
       log_(places.folder(), variables_),
       bar_(c.quiet),
       evaluations_(search.seeds, 0),

@@ -10,16 +10,10 @@
 #include <system_error>
 
 #include "base/require.h"
+#include "base/trimmed.h"
 
 namespace softland {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r";
-  const std::size_t begin = text.find_first_not_of(blank);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blank) - begin + 1);
-}
 
 std::vector<std::string_view> cells(std::string_view line) {
   std::vector<std::string_view> result;

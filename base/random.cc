@@ -1,11 +1,11 @@
 #include "base/random.h"
 
-#include <boost/math/distributions/normal.hpp>
+#include "base/standard_normal.h"
 
 namespace softland {
 
 double random_normal(std::uint64_t seed, Stream stream, std::uint64_t counter) {
-  return quantile(boost::math::normal_distribution<>(), random_probability(seed, stream, counter));
+  return standard_normal_quantile(random_probability(seed, stream, counter));
 }
 
 }  // namespace softland

@@ -8,14 +8,10 @@
 #include <vector>
 
 #include "base/require.h"
+#include "base/trimmed.h"
 
 namespace softland {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
 
 Target target_of(std::string_view name) {
   const TargetRow* row = find_named(targets, name);

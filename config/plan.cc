@@ -16,6 +16,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "base/trimmed.h"
 #include "config/scene_file_impl.h"
 #include "config/section_reader.h"
 
@@ -29,12 +30,6 @@ using internal::SectionReader;
 constexpr std::string_view plan_section = "plan";
 constexpr std::uint64_t most_values = 10'000'000;  // of one variable, or rows of a list
 constexpr std::uint64_t most_searched = 10'000'000;
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r";
-  const std::size_t begin = text.find_first_not_of(blank);
-  return begin == std::string_view::npos ? std::string_view() : text.substr(begin, text.find_last_not_of(blank) - begin + 1);
-}
 
 std::vector<std::string> split(std::string_view text, char at) {
   std::vector<std::string> parts;

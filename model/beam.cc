@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
 
+#include "base/decompositions.h"
 #include "base/engineering.h"
 #include "base/gauss.h"
 #include "base/require.h"
@@ -23,17 +23,10 @@ constexpr int functions = element_functions;
 constexpr int shortest_count = 6;     // elements over the length, at least
 constexpr double least_pivot = 2e-3;  // of the elimination: it magnifies the rounding by its inverse
 
-// Orthonormal columns that are orthogonal to those of `held`.
-Eigen::MatrixXd complement(const Eigen::MatrixXd& held) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(held);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(held.rows(), held.rows());
-  return q.rightCols(held.rows() - held.cols());
-}
-
 // Combinations of the functions that the support permits, orthonormal in the elastic energy.
 Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::MatrixXd& end, const Eigen::MatrixXd& slopes) {
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(slopes.rows(), slopes.rows());
-  if (beam.far_clamp) basis = complement(end);
+  if (beam.far_clamp) basis = orthogonal_complement(end);
   if (beam.axial_force != 0) {
     const Eigen::MatrixXd stiffness =
         Eigen::MatrixXd::Identity(basis.cols(), basis.cols()) + beam.axial_force * basis.transpose() * slopes * basis;
@@ -46,9 +39,9 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
 
 // The phase of a mode over the beam where it bends as waves do that travel along it, and what it grows by with omega^2. It hardly
 // changes from a beam to a similar one.
-struct Phase {
+struct WavePhase {
   double value = 0, slope = 0;
-  Phase(const NormalisedModes::Beam& beam, double square) {
+  WavePhase(const NormalisedModes::Beam& beam, double square) {
     for (const NormalisedModes::Beam::Section& s : beam.sections) {
       const double n = beam.axial_force / (2 * s.rigidity), root = std::sqrt(n * n + s.mass * square / s.rigidity);
       const double number = std::sqrt(root - n);  // of waves: EI k^4 + N k^2 = mu omega^2
@@ -61,9 +54,9 @@ struct Phase {
 // omega^2 of a mode, roughly, from that of a similar beam.
 double carried_over(double square, const NormalisedModes::Beam& from, const NormalisedModes::Beam& to) {
   constexpr int steps = 3;
-  const double phase = Phase(from, square).value;
+  const double phase = WavePhase(from, square).value;
   for (int i = 0; i < steps; ++i) {
-    const Phase here(to, square);
+    const WavePhase here(to, square);
     square += (phase - here.value) / here.slope;
   }
   return square;
@@ -189,13 +182,13 @@ void NormalisedModes::search() {
   if (beam_.far_clamp || beam_.axial_force != 0) mass = basis.transpose() * mass * basis;
 
   // M x = x / omega^2: the low modes, which matter, are the largest eigenvalues and so the most accurate ones.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(mass);
+  const SymmetricEigen modes = symmetric_eigen(mass);
   inverse_squares_.resize(beam_.modes);
   shapes_.resize(total, beam_.modes);
   for (int i = 0; i < beam_.modes; ++i) {
     const Eigen::Index k = mass.rows() - 1 - i;
-    inverse_squares_[i] = solver.eigenvalues()[k];
-    shapes_.col(i) = basis * solver.eigenvectors().col(k) / std::sqrt(inverse_squares_[i]);
+    inverse_squares_[i] = modes.values[k];
+    shapes_.col(i) = basis * modes.vectors.col(k) / std::sqrt(inverse_squares_[i]);
   }
   orient();
   moving_place_ = moving_place();

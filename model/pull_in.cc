@@ -1,12 +1,12 @@
 #include "model/pull_in.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <optional>
 #include <vector>
 
+#include "base/decompositions.h"
 #include "integrators/roots.h"
 #include "model/closing.h"
 #include "model/constants.h"
@@ -112,7 +112,7 @@ class Statics {
       bordered(n, n) = 0;
       right.head(n) = -residual.cwiseQuotient(squares_);
       right[n] = (s - shape.dot(h.q)) / largest;
-      const Eigen::VectorXd step = bordered.partialPivLu().solve(right);
+      const Eigen::VectorXd step = solve_linear(bordered, right);
       if (!step.allFinite()) return std::nullopt;
       h.q += step.head(n);
       h.unknown += step[n];

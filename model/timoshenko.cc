@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "base/decompositions.h"
 #include "base/gauss.h"
 #include "model/constants.h"
 
@@ -75,10 +76,10 @@ std::vector<double> frequency_excess(const Structure& s) {
   stiffness.bottomRightCorner(n, n) = integral(b.slopes, b.slopes) + integral(b.values, b.values) / shear;
   mass.topLeftCorner(n, n) = integral(b.values, b.values);
   mass.bottomRightCorner(n, n) = gyration * mass.topLeftCorner(n, n);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass, Eigen::EigenvaluesOnly);
+  const Eigen::VectorXd squares = generalized_eigenvalues(stiffness, mass);
   std::vector<double> excess;
   for (int mode = 1; mode <= s.modes; ++mode) {
-    const double here = std::pow(wave_number(mode, both_clamped), 2) / std::sqrt(solver.eigenvalues()[mode - 1]) - 1;
+    const double here = std::pow(wave_number(mode, both_clamped), 2) / std::sqrt(squares[mode - 1]) - 1;
     excess.push_back(here * beyond * beyond);
   }
   return excess;

@@ -4,13 +4,14 @@
 // jumps. Points beyond a bound are mirrored back into the box.
 // Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, algorithm and default parameters of appendix A,
 // without negative weights.
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "base/decompositions.h"
 #include "base/random.h"
 #include "optimizers/backends.h"
 
@@ -71,8 +72,7 @@ class Distribution {
         axes_(covariance_),
         lengths_(VectorXd::Ones(mean_.size())),
         path_sigma_(VectorXd::Zero(mean_.size())),
-        path_c_(path_sigma_),
-        eigen_(mean_.size()) {}
+        path_c_(path_sigma_) {}
 
   [[nodiscard]] const VectorXd& mean() const { return mean_; }
   [[nodiscard]] VectorXd point(const VectorXd& z) const {
@@ -100,11 +100,11 @@ class Distribution {
     lower.rankUpdate(path_c_, s.c_1);
     for (Eigen::Index j = 0; j < s.weights.size(); ++j)
       lower.rankUpdate(children[static_cast<std::size_t>(j)].step, s.c_mu * s.weights[j]);
-    eigen_.compute(covariance_);
-    axes_ = eigen_.eigenvectors();
+    const SymmetricEigen eigen = symmetric_eigen(covariance_);
+    axes_ = eigen.vectors;
     // Eigenvalues that are smaller still are rounding errors of the largest.
-    const double smallest = std::numeric_limits<double>::epsilon() * eigen_.eigenvalues().maxCoeff();
-    lengths_ = eigen_.eigenvalues().cwiseMax(smallest).cwiseSqrt();
+    const double smallest = std::numeric_limits<double>::epsilon() * eigen.values.maxCoeff();
+    lengths_ = eigen.values.cwiseMax(smallest).cwiseSqrt();
 
     sigma_ *= std::exp(std::min(1.0, s.c_sigma / s.d_sigma * (path_sigma_.norm() / s.chi - 1)));
   }
@@ -115,7 +115,6 @@ class Distribution {
   double sigma_;
   MatrixXd covariance_, axes_;
   VectorXd lengths_, path_sigma_, path_c_;
-  Eigen::SelfAdjointEigenSolver<MatrixXd> eigen_;
 };
 
 }  // namespace

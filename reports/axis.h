@@ -7,6 +7,9 @@
 
 namespace softland::internal {
 
+inline constexpr const char* ink = "#1b1f24";    // of text and of what counts
+inline constexpr const char* muted = "#5f6b76";  // of ticks and frames
+
 /// Data to pixels along one axis.
 struct Axis {
   Scale scale = Scale::linear;

@@ -14,8 +14,6 @@ namespace softland::internal {
 namespace {
 
 // Okabe and Ito's palette, which colour-blind readers tell apart; the dashes carry the same distinction without colour.
-constexpr const char* ink = "#1b1f24";
-constexpr const char* muted = "#5f6b76";
 constexpr const char* grid = "#e4e7ea";
 
 constexpr double left = 78;

@@ -15,13 +15,10 @@
 namespace softland::internal {
 namespace {
 
-constexpr const char* ink = "#1b1f24";
-constexpr const char* muted = "#5f6b76";
-
-constexpr double left = 84;
-constexpr double right = 128;  // the scale of colours
-constexpr double above = 14;
-constexpr double below = 84;        // tick labels, axis label, legend of marks
+constexpr double map_left = 84;
+constexpr double map_right = 128;  // the scale of colours
+constexpr double map_above = 14;
+constexpr double map_below = 84;    // tick labels, axis label, legend of marks
 constexpr int steps_of_scale = 32;  // colours that are told apart
 
 std::vector<double> finite(const std::vector<double>& values) {
@@ -233,43 +230,43 @@ std::string frame(const HeatMap& map, const Cells& x, const Cells& y, double wid
   const Prefix x_prefix = prefix_of(map.x.unit, map.x.values.back());
   const Prefix y_prefix = prefix_of(map.y.unit, map.y.values.back());
   std::string out =
-      fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"{}\"/>\n", left,
-                  above, width - left - right, height - above - below, muted);
+      fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"{}\"/>\n", map_left,
+                  map_above, width - map_left - map_right, height - map_above - map_below, muted);
   const auto text = [&](double at_x, double at_y, std::string_view anchor, const std::string& words, std::string_view more = "") {
     out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", at_x, at_y, anchor, more, words);
   };
-  const double bottom = height - below;
+  const double bottom = height - map_below;
   for (const double tick : ticks(x.axis(), 8))
     text(x.axis().pixel(tick), bottom + 17, "middle", plain_number(tick / x_prefix.factor, 5));
   for (const double tick : ticks(y.axis(), 8))
-    text(left - 8, y.axis().pixel(tick) + 4, "end", plain_number(tick / y_prefix.factor, 5));
-  text((left + width - right) / 2, bottom + 38, "middle", axis_label(map.x.label, map.x.unit, x_prefix));
-  const double middle = (above + bottom) / 2;
+    text(map_left - 8, y.axis().pixel(tick) + 4, "end", plain_number(tick / y_prefix.factor, 5));
+  text((map_left + width - map_right) / 2, bottom + 38, "middle", axis_label(map.x.label, map.x.unit, x_prefix));
+  const double middle = (map_above + bottom) / 2;
   text(20, middle, "middle", axis_label(map.y.label, map.y.unit, y_prefix),
        fmt::format(" transform=\"rotate(-90 20 {:.1f})\"", middle));
   return out;
 }
 
 std::string legend(const HeatMap& map, const ColourRange& range, const Prefix& prefix, double width, double height) {
-  const double x = width - right + 22, bottom = height - below, tall = (bottom - above) / steps_of_scale;
+  const double x = width - map_right + 22, bottom = height - map_below, tall = (bottom - map_above) / steps_of_scale;
   std::string out;
   for (int k = 0; k < steps_of_scale; ++k) {
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.2f}\" width=\"16\" height=\"{:.2f}\" fill=\"{}\"/>\n", x,
                        bottom - (k + 1) * tall, tall + 0.4, scale_colour((k + 0.5) / steps_of_scale));
   }
-  const Axis axis{.scale = Scale::linear, .low = range.low, .high = range.high, .pixel_low = bottom, .pixel_high = above};
+  const Axis axis{.scale = Scale::linear, .low = range.low, .high = range.high, .pixel_low = bottom, .pixel_high = map_above};
   for (const double tick : ticks(axis, 8))
     out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", x + 22, axis.pixel(tick) + 4,
                        plain_number(tick / prefix.factor, 5));
   if (!map.unit.empty())
     out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}{}</text>\n", x, bottom + 32, prefix.symbol, escaped(map.unit));
-  if (range.cut_above) out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">and above</text>\n", x, above - 3);
+  if (range.cut_above) out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">and above</text>\n", x, map_above - 3);
   if (range.cut_below) out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">and below</text>\n", x, bottom + 14);
   std::set<std::size_t> marked;
   for (std::size_t k = 0; k < map.values.size(); ++k) {
     if (!std::isfinite(map.values[k])) marked.insert(map.missing[k]);
   }
-  double at = left;
+  double at = map_left;
   for (const std::size_t reason : marked) {
     out += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"22\" height=\"13\" fill=\"url(#reason-{})\" stroke=\"{}\" "
@@ -355,7 +352,7 @@ double heat_map_height(double width) { return 0.62 * width; }
 
 std::string heat_map_elements(const HeatMap& map, double width) {
   const double height = heat_map_height(width);
-  const Cells x(map.x, left, width - right), y(map.y, height - below, above);
+  const Cells x(map.x, map_left, width - map_right), y(map.y, height - map_below, map_above);
   const ColourRange range = colour_range(map.values);
   const Prefix prefix = prefix_of(map.unit, std::max(std::abs(range.low), std::abs(range.high)));
   std::string patterns;

@@ -68,11 +68,12 @@ std::string drives_of(Actuator actuator) {
   return "electrodes and piezo";
 }
 
-constexpr std::size_t label_width = 44, number_width = 12;
+constexpr std::size_t limit_label_width = 44, limit_number_width = 12;
 
-std::string row(const std::string& name, const std::string& time, const std::string& velocity, const std::string& rest = {}) {
-  return "  " + left_aligned(name, label_width) + right_aligned(time, number_width) + right_aligned(velocity, number_width) +
-         (rest.empty() ? "" : "  " + rest) + "\n";
+std::string limit_row(const std::string& name, const std::string& time, const std::string& velocity,
+                      const std::string& rest = {}) {
+  return "  " + left_aligned(name, limit_label_width) + right_aligned(time, limit_number_width) +
+         right_aligned(velocity, limit_number_width) + (rest.empty() ? "" : "  " + rest) + "\n";
 }
 
 std::string why_not(const LeastTime& least) {
@@ -80,9 +81,9 @@ std::string why_not(const LeastTime& least) {
 }
 
 std::string least_row(const std::string& name, const LeastTime& least) {
-  if (least.status != Status::done) return row(name, "—", "—", why_not(least));
-  return row(name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"),
-             least.from_start ? "found from the waveform of --start" : "");
+  if (least.status != Status::done) return limit_row(name, "—", "—", why_not(least));
+  return limit_row(name, quantity(least.time, "s", 4), quantity(least.impact_velocity, "m/s"),
+                   least.from_start ? "found from the waveform of --start" : "");
 }
 
 // What follows the touch of a landing.
@@ -143,24 +144,24 @@ std::string limit_text(const Limit& limit) {
   std::string text = limit.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
   const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
   text += fmt::format("How quickly {} can close the switch{}\n\n", drives_of(limit.options.actuator), peak);
-  text += row("", "first touch", "speed");
-  text += row("plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s"));
+  text += limit_row("", "first touch", "speed");
+  text += limit_row("plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s"));
   text += least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch);
   text += least_row("least time with every mode at rest", limit.rest);
   if (limit.landing) {
     const Metrics& m = limit.landing->closing.metrics;
     const std::string after = words_after(*limit.landing);
-    text +=
-        row(limit.landing->catch_time > 0 ? fmt::format("landing, then a catch of {}", quantity(limit.landing->catch_time, "s"))
-                                          : std::string("landing"),
-            quantity(m.initial_contact_time, "s", 4), quantity(m.impact_velocity, "m/s"), after);
+    text += limit_row(limit.landing->catch_time > 0
+                          ? fmt::format("landing, then a catch of {}", quantity(limit.landing->catch_time, "s"))
+                          : std::string("landing"),
+                      quantity(m.initial_contact_time, "s", 4), quantity(m.impact_velocity, "m/s"), after);
   }
   const auto list = [&](const std::string& title, const std::vector<LeastTime>& all, const auto& name) {
     if (all.empty()) return;
-    text += "\n" + row(title, "least time", "");
+    text += "\n" + limit_row(title, "least time", "");
     for (const LeastTime& least : all) {
-      text += least.status == Status::done ? row(name(least), quantity(least.time, "s", 4), "")
-                                           : row(name(least), "—", "", why_not(least));
+      text += least.status == Status::done ? limit_row(name(least), quantity(least.time, "s", 4), "")
+                                           : limit_row(name(least), "—", "", why_not(least));
     }
   };
   list("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); });

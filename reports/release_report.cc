@@ -27,7 +27,7 @@ using internal::right_aligned;
 using nlohmann::json;
 
 constexpr const char* plain_words = "plain opening";
-constexpr std::size_t label_width = 44, number_width = 16;
+constexpr std::size_t release_label_width = 44, release_number_width = 16;
 constexpr double curve_tolerance = 1e-4;  // of the largest voltage, where a drive is no straight line
 
 json figures_json(const ReleaseFigures& f) {
@@ -78,9 +78,10 @@ json opening_json(const Release& r, const Opening& o) {
           {"waveforms", waveforms}};
 }
 
-std::string row(const std::string& name, const std::string& plain, const std::string& best, const std::string& rest = {}) {
-  std::string line = "  " + left_aligned(name, label_width) + right_aligned(plain, number_width);
-  if (!best.empty()) line += right_aligned(best, number_width);
+std::string release_row(const std::string& name, const std::string& plain, const std::string& best,
+                        const std::string& rest = {}) {
+  std::string line = "  " + left_aligned(name, release_label_width) + right_aligned(plain, release_number_width);
+  if (!best.empty()) line += right_aligned(best, release_number_width);
   if (!rest.empty()) line += "  " + rest;
   return line + "\n";
 }
@@ -93,9 +94,9 @@ std::string gain(double plain, double best) {
 std::string quantity_row(const Release& r, const std::string& name, double ReleaseFigures::*member, std::string_view unit,
                          bool lower) {
   const double plain = r.plain.figures.*member;
-  if (!r.best) return row(name, quantity(plain, unit), "");
+  if (!r.best) return release_row(name, quantity(plain, unit), "");
   const double best = r.best->figures.*member;
-  return row(name, quantity(plain, unit), quantity(best, unit), lower ? gain(plain, best) : "");
+  return release_row(name, quantity(plain, unit), quantity(best, unit), lower ? gain(plain, best) : "");
 }
 
 std::string finding(const Release& r) {
@@ -185,16 +186,17 @@ json release_json(const Release& r, const Provenance& provenance) {
 std::string release_text(const Release& r) {
   std::string text = r.interrupted ? "Interrupted: what follows is the best so far.\n\n" : "";
   text += wrapped(finding(r)) + "\n\n";
-  text += row("", plain_words, r.best ? "found" : "");
+  text += release_row("", plain_words, r.best ? "found" : "");
   text += quantity_row(r, "leaves its contact", &ReleaseFigures::release_time, "s", false);
   text += quantity_row(r, "open for good", &ReleaseFigures::settling_time, "s", true);
   text += quantity_row(r, "residual vibration", &ReleaseFigures::residual_vibration, "m", true);
   text += quantity_row(r, "furthest beyond its open position", &ReleaseFigures::overshoot, "m", true);
-  text += row("touches again", std::to_string(r.plain.figures.touches), r.best ? std::to_string(r.best->figures.touches) : "");
+  text += release_row("touches again", std::to_string(r.plain.figures.touches),
+                      r.best ? std::to_string(r.best->figures.touches) : "");
   if (r.best) {
-    text += "\n" + row("parameter", "value", "");
+    text += "\n" + release_row("parameter", "value", "");
     for (const auto& [name, value] : r.parameters)
-      text += row(name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4), "");
+      text += release_row(name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4), "");
   }
   return text + "\n" + wrapped(remarks(r)) + "\n";
 }

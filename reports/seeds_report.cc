@@ -73,10 +73,10 @@ std::string outcome(const ResultSeeds::Search& one) {
   return !failed.empty() ? failed : one.confirmed ? "goal met, confirmed" : "goal met";
 }
 
-std::vector<std::string> cells(const ResultSeeds::Search& one) {
+std::vector<std::string> search_cells(const ResultSeeds::Search& one) {
   std::vector<std::string> all{std::to_string(one.seed), outcome(one), quantity(one.cost, "", 4)};
   for (const Figure& f : shown_figures) all.push_back(figure_text(f, one.figures[f], Metrics::unset, Metrics::unset));
-  all.push_back(std::isfinite(one.evaluations) ? whole(one.evaluations) : "—");
+  all.push_back(std::isfinite(one.evaluations) ? internal::whole(one.evaluations) : "—");
   std::string ended = one.termination;
   std::replace(ended.begin(), ended.end(), '_', ' ');
   all.push_back(ended);
@@ -168,7 +168,7 @@ std::string seeds_caption(const ResultSeeds& seeds) {
 std::string seeds_text(const std::optional<ResultSeeds>& seeds) {
   if (!seeds) return {};
   std::vector<std::vector<std::string>> rows{heads()};
-  for (const ResultSeeds::Search& one : seeds->searches) rows.push_back(cells(one));
+  for (const ResultSeeds::Search& one : seeds->searches) rows.push_back(search_cells(one));
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], columns_of(row[i]));
@@ -194,7 +194,8 @@ std::string seeds_section(const std::optional<ResultSeeds>& seeds) {
     return row;
   };
   std::vector<TableRow> rows;
-  for (std::size_t k = 0; k < seeds->searches.size(); ++k) rows.push_back(row_of(cells(seeds->searches[k]), k == seeds->best));
+  for (std::size_t k = 0; k < seeds->searches.size(); ++k)
+    rows.push_back(row_of(search_cells(seeds->searches[k]), k == seeds->best));
   return section("seeds", "Searches from other seeds",
                  "<p>" + escaped(seeds_caption(*seeds)) + "</p>\n" + table_html(row_of(heads(), false), rows));
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -11,6 +10,7 @@
 #include "base/engineering.h"
 #include "base/random.h"
 #include "base/require.h"
+#include "base/standard_normal.h"
 #include "sampling/statistics.h"
 
 namespace softland {
@@ -28,7 +28,7 @@ Interval wilson_interval(std::size_t successes, std::size_t trials, double confi
           std::to_string(successes) + " successes must not be more than " + std::to_string(trials) + " trials");
   if (trials == 0) return {.low = 0, .high = 1};
   const double n = static_cast<double>(trials), share = static_cast<double>(successes) / n;
-  const double z = quantile(boost::math::normal_distribution<>(), (1 + confidence) / 2), z2 = z * z;
+  const double z = standard_normal_quantile((1 + confidence) / 2), z2 = z * z;
   const double middle = (share + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(share * (1 - share) / n + z2 / (4 * n * n));
   return {.low = successes == 0 ? 0 : middle - half, .high = successes == trials ? 1 : middle + half};  // exactly there

@@ -1,12 +1,13 @@
 #include "sampling/copula.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <numbers>
 
+#include "base/decompositions.h"
 #include "base/engineering.h"
 #include "base/require.h"
+#include "base/standard_normal.h"
 
 namespace softland {
 namespace {
@@ -49,28 +50,27 @@ GaussianCopula::GaussianCopula(const Eigen::MatrixXd& correlation, const std::ve
                           pair + " above the diagonal and " + rounded_text(correlation(i, k)) + " below it; both must be equal");
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  const double least = eigen.eigenvalues()[0];
+  const SymmetricEigen eigen = symmetric_eigen(correlation);
+  const double least = eigen.values[0];
   if (!(least >= least_eigenvalue)) {
-    require_correlation(false, "the correlations of " + main_parts(eigen.eigenvectors().col(0), known) +
+    require_correlation(false, "the correlations of " + main_parts(eigen.vectors.col(0), known) +
                                    " contradict each other: the smallest eigenvalue of their matrix is " + rounded_text(least) +
                                    "; it must be at least " + rounded_text(least_eigenvalue));
   }
-  factor_ = correlation.llt().matrixL();
+  factor_ = cholesky_factor(correlation);
 }
 
 void GaussianCopula::correlate(std::span<double> u) const {
   require(u.size() == dimensions(), "a point has another number of coordinates than the copula");
-  const boost::math::normal_distribution<> normal;
   Eigen::VectorXd z(factor_.rows());
   for (Eigen::Index i = 0; i < z.size(); ++i) {
     const double p = u[static_cast<std::size_t>(i)];
     require(p > 0 && p < 1, "a coordinate must be above 0 and below 1");
-    z[i] = quantile(normal, p);
+    z[i] = standard_normal_quantile(p);
   }
   for (Eigen::Index i = 1; i < z.size(); ++i) {  // the first one stays as it is, to the last bit
     const double correlated = factor_.row(i).head(i + 1).dot(z.head(i + 1));
-    u[static_cast<std::size_t>(i)] = std::clamp(cdf(normal, correlated), 0x1p-53, 1 - 0x1p-53);
+    u[static_cast<std::size_t>(i)] = std::clamp(standard_normal_cdf(correlated), 0x1p-53, 1 - 0x1p-53);
   }
 }
 

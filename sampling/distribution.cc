@@ -1,7 +1,6 @@
 #include "sampling/distribution.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "base/engineering.h"
 #include "base/gauss.h"
 #include "base/require.h"
+#include "base/standard_normal.h"
 
 namespace softland {
 namespace {
@@ -26,8 +26,6 @@ void require_positive(std::string_view parameter, double value) {
              std::string(parameter) + " = " + text(value) + " must be finite and above 0");
 }
 
-double standard_normal_cdf(double z) { return cdf(boost::math::normal_distribution<>(), z); }
-double standard_normal_quantile(double p) { return quantile(boost::math::normal_distribution<>(), p); }
 double standard_normal_density(double z) { return std::exp(-z * z / 2); }  // but for a factor
 
 // The logarithm of a lognormal variable.

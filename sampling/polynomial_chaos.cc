@@ -1,13 +1,13 @@
 #include "sampling/polynomial_chaos.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
 
 #include "base/require.h"
+#include "base/standard_normal.h"
 #include "sampling/points.h"
 
 namespace softland {
@@ -22,7 +22,7 @@ constexpr double candidates_per_figure = 10;
 // The orthonormal polynomials of degree 0, ..., degree at u.
 std::vector<double> polynomials(Germ germ, int degree, double u) {
   std::vector<double> values(static_cast<std::size_t>(degree) + 1, 1);
-  const double xi = germ == Germ::uniform ? 2 * u - 1 : quantile(boost::math::normal_distribution<>(), u);
+  const double xi = germ == Germ::uniform ? 2 * u - 1 : standard_normal_quantile(u);
   double before = 0, current = 1;  // by their usual recurrences: P_k, and He_k / sqrt(k!)
   for (int k = 1; k <= degree; ++k) {
     const double next = germ == Germ::uniform ? ((2 * k - 1) * xi * current - (k - 1) * before) / k

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "base/decompositions.h"
 #include "base/require.h"
 #include "model/closing.h"
 #include "model/pull_in.h"
@@ -216,7 +216,7 @@ std::optional<FreeFlight::Landing> FreeFlight::landing() const {
   Switch::Workspace work = model_.workspace();
   const VectorXd still = VectorXd::Zero(modes_), &shape = model_.contact_shape();
   const Switch::FreeMotion motion = model_.free_motion(closed->q.data(), still.data(), drives, work);
-  const VectorXd yields = motion.by_q.partialPivLu().solve(shape);
+  const VectorXd yields = solve_linear(motion.by_q, shape);
   const double depth = model_.contact_deflection(closed->q.data()) - gap_;
   Landing landing{.state = VectorXd::Zero(2 * modes_), .controls = VectorXd(controls())};
   landing.state.head(modes_) = (closed->q - depth / shape.dot(yields) * yields).cwiseQuotient(per_q_);

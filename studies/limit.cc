@@ -28,12 +28,12 @@ constexpr int first_knots = 48;       // intervals of the controls before they a
 constexpr double piece_angle = 0.75;  // of the fastest mode in a piece of the mesh
 // Of the optimum and a simulation: relative, of the time of the touch, or of the gap as far as one misses it.
 constexpr double agreement = 1e-4;
-constexpr double longest_swing = 3;        // periods of the first mode
-constexpr double grazing = 0.9;            // of the permitted speed: what a landing at rest touches with at least
-constexpr double softness = 0.2;           // of the permitted speed: how much faster a simulation may touch
-constexpr double search_tolerance = 1e-6;  // of the integrator, where catches are compared
-constexpr int refinements = 3;             // of the knots: each halves their shortest interval
-constexpr int most_meshes = 3;             // each half as wide as the one before
+constexpr double longest_swing = 3;       // periods of the first mode
+constexpr double grazing = 0.9;           // of the permitted speed: what a landing at rest touches with at least
+constexpr double softness = 0.2;          // of the permitted speed: how much faster a simulation may touch
+constexpr double catch_tolerance = 1e-6;  // of the integrator, where catches are compared
+constexpr int refinements = 3;            // of the knots: each halves their shortest interval
+constexpr int most_meshes = 3;            // each half as wide as the one before
 
 // Of the gap: how near every mode comes to its place in the closed equilibrium.
 constexpr std::array rest_rooms = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
@@ -324,7 +324,7 @@ double best_catch(const Prepared& prepared, const FreeFlight& flight, const Leas
   double best = 0, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k * step <= longest_catch && !watch.stopped(); ++k) {
     const std::vector<Signal> signals = driven(prepared, with_catch(flight, found, (1 + k * step) * found.time, plain), plain);
-    const ClosingOptions options{.duration = (1 + k * step) * found.time + period, .tolerance = search_tolerance};
+    const ClosingOptions options{.duration = (1 + k * step) * found.time + period, .tolerance = catch_tolerance};
     const Metrics m = metrics(simulate_closing(prepared.model, signals, options), prepared.scene.metrics);
     if (!(m.major_bounce_height < least)) continue;
     least = m.major_bounce_height;

@@ -2,21 +2,19 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <span>
 #include <utility>
 
+#include "base/standard_normal.h"
 #include "optimizers/problem.h"
 #include "sampling/polynomial_chaos.h"
 #include "sampling/statistics.h"
 
 namespace softland {
 namespace {
-
-using boost::math::normal_distribution;
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 constexpr double not_closed = std::numeric_limits<double>::lowest();  // of what is minimised, where the largest is sought
@@ -29,7 +27,7 @@ class Box {
 
   [[nodiscard]] BoxDevice device(std::span<const double> z, const EnsembleFigure& figure) const {
     BoxDevice found;
-    for (const double of_quantity : z) found.values.push_back(cdf(normal_distribution<>(), of_quantity));
+    for (const double of_quantity : z) found.values.push_back(standard_normal_cdf(of_quantity));
     ensemble_->nominal().scene.spread.to_values(found.values);
     const SampledDevice device = DeviceBuilder(*ensemble_).device(found.values);
     found.outcome = closer_({&device, 1}, 0).front().front();
@@ -58,7 +56,7 @@ SampledInside sampled_inside(const Ensemble& ensemble, std::size_t sampled, doub
   SampledInside inside;
   for (std::size_t k = 0; k < sampled; ++k) {
     std::vector<double> z = ensemble.point(k);
-    for (double& of_quantity : z) of_quantity = quantile(normal_distribution<>(), of_quantity);
+    for (double& of_quantity : z) of_quantity = standard_normal_quantile(of_quantity);
     if (std::any_of(z.begin(), z.end(), [&](double x) { return std::abs(x) > half_width; })) continue;
     inside.devices.push_back(k);
     inside.z.push_back(std::move(z));
@@ -160,7 +158,7 @@ FigureChaos chaos_of(const Ensemble& ensemble, const DriveRobustness& drive, std
 
 double box_half_width(std::size_t d) {
   const double of_each = std::pow(box_share, 1 / static_cast<double>(d));
-  return quantile(normal_distribution<>(), (1 + of_each) / 2);
+  return standard_normal_quantile((1 + of_each) / 2);
 }
 
 OtherWays other_ways(const Prepared& nominal, const DriveRobustness& drive, const RobustnessOptions& options,

@@ -1,7 +1,8 @@
 #include "model/forces/gold_casimir.h"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "base/decompositions.h"
 
 namespace softland {
 namespace {
@@ -57,7 +58,7 @@ GoldFactor::GoldFactor() {
     equations(i, i + 1) = 1 / after;
     right[i] = 3 * (rise(k - 1) / before + rise(k) / after);
   }
-  const Eigen::VectorXd slopes = equations.partialPivLu().solve(right);
+  const Eigen::VectorXd slopes = solve_linear(equations, right);
 
   const double at_first = lifshitz.front().eta, missing = 1 - lifshitz.back().eta;
   near = {2 * at_first - first_rise, first_rise - at_first};

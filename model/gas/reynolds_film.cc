@@ -1,8 +1,8 @@
 #include "model/gas/reynolds_film.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "base/decompositions.h"
 #include "model/gas/air.h"
 
 namespace softland {
@@ -25,10 +25,8 @@ Eigen::VectorXd lobatto_points() {
   constexpr int inner = degree - 1;
   Eigen::VectorXd off(inner - 1);
   for (int k = 1; k < inner; ++k) off[k - 1] = std::sqrt(k * (k + 2.0) / ((2 * k + 1.0) * (2 * k + 3.0)));
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::VectorXd::Zero(inner), off);
   Eigen::VectorXd points(degree + 1);
-  points << -1, solver.eigenvalues(), 1;
+  points << -1, tridiagonal_eigen(Eigen::VectorXd::Zero(inner), off).values, 1;
   return points;
 }
 

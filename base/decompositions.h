@@ -1,0 +1,31 @@
+// Decompositions of small dense matrices. Eigen makes the code of each anew in every unit that names its class, which takes
+// seconds: here it is made once.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace softland {
+
+/// Eigenvalues in rising order, and orthonormal eigenvectors as columns.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+/// Of a symmetric matrix, whose lower triangle is looked at.
+[[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
+/// Of a symmetric tridiagonal matrix: n entries on its diagonal and n - 1 beside it.
+[[nodiscard]] SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
+/// The k in rising order for which stiffness x = k mass x, of symmetric matrices, the second positive definite.
+[[nodiscard]] Eigen::VectorXd generalized_eigenvalues(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass);
+
+/// Orthonormal columns that are orthogonal to those of `held`, which are fewer than its rows and independent.
+[[nodiscard]] Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& held);
+
+/// The lower triangular L with L L^T = matrix, which is symmetric and positive definite.
+[[nodiscard]] Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
+
+/// The x with matrix x = right, by elimination with partial pivoting; not finite where the matrix is singular.
+[[nodiscard]] Eigen::VectorXd solve_linear(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+
+}  // namespace softland
