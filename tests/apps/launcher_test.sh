@@ -34,7 +34,7 @@ BODY
 tool cmake <<'BODY'
 previous=
 for word; do
-  [ "$previous" != -B ] || touch "$word/build.ninja"
+  [ "$previous" != -B ] || { mkdir -p "$word/tests" && touch "$word/build.ninja"; }
   previous=$word
 done
 BODY
@@ -84,6 +84,7 @@ check() {  # SENTENCE CONDITION...: the condition is a command
 out_is() { [ "$(cat "$work/out")" = "$1" ]; }
 err_is() { [ "$(cat "$work/err")" = "$1" ]; }
 err_has() { grep -qF -e "$1" "$work/err"; }
+err_ends() { tail -n "$1" "$work/err" | head -n 1 | grep -qxF -e "$2"; }
 called() { grep -qe "^$1" "$work/calls"; }
 not() { ! "$@"; }
 status_is() { [ "$status" = "$1" ]; }
@@ -182,7 +183,7 @@ check 'progress is told' err_has 'softland: installing 50 %'
 
 # Packages that only some tests want, root. The browser that this machine may have is kept out of the path.
 mkdir "$work/basic"
-for name in sh cat cut date env find flock grep mkdir mv nproc readlink rm sed sha256sum tail tee touch wc; do
+for name in sh cat chmod cut date env find flock grep mkdir mv nproc readlink rm sed sha256sum sort tail tee touch uniq wc; do
   ln -s "$(command -v "$name")" "$work/basic/$name"
 done
 only_basic_tools() {  # COMMAND...: run with the stand-ins and what the launcher itself calls
@@ -191,20 +192,46 @@ only_basic_tools() {  # COMMAND...: run with the stand-ins and what the launcher
 packages_missing chromium
 only_basic_tools "$project/softland" test
 check 'tests run without a browser' status_is 0
-check 'without a browser the command that gets one is told' \
-  err_has 'softland: without chromium the tests that need it skip; to get it: apt-get install --no-install-recommends chromium'
 check 'a browser is not installed for a user' not called 'apt-get'
-tool google-chrome </dev/null
-only_basic_tools "$project/softland" test
-check 'a browser of another name counts' not err_has chromium
-rm "$tools/google-chrome"
 mv "$tools/dpkg-query" "$work/no-browser"
 every_package_installed
 mv "$tools/dpkg-query" "$work/dpkg-query"
 mv "$work/no-browser" "$tools/dpkg-query"
 only_basic_tools env CI=true "$project/softland" test
 check 'continuous integration installs a browser' called 'apt-get install .* chromium$'
-check 'with a browser nothing is told of one' not err_has without
+every_package_installed
+
+# What did not run.
+tool ctest <<'BODY'
+mkdir -p "$2/Testing/Temporary"
+echo '100% tests passed, 0 tests failed out of 6'
+printf '\nThe following tests did not run:\n'
+printf '\t  %d - apps.Page%d (Skipped)\n' 1 1 2 2 3 3 4 4 5 5
+for word in '/a/b.h:58: Skipped' 'skipped: no browser; needs: chromium' 'skipped: no browser; needs: chromium' 'skipped: no terminal' \
+  'skipped: no Slurm; needs: slurmctld munge root' 'Test Passed.'; do echo "$word"; done >"$2/Testing/Temporary/LastTest.log"
+BODY
+run "$project/softland" test -R 'apps'
+check 'tests that did not run are told' err_has 'softland: 2 tests did not run: no browser (chromium)'
+check 'each with its reason' err_has 'softland: 1 test did not run: no Slurm (slurmctld munge root)'
+check 'also where nothing can be installed' err_has 'softland: 1 test did not run: no terminal'
+check 'and where none is known' err_has "softland: 1 test did not run (log: $project/build/release/Testing/Temporary/LastTest.log)"
+check 'the last word is the command that makes them run' err_ends 1 \
+  'softland: to run them: apt-get update && apt-get install -y --no-install-recommends chromium slurmctld munge && ./softland test -R apps'
+check 'tests that did not run are no failure' status_is 0
+tool id <<'BODY'
+echo 1000
+BODY
+run "$project/softland" test
+check 'with sudo for those who need it' err_ends 1 \
+  'softland: to run them: sudo apt-get update && sudo apt-get install -y --no-install-recommends chromium slurmctld munge && sudo ./softland test'
+tool ctest <<'BODY'
+echo '100% tests passed, 0 tests failed out of 1'
+BODY
+run "$project/softland" test
+check 'nothing is told where all tests ran' err_is ''
+tool id <<'BODY'
+echo 0
+BODY
 
 # Moved.
 mv "$project" "$work/moved"
