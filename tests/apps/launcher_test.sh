@@ -38,8 +38,11 @@ for word; do
   previous=$word
 done
 BODY
+# Notes the files that it is asked for, and shows the build that $work/told tells, if it does.
 tool ninja <<'BODY'
+told=${0%/*}/../told
 case $* in
+  *' -n '*) [ ! -e "$told" ] || cat "$told/plan"; exit ;;
   *' -t deps') cat "$2/deps" 2>/dev/null; exit ;;
   *' -t query '*) [ "${5##*/}" != page.html ] || printf '%s:\n  outputs:\n    base/page.cc\n' "$5"; exit ;;
 esac
@@ -50,7 +53,11 @@ chmod +x "$2/apps/softland.new"
 [ ! -e "$2/slow" ] || sleep 1
 mv "$2/apps/softland.new" "$2/apps/softland"
 touch "$2/.ninja_log"
-echo '[1/1] Linking CXX executable apps/softland'
+if [ -e "$told" ]; then
+  cat "$told/times" >"$2/.ninja_log"
+  cat "$told/lines"
+fi
+echo '[1/1 0.1] Linking CXX executable apps/softland'
 BODY
 tool id <<'BODY'
 echo 1000
@@ -115,7 +122,7 @@ check 'packages of the tests are needed by test' err_has 'missing packages: libr
 # First build.
 run "$project/softland" simulate 'my scene.toml' --set a=b
 check 'packages of the tests are not needed by other verbs' status_is 0
-check 'the first run tells that it builds' err_has 'softland: building (first run, about 1 min)'
+check 'the first run tells that it builds' err_has 'softland: building (first run; compiles 1 files)'
 check 'arguments and folder reach the program unchanged' out_is "in $work/else where: <simulate> <my scene.toml> <--set> <a=b>"
 check 'the release preset is configured' called 'cmake --preset release'
 check 'tests are not built' called 'ninja .* softland$'
@@ -286,7 +293,47 @@ mv "$work/no-browser" "$tools/dpkg-query"
 only_basic_tools env CI=true "$project/softland" test
 check 'continuous integration installs a browser' called 'apt-get install .* chromium$'
 
+# How long a build takes. Two objects of 13 s cost each when all is like it was measured; here they took 26 s.
 every_package_installed
+tool date <<BODY
+[ "\$1" = +%s ] || exit 0
+echo 30 >>"$work/clock"
+echo \$((\$(wc -l <"$work/clock") * 151))
+BODY
+mkdir "$work/told"
+printf 'Building CXX object %s/cmake_pch.hxx.gch\n' a b c d e f g h >"$work/told/plan"
+echo 'Linking CXX executable apps/softland' >>"$work/told/plan"
+printf '0\t26000\t1\t%s/cmake_pch.hxx.gch\t0\n' a b >"$work/told/times"
+printf '26000\t52000\t1\t%s/cmake_pch.hxx.gch\t0\n' c d >>"$work/told/times"
+printf '[%s] Building CXX object %s/cmake_pch.hxx.gch\n' '1/9 26.0' a '2/9 26.0' b '3/9 52.0' c '4/9 52.1' d >"$work/told/lines"
+change 'int five;' base/two.cc
+run env CMAKE_BUILD_PARALLEL_LEVEL=2 "$project/softland" modes
+check 'a long build says how long it will take, measured on this machine' err_has 'softland: building: about 1 min 20 s more on this machine'
+check 'and how far it is' err_has 'softland: building 50 %, about 50 s more'
+check 'and how long it took' err_ends 1 'softland: built in 2 min 31 s'
+check 'and no more' [ "$(wc -l <"$work/err")" = 3 ]
+# Sources count by their size and folder: 5.5 s for 20 kB in base, which took 11 s here, leave 15.5 s, so 31 s, for 20 kB in model.
+mkdir -p "$project/model" "$build/model/CMakeFiles/m.dir/Unity"
+head -c 20000 /dev/zero >"$project/base/two.cc"
+head -c 10000 /dev/zero | tee "$project/model/a.cc" >"$project/model/b.cc"
+printf '#include "%s/model/%s.cc"\n' "$project" a "$project" b >"$build/model/CMakeFiles/m.dir/Unity/unity_0_cxx.cxx"
+mkdir "$work/all" && mv "$work/told"/* "$work/all"
+printf 'Building CXX object %s.o\n' base/CMakeFiles/b.dir/two.cc model/CMakeFiles/m.dir/Unity/unity_0_cxx.cxx >"$work/told/plan"
+printf '0\t11000\t1\tbase/CMakeFiles/b.dir/two.cc.o\t0\n' >"$work/told/times"
+echo '[1/3 11.0] Building CXX object base/CMakeFiles/b.dir/two.cc.o' >"$work/told/lines"
+run env CMAKE_BUILD_PARALLEL_LEVEL=1 "$project/softland" modes
+check 'the forecast weighs what is compiled as one by its sources' err_has 'softland: building: about 30 s more on this machine'
+touch "$project/base/more.cc"
+run env CMAKE_BUILD_PARALLEL_LEVEL=8 "$project/softland" modes
+check 'and is no shorter than what takes longest' err_has 'softland: building: about 30 s more on this machine'
+mv "$work/all"/* "$work/told"
+sed -i 's/26000\t/2000\t/; s/52000\t/4000\t/' "$work/told/times"
+sed -i 's/26\.0/2.0/; s/52\./4./' "$work/told/lines"
+tool date </dev/null
+change 'int six;' base/two.cc
+run env CMAKE_BUILD_PARALLEL_LEVEL=2 "$project/softland" modes
+check 'a short one says nothing' err_is ''
+rm -r "$work/told" "$tools/date"
 
 # What did not run.
 tool ctest <<'BODY'
