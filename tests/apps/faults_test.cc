@@ -282,7 +282,7 @@ TEST_F(Faults, ASecondCtrlCEndsAtOnce) {
 TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs) {
   // A root that was changed to may lack /dev/pts.
   const int found = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-  if (found < 0 || grantpt(found) != 0) GTEST_SKIP() << "there are no pseudo-terminals here";
+  if (found < 0 || grantpt(found) != 0) GTEST_SKIP() << "skipped: no pseudo-terminals";
   close(found);
   for (const bool quiet : {false, true}) {
     std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;

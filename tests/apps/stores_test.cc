@@ -48,7 +48,7 @@ TEST_F(Table, IsNotNeededByPandas) {
   for (const char* name : {"python3", "/usr/bin/python3"}) {
     if (python.empty() && std::system(fmt::format("{} -c 'import pandas' >/dev/null 2>&1", name).c_str()) == 0) python = name;
   }
-  if (python.empty()) GTEST_SKIP() << "pandas is not installed (apt-get install python3-pandas)";
+  if (python.empty()) GTEST_SKIP() << "skipped: no pandas; needs: python3-pandas";
   make_store(at("map.sqlite"), 300);
   const std::string document = read(fs::path(SOFTLAND_SOURCE_DIR) / "docs/scale.md"), begin = "```python\n";
   const std::size_t first = document.find(begin) + begin.size();
@@ -72,7 +72,7 @@ TEST_F(Table, IsNotNeededByPandas) {
 }
 
 TEST_F(Table, AsCsvIsReadByOthersToTheBit) {
-  if (std::system("command -v python3 >/dev/null 2>&1") != 0) GTEST_SKIP() << "python3 is not installed";
+  if (std::system("command -v python3 >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no Python; needs: python3";
   make_store(at("a b.sqlite"), 300);
   write(at("table.csv"), printed({"table", "a b.sqlite", "--csv"}));
   write(at("read.py"),
@@ -249,7 +249,7 @@ TEST_F(SlurmVerb, KeepsTheNumberOfPartsOfOneThatIsSubmittedAlone) {
 }
 
 TEST_F(SlurmVerb, PrintsAScriptWithoutFaults) {
-  if (std::system("command -v shellcheck >/dev/null 2>&1") != 0) GTEST_SKIP() << "shellcheck is not installed";
+  if (std::system("command -v shellcheck >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no shellcheck; needs: shellcheck";
   EXPECT_EQ(std::system(fmt::format("cd '{}' && shellcheck script.sh", here.path().string()).c_str()), 0);
 }
 

@@ -55,7 +55,7 @@ class PageInBrowser : public ::testing::Test {
  protected:
   void SetUp() override {
     program = browser();
-    if (program.empty()) GTEST_SKIP() << "no Chromium here (apt-get install chromium)";
+    if (program.empty()) GTEST_SKIP() << "skipped: no browser; needs: chromium";
   }
   std::string program;
 };

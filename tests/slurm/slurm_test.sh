@@ -9,10 +9,12 @@ program=$(readlink -f -- "$1") scene=$(readlink -f -- "$2") result=${3:-/dev/std
 parts=8 killed=3
 
 skip() { echo "skipped: $*" && exit 77; }
-[ "$(id -u)" = 0 ] || skip 'only root can start slurmd'
+needs='needs: slurmctld slurmd slurm-client munge'
+[ "$(id -u)" = 0 ] || needs="$needs root"
 for tool in munged slurmctld slurmd sbatch squeue scontrol; do
-  command -v "$tool" >/dev/null || skip "$tool is missing (apt-get install slurmctld slurmd slurm-client munge)"
+  command -v "$tool" >/dev/null || skip "no Slurm; $needs"
 done
+[ "$(id -u)" = 0 ] || skip 'no right to start Slurm; needs: root'
 
 # A folder whose name a careless script would not survive.
 base=$(mktemp -d "${TMPDIR:-/tmp}/softland-slurm.XXXXXX")
@@ -53,7 +55,7 @@ start_slurm() {
   head -c 1024 /dev/urandom >"$server/munge.key"
   chmod 600 "$server/munge.key"
   munged --force --key-file="$server/munge.key" --socket="$server/munge.socket" --pid-file="$server/munge.pid" \
-    --log-file="$server/munge.log" --seed-file="$server/munge.seed" 2>>"$server/start.log" || skip 'munged does not start here'
+    --log-file="$server/munge.log" --seed-file="$server/munge.seed" 2>>"$server/start.log" || skip 'no munged that starts here'
   cat >"$server/slurm.conf" <<CONF
 ClusterName=softland
 SlurmctldHost=$host(127.0.0.1)

@@ -170,7 +170,7 @@ TEST(SpicePwl, TimesIncreaseStrictlyEvenWhenJumpsAreARoundingErrorApart) {
 }
 
 TEST(SpicePwl, RunsInNgspiceAndGivesTheSignal) {
-  if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "ngspice is not installed";
+  if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
   const std::map<std::string, Signal> signals{
       {"jumps", signal(kTable)}, {"pulse", signal(kPulse)}, {"sine", signal(kHarmonic)}, {"step", signal(kStep)}};
   const TemporaryFolder folder;
