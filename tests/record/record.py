@@ -91,9 +91,6 @@ def run_case(program, case, scenes, folder, place):
     work.mkdir(parents=True)
     home.mkdir()
 
-    def kept_as(content):  # the one path of this machine that the program tells
-        return content.replace(str(program.path).encode(), b"PROGRAM")
-
     try:
         for name, text in [*((f"scenes/{n}.toml", t) for n, t in scenes.items()), *case.inputs.items()]:
             (work / name).parent.mkdir(parents=True, exist_ok=True)
@@ -108,9 +105,9 @@ def run_case(program, case, scenes, folder, place):
             kept.mkdir(parents=True, exist_ok=True)
             command = " ".join([*(f"{k}={v}" for k, v in step.environment.items()), shlex.join(["softland", *step.words])])
             try:
-                done = subprocess.run([program.path, *step.words], cwd=work, env={**environment(home), **step.environment},
+                done = subprocess.run([program, *step.words], cwd=work, env={**environment(home), **step.environment},
                                       stdin=subprocess.DEVNULL, capture_output=True, timeout=MOST_SECONDS)
-                status, out, err = done.returncode, kept_as(done.stdout), kept_as(done.stderr)
+                status, out, err = done.returncode, done.stdout, done.stderr
             except subprocess.TimeoutExpired:
                 status, out, err = f"none after {MOST_SECONDS} s", b"", b""
             head = f"$ {command}\nstatus {status}\n".encode()
@@ -127,7 +124,6 @@ def run_case(program, case, scenes, folder, place):
                 if name.name == case.leave_out:
                     continue
                 suffix, content = content_of(path)
-                content = kept_as(content)
                 digest = hashlib.sha256(content).digest()
                 if digests.get(name) == digest:  # written again, and the same
                     continue
@@ -164,6 +160,18 @@ def workplace(place):
         lock.close()
 
 
+def installed(program, scenes, place):
+    """The program as if it were installed in that folder, beside its scenes: it tells these paths, never those of a tree."""
+    at = place / "program" / "bin" / "softland"
+    at.parent.mkdir(parents=True)
+    shutil.copy(program.path, at)
+    shipped = place / "program" / "share" / "softland" / "scenes"
+    shipped.mkdir(parents=True)
+    for name, text in scenes.items():
+        (shipped / f"{name}.toml").write_text(text, encoding="utf-8")
+    return at
+
+
 def chosen(cases, only):
     some = [case for case in cases if not only or any(word in case.name for word in only)]
     if not some:
@@ -188,9 +196,11 @@ def make(program, folder, only=(), jobs=1, quiet=False, place=WORK):
     cases = sorted(chosen(cases, only), key=lambda case: -case.weight)
     taken = {}
     with workplace(place):
+        copy = installed(program, scenes, place)
+
         def one(case):
             start = time.monotonic()
-            run_case(program, case, scenes, folder, place)
+            run_case(copy, case, scenes, folder, place)
             return case, time.monotonic() - start
 
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
