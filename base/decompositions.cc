@@ -30,6 +30,18 @@ Eigen::MatrixXd orthogonal_complement(const Eigen::MatrixXd& held) {
 
 Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix) { return matrix.llt().matrixL(); }
 
+std::optional<Eigen::VectorXd> solve_definite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  const Eigen::LLT<Eigen::MatrixXd> factors(matrix);
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  return factors.solve(right);
+}
+
+std::optional<Eigen::MatrixXd> orthonormal_in(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& basis) {
+  const Eigen::LLT<Eigen::MatrixXd> root(energy);
+  if (root.info() != Eigen::Success) return std::nullopt;
+  return root.matrixU().solve<Eigen::OnTheRight>(basis);
+}
+
 Eigen::VectorXd solve_linear(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
   return matrix.partialPivLu().solve(right);
 }

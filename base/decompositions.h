@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace softland {
 
@@ -24,6 +25,11 @@ struct SymmetricEigen {
 
 /// The lower triangular L with L L^T = matrix, which is symmetric and positive definite.
 [[nodiscard]] Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
+/// The x with matrix x = right; none where the symmetric matrix is not positive definite.
+[[nodiscard]] std::optional<Eigen::VectorXd> solve_definite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+/// The columns of `basis` combined so that an energy, whose matrix between them this is, finds them orthonormal; none where it is
+/// not positive definite.
+[[nodiscard]] std::optional<Eigen::MatrixXd> orthonormal_in(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& basis);
 
 /// The x with matrix x = right, by elimination with partial pivoting; not finite where the matrix is singular.
 [[nodiscard]] Eigen::VectorXd solve_linear(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);

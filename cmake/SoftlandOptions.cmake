@@ -55,10 +55,11 @@ function(softland_offers target scope folder)
 endfunction()
 
 # Most of the time of compiling is reading headers and making code of templates, and files compiled as one share both: so all files of
-# a folder are one unit, or a few where that would take so long that other processors wait for it. A large unit takes up to 3 GB, and the
-# garbage collection of GCC a tenth of the time until it is told that there are: a smaller machine, or container, compiles six files as
-# one, which takes below 1.3 GB.
+# a folder are one unit, or a few where more than two processors would wait for it. A large unit takes up to 3 GB, and the garbage
+# collection of GCC a tenth of the time until it is told that there are: a smaller machine, or container, compiles fewer files as one,
+# each such unit in less than 1.3 GB.
 cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY) # [MiB]
+cmake_host_system_information(RESULT processors QUERY NUMBER_OF_LOGICAL_CORES)
 if(EXISTS /sys/fs/cgroup/memory.max)
   file(READ /sys/fs/cgroup/memory.max limit)
   string(STRIP "${limit}" limit)
@@ -81,15 +82,15 @@ if(CMAKE_UNITY_BUILD AND memory GREATER_EQUAL 7600) # 8 GB, less what firmware a
   endif()
 endif()
 
-# softland_compiled_as(TARGET hot|cold [UNIT files]): to run fast, or to be compiled fast; with so many files in a unit, all unless it is
-# said.
+# softland_compiled_as(TARGET hot|cold [UNIT files]): to run fast, or to be compiled fast; with so many files in a unit where more than
+# two processors compile, all files without.
 function(softland_compiled_as target kind)
   cmake_parse_arguments(ARG "" "UNIT" "" ${ARGN})
   if(kind STREQUAL "cold")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   if(SOFTLAND_LARGE_UNITS)
-    if(NOT ARG_UNIT)
+    if(NOT ARG_UNIT OR processors LESS_EQUAL 2)
       set(ARG_UNIT 0)
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${ARG_UNIT})

@@ -55,6 +55,11 @@ class SceneFile {
   /// The scene as TOML text: parsing it again gives the same scene, digit for digit.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] nlohmann::json json() const;
+  /// What is written at a key path: text as it is, other values as JSON, of a section its model, if it says one. Nothing where
+  /// the path is not written.
+  [[nodiscard]] std::optional<std::string> written(const std::string& path) const;
+  /// The keys of a section, in order; none where it is not written.
+  [[nodiscard]] std::vector<std::string> keys(const std::string& section) const;
   [[nodiscard]] const std::string& name() const;
   /// Throws InvalidInput about a key ("structure.length"): file and line or option, key, value, rule. Where the key is not
   /// written, about its section.

@@ -514,6 +514,23 @@ void SceneFile::forget_places() { impl_->origins.clear(); }
 
 std::string SceneFile::text() const { return internal::write_scene(impl_->root); }
 nlohmann::json SceneFile::json() const { return internal::to_json(impl_->root); }
+
+std::optional<std::string> SceneFile::written(const std::string& path) const {
+  const toml::node* node = impl_->find(internal::split_path(path));
+  if (node == nullptr) return std::nullopt;
+  if (const auto* section = node->as_table()) return (*section)["model"].value_or(std::string());
+  if (const auto* text = node->as_string()) return text->get();
+  return internal::to_json(*node).dump();
+}
+
+std::vector<std::string> SceneFile::keys(const std::string& section) const {
+  std::vector<std::string> all;
+  const toml::node* node = impl_->find(internal::split_path(section));
+  if (node == nullptr || !node->is_table()) return all;
+  for (const auto& [key, value] : *node->as_table()) all.emplace_back(key.str());
+  return all;
+}
+
 const std::string& SceneFile::name() const { return impl_->name; }
 
 void SceneFile::refuse(const std::string& path, std::string_view rule) const {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/decompositions.h"
@@ -30,9 +30,9 @@ Eigen::MatrixXd permitted(const NormalisedModes::Beam& beam, const Eigen::Matrix
   if (beam.axial_force != 0) {
     const Eigen::MatrixXd stiffness =
         Eigen::MatrixXd::Identity(basis.cols(), basis.cols()) + beam.axial_force * basis.transpose() * slopes * basis;
-    const Eigen::LLT<Eigen::MatrixXd> root(stiffness);
-    require(root.info() == Eigen::Success, "beyond the buckling load of the beam");
-    basis = root.matrixU().solve<Eigen::OnTheRight>(basis);
+    std::optional<Eigen::MatrixXd> orthonormal = orthonormal_in(stiffness, basis);
+    require(orthonormal.has_value(), "beyond the buckling load of the beam");
+    basis = std::move(*orthonormal);
   }
   return basis;
 }

@@ -1,6 +1,5 @@
 #include "model/linearized_closing.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/decompositions.h"
 #include "base/lanes.h"
 #include "integrators/quintic.h"
 
@@ -264,10 +264,10 @@ void LinearizedClosing::begin_at_rest() {
   MatrixXd by_q(n_, n_), by_v(n_, n_);
   model_.jacobian(q.data(), still.data(), off, false, work_, by_q, by_v);
   VectorXd force(n_);
-  const Eigen::PartialPivLU<MatrixXd> stiffness(by_q);
+  const MatrixXd stiffness = by_q;
   for (Index j = 0; j < moving_; ++j) {
     by_device_->accelerations(static_cast<std::size_t>(j), q.data(), still.data(), off, false, by_q, force);
-    rest_.col(j).head(n_) = -fastest_ * stiffness.solve(force);
+    rest_.col(j).head(n_) = -fastest_ * solve_linear(stiffness, force);
   }
 }
 

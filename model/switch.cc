@@ -1,6 +1,5 @@
 #include "model/switch.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -8,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "base/decompositions.h"
 #include "base/gauss.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
@@ -269,10 +269,11 @@ std::optional<Eigen::VectorXd> Switch::find_rest() const {
     jacobian(q.data(), zero.data(), drives, false, work, by_q, by_v);
     if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
     // In units of each mode's own stiffness.
-    const Eigen::LLT<Eigen::MatrixXd> stiffness(
-        -(frequencies_.cwiseInverse().asDiagonal() * by_q * frequencies_.cwiseInverse().asDiagonal()));
-    if (stiffness.info() != Eigen::Success) return std::nullopt;
-    const Eigen::VectorXd step = stiffness.solve(force.cwiseQuotient(frequencies_)).cwiseQuotient(frequencies_);
+    const std::optional<Eigen::VectorXd> moved =
+        solve_definite(-(frequencies_.cwiseInverse().asDiagonal() * by_q * frequencies_.cwiseInverse().asDiagonal()),
+                       force.cwiseQuotient(frequencies_));
+    if (!moved) return std::nullopt;
+    const Eigen::VectorXd step = moved->cwiseQuotient(frequencies_);
     q += step;
     if (step.cwiseProduct(contact_shape_).cwiseAbs().sum() < rounding * device_.gap.electrode) {
       return contact_deflection(q.data()) < device_.gap.contact ? std::optional(q) : std::nullopt;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "model/closing.h"
 #include "model/forces/electrostatic.h"
@@ -14,18 +13,6 @@
 
 namespace softland {
 namespace {
-
-// What the scene says at a key path: a value, or the model of a section that has one.
-std::string as_written(const nlohmann::json& scene, const std::string& path) {
-  const nlohmann::json* at = &scene;
-  for (std::size_t begin = 0; begin < path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    at = &at->at(path.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  if (at->is_object()) return at->value("model", "");
-  return at->is_string() ? at->get<std::string>() : at->dump();
-}
 
 // Force on the first mode at rest under 1 V on one electrode.
 double force_at_rest(const Device& described, std::size_t electrode) {
@@ -168,8 +155,8 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
                     .group = {.name = "over the contact gap", .value = bent / d.gap.contact},
                     .instead = {}});
   }
-  const nlohmann::json scene = resolved(prepared.scene, prepared.voltage_units()).json();
-  for (Omissible& effect : list) effect.choice = as_written(scene, effect.effect);
+  const SceneFile scene = resolved(prepared.scene, prepared.voltage_units());
+  for (Omissible& effect : list) effect.choice = scene.written(effect.effect).value();
   return list;
 }
 

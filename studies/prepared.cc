@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/engineering.h"
@@ -108,7 +107,7 @@ void check_window(const Prepared& p) {
     const double periods = periods_of(waveform, p.duration);
     if (!(periods > most_periods)) continue;
     const std::string section = "waveform." + name + ".";
-    const bool in_hertz = file.json()["waveform"][name].contains("frequency");
+    const bool in_hertz = file.written(section + "frequency").has_value();
     file.refuse(section + (in_hertz ? "frequency" : "angular_frequency"),
                 fmt::format("makes {} periods in the window of {}; there may be {}", engineering(periods, "", 3),
                             engineering(p.duration, "s"), engineering(most_periods, "")));

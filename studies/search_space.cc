@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/engineering.h"
 #include "base/require.h"
@@ -123,11 +122,8 @@ std::vector<double> fitted(std::vector<double> x, const std::vector<Variable>& v
 Shaped shaped_drives(const SceneFile& scene, Actuator actuator) {
   if (actuator == Actuator::pzt) return Shaped::piezo;
   if (actuator == Actuator::both) return Shaped::several;
-  const nlohmann::json all = scene.json();
-  const nlohmann::json none = nlohmann::json::object(), electrodes = all.value("electrode", none),
-                       drivers = all.value("driver", none);
-  for (const auto& [name, electrode] : electrodes.items()) {
-    if (electrode.is_object() && electrode.value("side", "near") == "far" && drivers.contains(name)) return Shaped::several;
+  for (const std::string& name : scene.keys("electrode")) {
+    if (scene.written("electrode." + name + ".side") == "far" && scene.written("driver." + name)) return Shaped::several;
   }
   return Shaped::electrode;
 }
