@@ -29,7 +29,7 @@ constexpr std::size_t most_bytes = 2'000'000;
 /// Pages are too long to be printed where they do not hold what they should.
 bool holds(const std::string& page, const std::string& words) { return page.find(words) != std::string::npos; }
 
-std::string refusal(const std::string& list) {
+std::string aims_refusal(const std::string& list) {
   try {
     static_cast<void>(explored_aims(sample_grid(3, 3).columns, list, "--pareto"));
   } catch (const InvalidInput& e) {
@@ -49,13 +49,13 @@ TEST(ExploredAims, GoByKeyByKeyWithoutUnitAndByName) {
 }
 
 TEST(ExploredAims, AreRefusedWithTheFiguresThereAre) {
-  EXPECT_THAT(refusal("impact_velocity,weight"),
+  EXPECT_THAT(aims_refusal("impact_velocity,weight"),
               HasSubstr("--pareto impact_velocity,weight: \"weight\" is not among the figures: "
                         "initial_contact_time_s, "));
-  EXPECT_THAT(refusal("impact_velocity,structure_length"), HasSubstr("not among the figures")) << "it is a variable";
-  EXPECT_THAT(refusal("impact_velocity,"), HasSubstr("not among the figures"));
-  EXPECT_THAT(refusal("impact_velocity,Impact speed"), HasSubstr("stands twice"));
-  EXPECT_THAT(refusal("impact_velocity"), HasSubstr("at least two"));
+  EXPECT_THAT(aims_refusal("impact_velocity,structure_length"), HasSubstr("not among the figures")) << "it is a variable";
+  EXPECT_THAT(aims_refusal("impact_velocity,"), HasSubstr("not among the figures"));
+  EXPECT_THAT(aims_refusal("impact_velocity,Impact speed"), HasSubstr("stands twice"));
+  EXPECT_THAT(aims_refusal("impact_velocity"), HasSubstr("at least two"));
 }
 
 TEST(ExploredFront, HoldsOnlyPointsThatHaveFigures) {
