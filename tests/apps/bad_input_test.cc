@@ -173,7 +173,7 @@ TEST_F(BadInput, Assignments) {
   });
 }
 
-TEST_F(BadInput, Searches) {
+TEST_F(BadInput, Searches_long) {
   const auto search = [](std::vector<std::string> words) {
     words.insert(words.begin(), {"optimize", "gold.toml", "--quiet", "--out", "earlier"});
     return words;

@@ -107,7 +107,7 @@ TEST(Simulate, NeedsNoPullInForADriveInVolts) {
   EXPECT_TRUE(json::parse(o.out)["pull_in"].is_null());
 }
 
-TEST(Simulate, RunsItsOwnResolvedSceneToTheSameDigits) {
+TEST(Simulate, RunsItsOwnResolvedSceneToTheSameDigits_long) {
   const Workplace here;
   ASSERT_EQ(here.run({"simulate", "gold.toml", "--out", "first"}).status, 0);
   const json first = json::parse(read(here.path() / "first/result.json"));
@@ -136,7 +136,7 @@ TEST(Simulate, LeavesResultReportAndTrajectory) {
   EXPECT_THAT(read(here.path() / "a/b/report.html"), HasSubstr("<html"));
 }
 
-TEST(Simulate, GivesAForceFactorAsTheFactorItIsAndNeverAsAVoltage) {
+TEST(Simulate, GivesAForceFactorAsTheFactorItIsAndNeverAsAVoltage_long) {
   const Workplace here;
   write(here.path() / "casimir.toml", shipped("nem-casimir.toml"));
   ASSERT_EQ(here.run({"simulate", "casimir.toml", "--out", "run"}).status, 0);
@@ -159,7 +159,7 @@ TEST(Simulate, EndsWithFourWhenTheSwitchDoesNotClose) {
   EXPECT_TRUE(j["metrics"]["bounce_count"].is_null());
 }
 
-TEST(Simulate, CertifiesItsFigures) {
+TEST(Simulate, CertifiesItsFigures_long) {
   const Workplace here;
   const Outcome plain = here.run({"simulate", "gold.toml", "--set", "simulate.accuracy=1e-3", "--json", "-"});
   const Outcome o =
@@ -183,7 +183,7 @@ TEST(Simulate, CertifiesItsFigures) {
   EXPECT_EQ(here.run({"simulate", "gold.toml", "--set", "waveform.main.level=3 V", "--certify"}).status, 4);
 }
 
-TEST(Simulate, CertifiesTheSameOnAnyNumberOfThreads) {
+TEST(Simulate, CertifiesTheSameOnAnyNumberOfThreads_optimized) {
   const Workplace here;
   const auto certified = [&](const char* jobs) {
     const Outcome o = here.run({"simulate", "gold.toml", "--certify", "--jobs", jobs, "--json", "-"});
@@ -209,7 +209,7 @@ TEST(PullIn, PrintsTheAgreedJson) {
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
 }
 
-TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne) {
+TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne_optimized) {
   const Workplace here;
   EXPECT_THAT(here.run({"pull-in", "gold.toml"}).out, Not(HasSubstr("overdamped")));
   for (const char* verb : {"pull-in", "check"}) {
@@ -246,7 +246,7 @@ TEST(Modes, PrintsTheAgreedJson) {
   EXPECT_TRUE(std::is_sorted(omega.begin(), omega.end()));
 }
 
-TEST(EveryVerb, PrintsNumbersThatPeopleRead) {
+TEST(EveryVerb, PrintsNumbersThatPeopleRead_optimized) {
   const Workplace here;
   for (const char* scene : {"nem-tin.toml", "nem-casimir.toml", "two-electrodes.toml", "hung-senturia.toml"})
     write(here.path() / scene, shipped(scene));
@@ -279,7 +279,7 @@ TEST(EveryVerb, PrintsNumbersThatPeopleRead) {
   }
 }
 
-TEST(New, WritesScenesThatCheckAccepts) {
+TEST(New, WritesScenesThatCheckAccepts_long) {
   const Workplace here;
   for (const char* kind :
        {"cantilever", "cantilever-pzt", "clamped-clamped", "plate", "two-electrodes", "nem-cantilever", "nem-casimir"}) {
@@ -303,7 +303,7 @@ TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas) {
   EXPECT_THAT(check("gas.pressure=\"1 kPa\""), HasSubstr("(mean free path 6.84\u00a0µm)"));
 }
 
-TEST(Effects, PrintATableAndTheAgreedJson) {
+TEST(Effects, PrintATableAndTheAgreedJson_long) {
   const Workplace here;
   const Outcome table = here.run({"effects", "gold.toml", "--set", "simulate.duration=60 us"});
   const Outcome data = here.run({"effects", "gold.toml", "--set", "simulate.duration=60 us", "--json", "-"});
@@ -347,7 +347,7 @@ TEST(Effects, AreChosenByTheSceneAndSaidInTheResult) {
 }
 
 // What decides the last digits: the very program, found by the hash that it holds of itself, and the processor.
-TEST(Results, SayWhatTheyWereMadeWith) {
+TEST(Results, SayWhatTheyWereMadeWith_long) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--set", "simulate.duration=20 us", "--json", "-", "--out", "made"});
   const json made = json::parse(o.out)["made_with"];
@@ -368,7 +368,7 @@ TEST(Results, SayWhatTheyWereMadeWith) {
   EXPECT_THAT(page, HasSubstr(made["c_library"].get<std::string>()));
 }
 
-TEST(Accuracy, PrintsATableAndTheAgreedJsonAndDraws) {
+TEST(Accuracy, PrintsATableAndTheAgreedJsonAndDraws_long) {
   const Workplace here;
   const Outcome o =
       here.run({"accuracy", "gold.toml", "--quiet", "--set", "simulate.duration=60 us", "--json", "a.json", "--out", "acc"});

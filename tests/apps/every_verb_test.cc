@@ -133,7 +133,7 @@ TEST_P(EveryVerb, Simulates) {
   exports({"export", "out"});
 }
 
-TEST_P(EveryVerb, FindsTheLimit) {
+TEST_P(EveryVerb, FindsTheLimit_optimized) {
   const std::vector<std::string> words = scene().quickly({"limit", scene().name, "--no-curves", "--quiet", "--out", "out"});
   if (!scene().has("\\[contact\\]")) return refused(words, "limit needs a [contact]");
   if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
@@ -164,13 +164,13 @@ TEST_P(EveryVerb, OpensAgain) {
   EXPECT_TRUE(csv.ends_with(",0\n")) << csv;
 }
 
-TEST_P(EveryVerb, Compares) {
+TEST_P(EveryVerb, Compares_optimized) {
   (void)done(scene().quickly({"effects", scene().name, "--quiet", "--json", "effects.json"}));
   const std::string written = read(here.path() / "effects.json");
   EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
 }
 
-TEST_P(EveryVerb, Measures) {
+TEST_P(EveryVerb, Measures_optimized) {
   // A beam with a contact takes some seconds; tests/apps/command_line_test.cc has one.
   if (!scene().has("kind = \"plate\"") && scene().has("\\[contact\\]")) return;
   (void)done(scene().quickly({"accuracy", scene().name, "--quiet", "--json", "accuracy.json"}));
@@ -178,7 +178,7 @@ TEST_P(EveryVerb, Measures) {
   EXPECT_TRUE(json::parse(written, nullptr, false).is_object()) << written;
 }
 
-TEST_P(EveryVerb, Judges) {
+TEST_P(EveryVerb, Judges_long) {
   const std::string& name = scene().name;
   const std::vector<std::string> words = scene().quickly({"robustness", name, "--quiet", "--samples", "20", "--jobs", "1"});
   if (!scene().has("\\[contact\\]")) {
@@ -195,7 +195,7 @@ TEST_P(EveryVerb, Judges) {
   (void)done({"simulate", "out/worst-1.toml", "--quiet"});
 }
 
-TEST_P(EveryVerb, Searches) {
+TEST_P(EveryVerb, Searches_long) {
   for (const char* actuator : {"electrostatic", "pzt", "both"}) {
     const std::vector<std::string> words = scene().quickly(
         {"optimize", scene().name, "--quiet", "--budget", "2", "--jobs", "1", "--actuator", actuator, "--out", actuator});
@@ -212,7 +212,7 @@ TEST_P(EveryVerb, Searches) {
   }
 }
 
-TEST(LimitCurves, FallWithTheVoltageAndTheSpeedAndAreDrawn) {
+TEST(LimitCurves, FallWithTheVoltageAndTheSpeedAndAreDrawn_long) {
   const Workplace here;
   const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
   const Outcome o = here.run({"limit", scene, "--quiet", "--out", "out"});

@@ -20,7 +20,7 @@ using test::levels;
 using test::quick;
 using test::rows_of;
 
-TEST_F(Explore, LeavesOneRowPerPointWithTheFiguresOfSimulate) {
+TEST_F(Explore, LeavesOneRowPerPointWithTheFiguresOfSimulate_optimized) {
   const json j = done(explore({"--vary", "structure.length=235um,250um", "--vary", "waveform.main.level=1.2Vdp:1.3 Vdp:2",
                                "--out", "map.sqlite", "--jobs", "2"}));
   EXPECT_EQ(j["status"], "done");
@@ -38,14 +38,14 @@ TEST_F(Explore, LeavesOneRowPerPointWithTheFiguresOfSimulate) {
   EXPECT_FALSE(fs::exists(at("map.sqlite-wal")));
 }
 
-TEST_F(Explore, OfSearchesGivesScenesThatSimulateRunsToTheirRows) {
+TEST_F(Explore, OfSearchesGivesScenesThatSimulateRunsToTheirRows_optimized) {
   const json j = done({"explore", "gold.toml", "--vary", "gap.contact=1.9um,2um", "--study", "optimize", "--budget", "60",
                        "--set", "structure.modes=2", "--set", "simulate.accuracy=1e-3", "--quiet", "--out", "best.sqlite"});
   EXPECT_EQ(j["rows"]["computed"], 2);
   expect_simulated("best.sqlite", 1);
 }
 
-TEST_F(Explore, HasTheSameRowsWhateverTheNumberOfJobsAndTheParts) {
+TEST_F(Explore, HasTheSameRowsWhateverTheNumberOfJobsAndTheParts_optimized) {
   const std::vector<std::string> plan{"--vary", levels + "5", "--vary", "gap.contact=1.8um:2.2um:3"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), plan.begin(), plan.end());
@@ -66,7 +66,7 @@ TEST_F(Explore, HasTheSameRowsWhateverTheNumberOfJobsAndTheParts) {
   expect_same_rows(whole, parts);
 }
 
-TEST_F(Explore, TakesPointsOfACoarserGridAndASmallerSampleOver) {
+TEST_F(Explore, TakesPointsOfACoarserGridAndASmallerSampleOver_optimized) {
   (void)done(explore({"--vary", levels + "3", "--out", "grid.sqlite"}));
   const json finer = done(explore({"--vary", levels + "5", "--out", "grid.sqlite", "--resume"}));
   EXPECT_EQ(finer["rows"], (json{{"known", 0}, {"computed", 2}, {"reused", 3}, {"remaining", 0}}));
@@ -87,7 +87,7 @@ TEST_F(Explore, GoesOnWithAStoreByItself) {
   EXPECT_EQ(again["rows"]["computed"], 0);
 }
 
-TEST_F(Explore, TakesPlansAndLists) {
+TEST_F(Explore, TakesPlansAndLists_optimized) {
   write(at("points.csv"), "waveform.main.level [V],gap.contact [um]\n20,2\n22,1.9\n");
   const json of_list = done(explore({"--list", "points.csv", "--out", "list.sqlite"}));
   EXPECT_EQ(of_list["points"], 2);
@@ -104,7 +104,7 @@ vary = ["waveform.main.level=20 V:24 V:3"]
   EXPECT_EQ(of_file["points"], 3);
 }
 
-TEST_F(Explore, ThatIsInterruptedLeavesWhatThereIsAndGoesOn) {
+TEST_F(Explore, ThatIsInterruptedLeavesWhatThereIsAndGoesOn_optimized) {
   const std::vector<std::string> words = explore({"--vary", levels + "5000", "--out", "map.sqlite", "--jobs", "1"});
   const pid_t child = here.start(words);
   wait_until_it_computes(child);
@@ -118,7 +118,7 @@ TEST_F(Explore, ThatIsInterruptedLeavesWhatThereIsAndGoesOn) {
   EXPECT_FALSE(fs::exists(at("map.sqlite-wal")));
 }
 
-TEST_F(Explore, ThatIsKilledAgainAndAgainEndsWithTheSameBits) {
+TEST_F(Explore, ThatIsKilledAgainAndAgainEndsWithTheSameBits_optimized) {
   const std::vector<std::string> plan{"--vary", levels + "20", "--vary", "gap.contact=1.8um:2.2um:16", "--jobs", "2"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), plan.begin(), plan.end());

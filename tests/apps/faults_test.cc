@@ -162,7 +162,7 @@ TEST_F(Faults, AreTriedOnEveryVerb) {
   EXPECT_THAT(verbs, testing::UnorderedElementsAreArray(known)) << "say above how a new verb is called";
 }
 
-TEST_F(Faults, OutputThatIsLostIsAnErrorOfEveryVerb) {
+TEST_F(Faults, OutputThatIsLostIsAnErrorOfEveryVerb_optimized) {
   const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
   int broken[2];
   ASSERT_EQ(pipe2(broken, O_CLOEXEC), 0);
@@ -187,7 +187,7 @@ TEST_F(Faults, OutputThatIsLostIsAnErrorOfEveryVerb) {
 }
 
 // The signal that the kernel sends then would end the program without a word.
-TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne) {
+TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
   const auto limited = [&](const std::vector<std::string>& more) {
     return here->run(std::vector<std::string>{"-c", "ulimit -f 0; exec \"$0\" \"$@\"", SOFTLAND_PROGRAM} + more, "/bin/sh",
                      open("/dev/null", O_WRONLY | O_CLOEXEC));
@@ -209,7 +209,7 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne) {
   EXPECT_FALSE(fs::exists(here->path() / "lost-simulate/report.html"));
 }
 
-TEST_F(Faults, EverySignalEndsEveryVerbThatWaitsForItsReader) {
+TEST_F(Faults, EverySignalEndsEveryVerbThatWaitsForItsReader_optimized) {
   for (const int signal : stopping_signals) {
     std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;
     std::vector<pid_t> children;
@@ -227,7 +227,7 @@ TEST_F(Faults, EverySignalEndsEveryVerbThatWaitsForItsReader) {
   }
 }
 
-TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo) {
+TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo_optimized) {
   for (const int signal : stopping_signals) {
     std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;
     std::vector<pid_t> children;
@@ -279,7 +279,7 @@ TEST_F(Faults, ASecondCtrlCEndsAtOnce) {
 }
 
 // A bar on a terminal, which goes away when the verb has ended; nothing with --quiet.
-TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs) {
+TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs_optimized) {
   // A root that was changed to may lack /dev/pts.
   const int found = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (found < 0 || grantpt(found) != 0) GTEST_SKIP() << "skipped: no pseudo-terminals";
@@ -426,7 +426,7 @@ bool acts_on_a_terminal(const std::string& text) {
          text.find("\u2066") != std::string::npos;
 }
 
-TEST_F(Faults, NothingThatActsOnATerminalReachesIt) {
+TEST_F(Faults, NothingThatActsOnATerminalReachesIt_optimized) {
   const std::string evil = "\x1b]0;owned\a\x1b[31m\u009b2J\u202eabc\u2066\x7f";
   const std::string title = R"("\u001b]0;owned\u0007\u001b[31m\u009b2J\u202eabc\u2066\u007f")";
   const std::string scene = shipped("mem-gold.toml");
@@ -455,7 +455,7 @@ TEST_F(Faults, NothingThatActsOnATerminalReachesIt) {
   EXPECT_FALSE(acts_on_a_terminal(o.err));
 }
 
-TEST_F(Faults, NoNameAndNoTitleBeginsALineOfItsOwn) {
+TEST_F(Faults, NoNameAndNoTitleBeginsALineOfItsOwn_optimized) {
   const std::string name = "a\nforged\tb", scene = shipped("mem-gold.toml");
   write(here->path() / name, "title = \"t\\nforged\\tu\"" + scene.substr(scene.find('\n', scene.find("title = "))));
   const Outcome made = here->run({"simulate", name, "--set", "simulate.duration=60 us", "--out", name + ".out", "--json", "-"});
@@ -514,7 +514,7 @@ TEST_F(Faults, WhatAKilledSearchLeftMayBeRefinedInPlace) {
   EXPECT_EQ(read(place.path() / "out/unfinished/best.toml"), before) << "the scene that it read";
 }
 
-TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost) {
+TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost_optimized) {
   const Workplace place;
   const pid_t child = place.start(words("optimize", std::vector<std::string>{"gold.toml"} + in_volts +
                                                         std::vector<std::string>{"--budget", "2 s", "--out", "out"}));

@@ -30,7 +30,7 @@ std::vector<std::string> search(const std::string& store, int points, const std:
 
 class Front : public Explore {};
 
-TEST_F(Front, HoldsNoPointThatAnotherOneBeatsAndEachRunsAsItIs) {
+TEST_F(Front, HoldsNoPointThatAnotherOneBeatsAndEachRunsAsItIs_optimized) {
   const json j = done(search("front.sqlite", 150, {"--jobs", "2"}));
   EXPECT_EQ(j["rows"]["computed"], 150);
   const json& members = j["pareto"]["front"];
@@ -51,7 +51,7 @@ TEST_F(Front, HoldsNoPointThatAnotherOneBeatsAndEachRunsAsItIs) {
   expect_simulated("front.sqlite", members.back()["point"]);
 }
 
-TEST_F(Front, HasTheSameRowsForAnyJobsAndAfterAnInterruption) {
+TEST_F(Front, HasTheSameRowsForAnyJobsAndAfterAnInterruption_optimized) {
   static_cast<void>(done(search("whole.sqlite", 180, {"--jobs", "1"})));
   static_cast<void>(done(search("threads.sqlite", 180, {"--jobs", "3"})));
   expect_same_rows(rows_of(at("whole.sqlite")), rows_of(at("threads.sqlite")));
@@ -79,7 +79,7 @@ TEST_F(Front, IsRefusedWithTheRule) {
   EXPECT_FALSE(fs::exists(at("softland-out.sqlite")));
 }
 
-TEST_F(Front, HasAPageWithTheWaveformsOfItsPoints) {
+TEST_F(Front, HasAPageWithTheWaveformsOfItsPoints_optimized) {
   static_cast<void>(done(search("front.sqlite", 80)));
   const Outcome o = here.run({"report", "front.sqlite", "--quiet"});
   ASSERT_EQ(o.status, 0) << o.err;

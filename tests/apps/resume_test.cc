@@ -40,7 +40,7 @@ class Resume : public test::Searches {
   }
 };
 
-TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits) {
+TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits_optimized) {
   const auto with = [](std::vector<std::string> more) {
     more.insert(more.end(), test::slower.begin(), test::slower.end());
     more.insert(more.end(), {"--budget", "1500", "--jobs", "2"});
@@ -61,7 +61,7 @@ TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits) {
   EXPECT_FALSE(fs::exists(at("killed/unfinished")));
 }
 
-TEST_F(Resume, WithALargerBudgetIsTheSearchThatBeganWithIt) {
+TEST_F(Resume, WithALargerBudgetIsTheSearchThatBeganWithIt_optimized) {
   done(optimize({"--out", "out", "--budget", "200", "--optimizer", "cma-es"}));
   done({"optimize", "--resume", "--quiet", "--out", "out", "--budget", "500"});
   const json commands = json::parse(read(at("out/result.json")))["reproduce"];
@@ -77,7 +77,7 @@ TEST_F(Resume, WithALargerBudgetIsTheSearchThatBeganWithIt) {
   EXPECT_EQ(StudyReader(at("out/evaluations.sqlite")).sessions().back().rows, 0);
 }
 
-TEST_F(Resume, OfATargetWithACostOfItsOwnEndsWithTheSameBits) {
+TEST_F(Resume, OfATargetWithACostOfItsOwnEndsWithTheSameBits_optimized) {
   const std::vector<std::string> settling{"--target", "settling", "--budget", "600"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.end(), settling.begin(), settling.end());
@@ -89,7 +89,7 @@ TEST_F(Resume, OfATargetWithACostOfItsOwnEndsWithTheSameBits) {
   expect_same_search(at("whole"), at("out"));
 }
 
-TEST_F(Resume, AfterCtrlCGoesOn) {
+TEST_F(Resume, AfterCtrlCGoesOn_optimized) {
   const pid_t child = here.start(optimize({"--budget", "100000000", "--out", "out"}));
   for (int i = 0; i < 600 && !fs::exists(at("out/unfinished/best.toml")); ++i) std::this_thread::sleep_for(50ms);
   std::this_thread::sleep_for(500ms);
@@ -132,7 +132,7 @@ TEST_F(Resume, WithoutASearchNeedsAScene) {
   EXPECT_TRUE(fs::exists(at("out/result.json")));
 }
 
-TEST_F(Resume, NamesWhoHoldsTheFolder) {
+TEST_F(Resume, NamesWhoHoldsTheFolder_optimized) {
   const pid_t child = here.start(optimize({"--budget", "100000000", "--out", "out"}));
   for (int i = 0; i < 600 && !fs::exists(at("out/unfinished/best.toml")); ++i) std::this_thread::sleep_for(50ms);
   const Workplace elsewhere;
@@ -172,7 +172,7 @@ TEST_F(Resume, IsNotMadeOfAnExploration) {
 
 class Start : public test::Searches {};
 
-TEST_F(Start, FromTheWinnerOfAnotherSearchNeverEndsWorse) {
+TEST_F(Start, FromTheWinnerOfAnotherSearchNeverEndsWorse_optimized) {
   done(optimize({"--out", "one", "--budget", "400"}));
   const json found = test::result_in(at("one"));
   done(optimize({"--out", "two", "--budget", "12", "--start", "one/best.toml"}));

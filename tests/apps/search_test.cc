@@ -126,7 +126,7 @@ TEST_F(Search, IsNotExportedOnceASimulationHasLeftItsResultInTheFolder) {
   EXPECT_EQ(here->run({"export", "mixed"}).out, read(here->path() / "mixed/best.csv"));
 }
 
-TEST_F(Search, FindsTheSameBitsWithTwoJobs) {
+TEST_F(Search, FindsTheSameBitsWithTwoJobs_optimized) {
   EXPECT_EQ(search(*here, "two", {"--jobs", "2"}).status, first().status);
   EXPECT_EQ(read(here->path() / "one/best.toml"), read(here->path() / "two/best.toml"));
   EXPECT_EQ(read(here->path() / "one/best.csv"), read(here->path() / "two/best.csv"));
@@ -137,7 +137,7 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs) {
   EXPECT_TRUE(one == two) << json::diff(one, two).dump().substr(0, 2000);
 }
 
-TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle) {
+TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_optimized) {
   const auto tells = [&](std::vector<std::string> more, const std::string& scene = "two-electrodes.toml") {
     more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--waveform",
                                "pulse", "--json", "told.json", "--out", "told"});
@@ -158,7 +158,7 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle) {
   EXPECT_FALSE(modes("5")) << "stiff";
 }
 
-TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked) {
+TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked_optimized) {
   const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
   const Outcome o =
       here->run({"optimize", scene, "--quiet", "--budget", "200", "--limit", "--json", "limit.json", "--out", "near"});
@@ -178,7 +178,7 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked) {
   EXPECT_NEAR(json::parse(read(here->path() / "least.json")).at("touch").at("least_time_s").get<double>(), least, 1e-6 * least);
 }
 
-TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed) {
+TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed_optimized) {
   const auto family = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--budget", "200", "--json", "-", "--out", "families"});
     std::vector<std::string> words{"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/mem-gold-pzt.toml").string(), "--quiet"};
@@ -223,7 +223,7 @@ TEST_F(Search, TellsWhatEachOfItsFamiliesCameTo) {
   EXPECT_THAT(here->run({"report", "several"}).out, testing::HasSubstr("the least cost of each: pulse ")) << "from result.json";
 }
 
-TEST_F(Search, LooksElsewhereWithAnotherSeed) {
+TEST_F(Search, LooksElsewhereWithAnotherSeed_optimized) {
   const std::vector<std::string> scattered{"--optimizer", "cma-es"};
   const auto with_seed = [&](const char* seed) { return std::vector<std::string>{"--optimizer", "cma-es", "--seed", seed}; };
   search(*here, "default", scattered);
@@ -361,7 +361,7 @@ TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn) {
 // A search over devices that differ.
 const std::vector<std::string> over_devices{"--robust", "cvar:0.9", "--samples", "16", "--constrain", "t_i < 60 us"};
 
-TEST(RobustSearch, LeavesWhatRobustnessFindsAgain) {
+TEST(RobustSearch, LeavesWhatRobustnessFindsAgain_optimized) {
   const Workplace here;
   std::vector<std::string> more = over_devices;
   more.insert(more.end(), {"--calibrate", "Vdp:1 %,frequency", "--json", "out.json"});
@@ -391,7 +391,7 @@ TEST(RobustSearch, LeavesWhatRobustnessFindsAgain) {
   EXPECT_NE(o.out.find("Searched over 16 devices"), std::string::npos) << o.out;
 }
 
-TEST(RobustSearch, DrivesDevicesBySourcesThatErr) {
+TEST(RobustSearch, DrivesDevicesBySourcesThatErr_optimized) {
   const Workplace here;
   std::string scene = edited(shipped("mem-gold.toml"), "accuracy = 1e-6", "tolerance = 1e-5");  // that of robustness
   scene +=
@@ -417,7 +417,7 @@ TEST(RobustSearch, DrivesDevicesBySourcesThatErr) {
     EXPECT_EQ(own[key], worst["figures"][key]) << key;
 }
 
-TEST(RobustSearch, KeepsItsBestWhenInterrupted) {
+TEST(RobustSearch, KeepsItsBestWhenInterrupted_optimized) {
   const Workplace here;
   std::vector<std::string> more = over_devices;
   more.insert(more.end(), {"--budget", "100000000", "--out", "out", "--jobs", "2"});
@@ -434,7 +434,7 @@ TEST(RobustSearch, KeepsItsBestWhenInterrupted) {
   EXPECT_EQ(here.run({"simulate", "out/best.toml", "--quiet"}).status, 0);
 }
 
-TEST(RobustSearch, OfATinyBudgetStillAnswers) {
+TEST(RobustSearch, OfATinyBudgetStillAnswers_optimized) {
   const Workplace here;
   for (const char* budget : {"1", "100", "700"}) {
     std::vector<std::string> more{"--robust", "worst", "--samples", "8"};
@@ -449,7 +449,7 @@ const std::vector<std::string> thrown{
     "--set", "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"17.8 V\"], times=[\"20 us\", \"32 us\"]}", "--set",
     "structure.modes=2"};
 
-TEST(Calibrate, RanksWhatIsMeasuredWhateverTheNumberOfJobs) {
+TEST(Calibrate, RanksWhatIsMeasuredWhateverTheNumberOfJobs_optimized) {
   const Workplace here;
   write(here.path() / "gold.toml", here.run({"new"}).out);
   const auto run = [&](const char* jobs) {

@@ -27,7 +27,7 @@ std::vector<std::string> seeds(const std::string& count, std::vector<std::string
   return optimize(more);
 }
 
-TEST_F(Seeds, AreOneSearchEachAndTheBestIsReported) {
+TEST_F(Seeds, AreOneSearchEachAndTheBestIsReported_optimized) {
   done(seeds("3", {"--out", "one", "--jobs", "1"}));
   const std::vector<StoredRow> rows = rows_of(at("one/seeds.sqlite"));
   ASSERT_EQ(rows.size(), 3U);
@@ -65,7 +65,7 @@ TEST_F(Seeds, AreOneSearchEachAndTheBestIsReported) {
   EXPECT_EQ(read(at("again/report.html")), page);
 }
 
-TEST_F(Seeds, HaveTheSameBitsWhateverTheNumberOfJobs) {
+TEST_F(Seeds, HaveTheSameBitsWhateverTheNumberOfJobs_optimized) {
   done(seeds("3", {"--out", "one", "--jobs", "1"}));
   for (const char* jobs : {"2", "5"}) {
     const std::string out = std::string("jobs") + jobs;
@@ -75,7 +75,7 @@ TEST_F(Seeds, HaveTheSameBitsWhateverTheNumberOfJobs) {
   }
 }
 
-TEST_F(Seeds, AfterKillsAtRandomMomentsEndWithTheSameBits) {
+TEST_F(Seeds, AfterKillsAtRandomMomentsEndWithTheSameBits_optimized) {
   const auto with = [](const char* out, std::vector<std::string> more) {
     more.insert(more.end(), test::slower.begin(), test::slower.end());
     more.insert(more.end(), {"--seeds", "4", "--budget", "400", "--jobs", "2", "--out", out});
@@ -147,7 +147,7 @@ TEST_F(Seeds, ThatFailAreNamed) {
   EXPECT_TRUE(study["cost"]["median"].is_null());
 }
 
-TEST_F(Seeds, OfARobustSearchEndWithTheSameBits) {
+TEST_F(Seeds, OfARobustSearchEndWithTheSameBits_optimized) {
   const auto with = [](const char* out, std::vector<std::string> more) {
     more.insert(more.end(),
                 {"--robust", "cvar:0.9", "--samples", "8", "--seeds", "2", "--budget", "900", "--jobs", "2", "--out", out});

@@ -43,7 +43,7 @@ using StatusVerb = Stores;
 using MergeVerb = Stores;
 
 // The example of docs/scale.md, as it stands there.
-TEST_F(Table, IsNotNeededByPandas) {
+TEST_F(Table, IsNotNeededByPandas_pandas) {
   std::string python;
   for (const char* name : {"python3", "/usr/bin/python3"}) {
     if (python.empty() && std::system(fmt::format("{} -c 'import pandas' >/dev/null 2>&1", name).c_str()) == 0) python = name;

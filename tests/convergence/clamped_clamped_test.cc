@@ -18,7 +18,7 @@ namespace {
 
 using namespace literals;
 
-constexpr int converged_modes = 20;          // ten of them symmetric
+constexpr int converged_bridge_modes = 20;   // ten of them symmetric
 constexpr double reference_beta = 70.09505;  // full-length electrode, no fringing field
 
 /// The ideal beam of the pull-in literature between two clamps, without stretching.
@@ -29,7 +29,7 @@ Device bridge(int modes, double gap_over_width = 0.1, Fringing fringing = Fringi
   return d;
 }
 
-StaticPullIn fold(const Device& d) {
+StaticPullIn bridge_fold(const Device& d) {
   const StaticPullIn found = static_pull_in(Switch(d), 0);
   EXPECT_EQ(found.status, Status::done);
   EXPECT_EQ(found.kind, StaticKind::fold);
@@ -38,8 +38,8 @@ StaticPullIn fold(const Device& d) {
 
 TEST(ClampedClamped, StaticPullInIsTheClassicalNumber) {
   constexpr double printed = 1e-7;  // relative: the reference has seven digits
-  const Device d = bridge(converged_modes);
-  const StaticPullIn found = fold(d);
+  const Device d = bridge(converged_bridge_modes);
+  const StaticPullIn found = bridge_fold(d);
   EXPECT_NEAR(test::beta(d, found.voltage), reference_beta, printed * reference_beta);
   EXPECT_NEAR(found.deflection / d.gap.electrode, 0.396657, 1e-6);
 }
@@ -47,7 +47,7 @@ TEST(ClampedClamped, StaticPullInIsTheClassicalNumber) {
 TEST(ClampedClamped, StaticPullInNeedsFewModes) {
   const auto beta = [](int modes) {
     const Device d = bridge(modes);
-    return test::beta(d, fold(d).voltage);
+    return test::beta(d, bridge_fold(d).voltage);
   };
   EXPECT_NEAR(beta(1), reference_beta, 3e-3 * reference_beta);
   EXPECT_NEAR(beta(3), reference_beta, 1e-4 * reference_beta);
@@ -63,8 +63,8 @@ TEST(ClampedClamped, StaticPullInFallsWithFringingAsTheReferenceDoes) {
   };
   for (const auto& [gam, expected] :
        {Row{0.05, 67.8111}, Row{0.1, 65.6818}, Row{0.3, 58.4237}, Row{0.65, 49.1026}, Row{1, 42.4427}}) {
-    const Device d = bridge(converged_modes, gam / 0.65, Fringing::linear);
-    EXPECT_NEAR(test::beta(d, fold(d).voltage), expected, printed * expected) << "gam = " << gam;
+    const Device d = bridge(converged_bridge_modes, gam / 0.65, Fringing::linear);
+    EXPECT_NEAR(test::beta(d, bridge_fold(d).voltage), expected, printed * expected) << "gam = " << gam;
   }
 }
 
@@ -107,7 +107,8 @@ TEST(ClampedClamped, StaticPullInWithStressAndStretchingIsTheReference) {
                                  .biaxial = biaxial},
                    .gap = {.electrode = 1_um, .contact = 0.95_um},
                    .electrodes = {{.name = "full", .begin = 0, .end = length, .fringing = Fringing::linear}}};
-    EXPECT_NEAR(fold(d).voltage, volts, shooting_digits * volts) << length << " m, " << stress << " Pa, biaxial " << biaxial;
+    EXPECT_NEAR(bridge_fold(d).voltage, volts, shooting_digits * volts)
+        << length << " m, " << stress << " Pa, biaxial " << biaxial;
   }
 }
 
@@ -122,11 +123,12 @@ TEST(ClampedClamped, StaticPullInOfTheHungSenturiaBeamIsTheReference) {
                          Row{-3.7e6, true, Fringing::none, 10.4993973}, Row{-3.7e6, true, Fringing::linear, 10.3918260},
                          Row{0, false, Fringing::none, 13.5629112}, Row{0, true, Fringing::none, 14.4956069}}) {
     Device d = test::hung_senturia();
-    d.structure.modes = converged_modes;
+    d.structure.modes = converged_bridge_modes;
     d.structure.residual_stress = row.stress;
     d.structure.stretching = row.stretching;
     d.electrodes[0].fringing = row.fringing;
-    EXPECT_NEAR(fold(d).voltage, row.volts, shooting_digits * row.volts) << row.stress << " Pa, stretching " << row.stretching;
+    EXPECT_NEAR(bridge_fold(d).voltage, row.volts, shooting_digits * row.volts)
+        << row.stress << " Pa, stretching " << row.stretching;
   }
 }
 

@@ -15,10 +15,10 @@ namespace softland {
 namespace {
 
 using namespace literals;
+using test::converged_modes;
 using test::IdealCantilever;
 
-constexpr int converged_modes = 12;
-constexpr double digits = 1e-6;  // absolute: the reference prints six decimals
+constexpr double printed_digits = 1e-6;  // absolute: the reference prints six decimals
 
 double rigidity(const Structure& s) { return s.youngs_modulus * s.width * std::pow(s.thickness, 3) / 12; }
 
@@ -41,10 +41,10 @@ Device casimir_cantilever() {
 }
 
 /// The static pull-in of the dispersion force: factor and tip deflection over the gap.
-struct Fold {
+struct ForceFold {
   double factor, tip;
 };
-Fold fold_of_the_force(Device d) {
+ForceFold fold_of_the_force(Device d) {
   d.electrodes.clear();
   const StaticPullIn found = static_pull_in(Switch(d), 0);
   EXPECT_EQ(found.status, Status::done);
@@ -54,17 +54,17 @@ Fold fold_of_the_force(Device d) {
 
 TEST(Dispersion, CasimirForceBeyondTheReferenceParameterCollapsesTheCantilever) {
   const Device d = casimir_cantilever();
-  const Fold found = fold_of_the_force(d);
-  EXPECT_NEAR(found.factor * casimir_parameter(d), 0.939179, digits);
-  EXPECT_NEAR(found.tip, 0.272254, 2 * digits);
+  const ForceFold found = fold_of_the_force(d);
+  EXPECT_NEAR(found.factor * casimir_parameter(d), 0.939179, printed_digits);
+  EXPECT_NEAR(found.tip, 0.272254, 2 * printed_digits);
 }
 
 TEST(Dispersion, VanDerWaalsForceBeyondTheReferenceParameterCollapsesTheCantilever) {
   Device d = test::device({.modes = converged_modes});
   d.dispersion = Dispersion{.model = DispersionModel::van_der_waals, .hamaker_constant = 4e-19};
-  const Fold found = fold_of_the_force(d);
-  EXPECT_NEAR(found.factor * van_der_waals_parameter(d), 1.204837, digits);
-  EXPECT_NEAR(found.tip, 0.338429, 2 * digits);
+  const ForceFold found = fold_of_the_force(d);
+  EXPECT_NEAR(found.factor * van_der_waals_parameter(d), 1.204837, printed_digits);
+  EXPECT_NEAR(found.tip, 0.338429, 2 * printed_digits);
 }
 
 TEST(Dispersion, BeamsBetweenTwoClampsBearTheReferenceParameters) {
@@ -73,13 +73,13 @@ TEST(Dispersion, BeamsBetweenTwoClampsBearTheReferenceParameters) {
   d.structure.kind = StructureKind::clamped_clamped;
   d.structure.stretching = false;
   d.structure.modes = 20;  // ten of them symmetric
-  const Fold retarded = fold_of_the_force(d);
+  const ForceFold retarded = fold_of_the_force(d);
   EXPECT_NEAR(retarded.factor * casimir_parameter(d), 39.01398, printed * 39.01398);
-  EXPECT_NEAR(retarded.tip, 0.240354, 2 * digits);
+  EXPECT_NEAR(retarded.tip, 0.240354, 2 * printed_digits);
   d.dispersion = Dispersion{.model = DispersionModel::van_der_waals, .hamaker_constant = 4e-19};
-  const Fold near = fold_of_the_force(d);
+  const ForceFold near = fold_of_the_force(d);
   EXPECT_NEAR(near.factor * van_der_waals_parameter(d), 50.11591, printed * 50.11591);
-  EXPECT_NEAR(near.tip, 0.299410, 2 * digits);
+  EXPECT_NEAR(near.tip, 0.299410, 2 * printed_digits);
 }
 
 TEST(Dispersion, LowersTheStaticPullInAsTheReferenceDoes) {
@@ -98,7 +98,7 @@ TEST(Dispersion, LowersTheStaticPullInAsTheReferenceDoes) {
     }
     const StaticPullIn found = static_pull_in(Switch(d), 0);
     ASSERT_EQ(found.status, Status::done) << row.al4;
-    EXPECT_NEAR(test::beta(d, found.voltage), row.beta, digits) << row.al4;
+    EXPECT_NEAR(test::beta(d, found.voltage), row.beta, printed_digits) << row.al4;
   }
 }
 

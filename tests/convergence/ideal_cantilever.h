@@ -9,6 +9,8 @@
 
 namespace softland::test {
 
+inline constexpr int converged_modes = 12;  // Galerkin error below 1e-9
+
 struct IdealCantilever {
   int modes = 4;
   Fringing fringing = Fringing::none;

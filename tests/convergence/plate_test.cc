@@ -19,22 +19,22 @@ namespace {
 
 using namespace literals;
 
-constexpr double gap = 3_um, side = 100_um;
+constexpr double plate_gap = 3_um, plate_side = 100_um;
 
 Device plate(double contact_over_gap, double damping_ratio = 0) {
   return {.structure = {.kind = StructureKind::plate,
-                        .length = side,
-                        .width = side,
+                        .length = plate_side,
+                        .width = plate_side,
                         .mass = 2e-9,
                         .stiffness = 50,
                         .damping_ratio = damping_ratio},
-          .gap = {.electrode = gap, .contact = contact_over_gap * gap},
-          .electrodes = {{.name = "whole", .begin = 0, .end = side, .fringing = Fringing::none}}};
+          .gap = {.electrode = plate_gap, .contact = contact_over_gap * plate_gap},
+          .electrodes = {{.name = "whole", .begin = 0, .end = plate_side, .fringing = Fringing::none}}};
 }
 
 /// sqrt(8 k g^3 / (27 eps0 A)).
 double static_voltage(const Device& d) {
-  return std::sqrt(8 * d.structure.stiffness * std::pow(gap, 3) / (27 * vacuum_permittivity * side * side));
+  return std::sqrt(8 * d.structure.stiffness * std::pow(plate_gap, 3) / (27 * vacuum_permittivity * plate_side * plate_side));
 }
 
 TEST(Plate, PullsInAtAThirdOfTheGap) {
@@ -44,7 +44,7 @@ TEST(Plate, PullsInAtAThirdOfTheGap) {
   ASSERT_EQ(found.status, Status::done);
   EXPECT_EQ(found.kind, StaticKind::fold);
   EXPECT_NEAR(found.voltage, static_voltage(d), voltage_digits * found.voltage);
-  EXPECT_NEAR(found.deflection, gap / 3, deflection_digits * gap);
+  EXPECT_NEAR(found.deflection, plate_gap / 3, deflection_digits * plate_gap);
 }
 
 TEST(Plate, TheContactComesFirstBeforeAThirdOfTheGap) {
@@ -59,17 +59,17 @@ TEST(Plate, DispersionForcesCollapseItAtAFifthAndAQuarterOfTheGap) {
   constexpr double factor_digits = 1e-9, deflection_digits = 1e-6;  // relative; the fold is flat
   Device d = plate(0.9);
   d.electrodes.clear();
-  const double spring = d.structure.stiffness * gap, area = side * side;
+  const double spring = d.structure.stiffness * plate_gap, area = plate_side * plate_side;
   d.dispersion = Dispersion{.model = DispersionModel::casimir};
   const StaticPullIn retarded = static_pull_in(Switch(d), 0);
-  const double casimir = IdealCasimir{}.pressure(gap) * area / spring;  // at factor 1
+  const double casimir = IdealCasimir{}.pressure(plate_gap) * area / spring;  // at factor 1
   EXPECT_NEAR((1 + retarded.voltage) * casimir, 256.0 / 3125, factor_digits);
-  EXPECT_NEAR(retarded.deflection, gap / 5, deflection_digits * gap);
+  EXPECT_NEAR(retarded.deflection, plate_gap / 5, deflection_digits * plate_gap);
   d.dispersion = Dispersion{.model = DispersionModel::van_der_waals, .hamaker_constant = 4e-19};
   const StaticPullIn near = static_pull_in(Switch(d), 0);
-  const double van_der_waals = VanDerWaals{.hamaker_constant = 4e-19}.pressure(gap) * area / spring;
+  const double van_der_waals = VanDerWaals{.hamaker_constant = 4e-19}.pressure(plate_gap) * area / spring;
   EXPECT_NEAR((1 + near.voltage) * van_der_waals, 27.0 / 256, factor_digits);
-  EXPECT_NEAR(near.deflection, gap / 4, deflection_digits * gap);
+  EXPECT_NEAR(near.deflection, plate_gap / 4, deflection_digits * plate_gap);
 }
 
 TEST(Plate, AnUndampedStepPullsInAtTheRootOf27Over32) {
@@ -118,7 +118,7 @@ TEST(Plate, ClosesInTheTimeOfItsQuadratureWithTheSpeedOfItsEnergy) {
       const Trajectory t = simulate_closing(model, drives, {.duration = 10 / frequency, .tolerance = 1e-11});
       EXPECT_EQ(t.touches.size(), 1u);
       return Touch{.begin = t.touches.at(0).begin * frequency,
-                   .impact_velocity = t.touches.at(0).impact_velocity / (gap * frequency)};
+                   .impact_velocity = t.touches.at(0).impact_velocity / (plate_gap * frequency)};
     };
     const Touch at_two_thirds = touch(2.0 / 3), at_nine_tenths = touch(0.9);
     EXPECT_NEAR(at_two_thirds.begin, row.time_two_thirds, printed + digits * row.time_two_thirds) << row.over_static;
@@ -148,7 +148,7 @@ TEST(Plate, HeavilyDampedLingersAtTheGhostOfTheFold) {
 
 TEST(Plate, AnElectrodeCountsByItsArea) {
   Device d = plate(0.9);
-  d.electrodes[0].end = side / 4;
+  d.electrodes[0].end = plate_side / 4;
   EXPECT_NEAR(static_pull_in(Switch(d), 0).voltage, 2 * static_voltage(d), 1e-9 * static_voltage(d));
 }
 

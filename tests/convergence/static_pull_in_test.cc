@@ -14,11 +14,11 @@ namespace {
 
 using namespace literals;
 using test::beta;
+using test::converged_modes;
 using test::full_length_beta;
 using test::full_length_tip;
 using test::IdealCantilever;
 
-constexpr int converged_modes = 12;   // Galerkin error below 1e-9
 constexpr double beta_digits = 1e-6;  // absolute: the reference prints six decimals
 
 struct Fold {

@@ -96,7 +96,7 @@ TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryPair) {
   });
 }
 
-TEST(ExhaustiveEnergyBalance, ClosesOverSeveralBouncesForEveryCombination) {
+TEST(ExhaustiveEnergyBalance, ClosesOverSeveralBouncesForEveryCombination_optimized) {
   for_every_switch([](bool layer, const Loss& loss, const Contact& contact) {
     for (const int kind : {0, 1, 2}) expect_balanced(layer, loss, contact, kind);
   });

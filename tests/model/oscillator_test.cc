@@ -71,13 +71,13 @@ void expect_response(double damping_ratio, const Signal& drive, double volts, Re
   EXPECT_LT(worst, shape_digits * largest);
 }
 
-TEST(LinearLimit, StepOnThePiezoRingsEveryModeAboutItsStaticDeflection) {
+TEST(LinearLimit, StepOnThePiezoRingsEveryModeAboutItsStaticDeflection_optimized) {
   for (const double zeta : {0.0, 0.05}) {
     expect_response(zeta, Signal::constant(-0.2), -0.2, [&](double w, double t) { return step_response(w, zeta, t); });
   }
 }
 
-TEST(LinearLimit, RampIsTheIntegralOfTheStep) {
+TEST(LinearLimit, RampIsTheIntegralOfTheStep_optimized) {
   constexpr double rise = 17_us;
   for (const double zeta : {0.0, 0.05}) {
     expect_response(zeta, signal(Step{.level = -0.2, .rise_time = rise}), -0.2 / rise, [&](double w, double t) {
@@ -86,7 +86,7 @@ TEST(LinearLimit, RampIsTheIntegralOfTheStep) {
   }
 }
 
-TEST(LinearLimit, PulseIsASumOfSteps) {
+TEST(LinearLimit, PulseIsASumOfSteps_optimized) {
   constexpr double first = 20_us, second = 55_us;
   expect_response(0, signal(Pulse{.levels = {0.2_V, -0.3_V, 0.1_V}, .times = {first, second}, .edge = 0}), 1,
                   [&](double w, double t) {
@@ -95,7 +95,7 @@ TEST(LinearLimit, PulseIsASumOfSteps) {
                   });
 }
 
-TEST(LinearLimit, SineDrivesEveryModeBelowAndAboveItsResonance) {
+TEST(LinearLimit, SineDrivesEveryModeBelowAndAboveItsResonance_optimized) {
   for (const double frequency : {5e4, 3e5, 2.2e6}) {  // between the modes, rad/s
     constexpr double phase = 0.7;
     expect_response(0, signal(Harmonic{.amplitude = 0.3_V, .angular_frequency = frequency, .phase = phase}), 0.3,
@@ -103,7 +103,7 @@ TEST(LinearLimit, SineDrivesEveryModeBelowAndAboveItsResonance) {
   }
 }
 
-TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm) {
+TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm_optimized) {
   const Switch device(oscillator(0));
   const Eigen::VectorXd gain = device.piezo_shape().cwiseProduct(device.contact_shape());
   const std::vector<Signal> drives{Signal::constant(-0.2)};
@@ -120,7 +120,7 @@ TEST(LinearLimit, EveryIntegratorFollowsTheClosedForm) {
   }
 }
 
-TEST(LinearLimit, FreeModesAreExactAtAnyTolerance) {
+TEST(LinearLimit, FreeModesAreExactAtAnyTolerance_optimized) {
   const Switch device(oscillator(0));
   const std::vector<Signal> drives{Signal::constant(-0.2)};
   const Trajectory trajectory = simulate_closing(device, drives, {.duration = 100_us, .tolerance = 0.1});
@@ -136,7 +136,7 @@ TEST(LinearLimit, FreeModesAreExactAtAnyTolerance) {
   }
 }
 
-TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive) {
+TEST(LinearLimit, EnergyOfTheModesIsTheWorkOfTheDrive_optimized) {
   const Switch device(oscillator(0));
   const std::vector<Signal> drives{Signal::constant(-0.2)};
   const Trajectory trajectory = simulate_closing(device, drives, {.duration = 130_us, .tolerance = tight});

@@ -212,7 +212,7 @@ std::vector<Device> contacts_of_every_stiffness() {
   return all;
 }
 
-TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact) {
+TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact_optimized) {
   constexpr double margin = 1e-5;
   int holding = 0, never = 0;
   for (const Device& d : contacts_of_every_stiffness()) {

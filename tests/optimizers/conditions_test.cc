@@ -82,7 +82,7 @@ TEST(Conditions, ThatThrowAreTakenForKept) {
   }
 }
 
-TEST(Conditions, AreFollowedAlikeOnAnyNumberOfThreads) {
+TEST(Conditions, AreFollowedAlikeOnAnyNumberOfThreads_optimized) {
   const Problem problem = conditioned(landscapes::box(2, -2, 2, {}), 1, above_a_line, slopes_above_a_line);
   for (const char* name : {"auto", "ipopt"})
     expect_same(minimize(problem, {.optimizer = name, .jobs = 3}), minimize(problem, {.optimizer = name}));

@@ -11,6 +11,7 @@
 #include "model/closing.h"
 #include "model/pull_in.h"
 #include "objectives/metrics.h"
+#include "tests/regression/gold_digits.h"
 #include "tests/support/devices.h"
 #include "waveforms/pulse.h"
 
@@ -18,16 +19,16 @@ namespace softland {
 namespace {
 
 using namespace literals;
+using test::fine;
+using test::frequency_digits;
+using test::impact_digits;
+using test::time_digits;
 
-constexpr double frequency_digits = 1e-5;  // relative: the reference has seven to eight digits
-constexpr double voltage_digits = 5e-4;    // relative: what users may rely on; the reference itself is good to 1e-5
-constexpr double time_digits = 5e-4;       // relative, as for voltages
-constexpr double impact_digits = 5e-3;     // relative, for v_i and B_H: touches magnify what flight leaves behind
-constexpr double fine = 1e-8;              // integrator tolerance that leaves every figure here converged
-constexpr double promised = 1e-6;          // integrator tolerance from which four digits hold
-constexpr double four_digits = 2e-4;       // relative: a unit in the fourth digit
-constexpr double step_level = 17.771;      // [V], about 1.25 Vdp
-constexpr double significant = 1_nm;       // rebounds below are not counted
+constexpr double voltage_digits = 5e-4;  // relative: what users may rely on; the reference itself is good to 1e-5
+constexpr double promised = 1e-6;        // integrator tolerance from which four digits hold
+constexpr double four_digits = 2e-4;     // relative: a unit in the fourth digit
+constexpr double step_level = 17.771;    // [V], about 1.25 Vdp
+constexpr double significant = 1_nm;     // rebounds below are not counted
 
 Device with_modes(int modes) {
   Device device = test::gold_cantilever();

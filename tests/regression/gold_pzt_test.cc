@@ -11,6 +11,7 @@
 #include "model/closing.h"
 #include "model/pull_in.h"
 #include "objectives/metrics.h"
+#include "tests/regression/gold_digits.h"
 #include "tests/support/devices.h"
 #include "waveforms/pulse.h"
 
@@ -18,15 +19,15 @@ namespace softland {
 namespace {
 
 using namespace literals;
+using test::fine;
+using test::frequency_digits;
+using test::impact_digits;
+using test::time_digits;
 
-constexpr double frequency_digits = 1e-5;      // relative: the reference has eight digits
-constexpr double voltage_digits = 1e-3;        // relative: what users may rely on
-constexpr double time_digits = 5e-4;           // relative
-constexpr double impact_digits = 5e-3;         // relative, for v_i and B_H: touches magnify what flight leaves behind
-constexpr double fine = 1e-8;                  // integrator tolerance that leaves every figure here converged
+constexpr double pzt_voltage_digits = 1e-3;    // relative: what users may rely on
 constexpr double hold_level = 1.25 * 22.4695;  // [V], 1.25 Vdp
 
-Device with_modes(int modes) {
+Device pzt_with_modes(int modes) {
   Device device = test::gold_pzt_cantilever();
   device.structure.modes = modes;
   return device;
@@ -79,10 +80,10 @@ TEST(GoldPzt, PullsInAtTheReferenceVoltages) {
   const Switch device(test::gold_pzt_cantilever());
   const StaticPullIn statically = static_pull_in(device, 0);
   ASSERT_EQ(statically.status, Status::done);
-  EXPECT_NEAR(statically.voltage, 24.500, voltage_digits * 24.500);
+  EXPECT_NEAR(statically.voltage, 24.500, pzt_voltage_digits * 24.500);
   const DynamicPullIn dynamically = dynamic_pull_in(device, 0, statically);
   ASSERT_EQ(dynamically.status, Status::done);
-  EXPECT_NEAR(dynamically.voltage, 22.4695, voltage_digits * 22.4695);
+  EXPECT_NEAR(dynamically.voltage, 22.4695, pzt_voltage_digits * 22.4695);
 }
 
 TEST(GoldPzt, ATenthOfAVoltAgainstTheLayerLowersThePullInVoltage) {
@@ -101,8 +102,8 @@ TEST(GoldPzt, ATenthOfAVoltAgainstTheLayerLowersThePullInVoltage) {
     }
     return std::sqrt(best);
   };
-  EXPECT_NEAR(fold(0), 24.500, voltage_digits * 24.500);
-  EXPECT_NEAR(fold(-0.1_V), 23.111, voltage_digits * 23.111);
+  EXPECT_NEAR(fold(0), 24.500, pzt_voltage_digits * 24.500);
+  EXPECT_NEAR(fold(-0.1_V), 23.111, pzt_voltage_digits * 23.111);
 }
 
 TEST(GoldPzt, ClosesUnderAStepAsTheReferenceDoes) {
@@ -115,7 +116,7 @@ TEST(GoldPzt, ClosesUnderAStepAsTheReferenceDoes) {
 TEST(GoldPzt, BounceHeightDependsOnTheNumberOfModes) {
   constexpr std::array<std::pair<int, double>, 4> reference{{{3, 664_nm}, {4, 803_nm}, {5, 976_nm}, {6, 904_nm}}};
   for (const auto& [modes, height] : reference) {
-    const Metrics m = closing(Switch(with_modes(modes)), Signal(), 100_us, fine);
+    const Metrics m = closing(Switch(pzt_with_modes(modes)), Signal(), 100_us, fine);
     EXPECT_NEAR(m.major_bounce_height, height, impact_digits * height) << modes << " modes";
   }
 }

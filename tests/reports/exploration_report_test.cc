@@ -29,7 +29,7 @@ constexpr std::size_t most_bytes = 2'000'000;
 /// Pages are too long to be printed where they do not hold what they should.
 bool holds(const std::string& page, const std::string& words) { return page.find(words) != std::string::npos; }
 
-std::string refusal(const std::string& list) {
+std::string aims_refusal(const std::string& list) {
   try {
     static_cast<void>(explored_aims(sample_grid(3, 3).columns, list, "--pareto"));
   } catch (const InvalidInput& e) {
@@ -49,13 +49,13 @@ TEST(ExploredAims, GoByKeyByKeyWithoutUnitAndByName) {
 }
 
 TEST(ExploredAims, AreRefusedWithTheFiguresThereAre) {
-  EXPECT_THAT(refusal("impact_velocity,weight"),
+  EXPECT_THAT(aims_refusal("impact_velocity,weight"),
               HasSubstr("--pareto impact_velocity,weight: \"weight\" is not among the figures: "
                         "initial_contact_time_s, "));
-  EXPECT_THAT(refusal("impact_velocity,structure_length"), HasSubstr("not among the figures")) << "it is a variable";
-  EXPECT_THAT(refusal("impact_velocity,"), HasSubstr("not among the figures"));
-  EXPECT_THAT(refusal("impact_velocity,Impact speed"), HasSubstr("stands twice"));
-  EXPECT_THAT(refusal("impact_velocity"), HasSubstr("at least two"));
+  EXPECT_THAT(aims_refusal("impact_velocity,structure_length"), HasSubstr("not among the figures")) << "it is a variable";
+  EXPECT_THAT(aims_refusal("impact_velocity,"), HasSubstr("not among the figures"));
+  EXPECT_THAT(aims_refusal("impact_velocity,Impact speed"), HasSubstr("stands twice"));
+  EXPECT_THAT(aims_refusal("impact_velocity"), HasSubstr("at least two"));
 }
 
 TEST(ExploredFront, HoldsOnlyPointsThatHaveFigures) {
@@ -157,7 +157,7 @@ TEST(ExplorationPage, HoldsValuesToAFourThousandthOfTheirRange) {
   }
 }
 
-TEST(ExplorationPage, IsBelowTwoMegabytesWhateverTheNumberOfPoints) {
+TEST(ExplorationPage, IsBelowTwoMegabytesWhateverTheNumberOfPoints_optimized) {
   const std::string grid = exploration_html(sample_grid(200, 200));
   EXPECT_LT(grid.size(), most_bytes);
   EXPECT_FALSE(holds(grid, "Drawn are")) << "all of 40 000 points fit";
@@ -170,7 +170,7 @@ TEST(ExplorationPage, IsBelowTwoMegabytesWhateverTheNumberOfPoints) {
   EXPECT_TRUE(holds(cloud, "of 100000 points: chosen at random, each with the same chance, and the front."));
 }
 
-TEST(ExplorationPage, KeepsEveryPointOfTheFrontWhenItThins) {
+TEST(ExplorationPage, KeepsEveryPointOfTheFrontWhenItThins_optimized) {
   const ExplorationReport report = sample_cloud(100'000);
   const ExploredFront front = explored_front(report);
   const auto data = internal::exploration_data(report, std::nullopt, front);
@@ -245,7 +245,7 @@ TEST(ExplorationMap, IsAPictureOfItsOwn) {
   EXPECT_THROW(static_cast<void>(exploration_map_svg(sample_cloud(50), 0, 1, 6)), InvalidInput);
 }
 
-TEST_F(PageInBrowser, DrawsAnExplorationInSilence) {
+TEST_F(PageInBrowser, DrawsAnExplorationInSilence_browser) {
   for (const ExplorationReport& report : {sample_grid(40, 30), sample_cloud(2000), sample_cloud(3)}) {
     const test::Visit seen = test::visit(program, exploration_html(report));
     EXPECT_EQ(seen.console, "");
@@ -254,7 +254,7 @@ TEST_F(PageInBrowser, DrawsAnExplorationInSilence) {
   }
 }
 
-TEST_F(PageInBrowser, CutsNothingOfAnExplorationOnANarrowScreen) {
+TEST_F(PageInBrowser, CutsNothingOfAnExplorationOnANarrowScreen_browser) {
   for (const int width : {360, 420, 1280}) {
     const std::string dom =
         in_frame(program, exploration_html(width == 420 ? sample_grid(40, 30) : sample_cloud(2000)), width,
@@ -264,7 +264,7 @@ TEST_F(PageInBrowser, CutsNothingOfAnExplorationOnANarrowScreen) {
   }
 }
 
-TEST_F(PageInBrowser, ReadsAnExplorationWithTheKeysAlone) {
+TEST_F(PageInBrowser, ReadsAnExplorationWithTheKeysAlone_browser) {
   const std::string press =
       "const press = (id, key) => page.querySelector(`#${id} canvas`).dispatchEvent(new "
       "frame.contentWindow.KeyboardEvent('keydown', {key}));";

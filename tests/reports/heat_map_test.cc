@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/random.h"
+#include "tests/support/not_finite.h"
 #include "xml.h"
 
 namespace softland::internal {
@@ -14,8 +14,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// f(i, j) at the cells of a map.
 std::vector<double> tabulated(std::size_t columns, std::size_t rows, const std::function<double(double, double)>& f) {
@@ -78,11 +76,11 @@ TEST(ContourLines, PartTheCornersOfASaddle) {
 
 TEST(ContourLines, KeepAwayFromCellsWithoutAValue) {
   auto values = tabulated(9, 9, [](double i, double) { return i; });
-  values[4 * 9 + 4] = nan;
+  values[4 * 9 + 4] = kNaN;
   const auto lines = contour_lines(values, 9, 4.5);
   ASSERT_EQ(lines.size(), 2u);
   for (const ContourLine& line : lines) EXPECT_NEAR(length_of(line), 3, 1e-12);
-  EXPECT_TRUE(contour_lines(std::vector<double>(81, nan), 9, 4.5).empty());
+  EXPECT_TRUE(contour_lines(std::vector<double>(81, kNaN), 9, 4.5).empty());
   EXPECT_TRUE(contour_lines({}, 0, 1).empty());
 }
 
@@ -113,12 +111,12 @@ TEST(HeatMap, DoesNotSpendItsColoursOnAFewOutliers) {
   // One value, and none.
   EXPECT_LT(colour_range({3, 3}).low, 3);
   EXPECT_GT(colour_range({0, 0}).high, 0);
-  EXPECT_EQ(colour_range({nan}).low, 0);
+  EXPECT_EQ(colour_range({kNaN}).low, 0);
 }
 
 TEST(HeatMap, IsWellFormedWithAxesInTheirUnitsAndMarkedCells) {
   auto values = tabulated(12, 10, [](double i, double j) { return 0.1 + 0.01 * i + 0.002 * j * j; });
-  values[5] = nan;
+  values[5] = kNaN;
   const std::string svg = "<svg>" + heat_map_elements(map_of(values, 12), 900) + "</svg>";
   EXPECT_EQ(test::xml_fault(svg), "");
   EXPECT_THAT(svg, HasSubstr("structure.length (µm)"));
@@ -131,7 +129,7 @@ TEST(HeatMap, IsWellFormedWithAxesInTheirUnitsAndMarkedCells) {
 }
 
 TEST(HeatMap, BearsOneCellAndNoValues) {
-  for (const double value : {3.0, 0.0, nan}) {
+  for (const double value : {3.0, 0.0, kNaN}) {
     const std::string svg = "<svg>" + heat_map_elements(map_of({value}, 1), 900) + "</svg>";
     EXPECT_EQ(test::xml_fault(svg), "") << value;
     EXPECT_THAT(svg, Not(HasSubstr("nan"))) << value;

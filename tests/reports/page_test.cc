@@ -26,20 +26,20 @@ std::size_t canvases(const std::string& dom) {
   return count;
 }
 
-TEST_F(PageInBrowser, DrawsEveryChartOfASearchInSilence) {
+TEST_F(PageInBrowser, DrawsEveryChartOfASearchInSilence_browser) {
   const Visit seen = visit(program, html_report(read_result(test::sample_optimize_result(20000))));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 7u);
   EXPECT_THAT(seen.dom, HasSubstr("class=\"drawn\""));
 }
 
-TEST_F(PageInBrowser, DrawsASingleRunInSilence) {
+TEST_F(PageInBrowser, DrawsASingleRunInSilence_browser) {
   const Visit seen = visit(program, html_report(read_result(test::sample_simulate_result(3000))));
   EXPECT_EQ(seen.console, "");
   EXPECT_EQ(canvases(seen.dom), 6u);
 }
 
-TEST_F(PageInBrowser, BearsAResultWithoutCurvesAndOneFullOfNulls) {
+TEST_F(PageInBrowser, BearsAResultWithoutCurvesAndOneFullOfNulls_browser) {
   EXPECT_EQ(visit(program, html_report(read_result(json::object()))).console, "");
   json result = test::sample_optimize_result(300);
   for (json& value : result["curves"]["best"]["tip_gap_m"]) value = nullptr;
@@ -49,7 +49,7 @@ TEST_F(PageInBrowser, BearsAResultWithoutCurvesAndOneFullOfNulls) {
   EXPECT_EQ(canvases(seen.dom), 7u);
 }
 
-TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle) {
+TEST_F(PageInBrowser, RunsNoScriptOfAHostileTitle_browser) {
   json result = test::sample_optimize_result(300);
   const std::string hostile =
       "</script><script>document.body.className='owned'</script><img src=x onerror=\"document.body.className='owned'\">";
@@ -77,7 +77,7 @@ json searched() {
   return result;
 }
 
-TEST_F(PageInBrowser, CutsNothingOnANarrowScreen) {
+TEST_F(PageInBrowser, CutsNothingOnANarrowScreen_browser) {
   for (const int width : {420, 1280}) {
     const std::string dom = in_frame(program, html_report(read_result(searched())), width,
                                      "for (const one of page.querySelectorAll('html, main, .scroll, .keys, figure')) if "
@@ -86,7 +86,7 @@ TEST_F(PageInBrowser, CutsNothingOnANarrowScreen) {
   }
 }
 
-TEST_F(PageInBrowser, ReadsTheSameInBothGapChartsAtOneCursor) {
+TEST_F(PageInBrowser, ReadsTheSameInBothGapChartsAtOneCursor_browser) {
   const std::string dom = in_frame(
       program, html_report(read_result(searched())), 1280,
       "const over = page.querySelector('#figure-landing .u-over'); const read = (id) => [...page.querySelectorAll('#figure-' + "
@@ -99,7 +99,7 @@ TEST_F(PageInBrowser, ReadsTheSameInBothGapChartsAtOneCursor) {
   EXPECT_EQ(said(dom), "true;end;");
 }
 
-TEST_F(PageInBrowser, LeavesRoomForTheNumbersAtItsAxes) {
+TEST_F(PageInBrowser, LeavesRoomForTheNumbersAtItsAxes_browser) {
   json result = searched();
   for (const char* list : {"evaluations", "best_so_far"}) {
     for (json& one : result["search"][list]) one[1] = 12345.0 + 100 * one[1].get<double>();
@@ -112,7 +112,7 @@ TEST_F(PageInBrowser, LeavesRoomForTheNumbersAtItsAxes) {
   EXPECT_EQ(said(dom), "end;");
 }
 
-TEST_F(PageInBrowser, ReportsWhatAPageComplainsAbout) {
+TEST_F(PageInBrowser, ReportsWhatAPageComplainsAbout_browser) {
   EXPECT_THAT(visit(program, "<!DOCTYPE html><script>undefined.x</script>").console, HasSubstr("TypeError"));
 }
 

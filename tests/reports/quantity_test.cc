@@ -9,12 +9,11 @@
 #include <sstream>
 
 #include "config/units.h"
+#include "tests/support/not_finite.h"
 #include "tests/support/printed.h"
 
 namespace softland::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Quantity, CarriesAPrefixThreeDigitsAndANoBreakSpace) {
   EXPECT_EQ(quantity(4.45e-5, "s"), "44.5\u00a0µs");
@@ -36,7 +35,7 @@ TEST(Quantity, RoundsBeforeItChoosesThePrefix) {
 }
 
 TEST(Quantity, OfNothingIsADashAndOfZeroIsZero) {
-  EXPECT_EQ(quantity(nan, "s"), "—");
+  EXPECT_EQ(quantity(kNaN, "s"), "—");
   EXPECT_EQ(quantity(std::numeric_limits<double>::infinity(), "s"), "—");
   EXPECT_EQ(quantity(0, "m"), "0\u00a0m");
   EXPECT_EQ(quantity(-0.0, "m"), "0\u00a0m");
@@ -65,8 +64,8 @@ TEST(Quantity, IsRoundedToItsError) {
   EXPECT_EQ(quantity_within(54, 2, "", 4), "54");
   EXPECT_EQ(error_of(54, 2, "", 4), "2");
   EXPECT_EQ(error_of(54, 0, "", 4), "0");
-  EXPECT_EQ(quantity_within(54, nan, "", 4), "54");
-  EXPECT_EQ(error_of(54, nan, "", 4), "—");
+  EXPECT_EQ(quantity_within(54, kNaN, "", 4), "54");
+  EXPECT_EQ(error_of(54, kNaN, "", 4), "—");
 }
 
 /// A printed quantity read back.
@@ -119,7 +118,7 @@ TEST(Quantity, NeverSaysMoreThanIsKnownNorLessThanIsAskedFor) {
     const int digits = 1 + static_cast<int>(generator() % 5);
     const double value = (generator() % 2 == 0 ? 1 : -1) * std::pow(10, uniform(-23, 11));
     const bool known = generator() % 2 == 0;
-    const double error = known ? std::abs(value) * std::pow(10, uniform(-12, 2)) : nan;
+    const double error = known ? std::abs(value) * std::pow(10, uniform(-12, 2)) : kNaN;
     const std::string text = quantity_within(value, error, unit, digits);
     const auto p = read_back(text, unit);
     ASSERT_TRUE(p) << text << " of " << value;
@@ -195,7 +194,7 @@ TEST(Scientific, IsWrittenAsInAScene) {
   EXPECT_EQ(scientific(2.46e-9), "2.5e-9");
   EXPECT_EQ(relative_error(0), "0");
   EXPECT_EQ(relative_error(9e-12), "< 1e-9");
-  EXPECT_EQ(relative_error(nan), "—");
+  EXPECT_EQ(relative_error(kNaN), "—");
 }
 
 TEST(Quantity, IsReadAgainByAScene) {

@@ -9,7 +9,7 @@
 namespace softland {
 namespace {
 
-std::string refusal(const std::string& content) {
+std::string parse_refusal(const std::string& content) {
   try {
     (void)parse_result(content, "x.json");
   } catch (const InvalidInput& error) {
@@ -26,7 +26,7 @@ TEST(ParseResult, ReadsWhatTheVerbsWrite) {
 TEST(ParseResult, RefusesWhatIsNoResult) {
   for (const char* content : {"", "nonsense", "{}", "[]", R"({"kind": 3})", R"({"kind": "effects"})", R"({"kind": "simulate")",
                               "{\"kind\": \"simulate\", \"title\": \"\xff\"}", R"({"kind": "simulate", "seed": 1e999})"}) {
-    EXPECT_EQ(refusal(content), "x.json: is not a result.json of softland") << content;
+    EXPECT_EQ(parse_refusal(content), "x.json: is not a result.json of softland") << content;
   }
 }
 
@@ -60,8 +60,8 @@ TEST(ParseResult, RefusesNestingThatNoReportCanWalkThrough) {
   const auto nested = [](std::size_t depth) {
     return R"({"kind": "optimize", "best": {"parameters": {"a": )" + std::string(depth, '[') + std::string(depth, ']') + "}}}";
   };
-  EXPECT_EQ(refusal(nested(300'000)), "x.json: is nested more than 64 deep");
-  EXPECT_EQ(refusal(nested(62)), "x.json: is nested more than 64 deep");
+  EXPECT_EQ(parse_refusal(nested(300'000)), "x.json: is nested more than 64 deep");
+  EXPECT_EQ(parse_refusal(nested(62)), "x.json: is nested more than 64 deep");
   EXPECT_NO_THROW((void)html_report(read_result(parse_result(nested(61), "x.json"))));
 }
 

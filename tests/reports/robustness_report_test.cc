@@ -64,7 +64,7 @@ const Study& study() {
   return made;
 }
 
-TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth) {
+TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth_optimized) {
   const std::string text = robustness_text(study().report());
   for (const char* words : {"64 devices of the spread: gap.electrode and gap.contact ± 2.0 % (normal)", "plain step",
                             "<slow>, \"mine\"", "Known of every device", "\nnothing ", "\nVdp and frequency, 8 classes ",
@@ -81,7 +81,7 @@ TEST(RobustnessReport, OfATerminalHasEveryDriveAndWhatMeasuringIsWorth) {
   EXPECT_THAT(robustness_text(bare), Not(HasSubstr("first order")));
 }
 
-TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound) {
+TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound_optimized) {
   const nlohmann::json j = robustness_json(study().report());
   EXPECT_EQ(j["kind"], "robustness");
   EXPECT_EQ(j["devices"], 64);
@@ -111,7 +111,7 @@ TEST(RobustnessReport, AsJsonHoldsWhatTheStudyFound) {
   EXPECT_EQ(j["other_ways"]["polynomial_chaos"]["largest_impact_velocity_m_s"]["q2_other_devices"], ways.chaos[1].q2_unseen);
 }
 
-TEST(RobustnessReport, SaysWhereChaosFails) {
+TEST(RobustnessReport, SaysWhereChaosFails_optimized) {
   RobustnessReport report = study().report();
   OtherWays ways = study().other_ways.value();
   ways.left_out = 3;
@@ -132,7 +132,7 @@ TEST(RobustnessReport, SaysWhereChaosFails) {
   EXPECT_TRUE(robustness_json(report)["other_ways"]["box"]["figures"]["major_bounce_height_m"]["most"]["value"].is_null());
 }
 
-TEST(RobustnessReport, AsCsvHasALinePerDevice) {
+TEST(RobustnessReport, AsCsvHasALinePerDevice_optimized) {
   std::istringstream in(robustness_csv(study().report()));
   std::string line;
   std::getline(in, line);
@@ -143,7 +143,7 @@ TEST(RobustnessReport, AsCsvHasALinePerDevice) {
   EXPECT_EQ(lines, 64);
 }
 
-TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge) {
+TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge_optimized) {
   SceneFile file = study().nominal.scene.file;
   file.set(R"(spread={"driver.main.jitter"={distribution="uniform", half_width="50 ns"}})");
   Study jittered{.nominal = prepare(file), .options = {.samples = 64}, .found = {}};
@@ -179,7 +179,7 @@ TEST(RobustnessReport, ShowsOfJitterTheTimeOfAnEdge) {
 }
 
 // Grazing, what has no derivative, and what is left out are said in words, wherever derivatives are read.
-TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth) {
+TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
   Derivatives told = study().derivatives;
   told.grazing = 0.03;
   told.figures[2].by_variable.clear();
@@ -237,7 +237,7 @@ std::vector<double> bins_of(const std::string& page, const std::string& table) {
   return bins;
 }
 
-TEST(RobustnessReport, HasHistogramsOfAllDevicesInView) {
+TEST(RobustnessReport, HasHistogramsOfAllDevicesInView_optimized) {
   const std::string page = robustness_html(study().report());
   double in_view = 0;
   for (const DriveRobustness& d : study().found.drives) {
@@ -263,7 +263,7 @@ TEST(RobustnessReport, HasHistogramsOfAllDevicesInView) {
   for (const char* id : {"count-v-max", "count-t-i"}) EXPECT_THAT(page, HasSubstr(fmt::format("data-chart=\"{}\"", id)));
 }
 
-TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose) {
+TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose_optimized) {
   Study bare{.nominal = study().nominal, .options = {.samples = 8}, .found = study().found};
   bare.found.drives.resize(1);
   bare.found.by_knowledge.clear();
@@ -279,7 +279,7 @@ TEST(RobustnessReport, ShowsThePlainStepAloneAndDevicesThatDoNotClose) {
   EXPECT_EQ(robustness_json(bare.report())["drives"][0]["failures"]["gap.contact must be <less>"], 1);
 }
 
-TEST(RobustnessReport, LeavesOutAFigureThatNoDeviceHas) {
+TEST(RobustnessReport, LeavesOutAFigureThatNoDeviceHas_optimized) {
   Study rigid{.nominal = study().nominal, .options = study().options, .found = study().found};
   const std::string name = "Peak contact force";
   EXPECT_THAT(robustness_text(rigid.report()), HasSubstr(name));
@@ -294,7 +294,7 @@ TEST(RobustnessReport, LeavesOutAFigureThatNoDeviceHas) {
   EXPECT_THAT(robustness_text(rigid.report()), HasSubstr(name)) << "where none closes nothing is known";
 }
 
-TEST(Sensitivity, SaysWhereFirstContactComesFrom) {
+TEST(Sensitivity, SaysWhereFirstContactComesFrom_optimized) {
   const Sensitivity& found = study().sensitivity;
   ASSERT_EQ(found.figures.size(), 3U);
   ASSERT_TRUE(found.figures[0].estimate.indices);
@@ -304,7 +304,7 @@ TEST(Sensitivity, SaysWhereFirstContactComesFrom) {
   EXPECT_NEAR(sum, 1, 0.15) << "the time of first contact is nearly a sum";
 }
 
-TEST(DeviceCourses, AreThoseOfTheQuantilesOfTheHighestRebound) {
+TEST(DeviceCourses, AreThoseOfTheQuantilesOfTheHighestRebound_optimized) {
   ASSERT_EQ(study().courses.size(), 3U);
   const std::vector<DeviceOutcome>& outcomes = study().found.drives.back().outcomes;
   double before = -1;

@@ -65,7 +65,7 @@ TEST(PolynomialChaos, ReproducesAPolynomial) {
   }
 }
 
-TEST(PolynomialChaos, KnowsTheMomentsAndIndicesOfAPolynomial) {
+TEST(PolynomialChaos, KnowsTheMomentsAndIndicesOfAPolynomial_long) {
   const Eigen::MatrixXd points = sobol_points(3, 100);
   const PolynomialChaos chaos(mixed, points, figures_at(points, polynomial));
   constexpr double variance = 4.0 / 3 + 1.0 / 3 + 3;
@@ -91,7 +91,7 @@ TEST(PolynomialChaos, FindsTheFewTermsThatMatterAmongMoreThanThereAreFigures) {
   EXPECT_NEAR(chaos.total(0), chaos.total(7), rounding);
 }
 
-TEST(PolynomialChaos, ApproachesTheIndicesOfIshigami) {
+TEST(PolynomialChaos, ApproachesTheIndicesOfIshigami_long) {
   const Eigen::MatrixXd points = sobol_points(3, 400);
   const PolynomialChaos chaos(std::vector<Germ>(3, Germ::uniform), points, figures_at(points, Ishigami::at), 12);
   constexpr double truncated = 1e-5;  // twice the largest error of an index with 200 to 800 figures: what degree 12 leaves out
@@ -105,7 +105,7 @@ TEST(PolynomialChaos, ApproachesTheIndicesOfIshigami) {
 }
 
 // The error that q2 states is the one at points that the fit has not seen.
-TEST(PolynomialChaos, KnowsItsErrorElsewhere) {
+TEST(PolynomialChaos, KnowsItsErrorElsewhere_long) {
   const auto noisy = [](const std::vector<double>& u) {
     const double noise = standard_normal(std::fmod(1e6 * (u[0] + std::sqrt(2.0) * u[1]), 1.0) * 0.999 + 5e-4);
     return u[0] + u[1] * u[1] + 0.1 * noise;

@@ -144,7 +144,7 @@ double tight_pull_in(const Prepared& p) {
 }
 
 // The scene at the voltage that its level stands for: what it differs by is in the errors.
-TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn) {
+TEST(Certify, CoversTheErrorOfTheVoltagesThatDrivesAreWrittenIn_optimized) {
   const auto driven = [](const char* accuracy, const std::string& level) {
     return prepare(gold({fmt::format("waveform.main.level={}", level), "simulate.duration=60 us",
                          fmt::format("simulate.accuracy={}", accuracy)}));
@@ -203,7 +203,7 @@ Prepared far_electrode(std::string_view setting) {
 }
 
 // However tight: a run that leaves no room for a tighter one is judged by a looser one.
-TEST(Simulate, IsNeverItsOwnJudge) {
+TEST(Simulate, IsNeverItsOwnJudge_optimized) {
   for (const char* setting : {"simulate.accuracy=1e-8", "simulate.accuracy=1e-12", "simulate.tolerance=1e-13"}) {
     const Closing c = simulate(far_electrode(setting), true);
     ASSERT_EQ(c.judge->status, Status::done) << setting;
@@ -218,7 +218,7 @@ TEST(Simulate, IsNeverItsOwnJudge) {
   EXPECT_THAT(asked.warnings, Contains(testing::HasSubstr("accuracy 1e-12 is not reached")));
 }
 
-TEST(Certify, GivesTheRangeOfAChaoticCount) {
+TEST(Certify, GivesTheRangeOfAChaoticCount_optimized) {
   const Closing c = certify(far_electrode("simulate.accuracy=1e-8"));
   EXPECT_THAT(ill_conditioned(c), Contains("bounce_count"));
   EXPECT_GE(c.errors[&Metrics::bounce_count], 2);

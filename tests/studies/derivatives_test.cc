@@ -188,7 +188,7 @@ const std::vector<std::string> surface{"contact.pad_length", "contact.asperity_r
 const std::vector<std::string> plate{"structure.mass", "structure.stiffness", "structure.area", "gap.electrode", "gap.contact"};
 const std::string in_100_us = "simulate.duration=100 us";
 
-TEST(Derivatives, OfAGoldCantilever) {
+TEST(Derivatives, OfAGoldCantilever_optimized) {
   expect_agreement({"mem-gold.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -196,7 +196,7 @@ TEST(Derivatives, OfAGoldCantilever) {
                     with(beam, {"gas.viscosity", "contact.pad_length", "contact.asperity_height", "contact.effective_modulus"})},
                    2);
 }
-TEST(Derivatives, OfAPiezoAndAnElectrode) {
+TEST(Derivatives, OfAPiezoAndAnElectrode_optimized) {
   expect_agreement({"mem-gold-pzt.toml",
                     Actuator::both,
                     "pulse",
@@ -204,8 +204,10 @@ TEST(Derivatives, OfAPiezoAndAnElectrode) {
                     with(beam, {"piezo.thickness", "piezo.d31", "piezo.youngs_modulus"})},
                    1);
 }
-TEST(Derivatives, OfADitheredPiezo) { expect_agreement({"mem-gold-pzt.toml", Actuator::pzt, "dither", {in_100_us}, beam}, 1); }
-TEST(Derivatives, OfTwoElectrodes) {
+TEST(Derivatives, OfADitheredPiezo_optimized) {
+  expect_agreement({"mem-gold-pzt.toml", Actuator::pzt, "dither", {in_100_us}, beam}, 1);
+}
+TEST(Derivatives, OfTwoElectrodes_optimized) {
   expect_agreement({"two-electrodes.toml",
                     Actuator::electrostatic,
                     "coast",
@@ -214,7 +216,7 @@ TEST(Derivatives, OfTwoElectrodes) {
                                  "driver.main.gain"})},
                    2);
 }
-TEST(Derivatives, OfAnActuatorInGas) {
+TEST(Derivatives, OfAnActuatorInGas_optimized) {
   expect_agreement({"gap-closing-actuator.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -222,7 +224,7 @@ TEST(Derivatives, OfAnActuatorInGas) {
                     with(plate, {"gas.viscosity", "gas.slit_height", "gas.far_gap", "electrode.main.gap", "contact.stiffness"})},
                    1);
 }
-TEST(Derivatives, OfANanometreSwitch) {
+TEST(Derivatives, OfANanometreSwitch_optimized) {
   expect_agreement({"nem-tin.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -231,7 +233,7 @@ TEST(Derivatives, OfANanometreSwitch) {
                                 "contact.asperity_height"})},
                    1);
 }
-TEST(Derivatives, OfABeamBetweenTwoClamps) {
+TEST(Derivatives, OfABeamBetweenTwoClamps_optimized) {
   expect_agreement({"mem-gold.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -239,7 +241,7 @@ TEST(Derivatives, OfABeamBetweenTwoClamps) {
                     with(beam, {"structure.residual_stress", "gas.viscosity", "contact.effective_modulus"})},
                    1);
 }
-TEST(Derivatives, OfAPlasticContact) {
+TEST(Derivatives, OfAPlasticContact_optimized) {
   expect_agreement({"mem-gold.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -247,7 +249,7 @@ TEST(Derivatives, OfAPlasticContact) {
                     with(surface, {"contact.hardness", "gap.contact", "structure.thickness"})},
                    2);
 }
-TEST(Derivatives, OfARigidContact) {
+TEST(Derivatives, OfARigidContact_optimized) {
   expect_agreement({"two-electrodes.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -255,7 +257,7 @@ TEST(Derivatives, OfARigidContact) {
                     with(plate, {"contact.restitution", "structure.damping_ratio"})},
                    1);
 }
-TEST(Derivatives, OfAnAdhesiveContact) {
+TEST(Derivatives, OfAnAdhesiveContact_optimized) {
   expect_agreement({"mem-gold.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -264,7 +266,7 @@ TEST(Derivatives, OfAnAdhesiveContact) {
                    1);
 }
 
-TEST(Derivatives, OfAContactThatAttractsFromAfar) {
+TEST(Derivatives, OfAContactThatAttractsFromAfar_optimized) {
   expect_agreement({"mem-gold.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -275,7 +277,7 @@ TEST(Derivatives, OfAContactThatAttractsFromAfar) {
                     64},
                    1);
 }
-TEST(Derivatives, OfAContactAlongThePad) {
+TEST(Derivatives, OfAContactAlongThePad_optimized) {
   expect_agreement({"mem-gold.toml",
                     Actuator::electrostatic,
                     "pulse",
@@ -285,7 +287,7 @@ TEST(Derivatives, OfAContactAlongThePad) {
 }
 
 // The electrode and the clock follow the pull-in voltage and the frequency of each device.
-TEST(Derivatives, OfDevicesInTheirOwnUnits) {
+TEST(Derivatives, OfDevicesInTheirOwnUnits_optimized) {
   expect_agreement({"mem-gold.toml", Actuator::electrostatic, "pulse", {in_100_us}, beam, "Vdp,frequency"}, 1);
 }
 
@@ -296,7 +298,7 @@ const FigureDerivatives& figure(const Derivatives& of, std::string_view key) {
 }
 
 // Without gas only inertia knows of time: a step closes a switch of c times the density in the root of c times the time.
-TEST(Derivatives, TimesGrowWithTheRootOfTheDensity) {
+TEST(Derivatives, TimesGrowWithTheRootOfTheDensity_optimized) {
   SceneFile file = gold_at_17_volts({spread_of({"structure.density"})});
   file.erase("gas");
   const Prepared p = prepare(file);
@@ -311,7 +313,7 @@ TEST(Derivatives, TimesGrowWithTheRootOfTheDensity) {
 }
 
 // Correlated quantities that are one quantity spread a figure as one.
-TEST(Derivatives, AddUpAsCorrelated) {
+TEST(Derivatives, AddUpAsCorrelated_optimized) {
   const auto found_with = [](const std::string& correlation) {
     const Prepared p = prepare(gold_at_17_volts(
         {fmt::format(R"(spread={{"structure.width"={{distribution="normal",cov="1 %"}},"gap.contact"={{distribution="normal",)"
@@ -326,7 +328,7 @@ TEST(Derivatives, AddUpAsCorrelated) {
   EXPECT_NEAR(figure(together, "initial_contact_time_s").deviation, std::sqrt(a * a + b * b + a * b), 1e-12 * time.deviation);
 }
 
-TEST(Derivatives, ForwardAreThoseBackward) {
+TEST(Derivatives, ForwardAreThoseBackward_optimized) {
   for (const char* model : {"contact.model=asperity-uniform", "contact.model=elastic-plastic"}) {
     SceneFile file = gold_at_17_volts({model});
     if (std::string(model).find("plastic") != std::string::npos) file.set("contact.hardness=1 GPa");
@@ -365,7 +367,7 @@ TEST(Derivatives, ForwardAreThoseBackward) {
 }
 
 // In the whole window the reference closing is chaotic: its permanent contact is decided by changes that no one sees.
-TEST(Derivatives, TellWhatIsIllConditioned) {
+TEST(Derivatives, TellWhatIsIllConditioned_optimized) {
   const Prepared p = prepare(gold());
   const Derivatives found = derivatives(p, own_drive(p));
   EXPECT_TRUE(found.grazes());
@@ -377,7 +379,7 @@ TEST(Derivatives, TellWhatIsIllConditioned) {
   }
 }
 
-TEST(Derivatives, SayWhyThereAreNone) {
+TEST(Derivatives, SayWhyThereAreNone_optimized) {
   const auto found = [](std::initializer_list<std::string_view> changes, const Calibration& calibration = {}) {
     const Prepared p = prepare(gold_at_17_volts(changes));
     EnsembleDrive drive = own_drive(p);

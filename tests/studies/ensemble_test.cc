@@ -232,7 +232,7 @@ TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
   EXPECT_EQ(times.size(), 3U) << "three waveforms for all devices";
 }
 
-TEST(Robustness, SaysWhatEachMeasurementIsWorth) {
+TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {
   const Prepared nominal = prepare(gold_at_17_volts({"waveform.main.rise_time=30 us"}));
   const Calibration errors{.pull_in_error = 0.01, .frequency_error = 0.01};
   RobustnessOptions options{.samples = 24, .jobs = 2, .vectors = Vectors::none, .worth_of_measuring = true};

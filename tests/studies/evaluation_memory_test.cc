@@ -78,7 +78,7 @@ Found searched(OptimizeOptions options, EvaluationMemory* memory) {
   return found;
 }
 
-TEST(EvaluationMemory, LeavesEveryOptimizerTheSameBits) {
+TEST(EvaluationMemory, LeavesEveryOptimizerTheSameBits_optimized) {
   for (const std::string_view optimizer : optimizer_names()) {
     const OptimizeOptions options{.optimizer = std::string(optimizer), .max_evaluations = 90};
     const std::string name(optimizer);
@@ -95,7 +95,7 @@ TEST(EvaluationMemory, LeavesEveryOptimizerTheSameBits) {
   }
 }
 
-TEST(EvaluationMemory, LeavesEveryTargetTheSameBits) {
+TEST(EvaluationMemory, LeavesEveryTargetTheSameBits_optimized) {
   for (const Target target : every_target) {
     const OptimizeOptions options{.target = target, .max_evaluations = 60};
     const Found without = searched(options, nullptr);
@@ -107,7 +107,7 @@ TEST(EvaluationMemory, LeavesEveryTargetTheSameBits) {
   }
 }
 
-TEST(EvaluationMemory, LeavesARobustSearchTheSameBits) {
+TEST(EvaluationMemory, LeavesARobustSearchTheSameBits_optimized) {
   const auto searched_over_devices = [](EvaluationMemory* memory, std::uint64_t seed, int jobs) {
     Found found;
     OptimizeOptions options{.max_evaluations = 900, .seed = seed, .jobs = jobs, .memory = memory};

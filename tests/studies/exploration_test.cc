@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/executor.h"
@@ -56,7 +57,7 @@ std::size_t index_of(const Exploration& e, const std::string& quantity) {
   throw std::logic_error("no figure " + quantity);
 }
 
-TEST(Exploration, OfClosingsGivesTheFiguresOfSimulate) {
+TEST(Exploration, OfClosingsGivesTheFiguresOfSimulate_optimized) {
   Exploration e = exploration(request("simulate", {"structure.length=248 um:260 um:2", "waveform.main.level=1.2 Vdp:1.3 Vdp:2"}));
   ASSERT_EQ(e.figures().size(), all_figures.size());
   for (std::uint64_t k = 0; k < e.plan().points(); ++k) {
@@ -89,7 +90,7 @@ TEST(Exploration, StartsFromACanonicalSceneThatClosesAsTheGivenOne) {
   }
 }
 
-TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne) {
+TEST(Exploration, FindsThePullInOfASwitchOnceAndOfEveryOtherOne_optimized) {
   // The same points in an order in which the switch changes every time, and with a memory that knows only the other drives.
   Exploration by_switch = exploration(request("simulate", {"gap.contact=1.9 um,2 um", "waveform.main.level=1.2 Vdp,1.3 Vdp"}));
   for (std::uint64_t k = 0; k < 4; ++k) {
@@ -124,7 +125,7 @@ TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
   }
 }
 
-TEST(Exploration, WithErrorsGivesThoseOfCertify) {
+TEST(Exploration, WithErrorsGivesThoseOfCertify_optimized) {
   PlanRequest asked = request("simulate", {"structure.length=250 um"});
   asked.options["certify"] = "true";
   Exploration e = exploration(asked);
@@ -156,7 +157,7 @@ TEST(Exploration, OfADispersionForceGivesItsFactors) {
   EXPECT_LT(row.figures[0], 1.5);
 }
 
-TEST(Exploration, OfDevicesGivesTheYieldsOfRobustness) {
+TEST(Exploration, OfDevicesGivesTheYieldsOfRobustness_optimized) {
   PlanRequest asked = request("robustness", {"waveform.main.level=1.2 Vdp"});
   asked.options["samples"] = "24";
   asked.seed = 5;
@@ -174,7 +175,7 @@ TEST(Exploration, OfDevicesGivesTheYieldsOfRobustness) {
   EXPECT_EQ(row.figures[index_of(e, "major_bounce_height_q95")], found.drives.back().figures[height].quantiles[2].value);
 }
 
-TEST(Exploration, OfSearchesKeepsWinnersThatSimulateRunsToTheirFigures) {
+TEST(Exploration, OfSearchesKeepsWinnersThatSimulateRunsToTheirFigures_optimized) {
   PlanRequest asked = request("optimize", {"gap.contact=2 um"});
   asked.options["budget"] = "120";
   Exploration e = exploration(asked);
@@ -193,7 +194,7 @@ TEST(Exploration, OfSearchesKeepsWinnersThatSimulateRunsToTheirFigures) {
   EXPECT_LT(row.figures[index_of(e, "cost")], row.figures[index_of(e, "plain_step_cost")]);
 }
 
-TEST(Exploration, IsTheSameOnAnyNumberOfThreadsInAnyOrder) {
+TEST(Exploration, IsTheSameOnAnyNumberOfThreadsInAnyOrder_optimized) {
   Exploration e = exploration(request("simulate", {"structure.length=246 um:262 um:3", "waveform.main.level=1.1 Vdp:1.4 Vdp:2"}));
   const auto rows = [&](int jobs, bool backwards) {
     std::vector<PointRow> all(e.plan().points());

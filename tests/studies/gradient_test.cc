@@ -129,19 +129,23 @@ void expect_agreement(const SearchSetting& s, int cases) {
   std::printf("%d cases, %d slopes, the worst off by %.2g of its bound\n", all.cases, all.slopes, all.worst);
 }
 
-TEST(Gradient, OfPulsesOnTheGoldSwitch) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse"), 40); }
-TEST(Gradient, OfBothDrives) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::both, "pulse"), 15); }
-TEST(Gradient, OfDithers) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "dither"), 10); }
-TEST(Gradient, OfSplines) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "bspline:6"), 10); }
-TEST(Gradient, OfSines) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "sines:6"), 5); }
-TEST(Gradient, OfTwoElectrodes) { expect_agreement(setting_of("two-electrodes.toml", Actuator::electrostatic, "coast"), 10); }
+TEST(Gradient, OfPulsesOnTheGoldSwitch_optimized) {
+  expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse"), 40);
+}
+TEST(Gradient, OfBothDrives_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::both, "pulse"), 15); }
+TEST(Gradient, OfDithers_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "dither"), 10); }
+TEST(Gradient, OfSplines_optimized) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "bspline:6"), 10); }
+TEST(Gradient, OfSines_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "sines:6"), 5); }
+TEST(Gradient, OfTwoElectrodes_optimized) {
+  expect_agreement(setting_of("two-electrodes.toml", Actuator::electrostatic, "coast"), 10);
+}
 TEST(Gradient, OfANanometreSwitch) { expect_agreement(setting_of("nem-tin.toml", Actuator::electrostatic, "pulse"), 5); }
-TEST(Gradient, OfAPlasticContact) {
+TEST(Gradient, OfAPlasticContact_optimized) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce,
                               {"contact.model=elastic-plastic", "contact.hardness=1 GPa"}),
                    5);
 }
-TEST(Gradient, OfADampedContact) {
+TEST(Gradient, OfADampedContact_optimized) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse", Target::bounce, {"contact.damping=0.5 s/m"}), 5);
 }
 // What follows the last moment that a figure depends on is not linearised, and changes nothing.

@@ -48,7 +48,7 @@ TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
   }
 }
 
-TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation) {
+TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_optimized) {
   const Prepared p = prepare_and_choose(gold(), true);
   // A free-form calculation by another program: 31.85, 31.66 and 31.06 us.
   for (const auto& [velocity, known] : {std::pair{1e-3, 31.85e-6}, {3e-3, 31.66e-6}, {10e-3, 31.06e-6}}) {
@@ -205,7 +205,7 @@ TEST(FreeFlight, LandsUnderTheVoltageThatHoldsWithoutPressing) {
   EXPECT_NEAR(landing->state[0], 1, 1e-9);
 }
 
-TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited) {
+TEST(Limit, LandsAPlateAtRestWhereTheSlewIsLimited_optimized) {
   for (const char* level : {"80 V", "115 V"}) {
     const Prepared p = ramped_plate(level);
     const LeastTime touch = least_time(p, {.impact_velocity = 5e-3});
@@ -234,7 +234,7 @@ TEST(LeastTime, RefusesWhatItDoesNotFit) {
             std::string::npos);
 }
 
-TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime) {
+TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime_optimized) {
   const Limit found = limit(gold(), {.impact_velocity = 1e-3, .curves = false});
   ASSERT_TRUE(found.landing.has_value());
   EXPECT_TRUE(found.landing->bounce_free);
@@ -243,7 +243,7 @@ TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime) {
   EXPECT_GT(found.rest.time, found.touch.time);
 }
 
-TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes) {
+TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes_optimized) {
   // Jumps of the piezo ring modes beyond the four of the scene.
   const Limit found = limit(gold_pzt(), {.actuator = Actuator::both, .curves = false});
   ASSERT_TRUE(found.landing.has_value());

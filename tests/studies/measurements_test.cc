@@ -32,7 +32,7 @@ const Prediction& of(const std::vector<Prediction>& all, std::string_view name) 
   return *std::find_if(all.begin(), all.end(), [&](const Prediction& p) { return p.name == name; });
 }
 
-TEST(Measurements, AreOfEveryFigureAndEveryPairTheBestFirst) {
+TEST(Measurements, AreOfEveryFigureAndEveryPairTheBestFirst_optimized) {
   std::vector<std::string> names;
   for (const MeasurableFigure& f : study().figures) names.push_back(f.name);
   EXPECT_EQ(names, (std::vector<std::string>{"Vdp", "Vsp", "release", "frequency", "time at 1.25 Vdp"}));
@@ -54,7 +54,7 @@ TEST(Measurements, OfVoltageAndFrequencyLandWhatNothingKnownDoesNot) {
 }
 
 // The best factors of volts told from one figure, by the normal equations of a straight line on the other half.
-TEST(Measurements, TellByAFitToTheOtherHalf) {
+TEST(Measurements, TellByAFitToTheOtherHalf_optimized) {
   for (std::size_t f = 0; f < study().figures.size(); ++f) {
     const MeasurableFigure& figure = study().figures[f];
     const std::size_t devices = study().devices;
@@ -82,7 +82,7 @@ TEST(Measurements, TellByAFitToTheOtherHalf) {
   }
 }
 
-TEST(Measurements, AreTheSameBitsWhateverTheNumberOfJobs) {
+TEST(Measurements, AreTheSameBitsWhateverTheNumberOfJobs_optimized) {
   const MeasurementStudy alone = study_measurements(recipe(), quick(1));
   ASSERT_EQ(alone.predictions.size(), study().predictions.size());
   for (std::size_t i = 0; i < alone.predictions.size(); ++i) {
@@ -92,7 +92,7 @@ TEST(Measurements, AreTheSameBitsWhateverTheNumberOfJobs) {
   }
 }
 
-TEST(Measurements, WithErrorsTellLess) {
+TEST(Measurements, WithErrorsTellLess_optimized) {
   MeasurementOptions options = quick();
   options.pull_in_error = 0.05;
   const MeasurementStudy erring = study_measurements(recipe(), options);
@@ -101,7 +101,7 @@ TEST(Measurements, WithErrorsTellLess) {
   EXPECT_EQ(of(erring.predictions, "frequency").volts_miss, of(study().predictions, "frequency").volts_miss);
 }
 
-TEST(Measurements, KeepWhatIsJudgedWhenStopped) {
+TEST(Measurements, KeepWhatIsJudgedWhenStopped_optimized) {
   std::atomic<bool> stop = false;
   Watch watch{.stop = &stop, .progress = [&](std::string_view what, double part) {
                 if (what.starts_with("judging") && part > 0.3) stop = true;
@@ -115,7 +115,7 @@ TEST(Measurements, KeepWhatIsJudgedWhenStopped) {
   EXPECT_THROW(static_cast<void>(study_measurements(recipe(), quick(1), watch)), Interrupted);
 }
 
-TEST(Measurements, RefuseWhatHasNoLandingToPin) {
+TEST(Measurements, RefuseWhatHasNoLandingToPin_optimized) {
   const auto refused = [](const SceneFile& file) {
     return refusal([&] { static_cast<void>(study_measurements(file, quick())); });
   };

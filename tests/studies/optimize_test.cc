@@ -36,7 +36,7 @@ const Log& reference() {
   return log;
 }
 
-TEST(Optimize, GivesTheSameBitsWhateverTheNumberOfJobs) {
+TEST(Optimize, GivesTheSameBitsWhateverTheNumberOfJobs_optimized) {
   const Log two = search(quick(), {.jobs = 2});
   ASSERT_EQ(two.evaluations.size(), reference().evaluations.size());
   for (const auto& [index, e] : reference().evaluations) {
@@ -90,7 +90,7 @@ TEST(Optimize, ComparesWithAPlainStepToTheSameHoldLevel) {
   EXPECT_EQ(baseline.duration, log.result.scene.duration);
 }
 
-TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel) {
+TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel_optimized) {
   SceneFile file = gold_pzt({"simulate.duration=150 us", "waveform.piezo.family=step", "waveform.piezo.level=-6 V",
                              "waveform.piezo.rise_time=20 us", "driver.piezo.min_voltage=-12 V", "driver.piezo.max_voltage=12 V",
                              "driver.piezo.max_slew=2 V/us"});
@@ -103,7 +103,7 @@ TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel) {
   EXPECT_LT(log.result.baseline_cost, 4);
 }
 
-TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks) {
+TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks_optimized) {
   const std::vector<FigureName> figures = figure_names();
   const auto with = [&](const char* condition, long budget) {
     return search(quick(), {.conditions = {parse_criterion(condition, figures)}}, budget).result;
@@ -222,7 +222,7 @@ TEST(Optimize, SearchesForReboundsAndCountAsForBounce) {
   }
 }
 
-TEST(Optimize, ForAFigureBeginsWithTheSearchForBounce) {
+TEST(Optimize, ForAFigureBeginsWithTheSearchForBounce_optimized) {
   for (const Target target : every_target) {
     if (!has_own_cost(target)) continue;
     const Log log = search(quick(), {.target = target}, 90);
@@ -291,7 +291,7 @@ TEST(Optimize, BeginsAFamilyWhereThoseBeforeItWere) {
   FAIL() << "there is no staircase";
 }
 
-TEST(Optimize, OfSeveralFamiliesGivesTheSameBitsWhateverTheNumberOfJobs) {
+TEST(Optimize, OfSeveralFamiliesGivesTheSameBitsWhateverTheNumberOfJobs_optimized) {
   const Log one = search(quick(), {.family = two_families}, 100), two = search(quick(), {.family = two_families, .jobs = 2}, 100);
   ASSERT_EQ(one.evaluations.size(), two.evaluations.size());
   for (const auto& [index, e] : one.evaluations) EXPECT_EQ(two.evaluations.at(index).value, e.value) << index;
@@ -305,7 +305,7 @@ TEST(Optimize, OfSeveralFamiliesSearchesTheFirstWhereTheBudgetIsTiny) {
 }
 
 // One line for each scene shipped: what optimize says of it, empty where it searches.
-TEST(Optimize, SearchesEveryShippedSceneOrSaysWhyNot) {
+TEST(Optimize, SearchesEveryShippedSceneOrSaysWhyNot_optimized) {
   const std::map<std::string, std::string> refused{
       {"hung-senturia.toml", "optimize needs a [contact] section: without contact there is nothing to land on"},
       {"purdue-nickel.toml", "optimize needs a [contact] section: without contact there is nothing to land on"},

@@ -41,7 +41,7 @@ const Log& reference() {
   return log;
 }
 
-TEST(RobustOptimize, DoesBetterOnFreshDevicesThanTheStep) {
+TEST(RobustOptimize, DoesBetterOnFreshDevicesThanTheStep_optimized) {
   const OptimizeResult& found = reference().result.found;
   ASSERT_TRUE(found.best && reference().result.verdict);
   EXPECT_TRUE(found.better_than_baseline);
@@ -56,7 +56,7 @@ TEST(RobustOptimize, DoesBetterOnFreshDevicesThanTheStep) {
   EXPECT_EQ(signal(drives[1].waveforms.at("main")).pieces(), found.best_scene->signals()[0].pieces());
 }
 
-TEST(RobustOptimize, GivesTheSameBitsWhateverTheNumberOfJobs) {
+TEST(RobustOptimize, GivesTheSameBitsWhateverTheNumberOfJobs_optimized) {
   const Log one = search(quick(), aim("cvar:0.9"), 1);
   ASSERT_EQ(one.evaluations.size(), reference().evaluations.size());
   for (const auto& [index, e] : reference().evaluations) {
@@ -69,12 +69,12 @@ TEST(RobustOptimize, GivesTheSameBitsWhateverTheNumberOfJobs) {
   EXPECT_EQ(one.result.closings, reference().result.closings);
 }
 
-TEST(RobustOptimize, KeepsToItsBudgetOfClosings) {
+TEST(RobustOptimize, KeepsToItsBudgetOfClosings_optimized) {
   EXPECT_LE(reference().result.closings, 3500 + 7 * 40) << "a search ends with the candidate that it is at";
   EXPECT_GT(reference().result.closings, 2500);
 }
 
-TEST(RobustOptimize, SaysWhichConditionsHold) {
+TEST(RobustOptimize, SaysWhichConditionsHold_optimized) {
   const Log log = search(quick(), aim("mean+2sigma", {"initial_contact_time < 1 ms", "v_max < 1 um/s"}));
   const std::vector<FulfilledCondition>& conditions = log.result.conditions;
   ASSERT_EQ(conditions.size(), 2U);
@@ -85,7 +85,7 @@ TEST(RobustOptimize, SaysWhichConditionsHold) {
   EXPECT_FALSE(log.result.found.goal_met);
 }
 
-TEST(RobustOptimize, KeepsAConditionThatItCanKeep) {
+TEST(RobustOptimize, KeepsAConditionThatItCanKeep_optimized) {
   // The winner without it touches later.
   std::vector<double> times;
   for (const DeviceOutcome& o : reference().result.verdict->drives[1].outcomes) times.push_back(o.metrics.initial_contact_time);
@@ -96,7 +96,7 @@ TEST(RobustOptimize, KeepsAConditionThatItCanKeep) {
   EXPECT_LT(sample_quantile(times, 0.9), 39e-6);
 }
 
-TEST(RobustOptimize, OfAYieldSaysHowManyDevicesHaveIt) {
+TEST(RobustOptimize, OfAYieldSaysHowManyDevicesHaveIt_optimized) {
   const Log log = search(quick(), aim("yield:v_max < 50 mm/s"));
   ASSERT_TRUE(log.result.yield && log.result.verdict);
   const auto& outcomes = log.result.verdict->drives[1].outcomes;
@@ -106,7 +106,7 @@ TEST(RobustOptimize, OfAYieldSaysHowManyDevicesHaveIt) {
   EXPECT_GT(log.result.yield->value, 0.5);
 }
 
-TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot) {
+TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot_optimized) {
   SceneFile file = quick();
   for (const char* set : {"calibration.Vdp.error=\"0 %\"", "calibration.frequency.error=\"0 %\""}) file.set(set);
   const Log log = search(file, aim("cvar:0.9"));
@@ -115,7 +115,7 @@ TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot) {
   EXPECT_EQ(log.result.verdict->by_knowledge.size(), 7U) << "nothing, each alone, both in 4, 8 and 16 classes, both";
 }
 
-TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats) {
+TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats_optimized) {
   // A clock that counts how often it is looked at, which is once in an evaluation: what is in time does not depend on the
   // machine.
   double looks = 0;
@@ -135,7 +135,7 @@ TEST(RobustOptimize, NeedsASpread) {
             std::string::npos);
 }
 
-TEST(RobustOptimize, EndsWhenAsked) {
+TEST(RobustOptimize, EndsWhenAsked_optimized) {
   std::atomic<bool> stop = false;
   OptimizeOptions options{.max_evaluations = 1'000'000'000, .jobs = 2, .stop = &stop};
   options.on_evaluation = [&](const Evaluation&, const OptimizeProgress& p) { stop = p.evaluations > 2500; };

@@ -125,7 +125,7 @@ TEST(SearchSpace, HasTheSameSlopesUnderSlewLimits) {
   for (const char* family : every_family) shared += expect_shared_slopes(slow_drivers(), family);
   EXPECT_GT(shared, 0);
 }
-TEST(SearchSpace, HasTheSameSlopesThroughDrivers) {
+TEST(SearchSpace, HasTheSameSlopesThroughDrivers_optimized) {
   const Prepared filtered = prepare(gold_pzt({"driver.main.bandwidth=1 MHz", "driver.piezo.bandwidth=0.3 MHz"}), true);
   const Prepared sampled = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.piezo.sample_rate=3 MHz"}), true);
   const Prepared rounded = prepare(gold_pzt({"driver.main.sample_rate=2 MHz", "driver.main.bits=8"}), true);

@@ -53,7 +53,7 @@ TEST(TwoStages, LogTheOwnCostOfEveryEvaluation) {
   EXPECT_EQ(log.result.value, best);
 }
 
-TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs) {
+TEST(TwoStages, AreTheSameWhateverTheNumberOfJobs_optimized) {
   const StagesLog one = search_in_stages({.max_evaluations = 200}), three = search_in_stages({.max_evaluations = 200, .jobs = 3});
   ASSERT_EQ(one.evaluations.size(), three.evaluations.size());
   for (const auto& [index, e] : one.evaluations) {

@@ -169,7 +169,7 @@ TEST(SpicePwl, TimesIncreaseStrictlyEvenWhenJumpsAreARoundingErrorApart) {
   EXPECT_EQ(last, 2);
 }
 
-TEST(SpicePwl, RunsInNgspiceAndGivesTheSignal) {
+TEST(SpicePwl, RunsInNgspiceAndGivesTheSignal_optimized) {
   if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
   const std::map<std::string, Signal> signals{
       {"jumps", signal(kTable)}, {"pulse", signal(kPulse)}, {"sine", signal(kHarmonic)}, {"step", signal(kStep)}};

@@ -19,7 +19,7 @@ namespace {
 using test::expect_invalid;
 
 // What signal.h promises for the extrema of terms, relative to their size.
-constexpr double kPromisedExtremum = 1e-9;
+constexpr double kPromisedTermExtremum = 1e-9;
 
 /// Terms of every kind, of times of order one and voltages of order one.
 SignalPiece random_piece(std::mt19937_64& random) {
@@ -90,11 +90,11 @@ TEST(Terms, ExtremaMatchDenseSampling) {
     const double h = duration / samples;
     const double below = h * h / 8 * internal::derivative_bound(piece, 2, 0, duration);
     const double slower = h * h / 8 * internal::derivative_bound(piece, 3, 0, duration);
-    EXPECT_GE(signal.maximum(), largest - kPromisedExtremum * size) << i;
+    EXPECT_GE(signal.maximum(), largest - kPromisedTermExtremum * size) << i;
     EXPECT_LE(signal.maximum(), largest + below + 1e-12) << i;
-    EXPECT_LE(signal.minimum(), smallest + kPromisedExtremum * size) << i;
+    EXPECT_LE(signal.minimum(), smallest + kPromisedTermExtremum * size) << i;
     EXPECT_GE(signal.minimum(), smallest - below - 1e-12) << i;
-    EXPECT_GE(signal.peak_slew(), fastest - kPromisedExtremum * rates) << i;
+    EXPECT_GE(signal.peak_slew(), fastest - kPromisedTermExtremum * rates) << i;
     EXPECT_LE(signal.peak_slew(), fastest + slower + 1e-9) << i;
   }
 }
@@ -102,18 +102,18 @@ TEST(Terms, ExtremaMatchDenseSampling) {
 TEST(Terms, ExtremaOfACubicAndOfADecayMatchTheClosedForm) {
   // t - t^3 has its maximum 2 / sqrt(27) at 1 / sqrt(3).
   const Signal cubic = with_end({.slope = 1, .terms = {{.cosine = {0, 0, 0, -1}}}}, 1);
-  EXPECT_NEAR(cubic.maximum(), 2 / std::sqrt(27.0), kPromisedExtremum * 2);
-  EXPECT_NEAR(cubic.peak_slew(), 2, kPromisedExtremum * 4);
+  EXPECT_NEAR(cubic.maximum(), 2 / std::sqrt(27.0), kPromisedTermExtremum * 2);
+  EXPECT_NEAR(cubic.peak_slew(), 2, kPromisedTermExtremum * 4);
   // t exp(-t) has its maximum 1 / e at 1, and lasts for ever.
   const Signal decay({{.terms = {{.cosine = {0, 1, 0, 0}, .decay = 1}}}});
-  EXPECT_NEAR(decay.maximum(), 1 / std::numbers::e, kPromisedExtremum * 50);
+  EXPECT_NEAR(decay.maximum(), 1 / std::numbers::e, kPromisedTermExtremum * 50);
   EXPECT_EQ(decay.minimum(), 0);
   EXPECT_EQ(decay.hold_level(), 0);
   // exp(-a t) sin(w t) has its first maximum where tan(w t) = w / a.
   constexpr double a = 2, w = 7;
   const Signal swing({{.terms = {{.sine = {1, 0, 0, 0}, .decay = a, .angular_frequency = w}}}});
   const double at = std::atan2(w, a) / w;
-  EXPECT_NEAR(swing.maximum(), std::exp(-a * at) * std::sin(w * at), kPromisedExtremum);
+  EXPECT_NEAR(swing.maximum(), std::exp(-a * at) * std::sin(w * at), kPromisedTermExtremum);
 }
 
 TEST(Terms, PolylineStaysWithinItsTolerance) {
@@ -143,7 +143,7 @@ TEST(Terms, ThatEndWhereTheNextPieceBeginsAreNoJump) {
   // What is left of an exponential is none either.
   const Signal decay({{.value = -10, .terms = {{.cosine = {10, 0, 0, 0}, .decay = 40}}}, {.begin = 1, .value = -10}});
   EXPECT_EQ(decay.voltage_before(1), -10);
-  EXPECT_NEAR(decay.peak_slew(), 400, 400 * kPromisedExtremum * 2);
+  EXPECT_NEAR(decay.peak_slew(), 400, 400 * kPromisedTermExtremum * 2);
 }
 
 TEST(Terms, AreResolvedByAFractionOfTheirPeriodAndByTheirTimeConstant) {

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""The tables of results/ci.md, of what .ci/run leaves behind.
+
+    bench/ci_table.py build/release build/optimized.xml build/asan-ubsan build/sanitized.xml
+
+Each build is followed by what `ctest --output-junit` wrote of its tests. Labels are asked of ctest, since its JUnit has none; a test of two labels
+counts in the row of either. Seconds are those of the tests, added up, and not of the clock: two run at a time.
+"""
+
+import collections
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+
+
+def labels_of(build):
+    """Labels of every test of the build, by name; without touching the log of its last run."""
+    with tempfile.TemporaryDirectory() as here:
+        with open(os.path.join(here, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
+            file.write(f"subdirs([==[{os.path.abspath(build)}]==])\n")
+        listed = subprocess.run(["ctest", "--test-dir", here, "--show-only=json-v1"], check=True, capture_output=True, text=True)
+    labels = {}
+    for test in json.loads(listed.stdout)["tests"]:
+        properties = {p["name"]: p["value"] for p in test.get("properties", [])}
+        labels[test["name"]] = properties.get("LABELS", [])
+    return labels
+
+
+def table(build, junit):
+    labels = labels_of(build)
+    suite = ElementTree.parse(junit).getroot()
+    rows = collections.defaultdict(lambda: [0, 0, 0.0])  # tests, of these not passed, seconds
+    there = collections.Counter(label for of_one in labels.values() for label in of_one)
+    for case in suite.iter("testcase"):
+        for label in labels.get(case.get("name"), ["?"]) + ["all"]:
+            row = rows[label]
+            row[0] += 1
+            row[1] += case.get("status") != "run"
+            row[2] += float(case.get("time"))
+    print(f"`{os.path.basename(os.path.normpath(build))}`, {suite.get('timestamp')}, {suite.get('time')} s by the clock; {len(labels)} tests in the build\n")
+    print("| label | in the build | run | not passed | seconds |\n|---|---:|---:|---:|---:|")
+    for label in sorted(set(there) | set(rows) - {"all"}) + ["all"]:
+        count, bad, seconds = rows[label]
+        print(f"| {label} | {there[label] if label != 'all' else len(labels)} | {count} | {bad} | {seconds:.0f} |")
+    print()
+
+
+def slowest(junit, most):
+    cases = sorted(ElementTree.parse(junit).getroot().iter("testcase"), key=lambda case: -float(case.get("time")))
+    for case in cases[:most]:
+        print(f"{float(case.get('time')):8.1f} s  {case.get('name')}")
+
+
+def main(words):
+    if len(words) == 3 and words[0] == "--slowest":
+        slowest(words[2], int(words[1]))
+    elif words and len(words) % 2 == 0:
+        for build, junit in zip(words[::2], words[1::2]):
+            table(build, junit)
+    else:
+        sys.exit(__doc__ + "\nbench/ci_table.py --slowest N JUNIT names the N slowest tests.")
+
+
+main(sys.argv[1:])
