@@ -246,7 +246,7 @@ TEST(Modes, PrintsTheAgreedJson) {
   EXPECT_TRUE(std::is_sorted(omega.begin(), omega.end()));
 }
 
-TEST(EveryVerb, PrintsNumbersThatPeopleRead_optimized) {
+TEST(EveryVerb, PrintsNumbersThatPeopleRead_slow) {
   const Workplace here;
   for (const char* scene : {"nem-tin.toml", "nem-casimir.toml", "two-electrodes.toml", "hung-senturia.toml"})
     write(here.path() / scene, shipped(scene));

@@ -133,7 +133,7 @@ TEST_P(EveryVerb, Simulates) {
   exports({"export", "out"});
 }
 
-TEST_P(EveryVerb, FindsTheLimit_optimized) {
+TEST_P(EveryVerb, FindsTheLimit_slow) {
   const std::vector<std::string> words = scene().quickly({"limit", scene().name, "--no-curves", "--quiet", "--out", "out"});
   if (!scene().has("\\[contact\\]")) return refused(words, "limit needs a [contact]");
   if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");

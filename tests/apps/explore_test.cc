@@ -118,7 +118,7 @@ TEST_F(Explore, ThatIsInterruptedLeavesWhatThereIsAndGoesOn_optimized) {
   EXPECT_FALSE(fs::exists(at("map.sqlite-wal")));
 }
 
-TEST_F(Explore, ThatIsKilledAgainAndAgainEndsWithTheSameBits_optimized) {
+TEST_F(Explore, ThatIsKilledAgainAndAgainEndsWithTheSameBits_slow) {
   const std::vector<std::string> plan{"--vary", levels + "20", "--vary", "gap.contact=1.8um:2.2um:16", "--jobs", "2"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), plan.begin(), plan.end());

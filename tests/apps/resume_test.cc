@@ -40,7 +40,7 @@ class Resume : public test::Searches {
   }
 };
 
-TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits_optimized) {
+TEST_F(Resume, AfterKillsAtRandomMomentsEndsWithTheSameBits_slow) {
   const auto with = [](std::vector<std::string> more) {
     more.insert(more.end(), test::slower.begin(), test::slower.end());
     more.insert(more.end(), {"--budget", "1500", "--jobs", "2"});

@@ -137,7 +137,7 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs_optimized) {
   EXPECT_TRUE(one == two) << json::diff(one, two).dump().substr(0, 2000);
 }
 
-TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_optimized) {
+TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_slow) {
   const auto tells = [&](std::vector<std::string> more, const std::string& scene = "two-electrodes.toml") {
     more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--waveform",
                                "pulse", "--json", "told.json", "--out", "told"});
@@ -178,7 +178,7 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked_optimized) {
   EXPECT_NEAR(json::parse(read(here->path() / "least.json")).at("touch").at("least_time_s").get<double>(), least, 1e-6 * least);
 }
 
-TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed_optimized) {
+TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed_slow) {
   const auto family = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--budget", "200", "--json", "-", "--out", "families"});
     std::vector<std::string> words{"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/mem-gold-pzt.toml").string(), "--quiet"};

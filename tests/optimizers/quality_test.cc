@@ -149,7 +149,7 @@ int runs_solved(const landscapes::Landscape& landscape, const std::string& optim
   return solved;
 }
 
-TEST(Auto, SolvesTheLandscapesAsOftenAsMeasured_optimized) {
+TEST(Auto, SolvesTheLandscapesAsOftenAsMeasured_slow) {
   // Shares of 100 seeds that bench_optimizers found solved. Another rounding (no fused multiply-add, say) sends a search
   // elsewhere, so a smaller number of runs is a sample of this share: three standard deviations below it is no accident.
   const std::map<std::string, double> measured = {

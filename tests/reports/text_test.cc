@@ -86,7 +86,7 @@ std::string misshapen(const std::string& report) {
   return std::regex_search(text, found, none) || std::regex_search(text, found, long_number) ? found.str() : std::string();
 }
 
-TEST(EveryReport, DrawsAndPrintsWhatNoSwitchHas_optimized) {
+TEST(EveryReport, DrawsAndPrintsWhatNoSwitchHas_slow) {
   for (json whole : {sample_optimize_result(60), softland::test::sample_simulate_result(60)}) {
     whole["scene"]["structure"] = {{"kind", "cantilever"}, {"length", "250 um"}};
     whole["scene"]["gap"] = {{"electrode", "3.5 um"}, {"contact", "2 um"}};

@@ -77,7 +77,7 @@ class Writer {
   pid_t child_;
 };
 
-TEST_F(Kill, FiftyTimesEndsWithTheSameBits_optimized) {
+TEST_F(Kill, FiftyTimesEndsWithTheSameBits_slow) {
   auto* told = new (::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Told;
   std::mt19937 random(20260131);
   std::uniform_real_distribution<double> part(0, 1);

@@ -129,10 +129,10 @@ void expect_agreement(const SearchSetting& s, int cases) {
   std::printf("%d cases, %d slopes, the worst off by %.2g of its bound\n", all.cases, all.slopes, all.worst);
 }
 
-TEST(Gradient, OfPulsesOnTheGoldSwitch_optimized) {
+TEST(Gradient, OfPulsesOnTheGoldSwitch_slow) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse"), 40);
 }
-TEST(Gradient, OfBothDrives_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::both, "pulse"), 15); }
+TEST(Gradient, OfBothDrives_slow) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::both, "pulse"), 15); }
 TEST(Gradient, OfDithers_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "dither"), 10); }
 TEST(Gradient, OfSplines_optimized) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "bspline:6"), 10); }
 TEST(Gradient, OfSines_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "sines:6"), 5); }

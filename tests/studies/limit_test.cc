@@ -48,7 +48,7 @@ TEST(LeastTime, OfAnUndampedPlateIsThatOfBangAndBang) {
   }
 }
 
-TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_optimized) {
+TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_slow) {
   const Prepared p = prepare_and_choose(gold(), true);
   // A free-form calculation by another program: 31.85, 31.66 and 31.06 us.
   for (const auto& [velocity, known] : {std::pair{1e-3, 31.85e-6}, {3e-3, 31.66e-6}, {10e-3, 31.06e-6}}) {
@@ -234,7 +234,7 @@ TEST(LeastTime, RefusesWhatItDoesNotFit) {
             std::string::npos);
 }
 
-TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime_optimized) {
+TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime_slow) {
   const Limit found = limit(gold(), {.impact_velocity = 1e-3, .curves = false});
   ASSERT_TRUE(found.landing.has_value());
   EXPECT_TRUE(found.landing->bounce_free);
@@ -243,7 +243,7 @@ TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime_optimized) {
   EXPECT_GT(found.rest.time, found.touch.time);
 }
 
-TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes_optimized) {
+TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes_slow) {
   // Jumps of the piezo ring modes beyond the four of the scene.
   const Limit found = limit(gold_pzt(), {.actuator = Actuator::both, .curves = false});
   ASSERT_TRUE(found.landing.has_value());
