@@ -227,7 +227,7 @@ TEST_F(Faults, EverySignalEndsEveryVerbThatWaitsForItsReader_optimized) {
   }
 }
 
-TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo_optimized) {
+TEST_F(Faults, EverySignalEndsEveryVerbThatComputesAndItsJsonSaysSo_slow) {
   for (const int signal : stopping_signals) {
     std::vector<std::pair<std::string, std::unique_ptr<Workplace>>> places;
     std::vector<pid_t> children;
@@ -279,7 +279,7 @@ TEST_F(Faults, ASecondCtrlCEndsAtOnce) {
 }
 
 // A bar on a terminal, which goes away when the verb has ended; nothing with --quiet.
-TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs_optimized) {
+TEST_F(Faults, EveryVerbThatTakesLongShowsHowFarItIs_slow) {
   // A root that was changed to may lack /dev/pts.
   const int found = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (found < 0 || grantpt(found) != 0) GTEST_SKIP() << "skipped: no pseudo-terminals";

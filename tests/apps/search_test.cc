@@ -361,7 +361,7 @@ TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn) {
 // A search over devices that differ.
 const std::vector<std::string> over_devices{"--robust", "cvar:0.9", "--samples", "16", "--constrain", "t_i < 60 us"};
 
-TEST(RobustSearch, LeavesWhatRobustnessFindsAgain_optimized) {
+TEST(RobustSearch, LeavesWhatRobustnessFindsAgain_slow) {
   const Workplace here;
   std::vector<std::string> more = over_devices;
   more.insert(more.end(), {"--calibrate", "Vdp:1 %,frequency", "--json", "out.json"});

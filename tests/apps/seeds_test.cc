@@ -75,7 +75,7 @@ TEST_F(Seeds, HaveTheSameBitsWhateverTheNumberOfJobs_optimized) {
   }
 }
 
-TEST_F(Seeds, AfterKillsAtRandomMomentsEndWithTheSameBits_optimized) {
+TEST_F(Seeds, AfterKillsAtRandomMomentsEndWithTheSameBits_slow) {
   const auto with = [](const char* out, std::vector<std::string> more) {
     more.insert(more.end(), test::slower.begin(), test::slower.end());
     more.insert(more.end(), {"--seeds", "4", "--budget", "400", "--jobs", "2", "--out", out});

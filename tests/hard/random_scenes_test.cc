@@ -98,7 +98,7 @@ TEST(EveryScene, KeepsTheBooksOfACompressibleFilm) {
   }
 }
 
-TEST(EveryScene, LandsAlikeFromTwoIntegrators) {
+TEST(EveryScene, LandsAlikeFromTwoIntegrators_slow) {
   EXPECT_TRUE(rc::check([] {
     const Prepared p = random_closing();
     const test::CheckedRun one = closing(p, Integrator::lawson, 1e-9), other = closing(p, Integrator::bdf, 1e-8);
