@@ -10,10 +10,16 @@ counts in the row of either. Seconds are those of the tests, added up, and not o
 import collections
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as ElementTree
+
+
+def printable(name):
+    """The name without the spaces and odd bytes that JSON and XML write differently."""
+    return re.sub(r"\[NON-UTF-8-BYTE-0x..\]|[^!-~]", "", name)
 
 
 def labels_of(build):
@@ -25,7 +31,7 @@ def labels_of(build):
     labels = {}
     for test in json.loads(listed.stdout)["tests"]:
         properties = {p["name"]: p["value"] for p in test.get("properties", [])}
-        labels[test["name"]] = properties.get("LABELS", [])
+        labels[printable(test["name"])] = properties.get("LABELS", [])
     return labels
 
 
@@ -35,7 +41,7 @@ def table(build, junit):
     rows = collections.defaultdict(lambda: [0, 0, 0.0])  # tests, of these not passed, seconds
     there = collections.Counter(label for of_one in labels.values() for label in of_one)
     for case in suite.iter("testcase"):
-        for label in labels.get(case.get("name"), ["?"]) + ["all"]:
+        for label in labels.get(printable(case.get("name")), ["?"]) + ["all"]:
             row = rows[label]
             row[0] += 1
             row[1] += case.get("status") != "run"
