@@ -78,7 +78,7 @@ set(SOFTLAND_LARGE_UNITS OFF)
 if(CMAKE_UNITY_BUILD AND memory GREATER_EQUAL 7600) # 8 GB, less what firmware and kernel keep
   set(SOFTLAND_LARGE_UNITS ON)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    add_compile_options("SHELL:--param ggc-min-heapsize=1300000")
+    target_compile_options(softland_options INTERFACE "SHELL:--param ggc-min-heapsize=1300000") # no option of the code: made_with lists those
   endif()
 endif()
 
