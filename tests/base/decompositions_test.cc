@@ -1,0 +1,64 @@
+// Decompositions against what defines them.
+#include "base/decompositions.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <optional>
+
+namespace softland::decompositions_test {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double rounding = 1e-13;  // of matrices of order 1 and size 3
+
+const MatrixXd definite = (MatrixXd(3, 3) << 4, 1, 0.5, 1, 3, -0.25, 0.5, -0.25, 2).finished();
+const VectorXd right = (VectorXd(3) << 1, -2, 0.5).finished();
+
+TEST(Decompositions, OfASymmetricMatrixGiveItBack) {
+  const SymmetricEigen eigen = symmetric_eigen(definite);
+  EXPECT_TRUE((eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose()).isApprox(definite, rounding));
+  EXPECT_LT(eigen.values[0], eigen.values[1]);
+  EXPECT_LT(eigen.values[1], eigen.values[2]);
+  const MatrixXd factor = cholesky_factor(definite);
+  EXPECT_TRUE((factor * factor.transpose()).isApprox(definite, rounding));
+}
+
+TEST(Decompositions, SolveWhatTheyAreGiven) {
+  MatrixXd unsymmetric = definite;
+  unsymmetric(0, 2) = -3;
+  EXPECT_TRUE((unsymmetric * solve_linear(unsymmetric, right)).isApprox(right, rounding));
+  const std::optional<VectorXd> solved = solve_definite(definite, right);
+  ASSERT_TRUE(solved.has_value());
+  EXPECT_TRUE((definite * *solved).isApprox(right, rounding));
+}
+
+TEST(Decompositions, RefuseAMatrixThatIsNotDefinite) {
+  MatrixXd saddle = definite;
+  saddle(2, 2) = -2;
+  EXPECT_FALSE(solve_definite(saddle, right).has_value());
+  EXPECT_FALSE(orthonormal_in(saddle, MatrixXd::Identity(3, 3)).has_value());
+}
+
+TEST(Decompositions, OfTwoMatricesSatisfyTheirDeterminant) {
+  MatrixXd other = MatrixXd::Identity(3, 3);
+  other(0, 0) = 2;
+  const VectorXd values = generalized_eigenvalues(definite, other);
+  for (const double k : values) EXPECT_LT(std::abs((definite - k * other).determinant()), 1e-11) << k;  // of terms of order 50
+}
+
+TEST(Decompositions, MakeBasesOrthonormal) {
+  const std::optional<MatrixXd> basis = orthonormal_in(definite, MatrixXd::Identity(3, 3));
+  ASSERT_TRUE(basis.has_value());
+  EXPECT_TRUE((basis->transpose() * definite * *basis).isApprox(MatrixXd::Identity(3, 3), rounding));
+  const MatrixXd held = definite.leftCols(1), rest = orthogonal_complement(held);
+  ASSERT_EQ(rest.cols(), 2);
+  EXPECT_LT((held.transpose() * rest).norm(), rounding);
+  EXPECT_TRUE((rest.transpose() * rest).isApprox(MatrixXd::Identity(2, 2), rounding));
+}
+
+}  // namespace
+}  // namespace softland::decompositions_test
