@@ -42,6 +42,14 @@ std::optional<Eigen::MatrixXd> orthonormal_in(const Eigen::MatrixXd& energy, con
   return root.matrixU().solve<Eigen::OnTheRight>(basis);
 }
 
+Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  return matrix.ldlt().solve(right);
+}
+
+Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  return matrix.colPivHouseholderQr().solve(right);
+}
+
 Eigen::VectorXd solve_linear(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
   return matrix.partialPivLu().solve(right);
 }

@@ -31,6 +31,11 @@ struct SymmetricEigen {
 /// not positive definite.
 [[nodiscard]] std::optional<Eigen::MatrixXd> orthonormal_in(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& basis);
 
+/// The x with matrix x = right, of a symmetric matrix that is positive definite but for rounding.
+[[nodiscard]] Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+/// The x with the least squares of matrix x - right, column by column; unknowns that the matrix does not determine are 0.
+[[nodiscard]] Eigen::MatrixXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
+
 /// The x with matrix x = right, by elimination with partial pivoting; not finite where the matrix is singular.
 [[nodiscard]] Eigen::VectorXd solve_linear(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 

@@ -82,12 +82,15 @@ if(CMAKE_UNITY_BUILD AND memory GREATER_EQUAL 7600) # 8 GB, less what firmware a
   endif()
 endif()
 
-# softland_compiled_as(TARGET hot|cold [UNIT files]): to run fast, or to be compiled fast; with so many files in a unit where more than
-# two processors compile, all files without.
+# softland_compiled_as(TARGET hot|warm|cold [UNIT files]): to run fast (-O3), to run well (-O1: what goes from closing to closing), or to
+# be compiled fast (-Og: text and JSON, of which GCC takes a third less); with so many files in a unit where more than two processors
+# compile, all files without.
 function(softland_compiled_as target kind)
   cmake_parse_arguments(ARG "" "UNIT" "" ${ARGN})
-  if(kind STREQUAL "cold")
+  if(kind STREQUAL "warm")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  elseif(kind STREQUAL "cold")
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
   endif()
   if(SOFTLAND_LARGE_UNITS)
     if(NOT ARG_UNIT OR processors LESS_EQUAL 2)
@@ -97,8 +100,8 @@ function(softland_compiled_as target kind)
   endif()
 endfunction()
 
-# softland_library(NAME [FOLDER folder] [KIND hot|cold] [UNIT files] SOURCES ... USES ...): a static library of the folder, NAME unless it
-# is given, linked only to what it names; hot unless it is cold.
+# softland_library(NAME [FOLDER folder] [KIND hot|warm|cold] [UNIT files] SOURCES ... USES ...): a static library of the folder, NAME unless it
+# is given, linked only to what it names; hot unless it says how.
 function(softland_library name)
   cmake_parse_arguments(ARG "" "FOLDER;KIND;UNIT" "SOURCES;USES" ${ARGN})
   if(NOT ARG_FOLDER)

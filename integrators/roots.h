@@ -2,33 +2,27 @@
 #pragma once
 
 #include <array>
-#include <boost/math/tools/toms748_solve.hpp>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <numeric>
 
 namespace softland {
 
+namespace internal {
+/// A function of one number that lives where it is called from.
+struct Function {
+  const void* object;
+  double (*call)(const void* object, double at);
+  double operator()(double at) const { return call(object, at); }
+};
+double bracketed_zero(Function f, double low, double high);
+}  // namespace internal
+
 /// A zero of f in [low, high] where f(low) and f(high) differ in sign, to rounding: TOMS algorithm 748 (Alefeld, Potra & Shi
 /// 1995). Where they do not differ, the end at which |f| is less.
 template <class F>
-double bracketed_zero(F&& f, double low, double high) {
-  const double f_low = f(low), f_high = f(high);
-  double zero = low, least = std::abs(f_low);
-  const auto keep = [&](double t, double value) {
-    if (std::abs(value) < least) zero = t, least = std::abs(value);
-    return value;
-  };
-  keep(high, f_high);
-  if (!(f_low < 0 && f_high > 0) && !(f_low > 0 && f_high < 0)) return zero;
-  const auto neighbours = [](double a, double b) {
-    const double middle = a + (b - a) / 2;
-    return !(middle > a && middle < b);
-  };
-  std::uintmax_t most = 200;  // evaluations
-  boost::math::tools::toms748_solve([&](double t) { return keep(t, f(t)); }, low, high, f_low, f_high, neighbours, most);
-  return zero;
+double bracketed_zero(const F& f, double low, double high) {
+  return internal::bracketed_zero(
+      {&f, [](const void* object, double at) -> double { return (*static_cast<const F*>(object))(at); }}, low, high);
 }
 
 /// Places in (0, 1) in order, at most N.

@@ -10,7 +10,7 @@
 // Copulas", 2nd ed. 2006; W. H. Kruskal, J. Am. Stat. Assoc. 53 (1958) 814 (ranks).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <string>

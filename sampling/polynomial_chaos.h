@@ -22,7 +22,7 @@
 // 27th Asilomar Conference, 1993, 40 (matching pursuit); M. Stone, J. R. Stat. Soc. B 36 (1974) 111 (cross-validation).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -163,7 +163,7 @@ std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vecto
       factors.row(static_cast<Eigen::Index>(i)) << std::log(units.volts), std::log(units.time);
     }
     const Eigen::MatrixXd rows = x(fitted, Eigen::all);
-    const Eigen::MatrixXd slopes = rows.colPivHouseholderQr().solve(factors);
+    const Eigen::MatrixXd slopes = least_squares(rows, factors);
     told.middleRows(begin, end - begin) = x.middleRows(begin, end - begin) * slopes;
   }
   std::vector<DeviceUnits> units;

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "base/decompositions.h"
 #include "base/engineering.h"
 #include "base/require.h"
 #include "studies/searched_families.h"
@@ -98,7 +98,7 @@ std::vector<double> fitted(std::vector<double> x, const std::vector<Variable>& v
     const double size = squares.diagonal().maxCoeff();
     for (bool helps = false; !helps && damping < hardest;) {
       const MatrixXd damped = squares + damping * size * MatrixXd::Identity(n, n);
-      const VectorXd move = damped.ldlt().solve(downhill);
+      const VectorXd move = solve_semidefinite(damped, downhill);
       for (std::size_t i = 0; i < x.size(); ++i) {
         const double range = variables[i].upper - variables[i].lower;
         near[i] = std::clamp(x[i] + range * move[static_cast<Eigen::Index>(i)], variables[i].lower, variables[i].upper);

@@ -17,12 +17,13 @@
 #pragma once
 
 #include <array>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
 #include <variant>
 
 #include "base/choice.h"
+#include "base/gauss.h"
 #include "model/constants.h"
 #include "model/device.h"
 #include "model/power.h"
@@ -98,8 +99,13 @@ struct Bao2001FringingOf {
     // Integral of (1 + B(s)) / s^2 times the width, from h to the gap where the logarithms vanish. With 1 + 2 x + 2 sqrt(x + x^2)
     // = exp(2 asinh sqrt x) the second logarithm leaves the integral of u coth u.
     const double u = std::asinh(std::sqrt(thickness / h)), l = std::log(pi * width / h);
-    const auto u_coth_u = [](double s) { return s > 1e-8 ? s / std::tanh(s) : 1.0; };
-    return width / h + (l * l / 2 + 4 * boost::math::quadrature::gauss<double, 30>::integrate(u_coth_u, 0.0, u)) / pi;
+    static const GaussRule rule = gauss_rule(30);
+    double integral = 0;  // of u coth u, from 0
+    for (std::size_t k = 0; k < rule.points.size(); ++k) {
+      const double s = u / 2 * (1 + rule.points[k]);
+      integral += u / 2 * rule.weights[k] * (s > 1e-8 ? s / std::tanh(s) : 1);
+    }
+    return width / h + (l * l / 2 + 4 * integral) / pi;
   }
 };
 using Bao2001Fringing = Bao2001FringingOf<double>;

@@ -36,6 +36,18 @@ TEST(Decompositions, SolveWhatTheyAreGiven) {
   EXPECT_TRUE((definite * *solved).isApprox(right, rounding));
 }
 
+TEST(Decompositions, FitWhatCannotBeMet) {
+  EXPECT_TRUE((definite * solve_semidefinite(definite, right)).isApprox(right, rounding));
+  MatrixXd tall(5, 2);
+  tall << 1, 0, 1, 1, 1, 2, 1, 3, 1, 5;
+  const VectorXd heights = (VectorXd(5) << 1, 2, 2, 5, 4).finished();
+  const VectorXd left = tall * least_squares(tall, heights) - heights;
+  EXPECT_LT((tall.transpose() * left).norm(), 1e2 * rounding);  // what is left stands on every column
+  MatrixXd twice(5, 2);
+  twice << tall.col(1), tall.col(1);
+  EXPECT_LT((twice.transpose() * (twice * least_squares(twice, heights) - heights)).norm(), 1e2 * rounding);
+}
+
 TEST(Decompositions, RefuseAMatrixThatIsNotDefinite) {
   MatrixXd saddle = definite;
   saddle(2, 2) = -2;
