@@ -88,6 +88,7 @@ int exit_status_of(Status s) {
       return exit_numerical_failure;
     case Status::no_contact:
     case Status::collapsed_at_rest:
+    case Status::collapsed_onto_electrode:
       return exit_no_success;
     default:
       return exit_done;

@@ -33,6 +33,7 @@ namespace {
 constexpr double truth_tighter = 1e-4;  // than the tolerance of the run
 constexpr double truth_finer = 4;
 constexpr double fewest_truth_points = 96;
+constexpr double stated_rounding = 1e-9, far_off = 10;
 constexpr double truth_rounding = 1e-11;  // relative: closer to it nothing is told apart
 
 struct Options {
@@ -68,9 +69,15 @@ std::string percent(int part, int all) { return all == 0 ? "-" : fmt::format("{:
 
 enum class Outcome { none, without_touch, failed, too_long, certified };
 
+// Of the errors that a run states without --certify.
+struct Stated {
+  int held = 0, missed = 0, none = 0, far_off = 0;  // far off: by more than ten times what is stated
+};
+
 struct Scene {
   Outcome outcome = Outcome::none;
   std::map<std::string_view, Tally> tallies;
+  std::map<std::string_view, Stated> stated;
   std::vector<std::string> misses;
 };
 
@@ -98,6 +105,26 @@ Scene judge(const Options& options, std::uint64_t index) {
   if (best.status != Status::done) return scene;
   scene.outcome = Outcome::certified;
   const Metrics truth = metrics(best, p.scene.metrics);
+  for (const Figure& figure : all_figures) {
+    if (!figure.is_told_by_two_runs() || figure.conditioning == Conditioning::rest) continue;
+    const double own = figure.value(plain.metrics), other = figure.value(truth), error = plain.errors[figure];
+    if (!std::isfinite(own)) continue;
+    Stated& stated = scene.stated[figure.key];
+    const double difference = std::abs(own - other), least = stated_rounding * std::abs(other);
+    if (!std::isfinite(error)) {
+      ++stated.none;
+    } else if (difference <= std::max(error, least)) {
+      ++stated.held;
+    } else {
+      ++stated.missed;
+      if (difference > far_off * error) {
+        ++stated.far_off;
+        scene.misses.push_back(
+            fmt::format("{} {} without --certify: {:.3g} off, {:.3g} stated, of {:.6g}; residual of the energies {:.3g} J", index,
+                        figure.key, difference, error, own, plain.trajectory.energy_error));
+      }
+    }
+  }
   for (const Figure& figure : all_figures) {
     if (!figure.has_error() || figure.conditioning == Conditioning::rest) continue;  // no run gives an equilibrium
     Tally& tally = scene.tallies[figure.key];
@@ -148,12 +175,17 @@ void run(const Options& options) {
   for (std::thread& t : threads) t.join();
 
   std::map<std::string_view, Tally> tallies;
+  std::map<std::string_view, Stated> stated;
   std::map<Outcome, std::uint64_t> counts;
   std::vector<std::string> misses;
   for (const auto& [index, scene] : scenes) {  // in order, so that threads do not matter
     if (counts[Outcome::certified] == options.scenes) break;
     ++counts[scene.outcome];
     for (const auto& [key, one] : scene.tallies) tallies[key].add(one);
+    for (const auto& [key, one] : scene.stated) {
+      Stated& sum = stated[key];
+      sum.held += one.held, sum.missed += one.missed, sum.none += one.none, sum.far_off += one.far_off;
+    }
     misses.insert(misses.end(), scene.misses.begin(), scene.misses.end());
   }
   std::vector<std::vector<std::string>> rows{{"figure", "well-conditioned", "covered", "median excess", "factor needed by 95 %",
@@ -178,6 +210,15 @@ void run(const Options& options) {
       options.seed, options.accuracy, options.film ? ", each with a compressible film in the place of its gas" : "",
       counts[Outcome::certified], counts[Outcome::without_touch], counts[Outcome::failed], counts[Outcome::too_long],
       options.steps, error_safety, markdown_table(rows));
+  std::vector<std::vector<std::string>> plain{{"figure", "stated", "hold", "off by more than ten times", "not stated"}};
+  for (const Figure& figure : all_figures) {
+    const auto found = stated.find(figure.key);
+    if (found == stated.end()) continue;
+    const Stated& s = found->second;
+    plain.push_back({std::string(figure.key), fmt::format("{}", s.held + s.missed), percent(s.held, s.held + s.missed),
+                     fmt::format("{}", s.far_off), percent(s.none, s.held + s.missed + s.none)});
+  }
+  fmt::print("Without --certify, beyond {:g} of the figure:\n\n{}\n", stated_rounding, markdown_table(plain));
   fmt::print("Not covered (scene, figure):\n\n");
   for (const std::string& miss : misses) fmt::print("- {}\n", miss);
   if (misses.empty()) fmt::print("- none\n");

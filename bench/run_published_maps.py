@@ -50,7 +50,7 @@ def cell(row):
     if row is None:
         return ""
     if row["status"] not in ("done", "not_settled"):
-        return {"no_contact": "no contact", "collapsed_at_rest": "not open", "numerical_failure": "onto the electrode"}.get(row["status"], row["status"])
+        return {"no_contact": "no contact", "collapsed_at_rest": "not open", "collapsed_onto_electrode": "onto the electrode"}.get(row["status"], row["status"])
     rebounds = f"{row[N_B]:.0f}, {row[B_H] * 1e9:.3g}" if isinstance(row[N_B], float) and isinstance(row[B_H], float) else "-"
     return rebounds + (" *" if row["settled"] != 1 else "")
 
@@ -89,7 +89,7 @@ are not known here, so that these are pictures of the same questions and not of 
 ## The Casimir switch
 
 `scenes/nem-casimir.toml`: a gap of 50 nm, the force grown from 1 to 1.25 at t = 0. The beam must be long enough to be lost at 1.25 and short enough to stand at 1: a band of a few per cent of the length, which is all that closes.
-Where the contact gap nears the gap, the beam comes within 0.5 nm of the counter electrode before the contact holds it (`numerical_failure`, with this reason), and beams that are too long do not stand open (`collapsed_at_rest`).
+Where the contact gap nears the gap, the beam comes within 0.5 nm of the counter electrode before the contact holds it (`collapsed_onto_electrode`), and beams that are too long do not stand open (`collapsed_at_rest`).
 Number of rebounds and highest rebound [nm]; an asterisk: not settled in the window.
 
 {table(casimir, 6, 9, cell, ("length [µm]", 1e-6), ("contact gap [nm]", 1e-9))}

@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::string_view piezo_drive = "piezo";
 constexpr std::string_view main_drive = "main";
-constexpr double default_max_voltage = 1.5;  // of an electrode [Vdp]
 
 enum class LimitChecks { without_pull_in, all };
 

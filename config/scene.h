@@ -85,6 +85,9 @@ struct PullInVoltages {
 };
 
 /// Waveforms and limits in volts. Names are electrode names and "piezo".
+/// Of an electrode without [driver], in a search [Vdp].
+inline constexpr double default_max_voltage = 1.5;
+
 struct Drives {
   std::map<std::string, Waveform> waveforms;
   std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])

@@ -143,9 +143,9 @@ class Run {
   void look_around(const FieldFigures& field) {
     if (ended_) return;
     if (field.smallest_gap < model_.gap_floor()) {
-      return fail(fmt::format("the beam came within {} of the electrode", engineering(model_.gap_floor(), "m")));
+      return collapse(fmt::format("the beam came within {} of the electrode", engineering(model_.gap_floor(), "m")));
     }
-    if (field.at_far_side) return fail("the beam came within a hundredth of the gap on its far side");
+    if (field.at_far_side) return collapse("the beam came within a hundredth of the gap on its far side");
     if (options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed)) return end(Status::interrupted);
     const Knot& now = here();
     if (options_.observer && options_.observer(now.time, now.state.data(), now.state.data() + model_.modes())) {
@@ -170,6 +170,12 @@ class Run {
   void end(Status status) {
     ended_ = true;
     out_.status = status;
+  }
+
+  void collapse(const std::string& where) {
+    out_.collapse_time = here().time;
+    fail(where);
+    out_.status = Status::collapsed_onto_electrode;
   }
 
   void fail(const std::string& why) {

@@ -329,6 +329,83 @@ double release_voltage(const Switch& model, std::size_t drive) {
   return lowest ? std::sqrt(std::max(lowest->value, 0.0)) : nan;
 }
 
+namespace {
+
+// Of the static forces, by the modes: symmetric but for rounding, for contact and fields have potentials.
+Eigen::MatrixXd stiffness_at(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts, bool in_contact) {
+  const Eigen::Index n = model.modes();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd by_q(n, n), by_v(n, n), force(n, 1);
+  Switch::Workspace work = model.workspace();
+  model.accelerations(q.data(), still.data(), volts, in_contact, work, force.data());  // sets the field
+  model.jacobian(q.data(), still.data(), volts, in_contact, work, by_q, by_v);
+  return -(by_q + by_q.transpose()) / 2;
+}
+
+double smallest_closed_eigenvalue(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts) {
+  const bool is_rigid = model.rigid_contact() != nullptr;
+  Eigen::MatrixXd stiffness = stiffness_at(model, q, volts, !is_rigid);
+  if (is_rigid) {
+    if (model.modes() == 1) return std::numeric_limits<double>::infinity();
+    const Eigen::MatrixXd free = orthogonal_complement(model.contact_shape());
+    stiffness = (free.transpose() * stiffness * free).eval();
+  }
+  return symmetric_eigen(stiffness).values[0];
+}
+
+}  // namespace
+
+Eigen::VectorXd static_force(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts) {
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  Eigen::VectorXd force(model.modes());
+  Switch::Workspace work = model.workspace();
+  model.accelerations(q.data(), still.data(), volts, false, work, force.data());
+  return force;
+}
+
+double open_tangent_eigenvalue(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts) {
+  return symmetric_eigen(stiffness_at(model, q, volts, false)).values[0];
+}
+
+bool judges_stability(const Switch& model) {
+  return model.modes() > 1 || model.device().structure.kind != StructureKind::clamped_clamped;
+}
+
+bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed) {
+  return closed && (closed->smallest_eigenvalue > 0 || !judges_stability(model));
+}
+
+double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts) {
+  constexpr double factor = 1.05, range = 10, precision = 1e-6;
+  std::vector<double> levels(volts.begin(), volts.end());
+  const auto holds = [&](double v) {
+    levels[drive] = v;
+    return keeps_closed(model, closed_equilibrium(model, levels));
+  };
+  // Below its release voltage nothing holds the switch.
+  const double start = std::fmax(std::abs(volts[drive]), factor * release_voltage(model, drive));
+  if (!(start > 0)) return nan;
+  double low = start, high = start;
+  if (holds(start)) {
+    do {
+      low = high;
+      high *= factor;
+      if (high > range * start) return nan;
+    } while (holds(high));
+  } else {
+    do {
+      high = low;
+      low /= factor;
+      if (low < start / range) return nan;
+    } while (!holds(low));
+  }
+  while (high - low > precision * high) {
+    const double middle = low + (high - low) / 2;
+    (holds(middle) ? low : high) = middle;
+  }
+  return high;
+}
+
 std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts) {
   if (!model.has_contact()) return std::nullopt;
   Statics statics(model);
@@ -337,8 +414,10 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
   if (model.rigid_contact() != nullptr) {
     const auto held = statics.pinned(volts, plane);
     if (!held || !(held->unknown > 0)) return std::nullopt;
-    return ClosedEquilibrium{
-        .q = held->q, .contact_force = held->unknown, .potential = model.potential(held->q.data(), volts, true, work)};
+    return ClosedEquilibrium{.q = held->q,
+                             .contact_force = held->unknown,
+                             .potential = model.potential(held->q.data(), volts, true, work),
+                             .smallest_eigenvalue = smallest_closed_eigenvalue(model, held->q, volts)};
   }
   // What the contact carries at a depth, less the force with which the beam presses there.
   const auto excess = [&](double depth) {
@@ -357,7 +436,8 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   return ClosedEquilibrium{.q = held->q,
                            .contact_force = model.contact_push(held->q.data(), still.data(), true),
-                           .potential = model.potential(held->q.data(), volts, true, work)};
+                           .potential = model.potential(held->q.data(), volts, true, work),
+                           .smallest_eigenvalue = smallest_closed_eigenvalue(model, held->q, volts)};
 }
 
 DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, const Watch& watch,

@@ -46,6 +46,9 @@ struct ClosedEquilibrium {
   Eigen::VectorXd q;         ///< modal coordinates [m kg^(1/2)]
   double contact_force = 0;  ///< [N]
   double potential = 0;      ///< Switch::potential there [J]
+  /// Of the tangent of the static forces there, over all modes that the contact leaves free [rad^2/s^2], infinite where it leaves
+  /// none. A beam leaves an equilibrium where it is not positive, however slowly.
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// For ClosingOptions::begins_closed; valid as long as this.
   [[nodiscard]] std::span<const double> coordinates() const { return {q.data(), static_cast<std::size_t>(q.size())}; }
 };
@@ -53,6 +56,23 @@ struct ClosedEquilibrium {
 /// With one electrode at V and all other drives at 0 V there is one above the release voltage, up to where the beam is pulled
 /// onto the electrode.
 [[nodiscard]] std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts);
+
+/// Whether the modes that are kept can say if a closed equilibrium is stable: a beam clamped at both ends leaves it by a motion
+/// that the first mode does not have.
+[[nodiscard]] bool judges_stability(const Switch& model);
+
+/// Whether there is a closed equilibrium that the switch does not leave: a stable one, as far as its modes can say.
+[[nodiscard]] bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& closed);
+
+/// Voltage of `drive` from which on the closed switch is pulled through the contact [V], the other drives at `volts`: beyond, its
+/// closed equilibrium is unstable or gone. NaN where there is none between a tenth and ten times its value in `volts`, or
+/// the release voltage where that is more.
+[[nodiscard]] double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts);
+
+/// Of a switch at rest in `q` without contact: modal forces [N kg^(-1/2)], and the smallest eigenvalue of their tangent
+/// [rad^2/s^2].
+[[nodiscard]] Eigen::VectorXd static_force(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts);
+[[nodiscard]] double open_tangent_eigenvalue(const Switch& model, const Eigen::VectorXd& q, std::span<const double> volts);
 
 /// How closely a dynamic pull-in voltage is bracketed, relative, unless more is asked for; the upper end is given.
 inline constexpr double dynamic_pull_in_precision = 1e-7;

@@ -14,6 +14,8 @@ std::string_view to_string(Status status) {
       return "not_settled";
     case Status::collapsed_at_rest:
       return "collapsed_at_rest";
+    case Status::collapsed_onto_electrode:
+      return "collapsed_onto_electrode";
     case Status::numerical_failure:
       return "numerical_failure";
     case Status::interrupted:

@@ -8,9 +8,10 @@ namespace softland {
 enum class Status {
   not_run,
   done,
-  no_contact,         ///< the contact point never reached the contact gap in the window
-  not_settled,        ///< a rebound was under way, or contact had only just begun, at the end of the window
-  collapsed_at_rest,  ///< no stable static equilibrium to start from
+  no_contact,                ///< the contact point never reached the contact gap in the window
+  not_settled,               ///< a rebound was under way, or contact had only just begun, at the end of the window
+  collapsed_at_rest,         ///< no stable static equilibrium to start from
+  collapsed_onto_electrode,  ///< the beam met the metal of an electrode, or what stands behind it
   numerical_failure,
   interrupted,
 };

@@ -184,7 +184,7 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   } else {
     const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface),
                          like != nullptr ? like->frame_->modes : nullptr);
-    move_in(beam, options.points_per_length, 3, like);
+    move_in(beam, options.points_per_length, options.points_per_panel, like);
     if (s.kind == StructureKind::clamped_clamped && s.stretching) stretching_ = stretching_of(beam, s);
   }
   const Eigen::Index n = points();

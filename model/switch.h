@@ -33,7 +33,8 @@
 namespace softland {
 
 struct SwitchOptions {
-  double points_per_length = 24;  ///< quadrature points over a beam's length (each panel has at least 3)
+  double points_per_length = 24;  ///< quadrature points over a beam's length
+  int points_per_panel = 3;       ///< at least: what is more accurate needs more of both
 };
 
 enum class DriveKind { electrode, dispersion, piezo };

@@ -60,8 +60,11 @@ CostFigures CostObserver::figures(const Trajectory& end) {
   const double landing_excess = end.landing_excess;
   figures_.drive_energy = end.energy.source_work;
   if (!figures_.touched) return figures_;
-  if (rebounds_.under_way()) take(*rebounds_.under_way(), rebounds_.last_time());
   CostFigures f = figures_;
+  if (const std::optional<Rebound>& open = rebounds_.under_way()) {
+    take(*open, rebounds_.last_time());
+    f.reopened = open->height > contact_gap_ / 2;
+  }
   f.closest = 0;
   f.separated = separated_;
   f.rebound_height = rebound_height_;
@@ -113,8 +116,10 @@ double cost(const Aim& aim, Status status, const CostFigures& f, const CostScale
     }
     return ratio(f.drive_energy, scale.step.drive_energy);
   };
-  if (!aim.has_own_cost()) return bounce;
-  const double cost = judged_by(aim.mean(own));
+  // What lets go again is no landing, however softly it came: behind all that stay, before what never touches.
+  const double reopening = f.reopened ? 5 : 0;
+  if (!aim.has_own_cost()) return reopening + bounce;
+  const double cost = reopening + judged_by(aim.mean(own));
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 

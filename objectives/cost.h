@@ -96,6 +96,7 @@ class Aim {
 /// The raw figures behind the costs, over a run that ends a fixed time after first contact.
 struct CostFigures {
   bool touched = false;
+  bool reopened = false;        ///< at the end of the run, by more than half of the contact gap
   double closest = 0;           ///< smallest separation while nothing touched [m]
   double first_touch = 0;       ///< [s]
   double touch_speed = 0;       ///< largest over all touches [m/s]

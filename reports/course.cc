@@ -74,6 +74,7 @@ double figure_of_run(const ResultRun& run, Figure::Member member) {
 
 std::string closing_clause(const Actor& actor, const ResultRun& run, double window) {
   if (run.status == "collapsed_at_rest") return actor.subject + " has no stable rest position: it collapses before it is driven";
+  if (run.status == "collapsed_onto_electrode") return actor.subject + " is pulled through the contact onto the electrode";
   if (run.status == "numerical_failure") return actor.subject + " could not be simulated to the end";
   if (!run.figures) return "there are no figures for " + actor.subject;
   const FigureValues& figures = *run.figures;

@@ -40,9 +40,11 @@ std::string baseline_label() { return "plain step"; }
 
 Headline headline(const Result& result) {
   const double window = window_end(result);
+  const bool leaves = result.closed_state && result.closed_state->stable == false;
+  const std::string rest = leaves ? " It does not stay closed: the hold levels pull it through the contact in the end." : "";
   if (!result.is_search) {
     if (result.status == "interrupted") return {"The simulation was interrupted.", ""};
-    return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + ".", ""};
+    return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};
   }
   if (result.status == "collapsed_at_rest")
     return {"The switch has no stable rest position: it collapses before it is driven.", ""};
@@ -54,7 +56,7 @@ Headline headline(const Result& result) {
                    : "No feasible waveform was found";
   if (result.baseline.figures)
     line.rest = "; " + closing_clause({.subject = step_subject, .object = "it"}, result.baseline, window);
-  (line.rest.empty() ? line.main : line.rest) += ".";
+  (line.rest.empty() ? line.main : line.rest) += "." + rest;
   return line;
 }
 

@@ -15,6 +15,7 @@
 #include "model/closing.h"
 #include "objectives/figures.h"
 #include "studies/certify.h"
+#include "studies/closed_state.h"
 
 namespace softland {
 
@@ -38,6 +39,7 @@ struct ResultRun {
   ResultCurve curve;
   std::map<std::string, Points> waveforms;  ///< by drive: time [s] and level [V], of the dispersion force its factor
   double cost = Metrics::unset;
+  double collapse_time = Metrics::unset;  ///< at which the beam met the electrode [s]
 };
 
 /// Another run of the winner.
@@ -150,6 +152,7 @@ struct Result {
   ResultRun best;      ///< the winner, or the single run
   ResultRun baseline;  ///< the plain step
   std::optional<Certificate> certificate;
+  std::optional<ClosedState> closed_state;  ///< under the hold levels; none without a contact
   std::vector<ResultCheck> checks;
   ResultSearch search;
   std::optional<ResultRobust> robust;

@@ -47,7 +47,18 @@ json counted_json(const Points& points) {
 json run_json(const ResultRun& run) {
   json waveforms = json::object();
   for (const auto& [drive, points] : run.waveforms) waveforms[drive] = points;
-  return {{"metrics", with_status(figures_json(*run.figures, every), run.status)}, {"waveforms", std::move(waveforms)}};
+  return {{"metrics", with_status(figures_json(*run.figures, every), run.status)},
+          {"collapse_time_s", json_number(run.collapse_time)},
+          {"waveforms", std::move(waveforms)}};
+}
+
+json closed_state_json(const ClosedState& state) {
+  json pulled_through = json::object();
+  for (const auto& [electrode, volts] : state.pulled_through) pulled_through[electrode] = json_number(volts);
+  return {{"exists", state.exists},
+          {"stable", state.stable ? json(*state.stable) : json()},
+          {"smallest_eigenvalue_rad2_s2", json_number(state.smallest_eigenvalue)},
+          {"pulled_through_V", std::move(pulled_through)}};
 }
 
 json curve_json(const ResultCurve& c) {
@@ -187,6 +198,8 @@ json result_json(const Result& r) {
     j["best"] = run_json(r.best);
     j["curves"]["best"] = curve_json(r.best.curve);
   }
+  if (r.closed_state) j["closed_state"] = closed_state_json(*r.closed_state);
+  if (!r.is_search) j["collapse_time_s"] = json_number(r.best.collapse_time);
   if (r.work) j["work"] = work_json(*r.work);
   if (r.certificate) {
     j["certified"] = certified_json(*r.certificate);

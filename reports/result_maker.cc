@@ -40,7 +40,8 @@ ResultRun run(const Prepared& p, const Closing& closing, const MetricsOptions& o
           .figures = finite(FigureValues(closing.metrics)),
           .errors = finite(closing.errors),
           .curve = curve_of(closing.trajectory, options),
-          .waveforms = waveforms(p)};
+          .waveforms = waveforms(p),
+          .collapse_time = closing.trajectory.collapse_time};
 }
 
 std::map<std::string, PullInVoltages> pull_in(const Prepared& p) {
@@ -61,6 +62,7 @@ Result started(const Prepared& p, const Provenance& provenance) {
            .made_with = made_with()};
   const Eigen::VectorXd& frequencies = p.model.angular_frequencies();
   r.natural_frequencies.assign(frequencies.begin(), frequencies.end());
+  if (p.model.has_contact()) r.closed_state = closed_state(p, p.signals());
   if (p.effects) {
     r.effects = ResultEffects{.left_out = {}, .influence = p.effects->choice.influence};
     for (const Omission& o : p.effects->choice.left_out) r.effects->left_out.emplace_back(o.what.effect, o.influence);

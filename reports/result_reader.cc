@@ -133,7 +133,8 @@ ResultRun run(const json& result, std::string_view name) {
           .errors = figures(at(own, {"errors"})),
           .curve = curve(at(result, {"curves", name})),
           .waveforms = members(at(own, {"waveforms"}), points),
-          .cost = number(own, {"cost"})};
+          .cost = number(own, {"cost"}),
+          .collapse_time = number(own, {"collapse_time_s"})};
 }
 
 Spread spread(const json& cloud) {
@@ -159,6 +160,15 @@ std::optional<Certificate> certificate(const json& result) {
                  .impact_velocity = number(grazing, {"impact_velocity_m_s"}),
                  .at_threshold = truth(grazing, {"at_significant_height"}).value_or(false)};
   return all;
+}
+
+std::optional<ClosedState> closed_state(const json& result) {
+  const json& state = at(result, {"closed_state"});
+  if (!state.is_object()) return std::nullopt;
+  return ClosedState{.exists = truth(state, {"exists"}).value_or(false),
+                     .stable = truth(state, {"stable"}),
+                     .smallest_eigenvalue = number(state, {"smallest_eigenvalue_rad2_s2"}),
+                     .pulled_through = members(at(state, {"pulled_through_V"}), [](const json& value) { return number(value); })};
 }
 
 PullInVoltages pull_in_voltages(const json& volts) {
@@ -286,6 +296,7 @@ Result read_result(const json& result) {
            .best = run(result, "best"),
            .baseline = run(result, "baseline"),
            .certificate = certificate(result),
+           .closed_state = closed_state(result),
            .search = {.value_name = text(result, {"search", "value_name"}),
                       .best_so_far = points(at(result, {"search", "best_so_far"})),
                       .evaluations = points(at(result, {"search", "evaluations"}))},

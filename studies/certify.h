@@ -37,7 +37,7 @@ struct Certificate {
 };
 
 /// Of the difference to the better run.
-inline constexpr double error_safety = 2;
+inline constexpr double error_safety = 3;
 
 /// The first rebound in which runs differ, named by what made them differ. None for runs that do not.
 [[nodiscard]] std::optional<GrazingRebound> grazing_rebound(std::span<const Trajectory> runs, const MetricsOptions& options);

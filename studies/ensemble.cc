@@ -14,6 +14,7 @@
 #include "model/constants.h"
 #include "model/pull_in.h"
 #include "studies/search_space.h"
+#include "studies/simulate.h"
 
 namespace softland {
 namespace {
@@ -295,6 +296,22 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
   return outcomes;
 }
 
+namespace {
+
+// A device that is quiet at the end of the window has not settled where its hold levels do not keep it closed.
+void judge_hold(DeviceOutcome& outcome, const SampledDevice& device, const std::vector<Signal>& signals) {
+  Metrics& m = outcome.metrics;
+  if (!outcome.closed() || !m.settled) return;
+  Trajectory end;
+  set_hold(end, *device.model, signals);
+  if (end.is_held) return;
+  m.settled = false;
+  m.status = Status::not_settled;
+  m.permanent_contact_time = m.bounce_time = Metrics::unset;
+}
+
+}  // namespace
+
 DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDrive>& drives, const EnsembleRun& run,
                            const std::atomic<bool>* stop)
     : nominal_(&nominal),
@@ -337,7 +354,10 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
       closings.push_back({.device = &devices[i], .signals = signals, .run = options_});
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, nominal_->scene.metrics, vectors_);
-    for (std::size_t n = 0; n < places.size(); ++n) outcomes[d][places[n]] = std::move(closed[n]);
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      judge_hold(closed[n], *closings[n].device, *closings[n].signals);
+      outcomes[d][places[n]] = std::move(closed[n]);
+    }
   }
   return outcomes;
 }

@@ -195,7 +195,7 @@ std::vector<double> FreeFlight::held_levels(double share_of_free) const {
 // Of a switch that is closed at share 1. Its closed equilibrium goes where the share falls below that of its release.
 double FreeFlight::least_closing_share() const {
   constexpr double precision = 1e-9;
-  const auto closes = [&](double share) { return closed_equilibrium(model_, held_levels(share)).has_value(); };
+  const auto closes = [&](double share) { return keeps_closed(model_, closed_equilibrium(model_, held_levels(share))); };
   if (closes(0)) return 0;
   double low = 0, high = 1;
   while (high - low > precision) {
@@ -206,10 +206,10 @@ double FreeFlight::least_closing_share() const {
 }
 
 std::optional<FreeFlight::Landing> FreeFlight::landing() const {
-  if (!closed_equilibrium(model_, hold_)) return std::nullopt;
+  if (!keeps_closed(model_, closed_equilibrium(model_, hold_))) return std::nullopt;
   const std::vector<double> levels = held_levels(ramps_ ? least_closing_share() : 1);
   const std::optional<ClosedEquilibrium> closed = closed_equilibrium(model_, levels);
-  if (!closed) return std::nullopt;
+  if (!keeps_closed(model_, closed)) return std::nullopt;
   // The contact is as good as rigid: its force is moved to the plane of first touch by what the beam yields.
   std::vector<double> drives;
   for (std::size_t k = 0; k < levels.size(); ++k) drives.push_back(strength(k, levels[k]));

@@ -15,6 +15,7 @@
 #include "model/constants.h"
 #include "model/pull_in.h"
 #include "studies/choices.h"
+#include "studies/closed_state.h"
 #include "studies/simulate.h"
 #include "studies/verification.h"
 
@@ -261,7 +262,10 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
   r.band = options.band * gap;
   r.window = given.duration;
   const std::optional<ClosedEquilibrium> closed = closed_equilibrium(given.model, r.holds);
-  require(closed.has_value(), std::string(not_held));
+  require(keeps_closed(given.model, closed), [&] {
+    const std::string unstable = warning(closed_state(given, given.signals()));
+    return unstable.empty() ? std::string(not_held) : unstable;
+  });
   r.contact_force = closed->contact_force;
   const auto open = [&](std::vector<Signal> signals) {
     return search.open(given.model, closed->coordinates(), std::move(signals), given.tolerance, r.window, watch.stop);

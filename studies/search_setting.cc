@@ -31,7 +31,8 @@ CostFigures imagined_step(const Prepared& given, double period) {
           .first_touch = period / 2,
           .touch_speed = gap * given.model.angular_frequencies()[0],
           .rebound_height = gap,
-          .impact_energy = 0};
+          .impact_energy = given.model.bending_energy(),
+          .landing_excess = given.model.bending_energy()};
 }
 
 // Of a condition that a method follows: g. Searches end where it is 0, and are to fulfil it there.

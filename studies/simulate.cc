@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/engineering.h"
+#include "studies/closed_state.h"
 #include "studies/watched.h"
 
 namespace softland {
@@ -35,18 +36,37 @@ struct Run {
   SwitchOptions quadrature;
 };
 
-// Where two runs part: the first significant rebound whose heights differ by a tenth. Infinite where they do not.
-double parting_time(const Run& a, const Run& b, const MetricsOptions& options) {
+// Where two runs part: the first rebound above a height whose heights differ by a tenth. Infinite where they do not.
+double parting_time(const Run& a, const Run& b, double lowest) {
   constexpr double parted = 0.1;
   const std::vector<Rebound> one = rebounds(a.trajectory), two = rebounds(b.trajectory);
   for (std::size_t k = 0; k < std::max(one.size(), two.size()); ++k) {
     const double own = k < one.size() ? one[k].height : 0, other = k < two.size() ? two[k].height : 0;
     const double higher = std::max(own, other);
-    if (higher > options.significant_rebound && !(std::abs(own - other) <= parted * higher)) {
+    if (higher > lowest && !(std::abs(own - other) <= parted * higher)) {
       return k < one.size() ? one[k].begin : two[k].begin;
     }
   }
   return std::numeric_limits<double>::infinity();
+}
+
+// Whether the largest of what comes after the runs part might be the largest of all in another run: what two of them show of it
+// is two draws of many.
+template <class Part, class Size>
+bool chance_decides(const std::vector<Part>& parts, double parting, Size&& size) {
+  constexpr double margin = 2;
+  double before = 0, after = 0;
+  for (const Part& part : parts) {
+    double& largest = part.begin < parting ? before : after;
+    largest = std::max(largest, size(part));
+  }
+  return margin * after > before;
+}
+
+double energy_after(const std::vector<Touch>& touches, double parting) {
+  double sum = 0;
+  for (const Touch& touch : touches) sum += touch.begin >= parting ? touch.peak_energy : 0;
+  return sum;
 }
 
 // What two runs say of anything beyond the point where they part is chance: it has no error but a cloud's. Nor have figures that
@@ -58,18 +78,19 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
     if (figure.conditioning != Conditioning::every_touch) continue;
     if (errors[figure] > visible * std::abs(figure.value(best.metrics))) errors[figure] = Metrics::unset;
   }
-  const double parting = parting_time(best, other, options);
+  // Rebounds that do not count may part as well: what is left to impacts then is all that they may differ by.
+  for (const Run* run : {&best, &other}) {
+    double& energy = errors[&Metrics::impact_energy];
+    energy = std::max(energy, energy_after(run->trajectory.touches, parting_time(best, other, 0)));
+  }
+  const double parting = parting_time(best, other, options.significant_rebound);
   if (std::isinf(parting)) return;
   errors[&Metrics::impact_energy] = errors[&Metrics::drive_energy] = Metrics::unset;
   for (const Run* run : {&best, &other}) {
-    const std::vector<Touch>& touches = run->trajectory.touches;
-    const auto hardest = std::max_element(touches.begin(), touches.end(),
-                                          [](const Touch& x, const Touch& y) { return x.peak_force < y.peak_force; });
-    if (hardest != touches.end() && hardest->begin >= parting) errors[&Metrics::peak_contact_force] = Metrics::unset;
-    const std::vector<Rebound> all = rebounds(run->trajectory);
-    const auto highest =
-        std::max_element(all.begin(), all.end(), [](const Rebound& x, const Rebound& y) { return x.height < y.height; });
-    if (highest != all.end() && highest->begin >= parting) errors[&Metrics::major_bounce_height] = Metrics::unset;
+    const auto force = [](const Touch& t) { return t.peak_force; };
+    if (chance_decides(run->trajectory.touches, parting, force)) errors[&Metrics::peak_contact_force] = Metrics::unset;
+    const auto height = [](const Rebound& r) { return r.height; };
+    if (chance_decides(rebounds(run->trajectory), parting, height)) errors[&Metrics::major_bounce_height] = Metrics::unset;
   }
 }
 
@@ -86,7 +107,8 @@ double error(const Run& run, const Run& other, const Prepared& prepared) {
   return most;
 }
 
-constexpr double tighter_by = 100, finer_by = 2;
+constexpr double tighter_by = 100;
+constexpr int finer_by = 2;
 constexpr double loosest_tolerance = 0.1;     // that simulate_closing takes
 constexpr double least_tolerance = 0.99e-13;  // beyond which rounding decides; 1e-13 itself as quotients give it
 // Of a fifth-order method 2.5 times the steps are to be expected; what needs this many more is not waited for.
@@ -107,7 +129,8 @@ class ClosingRuns {
   Run as_asked() { return run(prepared_.model, prepared_.tolerance, prepared_.quadrature, ClosingOptions{}.max_steps); }
 
   Run tighter_than(const Run& r) {
-    const SwitchOptions finer{.points_per_length = finer_by * r.quadrature.points_per_length};
+    const SwitchOptions finer{.points_per_length = finer_by * r.quadrature.points_per_length,
+                              .points_per_panel = finer_by * r.quadrature.points_per_panel};
     return run(Switch(prepared_.scene.device, finer), r.tolerance / tighter_by, finer,
                most_growth * (least_steps + r.trajectory.work.steps));
   }
@@ -120,7 +143,8 @@ class ClosingRuns {
 
  private:
   Run looser_than(const Run& r) {
-    const SwitchOptions coarser{.points_per_length = r.quadrature.points_per_length / finer_by};
+    const SwitchOptions coarser{.points_per_length = r.quadrature.points_per_length / finer_by,
+                                .points_per_panel = std::max(1, r.quadrature.points_per_panel / finer_by)};
     return run(Switch(prepared_.scene.device, coarser), std::min(loosest_tolerance, r.tolerance * tighter_by), coarser,
                ClosingOptions{}.max_steps);
   }
@@ -178,6 +202,7 @@ void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool
   const bool is_tighter = judge.tolerance < own.tolerance;
   c.errors = difference(own.metrics, judge.metrics, own.tolerance, prepared.scene.device.gap.contact);
   forget_what_is_chaotic(c.errors, own, judge, prepared.scene.metrics);
+  for (const Figure& figure : all_figures) c.errors[figure] *= stated_safety;
   const double accuracy = prepared.scene.simulate.accuracy;
   if (may_tighten && run.error > accuracy) {
     c.warnings.push_back(fmt::format(
@@ -250,7 +275,14 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   c.tolerance = best.tolerance;
   c.quadrature = best.quadrature;
   c.metrics = best.metrics;
-  if (!c.trajectory.is_held) c.warnings.emplace_back(not_held);
+  if (best.metrics.status == Status::no_contact) {
+    if (std::string unstable = unstable_rest(prepared.model, runs.signals()); !unstable.empty())
+      c.warnings.push_back(std::move(unstable));
+  }
+  if (!c.trajectory.is_held) {
+    const std::string unstable = warning(closed_state(prepared, runs.signals()));
+    c.warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
+  }
   if (runs.was_interrupted()) say_interrupted(c);
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
@@ -260,11 +292,12 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
 
 void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals) {
   const auto closed = closed_equilibrium(model, hold_levels(signals));
-  if (closed) trajectory.hold_force = closed->contact_force;
+  const bool stays = keeps_closed(model, closed);
+  if (stays) trajectory.hold_force = closed->contact_force;
   const std::optional<Contact>& contact = model.device().contact;
   const bool may_stick =
       contact && (contact->model == ContactModel::adhesive || contact->model == ContactModel::adhesive_repulsive);
-  trajectory.is_held = closed || !contact || may_stick;
+  trajectory.is_held = stays || !contact || (may_stick && !closed);
 }
 
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals) {

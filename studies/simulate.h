@@ -40,6 +40,9 @@ struct Closing {
   std::shared_ptr<const Certificate> certificate = {};  ///< from certify() only
 };
 
+/// A stated error is this often the difference of two runs, of which the tighter one errs as well.
+inline constexpr double stated_safety = 2;
+
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const Prepared& prepared);
 
@@ -49,7 +52,7 @@ inline constexpr std::string_view not_held =
     "voltage, or so high that the electrode pulls the beam past the contact";
 
 /// Sets the hold force of the closed equilibrium under the hold levels of these drives, and whether anything holds the switch:
-/// not where it has a contact and no such equilibrium, unless the contact may hold on by adhesion.
+/// not where it has a contact and no such equilibrium, unless the contact may hold on by adhesion, nor where it is unstable.
 void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals);
 
 /// Peak voltage and peak slew of these drives in the window.

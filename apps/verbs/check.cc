@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "reports/quantity.h"
 #include "reports/text.h"
 #include "studies/choices.h"
+#include "studies/closed_state.h"
 #include "studies/simulate.h"
 
 namespace softland::apps {
@@ -49,10 +51,23 @@ std::string dispersion_words(const Prepared& p, const Watch& watch) {
   return fmt::format("{}closes by itself at {} (static){} of its nominal strength", rest, factor(statically.voltage), step);
 }
 
+// Under the hold levels, and up to which voltage.
+std::string closed_state_words(const ClosedState& state) {
+  std::string words = !state.exists   ? "none under the hold levels"
+                      : !state.stable ? "stable or not is not judged: one mode of a beam clamped at both ends cannot tell"
+                      : *state.stable ? "stable under the hold levels"
+                                      : "unstable under the hold levels";
+  for (const auto& [electrode, volts] : state.pulled_through)
+    words += std::isfinite(volts)
+                 ? fmt::format("; electrode {} pulls the beam through from {} on", electrode, quantity(volts, "V", 4))
+                 : fmt::format("; electrode {} pulls the beam through at no voltage tried", electrode);
+  return words;
+}
+
 int check_verb(const Common& c) {
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = prepare_and_choose(file, true, work->watch());
+  const Prepared p = prepare_and_choose(file, false, work->watch());
   const Structure& s = p.scene.device.structure;
   const std::string title = shortened(printable_line(p.scene.title));
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
@@ -61,6 +76,8 @@ int check_verb(const Common& c) {
   for (const double omega : p.model.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.in_contact_period(), "s", 4));
+  std::vector<std::string> warnings = p.scene.warnings;
+  std::map<std::string, double> searched_to;  // what a search takes for the limit where the scene has none [V]
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     if (!pulls_in(p.scene.device, k)) {
       add("electrode " + p.scene.device.electrodes[k].name, "on the far side, pulls away from the contact");
@@ -68,6 +85,8 @@ int check_verb(const Common& c) {
     }
     const auto found = pull_in_of(p, k, work->watch());
     const nlohmann::json& v = found["pull_in"];
+    if (v["dynamic_V"].is_number())
+      searched_to[p.scene.device.electrodes[k].name] = default_max_voltage * v["dynamic_V"].get<double>();
     add("electrode " + p.scene.device.electrodes[k].name,
         (collapsed(found) ? no_open_state : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(v))) +
             (p.model.has_contact() ? ", release " + volts(v["release_V"]) : ""));
@@ -89,19 +108,33 @@ int check_verb(const Common& c) {
   }
   for (const auto& [name, signal] : named_signals(p)) {
     const auto limits = p.drives.limits.find(name);
-    add("drive " + name,
-        fmt::format("hold {}, peak {}, {}", given_quantity(signal.hold_level(), "V"), given_quantity(signal.peak(), "V"),
-                    limits == p.drives.limits.end()
-                        ? "driver without limits"
-                        : fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
-                                      given_quantity(limits->second.max_voltage, "V"))));
+    const auto searched = searched_to.find(name);
+    std::string driver = "driver without limits";
+    if (limits != p.drives.limits.end()) {
+      driver = fmt::format("driver {} to {}", given_quantity(limits->second.min_voltage, "V"),
+                           given_quantity(limits->second.max_voltage, "V"));
+    } else if (searched != searched_to.end()) {
+      driver = fmt::format("no [driver.{}]: a search takes 0 V to {} Vdp, {}", name, plain_number(default_max_voltage),
+                           quantity(searched->second, "V", 5));
+      if (signal.peak() > searched->second)
+        warnings.push_back(
+            fmt::format("[waveform.{}] reaches {}, beyond what a search takes for its limit without [driver.{}]: "
+                        "optimize, release, limit and robustness refuse the scene as it is",
+                        name, given_quantity(signal.peak(), "V"), name));
+    }
+    add("drive " + name, fmt::format("hold {}, peak {}, {}", given_quantity(signal.hold_level(), "V"),
+                                     given_quantity(signal.peak(), "V"), driver));
   }
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
   add("window", fmt::format("{}, integrator tolerance {}", given_quantity(p.duration, "s", 4), scientific(p.tolerance)));
-  std::vector<std::string> warnings = p.scene.warnings;
-  Trajectory rest;
-  set_hold(rest, p.model, p.signals());
-  if (!rest.is_held) warnings.emplace_back(not_held);
+  if (p.model.has_contact()) {
+    const ClosedState state = closed_state(p, p.signals());
+    add("closed state", closed_state_words(state));
+    Trajectory rest;
+    set_hold(rest, p.model, p.signals());
+    const std::string unstable = warning(state);
+    if (!rest.is_held) warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
+  }
   for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();
   work.reset();

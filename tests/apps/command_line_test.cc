@@ -78,9 +78,9 @@ TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_EQ(o.err, "");
   const json j = json::parse(o.out);
-  EXPECT_EQ(keys(j),
-            (std::set<std::string>{"status", "metrics", "errors", "natural_frequencies_rad_s", "pull_in", "work", "warnings",
-                                   "scene", "version", "command", "kind", "title", "tolerance", "made_with"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "metrics", "errors", "natural_frequencies_rad_s", "pull_in", "work",
+                                            "warnings", "scene", "version", "command", "kind", "title", "tolerance", "made_with",
+                                            "closed_state", "collapse_time_s"}));
   const std::set<std::string> figures{"initial_contact_time_s", "permanent_contact_time_s", "bounce_time_s",
                                       "bounce_count",           "major_bounce_height_m",    "impact_velocity_m_s",
                                       "peak_contact_force_N",   "impact_energy_J",          "hold_force_N",

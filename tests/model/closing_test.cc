@@ -265,7 +265,7 @@ TEST(Closing, GivesUpWaitingForContactWhenTold) {
   EXPECT_DOUBLE_EQ(closing.points.back().time, 100_us);
 }
 
-TEST(Closing, FailsWhenTheBeamReachesTheElectrode) {
+TEST(Closing, EndsWhereTheBeamReachesTheElectrode) {
   Device d = test::gold_cantilever();
   d.contact->model = ContactModel::linear;
   d.contact->stiffness = 1_N_m;  // far too soft to hold the beam
@@ -275,20 +275,21 @@ TEST(Closing, FailsWhenTheBeamReachesTheElectrode) {
     for (const double volts : {20.0, 40.0, 100.0}) {
       const Trajectory t =
           simulate_closing(device, std::vector<Signal>{Signal::constant(volts)}, {.duration = 200_us, .integrator = integrator});
-      EXPECT_EQ(t.status, Status::numerical_failure) << volts;
+      EXPECT_EQ(t.status, Status::collapsed_onto_electrode) << volts;
+      EXPECT_EQ(t.collapse_time, t.points.back().time);
       EXPECT_NE(t.message.find("the beam came within 35 nm of the electrode"), std::string::npos) << t.message;
       EXPECT_EQ(t.message.rfind("at t = ", 0), 0u) << t.message;
       EXPECT_LT(t.smallest_gap, device.gap_floor());
       EXPECT_TRUE(std::isfinite(t.points.back().position));
-      EXPECT_EQ(metrics(t).status, Status::numerical_failure);
+      EXPECT_EQ(metrics(t).status, Status::collapsed_onto_electrode);
     }
   }
 }
 
-TEST(Closing, FailsWhenTheBeamReachesTheFarSide) {
+TEST(Closing, EndsWhereTheBeamReachesTheFarSide) {
   const std::vector<Signal> drives{Signal(), Signal::constant(200)};
   const Trajectory t = simulate_closing(Switch(test::plate_between_electrodes()), drives, {.duration = 200_us});
-  EXPECT_EQ(t.status, Status::numerical_failure);
+  EXPECT_EQ(t.status, Status::collapsed_onto_electrode);
   EXPECT_THAT(t.message, testing::HasSubstr("the beam came within a hundredth of the gap on its far side"));
   EXPECT_LT(t.points.back().position, -3.7_um);
 }

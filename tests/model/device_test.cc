@@ -260,6 +260,7 @@ TEST(Status, HasItsNames) {
   EXPECT_EQ(to_string(Status::no_contact), "no_contact");
   EXPECT_EQ(to_string(Status::not_settled), "not_settled");
   EXPECT_EQ(to_string(Status::collapsed_at_rest), "collapsed_at_rest");
+  EXPECT_EQ(to_string(Status::collapsed_onto_electrode), "collapsed_onto_electrode");
   EXPECT_EQ(to_string(Status::numerical_failure), "numerical_failure");
   EXPECT_EQ(to_string(Status::interrupted), "interrupted");
 }

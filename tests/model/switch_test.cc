@@ -235,6 +235,13 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
   }
 }
 
+TEST(Switch, TwiceTheQuadratureIsTwiceThePointsOfEveryPanel) {
+  const SwitchOptions coarse{.points_per_length = 30}, fine{.points_per_length = 60, .points_per_panel = 6};
+  Device d = test::gold_cantilever();
+  d.electrodes[0].begin = 0.3_um;  // a panel so short that it has as few points as there may be
+  EXPECT_EQ(Switch(d, fine).points(), 2 * Switch(d, coarse).points());
+}
+
 TEST(Switch, StaticForceIsMinusTheGradientOfThePotential) {
   constexpr double differences = 1e-7;
   std::mt19937_64 random(2);

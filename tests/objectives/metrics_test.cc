@@ -406,7 +406,8 @@ TEST(Metrics, EmptyTrajectoriesAndSingleKnotsAreAnswered) {
 }
 
 TEST(Metrics, RunsThatBrokeOffKeepTheirStatusAndWhatWasKnown) {
-  for (const Status status : {Status::numerical_failure, Status::interrupted, Status::collapsed_at_rest}) {
+  for (const Status status :
+       {Status::numerical_failure, Status::interrupted, Status::collapsed_at_rest, Status::collapsed_onto_electrode}) {
     Trajectory trajectory = BouncingBall{}.trajectory(6, 1_ms);
     trajectory.status = status;
     const Metrics m = metrics(trajectory);

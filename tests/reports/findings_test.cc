@@ -86,6 +86,8 @@ TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
 TEST(Headline, SaysWhyThereIsNoClosing) {
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
             "The switch has no stable rest position: it collapses before it is driven.");
+  EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_onto_electrode"}}),
+            "The switch is pulled through the contact onto the electrode.");
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "numerical_failure"}}), "The switch could not be simulated to the end.");
   EXPECT_EQ(sentence({{"kind", "simulate"}}), "There are no figures for the switch.");
   json result = sample_optimize_result(few_rows);

@@ -177,7 +177,7 @@ TEST(Simulate, TakesNoQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed)
     return simulate(prepare(file), false);
   };
   const Closing c = closing("23 us"), later = closing("60 us");
-  EXPECT_EQ(later.trajectory.status, Status::numerical_failure) << "the electrode has it";
+  EXPECT_EQ(later.trajectory.status, Status::collapsed_onto_electrode) << "the electrode has it";
   EXPECT_EQ(c.trajectory.status, Status::done);
   EXPECT_EQ(c.metrics.bounce_count, 0);
   EXPECT_EQ(c.metrics.status, Status::not_settled);
@@ -202,6 +202,25 @@ Prepared far_electrode(std::string_view setting) {
   return prepare(file);
 }
 
+// A figure that a later, chaotic touch may exceed has no error, or one that a tighter run does not contradict.
+TEST(Simulate, StatesNoErrorOfAMaximumThatChanceMayExceed_optimized) {
+  constexpr double rounding = 1e-9;
+  for (const char* modulus : {"1549.009475642491 GPa", "400 GPa", "78 GPa"}) {
+    const auto closing = [&](std::string_view accuracy) {
+      return simulate(
+          prepare(gold({fmt::format("structure.youngs_modulus={}", modulus), "contact.asperity_density=2130192156318.5112 1/m^2",
+                        fmt::format("simulate.accuracy={}", accuracy)})),
+          true);
+    };
+    const Closing loose = closing("1e-4"), tight = closing("1e-8");
+    for (const auto member : {&Metrics::peak_contact_force, &Metrics::major_bounce_height, &Metrics::impact_energy}) {
+      const double error = loose.errors[member], apart = std::abs(loose.metrics.*member - tight.metrics.*member);
+      if (!std::isfinite(error)) continue;
+      EXPECT_LE(apart, std::max(10 * error, rounding * loose.metrics.*member)) << modulus;
+    }
+  }
+}
+
 // However tight: a run that leaves no room for a tighter one is judged by a looser one.
 TEST(Simulate, IsNeverItsOwnJudge_optimized) {
   for (const char* setting : {"simulate.accuracy=1e-8", "simulate.accuracy=1e-12", "simulate.tolerance=1e-13"}) {
@@ -210,7 +229,8 @@ TEST(Simulate, IsNeverItsOwnJudge_optimized) {
     EXPECT_NE(c.judge->tolerance, c.tolerance) << setting;
     EXPECT_NE(c.judge->quadrature.points_per_length, c.quadrature.points_per_length) << setting;
     for (const Figure& f : all_figures) {
-      const bool known = f.conditioning == Conditioning::first_touch || f.conditioning == Conditioning::high_rebound;
+      if (f.conditioning == Conditioning::high_rebound) continue;  // told where the later ones are low, whatever the tolerance
+      const bool known = f.conditioning == Conditioning::first_touch;
       EXPECT_EQ(c.errors[f] > 0, known) << f.key << ' ' << setting << ": of what comes after the runs part there is none";
     }
   }

@@ -143,7 +143,8 @@ TEST(Cost, OfWhatNeverTouchesIsTenAndThePartOfTheGapItLeft) {
 }
 
 TEST(Cost, OfARunThatFailedIsInfinite) {
-  for (const Status status : {Status::numerical_failure, Status::interrupted, Status::collapsed_at_rest, Status::not_run}) {
+  for (const Status status : {Status::numerical_failure, Status::interrupted, Status::collapsed_at_rest,
+                              Status::collapsed_onto_electrode, Status::not_run}) {
     Trajectory failed = plain_step();
     failed.status = status;
     for (const Target target : every_target)
@@ -220,6 +221,28 @@ TEST(Cost, IsFiniteWhereTheEnergyWasNotMeasured) {
   Trajectory t = plain_step();
   t.landing_excess = std::numeric_limits<double>::quiet_NaN();
   for (const Target target : every_target) EXPECT_TRUE(std::isfinite(cost(target, t, scale(), options))) << to_string(target);
+}
+
+TEST(Cost, OfASwitchThatReopensIsMoreThanOfAnyThatStays) {
+  // It touches softly, leaves, and is on its way when the run ends.
+  Trajectory reopening = landing(20e-6, 0.01, 0, 0, 0);
+  reopening.landing_excess = std::numeric_limits<double>::quiet_NaN();
+  reopening.touches[0].end = 22e-6;
+  reopening.points.back() = {22e-6, gap, -0.02, 0, 0};
+  reopening.points.push_back({20e-6 + score_window, 0.2 * gap, 0, 0, 0});
+  EXPECT_TRUE(cost_figures(reopening, options).reopened);
+  EXPECT_FALSE(cost_figures(plain_step(), options).reopened);
+  for (const Target target : every_target) {
+    for (const double speed : {0.01, 0.3, 0.6}) {
+      EXPECT_GT(cost(target, reopening, scale(), options),
+                cost(target, landing(20e-6, speed, 900e-9, 40e-6, 3e-12), scale(), options))
+          << to_string(target);
+    }
+    Trajectory away = landing(20e-6, 0.01, 0, 0, 0);
+    away.touches.clear();
+    away.points.resize(1);
+    EXPECT_LT(cost(target, reopening, scale(), options), cost(target, away, scale(), options)) << to_string(target);
+  }
 }
 
 TEST(Cost, IsFiniteWhereTheStepItselfLandsSoftly) {

@@ -159,6 +159,7 @@ void check_figures(const Metrics& m, const std::string& message, bool has_contac
       are(false, {{"t_i", m.initial_contact_time}, {"v_i", m.impact_velocity}, {"B_H", m.major_bounce_height}});
       return;
     case Status::numerical_failure:
+    case Status::collapsed_onto_electrode:
       found.expect(message.starts_with("at t = "), "failed without saying where: '{}'", message);
       return;
     case Status::collapsed_at_rest:

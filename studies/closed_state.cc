@@ -1,0 +1,53 @@
+#include "studies/closed_state.h"
+
+#include <fmt/format.h>
+
+#include "base/engineering.h"
+
+namespace softland {
+
+ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& signals) {
+  const Switch& model = prepared.model;
+  const std::vector<double> levels = hold_levels(signals);
+  ClosedState state;
+  if (const auto closed = closed_equilibrium(model, levels)) {
+    state.exists = true;
+    state.smallest_eigenvalue = closed->smallest_eigenvalue;
+    if (judges_stability(model)) state.stable = closed->smallest_eigenvalue > 0;
+  }
+  const std::vector<Electrode>& electrodes = model.device().electrodes;
+  for (std::size_t k = 0; k < electrodes.size(); ++k) {
+    if (pulls_in(model.device(), k)) state.pulled_through[electrodes[k].name] = pull_through_voltage(model, k, levels);
+  }
+  return state;
+}
+
+std::string unstable_rest(const Switch& model, const std::vector<Signal>& signals) {
+  constexpr double rounding = 1e-9;  // of the force that bends the beam by the contact gap
+  if (!model.rest()) return {};
+  const std::vector<double> levels = hold_levels(signals);
+  const Eigen::VectorXd& rest = *model.rest();
+  const double left = static_force(model, rest, levels).cwiseQuotient(model.angular_frequencies()).squaredNorm();
+  if (left > rounding * rounding * model.bending_energy()) return {};
+  const double smallest = open_tangent_eigenvalue(model, rest, levels);
+  if (smallest > 0) return {};
+  return fmt::format(
+      "the hold levels leave the switch where it rests, in an unstable equilibrium (smallest eigenvalue of the tangent {}): the "
+      "least "
+      "asymmetry of a device moves it to one side",
+      engineering(smallest, "rad^2/s^2", 3));
+}
+
+std::string warning(const ClosedState& state) {
+  if (!state.exists || state.stable.value_or(true)) return {};
+  std::string words =
+      "the hold levels do not keep the switch closed: its closed equilibrium is unstable, and the beam is pulled through the "
+      "contact "
+      "onto the electrode, sooner or later";
+  for (const auto& [electrode, volts] : state.pulled_through) {
+    if (volts == volts) words += fmt::format(" (electrode {}: from {} on)", electrode, engineering(volts, "V", 4));
+  }
+  return words;
+}
+
+}  // namespace softland

@@ -1,0 +1,34 @@
+// Whether the drives keep a closed switch closed: by its equilibrium on the contact, and by the tangent there. A closing that is
+// quiet at the end of its window may yet be leaving an unstable one, as slowly as rounding has begun it.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/prepared.h"
+
+namespace softland {
+
+struct ClosedState {
+  bool exists = false;         ///< an equilibrium with a contact force above zero
+  std::optional<bool> stable;  ///< not set: the modes that are kept cannot tell, or there is no such equilibrium
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();  ///< ClosedEquilibrium::smallest_eigenvalue [rad^2/s^2]
+  /// By electrode that pulls towards the contact: voltage from which on the closed switch is pulled through [V]; NaN where there
+  /// is none within ten times its hold level.
+  std::map<std::string, double> pulled_through;
+};
+
+/// Under the hold levels of these drives, of a switch that has a contact.
+[[nodiscard]] ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& signals);
+
+/// What is to be warned of in a switch that its hold levels leave where it rests, in an equilibrium that is unstable: the least
+/// asymmetry of a device closes it. Empty where they move it, or it is stable.
+[[nodiscard]] std::string unstable_rest(const Switch& model, const std::vector<Signal>& signals);
+
+/// What is to be warned of; empty where the switch stays closed.
+[[nodiscard]] std::string warning(const ClosedState& state);
+
+}  // namespace softland

@@ -1,0 +1,213 @@
+// Whether a closed switch stays closed: by the tangent of its closed equilibrium, against closings that are followed long enough.
+#include "studies/closed_state.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/closing.h"
+#include "studies/ensemble.h"
+#include "studies/simulate.h"
+#include "tests/studies/scenes.h"
+
+namespace softland::closed_state_test {
+namespace {
+
+using testing::HasSubstr;
+
+// A bridge with its contact in the middle of a long electrode: held there it gives way on one side.
+SceneFile bridge(std::initializer_list<std::string_view> changes = {}) {
+  SceneFile file = SceneFile::parse(R"(
+[structure]
+kind = "clamped-clamped"
+length = "300 um"
+width = "40 um"
+thickness = "1.5 um"
+youngs_modulus = "160 GPa"
+density = "8900 kg/m^3"
+residual_stress = "15 MPa"
+modes = 4
+[gap]
+electrode = "2 um"
+contact = "1.4 um"
+[electrode.main]
+span = ["40 um", "260 um"]
+[gas]
+model = "strip"
+[contact]
+model = "linear"
+pad_length = "8 um"
+stiffness = "2e4 N/m"
+[waveform.main]
+family = "step"
+level = "45 V"
+[driver.main]
+max_voltage = "200 V"
+)",
+                                    "bridge.toml");
+  for (const std::string_view change : changes) file.set(change);
+  return file;
+}
+
+ClosedState state_at(const SceneFile& file) {
+  const Prepared p = prepare(file);
+  return closed_state(p, p.signals());
+}
+
+double pulled_through() {
+  static const double volts = state_at(bridge()).pulled_through.at("main");
+  return volts;
+}
+
+std::string level(double volts) { return fmt::format("waveform.main.level={:.9g} V", volts); }
+
+TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
+  for (const SceneFile& file :
+       {bridge({level(40)}), gold({"waveform.main.level=20 V"}), gold_pzt({"waveform.main.level=25 V"})}) {
+    const Prepared p = prepare(file);
+    const std::vector<double> volts = hold_levels(p.signals());
+    const auto closed = closed_equilibrium(p.model, volts);
+    ASSERT_TRUE(closed);
+    const Eigen::Index n = p.model.modes();
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+    Switch::Workspace work = p.model.workspace();
+    // By accelerations, in the directions of the modes, which are differences in both senses.
+    Eigen::MatrixXd tangent(n, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double step = 1e-6 * p.scene.device.gap.contact / p.model.contact_shape().cwiseAbs().maxCoeff();
+      Eigen::VectorXd ahead(n), behind(n), q = closed->q;
+      q[k] += step;
+      p.model.accelerations(q.data(), still.data(), volts, true, work, ahead.data());
+      q[k] -= 2 * step;
+      p.model.accelerations(q.data(), still.data(), volts, true, work, behind.data());
+      tangent.col(k) = (behind - ahead) / (2 * step);
+    }
+    // The smallest eigenvalue is the least of the quotient x' A x / x' x: found by inverse iteration with a shift far below it.
+    const Eigen::MatrixXd a = (tangent + tangent.transpose()) / 2;
+    const double largest = a.cwiseAbs().rowwise().sum().maxCoeff();
+    Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 1, 2);
+    for (int i = 0; i < 20000; ++i) x = ((largest * Eigen::MatrixXd::Identity(n, n) - a) * x).normalized();
+    EXPECT_NEAR(closed->smallest_eigenvalue, x.dot(a * x), 1e-4 * std::abs(closed->smallest_eigenvalue)) << file.name();
+  }
+}
+
+TEST(ClosedState, BelowThePullThroughVoltageAPushedBeamComesBack) {
+  ASSERT_TRUE(std::isfinite(pulled_through()));
+  // An electrode that is moved by a hundredth of its length pushes the beam to one side.
+  for (const double share : {0.98, 1.03}) {
+    const Prepared p = prepare(bridge({level(share * pulled_through()), "electrode.main.span=[\"42 um\", \"260 um\"]",
+                                       "simulate.duration=3 ms", "simulate.tolerance=1e-7"}));
+    const Closing c = simulate(p, false);
+    EXPECT_EQ(c.metrics.status, share < 1 ? Status::done : Status::collapsed_onto_electrode) << share;
+    EXPECT_EQ(std::isfinite(c.trajectory.collapse_time), share > 1) << share;
+  }
+}
+
+TEST(ClosedState, ThatIsUnstableHasNotSettledAndHoldsNothing) {
+  const Prepared stable = prepare(bridge({level(0.97 * pulled_through())}));
+  const Closing stays = simulate(stable, true);
+  EXPECT_TRUE(stays.metrics.settled);
+  EXPECT_GT(stays.metrics.hold_force, 0);
+  const Prepared unstable = prepare(bridge({level(1.03 * pulled_through())}));
+  const ClosedState state = closed_state(unstable, unstable.signals());
+  EXPECT_TRUE(state.exists);
+  EXPECT_EQ(state.stable, false);
+  EXPECT_LT(state.smallest_eigenvalue, 0);
+  const Closing leaves = simulate(unstable, true);
+  ASSERT_GT(leaves.metrics.initial_contact_time, 0);
+  EXPECT_FALSE(leaves.metrics.settled);
+  EXPECT_TRUE(std::isnan(leaves.metrics.hold_force));
+  EXPECT_THAT(leaves.warnings, testing::Contains(HasSubstr("closed equilibrium is unstable")));
+}
+
+TEST(ClosedState, OfOneModeBetweenTwoClampsIsNotJudged) {
+  const ClosedState state = state_at(bridge({level(1.03 * pulled_through()), "structure.modes=1"}));
+  EXPECT_TRUE(state.exists);
+  EXPECT_FALSE(state.stable.has_value());
+  EXPECT_EQ(warning(state), "");
+}
+
+TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
+  // Softer devices are pulled through at a lower voltage.
+  SceneFile file = bridge({level(0.99 * pulled_through())});
+  file.set("spread.\"structure.residual_stress\"={ distribution = \"normal\", standard_deviation = \"5 MPa\" }");
+  const Prepared p = prepare(file);
+  const Ensemble ensemble(p, 40, 3);
+  const EnsembleRun run{.duration = p.duration, .tolerance = 1e-6, .jobs = 2};
+  std::size_t settled = 0, left = 0;
+  const auto outcomes = close_all(ensemble, {{.waveforms = p.in_drive_order(p.drives.waveforms)}}, run);
+  ASSERT_EQ(outcomes.size(), 1U);
+  DeviceBuilder builder(ensemble);
+  for (std::size_t k = 0; k < outcomes[0].size(); ++k) {
+    const DeviceOutcome& o = outcomes[0][k];
+    const SampledDevice device = builder.device(k);
+    const auto closed = closed_equilibrium(*device.model, hold_levels(p.signals()));
+    const bool stays = closed && closed->smallest_eigenvalue > 0;
+    EXPECT_TRUE(stays || !o.metrics.settled) << k;
+    settled += o.metrics.settled;
+    left += o.closed() && !stays;
+  }
+  EXPECT_GT(settled, 0U);
+  EXPECT_GT(left, 0U);
+}
+
+TEST(ClosedState, OfEveryShippedSceneIsStableBelowWhereItIsPulledThrough_optimized) {
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(SOFTLAND_SOURCE_DIR) + "/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Prepared p = prepare(SceneFile::load(entry.path().string()));
+    if (!p.model.has_contact()) continue;
+    const ClosedState state = closed_state(p, p.signals());
+    if (!state.exists) continue;
+    EXPECT_NE(state.stable, false) << entry.path();
+    const std::vector<double> volts = hold_levels(p.signals());
+    for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
+      const auto found = state.pulled_through.find(p.scene.device.electrodes[k].name);
+      if (found == state.pulled_through.end() || !std::isfinite(found->second)) continue;
+      EXPECT_GT(found->second, volts[k]) << entry.path();
+    }
+  }
+}
+
+TEST(OpenState, ThatIsUnstableIsNotRestedOnInSilence) {
+  for (const double volts : {8.0, 17.5}) {
+    const SceneFile file = SceneFile::parse(fmt::format(R"(
+[structure]
+kind = "plate"
+mass = "2.7e-11 kg"
+stiffness = "1.92 N/m"
+area = "10000 um^2"
+[gap]
+electrode = "3 um"
+contact = "2.9 um"
+[electrode.main]
+fringing = "none"
+side = "both"
+gap = "3 um"
+[waveform.main]
+family = "step"
+level = "{} V"
+[simulate]
+duration = "1 ms"
+)",
+                                                        volts),
+                                            "plate.toml");
+    const Prepared p = prepare(file);
+    const Closing c = simulate(p, false);
+    EXPECT_EQ(c.metrics.status, Status::no_contact);
+    const auto warned = testing::Contains(HasSubstr("unstable equilibrium"));
+    // By hand: two plates pull by eps A V^2 x 2 / g^3 per displacement x, the spring by k: unstable from 17.1 V on.
+    if (volts > 17.1) {
+      EXPECT_THAT(c.warnings, warned);
+    } else {
+      EXPECT_THAT(c.warnings, testing::Not(warned));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softland::closed_state_test
