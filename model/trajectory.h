@@ -58,7 +58,7 @@ struct Trajectory {
       std::numeric_limits<double>::quiet_NaN();  ///< of the closed equilibrium under the hold levels, if computed [N]
   bool is_held = true;  ///< false where the switch is known to have no stable closed equilibrium under the hold levels
   double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< at which the beam met the electrode [s]
-  double smallest_gap = std::numeric_limits<double>::quiet_NaN();  ///< beam to electrode, anywhere, ever [m]
+  double smallest_gap = std::numeric_limits<double>::quiet_NaN();   ///< beam to electrode, anywhere, ever [m]
   /// Energy above that of the closed equilibrium once the switch has touched and the drives stand at their hold levels [J]: what
   /// has to be dissipated, by bouncing or otherwise, before the switch rests; what impacts on a rigid contact have taken by then
   /// is part of it.
