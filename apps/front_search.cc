@@ -56,10 +56,7 @@ void FrontSearch::run() {
 }
 
 ParetoValue FrontSearch::value_of(const StoredRow& row) const {
-  ParetoValue value{.objectives = {},
-                    .violation = has_figures(row.status)    ? 0
-                                 : row.status == infeasible ? impossible
-                                                            : not_done};
+  ParetoValue value{.objectives = {}, .violation = may_lead(row.status) ? 0 : row.status == infeasible ? impossible : not_done};
   for (const ExploredAim& aim : aims_) value.objectives.push_back((aim.is_largest ? -1 : 1) * row.values[aim.column]);
   for (double& objective : value.objectives) {
     if (std::isfinite(objective)) continue;

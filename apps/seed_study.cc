@@ -152,14 +152,14 @@ void SeedStudy::search(std::uint64_t k, int jobs) {
 
 StoredRow SeedStudy::row(std::uint64_t k, const OptimizeResult& result, double closings) const {
   const bool has_best = result.best_scene && result.best;
-  StoredRow row{.point = static_cast<std::int64_t>(k),
-                .content = content_of(search_, k),
-                .status = !has_best || !result.better_than_baseline ? std::string(no_success)
-                                                                    : std::string(to_string(result.best->metrics.status)),
-                .reason = !has_best                      ? "no feasible waveform was found"
-                          : !result.better_than_baseline ? "the search found nothing better than the plain step"
-                                                         : "",
-                .values = {static_cast<double>(search_.seed(k))}};
+  StoredRow row{
+      .point = static_cast<std::int64_t>(k),
+      .content = content_of(search_, k),
+      .status = !has_best || !result.is_success() ? std::string(no_success) : std::string(to_string(result.best->metrics.status)),
+      .reason = !has_best              ? "no feasible waveform was found"
+                : !result.is_success() ? "the search found nothing better than the plain step"
+                                       : "",
+      .values = {static_cast<double>(search_.seed(k))}};
   const Metrics figures = has_best ? result.best->metrics : Metrics{};
   for (const Figure& figure : all_figures) row.values.push_back(has_best ? finite(figure.value(figures)) : Metrics::unset);
   const auto truth = [](bool is) { return is ? 1.0 : 0.0; };

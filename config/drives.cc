@@ -69,7 +69,8 @@ std::vector<double> volts(const std::vector<Quantity>& quantities, const PullInV
 struct References {
   std::string_view drive;
   const PullInVoltages& pull_in;
-  const std::optional<double>& main_hold;  ///< level at which the main electrode holds the switch [V]
+  const std::optional<double>& main_hold;                     ///< level at which the main electrode holds the switch [V]
+  double max_slew = std::numeric_limits<double>::infinity();  ///< of the driver [V/s]
 };
 
 /// Volts, or a percentage of the base or, for the piezo, of the main hold level.
@@ -122,6 +123,8 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
       value = swing(in, p.name, in.quantities(p.name).front(), to, base);
     } else if (p.meaning == Meaning::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
+    } else if (in.is_word(p.name)) {  // steepest_rise
+      value = std::abs(base) / to.max_slew;
     } else if (in.has_value(p.name)) {
       value = in.number(p.name);
     }
@@ -201,13 +204,13 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
              fmt::format("min_voltage of {} V must be less than max_voltage of {} V", limits.min_voltage, limits.max_voltage));
 }
 
-// What a step needs that is faster than its driver, and nothing else is wrong with; to three digits, rounded up.
+// What a step needs that is faster than its driver, and nothing else is wrong with.
 std::string missing_rise(const Waveform& waveform, const DriverLimits& limits) {
   const Step* const step = std::get_if<Step>(&waveform);
   if (step == nullptr || std::max(step->level, 0.0) > limits.max_voltage || std::min(step->level, 0.0) < limits.min_voltage)
     return {};
-  constexpr double more = 1.006;
-  return fmt::format("; with a rise_time of {} it is not", engineering(more * std::abs(step->level) / limits.max_slew, "s", 3));
+  return fmt::format("; rise_time = \"{}\" makes it as steep as that permits, in {}", steepest_rise,
+                     engineering(std::abs(step->level) / limits.max_slew, "s", 3));
 }
 
 /// The electrode whose hold level a percentage of the piezo's amplitude refers to; empty when there is none.
@@ -237,7 +240,10 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
-    Waveform waveform = read_waveform(in, {.drive = drive, .pull_in = known, .main_hold = main_hold});
+    Waveform waveform = read_waveform(in, {.drive = drive,
+                                           .pull_in = known,
+                                           .main_hold = main_hold,
+                                           .max_slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity()});
     if (drive == dispersion_drive) waveform = raised(std::move(waveform), -1);
     const Signal compiled = compile(in, waveform);
     if (const double peak = compiled.peak(); drive != dispersion_drive && !any_voltage().contains(peak)) {

@@ -142,7 +142,7 @@ class KeyFinder {
         return fmt::format("{} is a list of {}: name one of them, such as {}[1]", found.key.path, size, found.key.path);
       });
       found.base = in.quantities(key.name)[found.key.element - 1];
-    } else if (key.type == KeyType::quantity && in.has_value(key.name)) {
+    } else if (key.type == KeyType::quantity && in.has_value(key.name) && !in.is_word(key.name)) {
       found.base = in.quantities(key.name).front();
     }
   }
@@ -267,10 +267,11 @@ class EntryReader {
   }
 
   [[nodiscard]] std::string expected() const {
-    const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
+    const Key& key = *keys_.front().schema;
+    const std::vector<Dimension>& allowed = key.dimensions;
     if (allowed.empty() || allowed.front() == dimension::none || example(allowed.front()).empty()) return {};
     return fmt::format(" (expected {} such as {}, or a percentage of the scene's value)", noun(allowed.front()),
-                       example(allowed.front()));
+                       key.example_of(allowed.front()));
   }
 
   PlanVariable finish() {

@@ -99,11 +99,11 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   constexpr double wide = 5;          // width over thickness from which the beam bends more like a plate
   constexpr double rounding = 1e-12;  // 20 um is not more than five times 4 um, whatever the last bit says
   const Structure& structure = device.structure;
-  if (structure.kind != StructureKind::plate && !structure.plate_strain &&
+  if (structure.kind != StructureKind::plate && !file.find({"structure", "plate_strain"}) &&
       structure.width > wide * structure.thickness * (1 + rounding)) {
     warnings.push_back(fmt::format(
-        "{}: {}: more than five thicknesses; youngs_modulus is used as given, plate_strain = true with poissons_ratio would "
-        "use E / (1 - nu^2)",
+        "{}: {}: more than five thicknesses; youngs_modulus is used as given (plate_strain = false), plate_strain = true with "
+        "poissons_ratio would use E / (1 - nu^2)",
         file.origin("structure.width").text, file.written("structure.width")));
   }
   return warnings;

@@ -52,12 +52,14 @@ struct Key {
   Range range = {};       ///< see range_of()
   std::size_t count = 0;  ///< quantities: how many; 0: any number
   std::vector<std::string_view> choices = {};
-  std::vector<std::string_view> words = {};  ///< integer: what may stand instead of a number
+  std::vector<std::string_view> words = {};  ///< integer, quantity: what may stand instead of a number
   std::string_view fallback = {};            ///< the default as TOML; empty: none
   bool required = false;
   std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty: all
   std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
   std::string_view about = {};                    ///< one line for people
+  std::string_view beyond = {};                   ///< what to do where a value must lie outside the range
+  std::string_view like = {};                     ///< a value that a switch may have; empty: see example_of()
   Bound bound = {};
 
   // What the makers of keys (config/schema/sections.h) leave open.
@@ -66,6 +68,12 @@ struct Key {
   [[nodiscard]] Key of(std::vector<std::string_view> owners) && { return only_for = std::move(owners), std::move(*this); }
   [[nodiscard]] Key instead(std::string_view other) && { return instead_of.push_back(other), std::move(*this); }
 
+  [[nodiscard]] Key or_else(std::string_view advice) && { return beyond = advice, std::move(*this); }
+  [[nodiscard]] Key such_as(std::string_view value) && { return like = value, std::move(*this); }
+
+  /// For messages: a value of this dimension that the key may have, such as "2 um": its own, or its default, or what is usual of
+  /// the dimension.
+  [[nodiscard]] std::string example_of(const Dimension& dimension) const;
   /// The range for a value of this dimension: ends that `range` leaves open are those of the dimension.
   [[nodiscard]] Range range_of(const Dimension& dimension) const;
   /// No dimension is due: a TOML number is accepted as well.

@@ -36,8 +36,9 @@ std::string wanted(const Key& key) {
     return key.type == KeyType::quantities ? "a list such as [0.02, 0.02]" : "a plain number such as 0.02";
   }
   std::vector<std::string> examples;
-  for (const Dimension& dimension : key.dimensions) examples.push_back(toml_string(example(dimension)));
+  for (const Dimension& dimension : key.dimensions) examples.push_back(toml_string(key.example_of(dimension)));
   if (key.type == KeyType::quantities) return fmt::format("a list such as [{0}, {0}]", examples.front());
+  for (const std::string_view word : key.words) examples.push_back(toml_string(word));
   return fmt::format("{} such as {}", noun(key.dimensions.front()), fmt::join(examples, " or "));
 }
 
@@ -64,7 +65,10 @@ Quantity parse_number(const Key& key, const toml::node& node) {
     throw InvalidInput(fmt::format("expected {}, got {}", describe(allowed.front()), describe(quantity.dimension)));
   }
   const Range range = key.range_of(quantity.dimension);
-  if (!range.contains(quantity.value)) throw InvalidInput(range.rule(unit_symbol(quantity.dimension)));
+  if (!range.contains(quantity.value)) {
+    const std::string rule = range.rule(unit_symbol(quantity.dimension));
+    throw InvalidInput(key.beyond.empty() ? rule : fmt::format("{}; {}", rule, key.beyond));
+  }
   return quantity;
 }
 
@@ -187,6 +191,7 @@ SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node
       if (text && std::find(key.words.begin(), key.words.end(), text->get()) != key.words.end()) return text->get();
       break;
     case KeyType::quantity:
+      if (text && std::find(key.words.begin(), key.words.end(), text->get()) != key.words.end()) return text->get();
       return std::vector{parse_number(key, node)};
     case KeyType::quantities:
       if (const auto* array = node.as_array()) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/units.h"
 #include "sampling/copula.h"
 #include "sampling/distribution.h"
 
@@ -34,9 +35,10 @@ struct VariedDrive {
 
 /// A number of a scene that varies from device to device.
 struct VariedKey {
-  std::string path;    ///< "structure.thickness", "driver.main.gain"
-  std::string unit;    ///< SI unit
-  double nominal = 0;  ///< the scene's value
+  std::string path;            ///< "structure.thickness", "driver.main.gain"
+  std::string unit;            ///< SI unit
+  double nominal = 0;          ///< the scene's value
+  Dimension measured_in = {};  ///< among the dimensions that the key may have
   /// The member of a scene with the same sections. Null where the key sets no member by itself: then the scene has to be read
   /// anew with this value.
   std::function<double&(Scene&)> member;

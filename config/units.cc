@@ -25,11 +25,16 @@ struct Symbol {
 
 constexpr std::array symbols{
     Symbol{"m", dimension::length, 0, true},
+    Symbol{"cm", dimension::length, -2},
     Symbol{"g", dimension::mass, -3, true},
     Symbol{"s", dimension::time, 0, true},
     Symbol{"A", dimension::current, 0, true},
     Symbol{"K", dimension::temperature, 0, true},
     Symbol{"Pa", dimension::pressure, 0, true},
+    Symbol{"hPa", dimension::pressure, 2},
+    Symbol{"bar", dimension::pressure, 5, true},
+    Symbol{"Torr", dimension::pressure, 0, true, 101325.0 / 760},
+    Symbol{"atm", dimension::pressure, 0, false, 101325},
     Symbol{"N", dimension::force, 0, true},
     Symbol{"J", dimension::energy, 0, true},
     Symbol{"W", dimension::power, 0, true},
@@ -90,7 +95,7 @@ struct Name {
 constexpr std::array names{
     Name{dimension::none, "a plain number", "", "15 %"},
     Name{dimension::length, "a length", "m", "2 um"},
-    Name{dimension::mass, "a mass", "kg", "1 kg"},
+    Name{dimension::mass, "a mass", "kg", "2.4 ug"},
     Name{dimension::time, "a time", "s", "20 us"},
     Name{dimension::current, "a current", "A", "1 mA"},
     Name{dimension::temperature, "a temperature", "K", "300 K"},
@@ -114,9 +119,11 @@ constexpr std::array names{
     Name{dimension::slew_rate, "a slew rate", "V/s", "3 V/us"},
     Name{dimension::charge, "a charge", "C", "1 pC"},
     Name{dimension::capacitance, "a capacitance", "F", "1 pF"},
-    Name{dimension::resistance, "a resistance", "ohm", "1 ohm"},
+    Name{dimension::resistance, "a resistance", "ohm", "1 kohm"},
     Name{dimension::conductance, "a conductance", "S", "1 S"},
     Name{dimension::piezo_coefficient, "a piezoelectric coefficient", "m/V", "-171 pm/V"},
+    Name{dimension::charge_density, "a piezoelectric stress coefficient", "C/m^2", "-9.3 C/m^2"},
+    Name{dimension::damping, "a damping", "N s/m", "1.3e-5 N s/m"},
 };
 
 constexpr std::array<std::string_view, 8> base_units{"m", "kg", "s", "A", "K", "rad", "Vsp", "Vdp"};
@@ -206,7 +213,18 @@ void apply_factors(Scale& scale, std::string_view text, int sign, std::string_vi
   }
 }
 
+/// Samples per second: S alone is siemens, of which nothing has a rate.
+std::optional<Scale> sample_rate(std::string_view unit) {
+  const auto slash = unit.find('/');
+  if (slash == std::string_view::npos || trim(unit.substr(slash + 1)) != "s") return std::nullopt;
+  const std::string_view samples = trim(unit.substr(0, slash));
+  const auto siemens = samples.ends_with('S') ? look_up(samples) : std::nullopt;
+  if (!siemens) return std::nullopt;
+  return Scale{dimension::frequency, siemens->exponent};
+}
+
 Scale parse_unit(std::string_view unit) {
+  if (const auto rate = sample_rate(unit)) return *rate;
   Scale scale;
   const auto slash = unit.find('/');
   if (slash == std::string_view::npos) {
@@ -244,6 +262,9 @@ std::size_t number_length(std::string_view text) {
   return i;
 }
 
+/// Whether a unit may follow a number at once: "100um", but neither "2,5 um" nor "1_000 um".
+bool begins_unit(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%'; }
+
 /// number * 10^exponent, rounded once.
 double scaled_number(std::string_view number, int exponent) {
   if (number.starts_with('+')) number.remove_prefix(1);
@@ -275,8 +296,9 @@ Quantity parse_quantity(std::string_view given) {
   const std::size_t length = number_length(text);
   const std::string_view number = text.substr(0, length);
   const std::string_view unit = trim(text.substr(length));
-  if (length == 0 || (length < text.size() && blanks.find(text[length]) == std::string_view::npos)) {
-    throw InvalidInput("not a number, a space and a unit");
+  if (length == 0 ||
+      (length < text.size() && blanks.find(text[length]) == std::string_view::npos && !begins_unit(text[length]))) {
+    throw InvalidInput("not a number and a unit");
   }
   if (unit.empty()) return {scaled_number(number, 0), dimension::none};
   if (unit == "degC") {

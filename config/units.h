@@ -1,10 +1,11 @@
 // Quantities as text: "2 um", "1.86e-5 Pa s", "19300 kg/m^3", "15 %". Converted to SI once, here.
 //
-// Grammar: number SPACE unit. A unit is factors joined by spaces or `*`, with at most one `/`; every factor after the `/`
-// divides. A factor is a prefix (y z a f p n u m k M G T), a symbol and an integer power `^n`; the whole numerator may be `1`. A
-// text without unit is a plain number. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa" metre pascal,
-// "mPa" millipascal. The spellings of print are read as well: µ (micro sign or Greek mu) for u, the no-break space, the minus
-// sign, the middle dot, ² and ³. So whatever softland prints as a quantity can be read again.
+// Grammar: number SPACE unit; the space may be missing before a letter or %. A unit is factors joined by spaces or `*`, with at
+// most one `/`; every factor after the `/` divides. A factor is a prefix (y z a f p n u m k M G T), a symbol and an integer power
+// `^n`; the whole numerator may be `1`. A text without unit is a plain number. S/s, with a prefix, are samples per second, as the
+// makers of converters write it. An exact symbol wins over prefix + symbol: "Pa s" is pascal second, "m Pa" metre pascal, "mPa"
+// millipascal. The spellings of print are read as well: µ (micro sign or Greek mu) for u, the no-break space, the minus sign, the
+// middle dot, ² and ³. So whatever softland prints as a quantity can be read again.
 //
 // Prefixes and `%` move the decimal exponent of the number before it is rounded, so that "2 um" is the double nearest to 2e-6,
 // and a number in SI base units is read bit for bit.
@@ -53,6 +54,8 @@ inline constexpr Dimension capacitance{{-2, -1, 4, 2}};
 inline constexpr Dimension resistance{{2, 1, -3, -2}};
 inline constexpr Dimension conductance{{-2, -1, 3, 2}};
 inline constexpr Dimension piezo_coefficient{{-1, -1, 3, 1}};
+inline constexpr Dimension charge_density{{-2, 0, 1, 1}};
+inline constexpr Dimension damping{{0, 1, -1}};
 }  // namespace dimension
 
 struct Quantity {

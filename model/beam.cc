@@ -100,7 +100,8 @@ CompositeSection layered_section(const Structure& s, const Piezo& p) {
 }
 
 double piezo_moment_per_volt(const Structure& s, const Piezo& p) {
-  return p.d31 * p.youngs_modulus * s.width * (layered_section(s, p).neutral_axis - p.thickness / 2);
+  const double e31 = std::isnan(p.e31) ? p.d31 * p.youngs_modulus : p.e31;
+  return e31 * s.width * (layered_section(s, p).neutral_axis - p.thickness / 2);
 }
 
 double axial_stress(const Structure& s) { return s.residual_stress * (s.biaxial ? 1 - s.poissons_ratio : 1); }

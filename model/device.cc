@@ -190,6 +190,10 @@ void check_piezo(const Piezo& p, const Structure& s) {
   positive(p.density, "kg/m^3", "piezo.density");
   require(p.d31 > -1 && p.d31 < 1,
           [&] { return fmt::format("piezo.d31 = {}: must be between -1 m/V and 1 m/V", engineering(p.d31, "m/V")); });
+  require(std::isnan(p.e31) || std::abs(p.e31) < p.youngs_modulus, [&] {
+    return fmt::format("piezo.e31 = {}: must be smaller than piezo.youngs_modulus over a volt per metre",
+                       engineering(p.e31, "C/m^2"));
+  });
 }
 
 void check_dispersion(const Dispersion& v, const Gap& gap) {

@@ -146,12 +146,13 @@ struct Contact {
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.
 struct Piezo {
-  double begin = 0;           ///< Lp1 [m]
-  double end = 0;             ///< Lp2 [m]
-  double thickness = 0;       ///< bp [m]
-  double youngs_modulus = 0;  ///< Ep [Pa]
-  double density = 0;         ///< [kg/m^3]
-  double d31 = 0;             ///< [m/V], negative for the usual ceramics
+  double begin = 0;                                       ///< Lp1 [m]
+  double end = 0;                                         ///< Lp2 [m]
+  double thickness = 0;                                   ///< bp [m]
+  double youngs_modulus = 0;                              ///< Ep [Pa]
+  double density = 0;                                     ///< [kg/m^3]
+  double d31 = 0;                                         ///< [m/V], negative for the usual ceramics
+  double e31 = std::numeric_limits<double>::quiet_NaN();  ///< [C/m^2], instead of d31
 };
 
 enum class DispersionModel { casimir, van_der_waals, automatic };

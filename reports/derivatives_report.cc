@@ -30,9 +30,20 @@ double elasticity(const FigureDerivatives& figure, const Derivatives::Variable& 
 
 std::string with_sign(const std::string& number, double value) { return (value > 0 ? "+" : "") + number; }
 
+// By how much the spread of the sample and that of first order differ, at the most, where derivatives say something of the
+// devices.
+constexpr double most_apart = 2;
+
+bool agrees(const FigureDerivatives& figure, const DriveRobustness& drive) {
+  const double sampled = statistics_of(drive, figure.key).standard_deviation;
+  if (!figure.is_known() || !std::isfinite(sampled)) return figure.is_known();
+  return figure.deviation <= most_apart * sampled && sampled <= most_apart * figure.deviation;
+}
+
 // "+0.52 %/%, +1.2 µs"
-std::string derivative_cell(const Derivatives& derivatives, const FigureDerivatives& figure, std::size_t i) {
-  if (!figure.is_known() || !std::isfinite(figure.by_variable[i])) return "—";
+std::string derivative_cell(const Derivatives& derivatives, const DriveRobustness& drive, const FigureDerivatives& figure,
+                            std::size_t i) {
+  if (!agrees(figure, drive) || !std::isfinite(figure.by_variable[i])) return "—";
   const Derivatives::Variable& variable = derivatives.variables[i];
   const double relative = elasticity(figure, variable, figure.by_variable[i]), step = figure.by_variable[i] * variable.deviation;
   const std::string change = with_sign(quantity(step, ensemble_figure(figure.key).unit), step);
@@ -50,6 +61,15 @@ std::string meaning_of(const Derivatives& derivatives, const DriveRobustness& dr
       "for one standard deviation. To first order these add up to the spread; a rebound that comes or goes is no small change, "
       "and where the two spreads differ the sample is to be believed.",
       drive.name);
+  std::vector<std::string> apart;
+  for (const FigureDerivatives& figure : derivatives.figures) {
+    if (figure.is_known() && !agrees(figure, drive)) apart.emplace_back(ensemble_figure(figure.key).symbol);
+  }
+  if (!apart.empty()) {
+    words +=
+        fmt::format(" Those of {} are not shown: their spread is off by more than a factor of {:g} from that of the devices.",
+                    fmt::join(apart, ", "), most_apart);
+  }
   if (derivatives.grazes()) {
     words += fmt::format(
         " Grazing: the slowest crossing of the contact plane has {} of the speed of the first touch, so that a touch nearly "
@@ -86,7 +106,8 @@ json derivatives_json(const Derivatives& derivatives, const DriveRobustness& dri
     json& one = figures[std::string(figure.key)] = {{"nominal", json_number(figure.value)},
                                                     {"by", std::move(by)},
                                                     {"standard_deviation", json_number(figure.deviation)},
-                                                    {"error", json_number(figure.error)}};
+                                                    {"error", json_number(figure.error)},
+                                                    {"agrees_with_devices", agrees(figure, drive)}};
     if (!figure.why_none.empty()) one["why_none"] = figure.why_none;
   }
   json j{{"drive", drive.name},
@@ -116,7 +137,7 @@ std::string derivatives_text(const Derivatives& derivatives, const DriveRobustne
   row(derivatives.grazes() ? "To first order (grazing)" : "To first order",
       [](const FigureDerivatives& f) { return std::string(ensemble_figure(f.key).symbol); });
   for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
-    row(derivatives.variables[i].name, [&](const FigureDerivatives& f) { return derivative_cell(derivatives, f, i); });
+    row(derivatives.variables[i].name, [&](const FigureDerivatives& f) { return derivative_cell(derivatives, drive, f, i); });
   row("standard deviation", [](const FigureDerivatives& f) { return deviation_cell(f, f.deviation); });
   row("  of the devices",
       [&](const FigureDerivatives& f) { return deviation_cell(f, statistics_of(drive, f.key).standard_deviation); });
@@ -138,7 +159,7 @@ std::string derivatives_html(const Derivatives& derivatives, const DriveRobustne
       row.emplace_back(escaped(figure.why_none), "missing", derivatives.variables.size() + 1);
     } else {
       for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
-        row.emplace_back(escaped(derivative_cell(derivatives, figure, i)));
+        row.emplace_back(escaped(derivative_cell(derivatives, drive, figure, i)));
       row.emplace_back(escaped(deviation_cell(figure, figure.deviation)));
     }
     row.emplace_back(escaped(quantity(statistics_of(drive, figure.key).standard_deviation, of.unit)));

@@ -235,13 +235,15 @@ std::vector<ExploredAim> explored_aims(const std::vector<ExploredColumn>& column
 
 bool has_figures(std::string_view status) { return status == "done" || status == "not_settled"; }
 
+bool may_lead(std::string_view status) { return status == "done"; }
+
 ExploredFront explored_front(const ExplorationReport& report) {
   ExploredFront front;
   if (report.aims.empty()) return front;
   std::vector<Objectives> all;
   std::vector<std::size_t> whose;
   for (std::size_t k = 0; k < report.points.size(); ++k) {
-    if (!has_figures(report.points[k].status)) continue;
+    if (!may_lead(report.points[k].status)) continue;
     Objectives values;
     for (const ExploredAim& aim : report.aims) values.push_back(sign_of(aim) * report.points[k].values[aim.column]);
     if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) continue;

@@ -61,7 +61,11 @@ struct ExplorationReport {
 /// last rebound.
 [[nodiscard]] bool has_figures(std::string_view status);
 
-/// The front of the aims, of all points that have figures, those of the aims among them.
+/// Whether a point that ended so may stand on a front: what bounces on when the window ends is no closing that others fall short
+/// of.
+[[nodiscard]] bool may_lead(std::string_view status);
+
+/// The front of the aims, of all points that may lead and have the figures of the aims.
 struct ExploredFront {
   std::vector<std::size_t> members;     ///< numbers of points in the report, by the first aim
   std::optional<std::size_t> knee;      ///< the member, a number of a point in the report

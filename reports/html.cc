@@ -215,12 +215,13 @@ int place_in_time(const std::string& name) {
                                                                    {"phase", 4},
                                                                    {"duration", 5},
                                                                    {"fade", 6}}};
-  if (!name.empty() && name.back() >= '1' && name.back() <= '9') {
-    const int number = 10 * (name.back() - '0');
+  const std::size_t digits = name.size() - name.find_last_not_of("0123456789") - 1;
+  if (digits > 0 && digits <= 4) {  // the tenth level comes after the ninth
+    const int number = 10 * std::stoi(name.substr(name.size() - digits));
     return name.starts_with("level") ? number : number + 1;
   }
   const auto* const found = std::find_if(stems.begin(), stems.end(), [&](const auto& one) { return one.first == name; });
-  return found == stems.end() ? 1000 : found->second;
+  return found == stems.end() ? 1000000 : found->second;
 }
 
 /// The box that a parameter was searched in.

@@ -31,7 +31,9 @@ std::string figure_text(double value, std::string_view key) {
 // Other devices know better than those that taught.
 double missed(const FigureChaos& chaos) { return 1 - (std::isfinite(chaos.q2_unseen) ? chaos.q2_unseen : chaos.q2); }
 
-std::string missed_text(double q2) { return std::isfinite(q2) ? percent(1 - q2) : "—"; }
+// Beyond all of the variance a prediction is worse than the mean, by however much.
+std::string missed_share(double share) { return share >= 1 ? "all" : percent(std::max(0.0, share)); }
+std::string missed_text(double q2) { return std::isfinite(q2) ? missed_share(1 - q2) : "—"; }
 
 /// A line of the comparison: what it is, and its cell for every figure.
 struct ComparedRow {
@@ -94,7 +96,7 @@ std::string chaos_words(const OtherWays& ways, Symbol symbol) {
     } else if (missed(c) <= predicted_well) {
       good.push_back(name);
     } else {
-      bad.push_back(fmt::format("{} ({} of the variance)", name, percent(missed(c))));
+      bad.push_back(fmt::format("{} ({} of the variance)", name, missed_share(missed(c))));
     }
   }
   std::string words = fmt::format("Polynomial chaos is made of the first {} devices of the sample, without a further closing.",

@@ -239,7 +239,8 @@ std::string knowledge_table(const Robustness& found) {
 // "62 % (55 to 69)"
 std::string index_text(const SobolIndex& index) {
   if (!std::isfinite(index.value)) return "—";
-  return fmt::format("{:.0f} % ({:.0f} to {:.0f})", 100 * index.value + 0.0, 100 * index.interval.low, 100 * index.interval.high);
+  const auto share = [](double value) { return 100 * internal::share_of(value) + 0.0; };
+  return fmt::format("{:.0f} % ({:.0f} to {:.0f})", share(index.value), share(index.interval.low), share(index.interval.high));
 }
 
 std::string sensitivity_table(const Sensitivity& sensitivity) {
@@ -255,7 +256,7 @@ std::string sensitivity_table(const Sensitivity& sensitivity) {
     TableRow& row = rows.emplace_back(TableRow{escaped(sensitivity.variables[i])});
     for (const FigureSensitivity& f : sensitivity.figures) {
       if (!f.estimate.indices) {
-        row.emplace_back("too many devices fail", "missing", 2);
+        row.emplace_back(escaped(internal::why_no_indices(f.estimate)), "missing", 2);
         continue;
       }
       row.emplace_back(index_text(f.estimate.indices->first_order[i]));

@@ -24,7 +24,9 @@ using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;
 using internal::quantity;
+using internal::share_of;
 using internal::spread_words;
+using internal::why_no_indices;
 using internal::yield_text;
 
 // Where the spread of the last drive comes from.
@@ -37,12 +39,17 @@ std::string sensitivity_text(const Sensitivity& sensitivity) {
   for (std::size_t i = 0; i < sensitivity.variables.size(); ++i) {
     text += internal::left_aligned(sensitivity.variables[i], 37);
     for (const FigureSensitivity& f : sensitivity.figures) {
-      text += internal::right_aligned(f.estimate.indices ? percent(std::max(0.0, f.estimate.indices->first_order[i].value)) +
-                                                               " / " + percent(f.estimate.indices->total[i].value)
-                                                         : std::string("too many fail"),
-                                      18);
+      const auto& indices = f.estimate.indices;
+      text += internal::right_aligned(
+          indices ? percent(share_of(indices->first_order[i].value)) + " / " + percent(share_of(indices->total[i].value))
+                  : std::string("unknown"),
+          18);
     }
     text += "\n";
+  }
+  for (const FigureSensitivity& f : sensitivity.figures) {
+    if (!f.estimate.indices)
+      text += wrapped(fmt::format("{}: {}", ensemble_figure(f.key).symbol, why_no_indices(f.estimate))) + "\n";
   }
   return text;
 }
@@ -65,6 +72,50 @@ std::string knowledge_text(const Robustness& found) {
   return text;
 }
 
+// The end of a name tells more of it: of a folder its own name.
+std::string shown_name(const std::string& name, std::size_t columns) {
+  if (internal::columns_of(name) <= columns) return name;
+  std::string end = name;
+  while (internal::columns_of(end) >= columns) {
+    std::size_t first = 1;
+    while (first < end.size() && (static_cast<unsigned char>(end[first]) & 0xC0U) == 0x80U) ++first;  // UTF-8
+    end.erase(0, first);
+  }
+  return "…" + end;
+}
+
+// Drives side by side, as many as fit on a terminal, and the others below.
+std::string figures_text(const Robustness& found) {
+  constexpr std::size_t label = 34, screen = 130, widest = 46;
+  std::size_t width = 27;
+  for (const DriveRobustness& d : found.drives) width = std::max(width, std::min(widest, internal::columns_of(d.name) + 2));
+  const std::size_t together = (screen - label) / width;
+  std::string text;
+  for (std::size_t first = 0; first < found.drives.size(); first += together) {
+    const std::size_t last = std::min(first + together, found.drives.size());
+    const auto row = [&](std::string_view name, const auto& cell) {
+      std::string line = internal::left_aligned(std::string(name), label);
+      for (std::size_t d = first; d < last; ++d) line += internal::right_aligned(cell(found.drives[d]), width);
+      text += line + "\n";
+    };
+    if (first > 0) text += "\n";
+    row("", [&](const DriveRobustness& d) { return shown_name(d.name, width - 2); });
+    row("devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
+    row("without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
+    for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
+      if (!internal::is_had(found, i)) continue;
+      const EnsembleFigure& f = ensemble_figures()[i];
+      const bool has_symbol = !f.symbol.empty() && f.symbol.find(' ') == std::string_view::npos;
+      text += fmt::format("{}{}{}\n", f.name, has_symbol ? ", " : "", has_symbol ? f.symbol : "");
+      for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
+        row(q == 1 ? "  median" : fmt::format("  {:.0f} % of devices below", 100 * robustness_quantiles[q]),
+            [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
+      }
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string robustness_text(const RobustnessReport& report) {
@@ -81,27 +132,7 @@ std::string robustness_text(const RobustnessReport& report) {
                               error_words(nominal.scene.spread))) +
           "\n\n";
   if (found.devices == 0) return text;
-  constexpr std::size_t label = 34;
-  std::size_t width = 27;
-  for (const DriveRobustness& d : found.drives) width = std::max(width, internal::columns_of(d.name) + 2);
-  const auto row = [&](std::string_view name, const auto& cell) {
-    std::string line = internal::left_aligned(std::string(name), label);
-    for (const DriveRobustness& d : found.drives) line += internal::right_aligned(cell(d), width);
-    text += line + "\n";
-  };
-  row("", [](const DriveRobustness& d) { return d.name; });
-  row("devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
-  row("without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
-  for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
-    if (!internal::is_had(found, i)) continue;
-    const EnsembleFigure& f = ensemble_figures()[i];
-    const bool has_symbol = !f.symbol.empty() && f.symbol.find(' ') == std::string_view::npos;
-    text += fmt::format("{}{}{}\n", f.name, has_symbol ? ", " : "", has_symbol ? f.symbol : "");
-    for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
-      row(q == 1 ? "  median" : fmt::format("  {:.0f} % of devices below", 100 * robustness_quantiles[q]),
-          [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
-    }
-  }
+  text += figures_text(found);
   text += knowledge_text(found) + sensitivity_text(sensitivity) + internal::derivatives_text(derivatives, found.drives.back());
   if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal);
   text += "\n" +

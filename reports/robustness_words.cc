@@ -36,6 +36,11 @@ std::string calibration_words(const Calibration& c) {
   return c.classes ? fmt::format("{}, {} classes", words, *c.classes) : words;
 }
 
+std::string why_no_indices(const SobolEstimate& e) {
+  return fmt::format("no shares: {} of the {} rows of devices made for them hold one without the figure, and 1 % may",
+                     e.failed_rows, e.rows);
+}
+
 bool is_erring(const Calibration& c) { return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0; }
 
 std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {

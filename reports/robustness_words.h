@@ -1,6 +1,7 @@
 // Words and numbers that the text, the table of devices, JSON and the page of `softland robustness` share.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -27,5 +28,10 @@ namespace softland::internal {
 inline constexpr std::string_view worst_words =
     "A device without a figure, as it does not close or has not settled, counts as the worst: ∞.";
 [[nodiscard]] const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key);
+
+/// A Sobol' index as a share: its estimate may leave [0, 1] by chance, a share cannot.
+[[nodiscard]] inline double share_of(double index) { return std::clamp(index, 0.0, 1.0); }
+/// Why a figure has no indices: its devices may all close in the sample, which these are not.
+[[nodiscard]] std::string why_no_indices(const SobolEstimate& estimate);
 
 }  // namespace softland::internal

@@ -64,7 +64,7 @@ json five_json(const FiveNumbers& n) {
 // Why a search has failed; empty where it has not.
 std::string failure(const ResultSeeds::Search& one) {
   if (!std::isfinite(one.cost)) return "no feasible waveform";
-  if (!one.better_than_baseline) return "no better than the plain step";
+  if (!one.better_than_baseline && !one.goal_met) return "no better than the plain step";
   return one.goal_met ? "" : "goal not met";
 }
 

@@ -72,11 +72,10 @@ Effects compare_effects(const Prepared& prepared, const Watch& watch) {
   Effects found{.window = prepared.duration};
   std::vector<std::optional<Gas>> laws{std::nullopt};
   for (const GasRow& e : gas_laws) {
-    Gas gas = own.value_or(Gas{});
     const bool in_scene = own && own->model == e.value;
     // A damper and a slit are not there for the taking: only where the scene describes them.
     if ((e.value == GasModel::linear || e.value == GasModel::strip_slit) && !in_scene) continue;
-    gas.model = e.value;
+    const Gas gas = in_scene ? *own : under_law(own.value_or(Gas{}), e.value);
     if (const std::string reason = refusal(prepared.scene.device, gas); !reason.empty()) {
       found.not_compared.push_back({.choice = std::string(e.name), .reason = reason});
       continue;

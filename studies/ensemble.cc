@@ -93,7 +93,9 @@ SceneFile Ensemble::scene(const std::vector<double>& values) const {
   const DeviceSpread& spread = nominal_->scene.spread;
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (const VariedKey& key : spread.variables[i].keys) {
-      if (!key.drive) file.assign(key.path, DeviceSpread::value(spread.variables[i], key, values[i]));
+      if (key.drive) continue;
+      file.assign(key.path,
+                  Quantity{.value = DeviceSpread::value(spread.variables[i], key, values[i]), .dimension = key.measured_in});
     }
   }
   return file;

@@ -373,7 +373,7 @@ PointRow Exploration::optimized(const SceneFile& scene, int jobs, const Watch& w
     row.scene = found.best_scene->scene.file.text();
     row.waveforms = lines_of(*found.best_scene);
   }
-  if (found.best && found.better_than_baseline) {
+  if (found.is_success()) {
     row.status = to_string(found.best->metrics.status);
   } else {
     row.status = no_success;

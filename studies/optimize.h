@@ -108,6 +108,8 @@ struct OptimizeResult {
   bool goal_met = false;
   bool confirmed = false;  ///< the goal is met in the confirming runs too
   bool better_than_baseline = false;
+  /// A goal that is met is a success, whatever the plain step does.
+  [[nodiscard]] bool is_success() const { return best && (goal_met || better_than_baseline); }
   std::vector<std::string> broken_conditions = {};  ///< by the winner
 
   /// The winner's value of one of searched_names(); NaN where its family has no such parameter, or there is no winner.

@@ -34,6 +34,8 @@ std::vector<FigureName> conditioned_figures() {
 
 bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
 
+Vectors vectors_for(const Aim& target, Vectors vectors) { return target.is_about(Target::drive) ? Vectors::none : vectors; }
+
 BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
   BuiltEnsemble built{.devices = std::vector<SampledDevice>(ensemble.size()), .units = std::vector<DeviceUnits>(ensemble.size())};
@@ -57,7 +59,11 @@ BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::
 }
 
 RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors)
-    : setting_(setting), aim_(aim), ensemble_(std::move(ensemble)), drives_(setting.given), vectors_(vectors) {
+    : setting_(setting),
+      aim_(aim),
+      ensemble_(std::move(ensemble)),
+      drives_(setting.given),
+      vectors_(vectors_for(setting.target, vectors)) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
@@ -69,7 +75,9 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
       {.duration = last_breakpoint(step) + wait_ + window_, .tolerance = EnsembleRun{}.tolerance, .after_contact = window_});
   if (step_.closed()) return;
   const CostFigures& imagined = setting.scale.step;
+  const double drive_energy = step_.metrics.drive_energy;
   step_ = {.metrics = {}, .largest_impact_velocity = imagined.touch_speed};
+  step_.metrics.drive_energy = drive_energy;
   step_.metrics.initial_contact_time = imagined.first_touch;
   step_.metrics.major_bounce_height = imagined.rebound_height;
 }
@@ -117,7 +125,7 @@ double RobustCost::score(const DeviceOutcome& outcome) const {
   const Metrics &m = outcome.metrics, &step = step_.metrics;
   const double speed = over(outcome.largest_impact_velocity, step_.largest_impact_velocity);
   const double height = over(m.major_bounce_height, step.major_bounce_height);
-  return setting_.target.mean([&](Target target) {
+  const double score = setting_.target.mean([&](Target target) {
     switch (target) {
       case Target::bounce:
         return (speed + height) / 2;
@@ -141,6 +149,7 @@ double RobustCost::score(const DeviceOutcome& outcome) const {
     }
     return over(m.drive_energy, step.drive_energy);
   });
+  return std::isnan(score) ? worst_score : score;
 }
 
 double RobustCost::value(std::span<const DeviceOutcome> outcomes) const {

@@ -48,7 +48,7 @@ struct BuiltEnsemble {
 
 class RobustCost {
  public:
-  /// Keeps references to `setting` and `aim`.
+  /// Keeps references to `setting` and `aim`. Lanes measure no drive energy: where it is asked for, devices close one by one.
   RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors = vectors_in_use());
 
   [[nodiscard]] std::size_t devices() const { return ensemble_.devices.size(); }
@@ -62,7 +62,7 @@ class RobustCost {
   [[nodiscard]] const SampledDevice& device(std::size_t k) const { return ensemble_.devices[k]; }
   /// The closing of device k in these units instead of those it was built with.
   [[nodiscard]] DeviceOutcome close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const;
-  /// s_k
+  /// s_k; where its figure is not known that of a device that does not close.
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:
@@ -76,6 +76,9 @@ class RobustCost {
   DeviceOutcome step_;           // of the nominal device
   double window_, tail_, wait_;  // after first touch, after the last breakpoint, for a touch [s]
 };
+
+/// What devices may close in when a search is about `target`: no vectors where lanes do not measure its figure.
+[[nodiscard]] Vectors vectors_for(const Aim& target, Vectors vectors = vectors_in_use());
 
 /// Whether a device fulfils a condition.
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);

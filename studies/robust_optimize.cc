@@ -376,12 +376,19 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   const Prepared& best = *out.best_scene;
   result.verdict =
       robustness(best, {{.name = "found", .waveforms = best.drives.waveforms, .calibration = best.scene.calibration}},
-                 {.samples = robust.verdict, .seed = options.seed, .jobs = options.jobs, .worth_of_measuring = true}, watch);
+                 {.samples = robust.verdict,
+                  .seed = options.seed,
+                  .jobs = options.jobs,
+                  .vectors = vectors_for(options.target),
+                  .worth_of_measuring = true},
+                 watch);
   if (result.verdict->interrupted) out.search.termination = Termination::interrupted;
   const std::vector<DeviceOutcome>& outcomes = result.verdict->drives.back().outcomes;
   out.best_cost = cost.value(outcomes);
   out.baseline_cost = cost.value(result.verdict->drives.front().outcomes);
-  out.better_than_baseline = out.goal_met = out.best_cost < out.baseline_cost;
+  out.better_than_baseline = out.best_cost < out.baseline_cost;
+  const Metrics& drawn = out.best->metrics;
+  out.goal_met = out.better_than_baseline && drawn.settled && drawn.bounce_count == 0;
   if (robust.aim.measure.yield) result.yield = share_that_fulfils(outcomes, *robust.aim.measure.yield);
   for (const Criterion& condition : robust.aim.conditions) {
     const Yield share = share_that_fulfils(outcomes, condition);

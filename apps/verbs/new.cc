@@ -1,4 +1,4 @@
-// The shipped scenes, to start from.
+// Scenes to start from: each can be checked, simulated, searched and judged on devices that differ.
 #include <fmt/format.h>
 
 #include <map>
@@ -17,11 +17,13 @@ namespace softland::apps {
 namespace {
 
 int new_verb(const std::string& kind) {
-  const std::map<std::string, std::string> scenes{
-      {"cantilever", "mem-gold.toml"},           {"cantilever-pzt", "mem-gold-pzt.toml"},
-      {"clamped-clamped", "hung-senturia.toml"}, {"plate", "purdue-nickel.toml"},
-      {"nem-cantilever", "nem-tin.toml"},        {"nem-casimir", "nem-casimir.toml"},
-      {"two-electrodes", "two-electrodes.toml"}};
+  const std::map<std::string, std::string> scenes{{"cantilever", "mem-gold.toml"},
+                                                  {"cantilever-pzt", "mem-gold-pzt.toml"},
+                                                  {"clamped-clamped", "new/clamped-clamped.toml"},
+                                                  {"plate", "new/plate.toml"},
+                                                  {"nem-cantilever", "nem-tin.toml"},
+                                                  {"nem-casimir", "new/nem-casimir.toml"},
+                                                  {"two-electrodes", "two-electrodes.toml"}};
   const auto found = scenes.find(kind);
   std::vector<std::string> kinds;
   for (const auto& [name, scene] : scenes) kinds.push_back(name);

@@ -101,7 +101,7 @@ std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& resul
 
 int status_of(const OptimizeResult& result) {
   if (result.search.termination == Termination::interrupted) return exit_interrupted;
-  return result.best && result.better_than_baseline ? exit_done : exit_no_success;
+  return result.is_success() ? exit_done : exit_no_success;
 }
 
 // A search on its way to the result that is reported; of several the best.

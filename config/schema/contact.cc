@@ -40,22 +40,30 @@ std::vector<Key> contact_keys() {
       contact_number<&Contact::unloading_stiffness>("unloading_stiffness", dimension::stiffness,
                                                     "not below stiffness; restitution squared is stiffness over this")
           .needed(),
-      contact_number<&Contact::asperity_radius>("asperity_radius", dimension::length, "radius of the summits").needed(),
-      contact_number<&Contact::asperity_density>("asperity_density", dimension::area_density, "summits per area").needed(),
+      contact_number<&Contact::asperity_radius>("asperity_radius", dimension::length, "radius of the summits")
+          .needed()
+          .such_as("100 nm"),
+      contact_number<&Contact::asperity_density>("asperity_density", dimension::area_density, "summits per area")
+          .needed()
+          .such_as("1e11 1/m^2"),
       contact_number<&Contact::asperity_height>("asperity_height", dimension::length,
                                                 "summit heights are uniform on [0, asperity_height]")
-          .needed(),
+          .needed()
+          .such_as("100 nm"),
       contact_number<&Contact::asperity_deviation>(
           "asperity_deviation", dimension::length,
           "standard deviation of the summit heights; first touch at four of them above their mean")
-          .needed(),
+          .needed()
+          .such_as("10 nm"),
       contact_number<&Contact::effective_modulus>("effective_modulus", dimension::pressure, "E* of the pair of surfaces")
-          .needed(),
-      contact_number<&Contact::hardness>("hardness", dimension::pressure, "of the softer surface").needed(),
+          .needed()
+          .such_as("48 GPa"),
+      contact_number<&Contact::hardness>("hardness", dimension::pressure, "of the softer surface").needed().such_as("1 GPa"),
       std::move(plasticity).by_default("'zmc'").of(with_key(contact_laws, "plasticity")),
       contact_number<&Contact::adhesion_energy>("adhesion_energy", dimension::stiffness,
                                                 "work of adhesion per area of the pair of surfaces")
-          .needed(),
+          .needed()
+          .such_as("0.1 J/m^2"),
   };
 }
 

@@ -28,7 +28,8 @@ Section dispersion_section() {
                    OfDispersion::number<&Dispersion::hamaker_constant>("hamaker_constant", dimension::energy, positive,
                                                                        "of the pair of surfaces")
                        .needed()
-                       .of({"van-der-waals", "auto"}),
+                       .of({"van-der-waals", "auto"})
+                       .such_as("3e-19 J"),
                    OfDispersion::number<&Dispersion::equilibrium_distance>(
                        "equilibrium_distance", dimension::length, not_negative,
                        "where attraction and repulsion balance; 0 m: no repulsion")

@@ -12,10 +12,12 @@ Section driver_section() {
           .keys = {number("min_voltage", drive_voltage, any, "default for an electrode: 0 V"),
                    number("max_voltage", drive_voltage, any, "default for an electrode: 1.5 Vdp"),
                    number("max_slew", {dimension::slew_rate}, positive, "absent: unlimited"),
-                   number("bandwidth", {dimension::frequency}, positive, "of the source, of first order; absent: unlimited"),
+                   number("bandwidth", {dimension::frequency}, positive, "of the source, of first order; absent: unlimited")
+                       .such_as("1 MHz"),
                    number("source_resistance", {dimension::resistance}, positive,
                           "through which it charges the open switch; absent: none"),
-                   number("sample_rate", {dimension::frequency}, positive, "samples are held; absent: none are taken"),
+                   number("sample_rate", {dimension::frequency}, positive, "samples are held; absent: none are taken")
+                       .such_as("25 MHz"),
                    std::move(bits)},
           .about = "limits of the source, hard bounds of every search, and what it makes of a waveform"};
 }

@@ -32,7 +32,12 @@ Section piezo_section() {
                OfPiezo::number<&Piezo::density>("density", dimension::density, positive, "of the layer").needed(),
                OfPiezo::number<&Piezo::d31>("d31", dimension::piezo_coefficient, any,
                                             "negative for the usual ceramics: a positive voltage lifts the tip")
-                   .needed()},
+                   .needed()
+                   .instead("e31"),
+               OfPiezo::number<&Piezo::e31>("e31", dimension::charge_density, any,
+                                            "the same as a stress per field: d31 youngs_modulus")
+                   .needed()
+                   .instead("d31")},
       .about = "a piezoelectric layer on the face away from the electrode",
       .begin = begin_piezo,
       .check = [](Scene&, const SectionReader& in, std::size_t) { in.require_on_beam("span"); }};

@@ -42,6 +42,8 @@ constexpr std::array extents{
     Extent{dimension::voltage, 1e-12, 1e9},
     Extent{dimension::slew_rate, 1e-6, 1e24},
     Extent{dimension::piezo_coefficient, 1e-18, 1e-6},
+    Extent{dimension::charge_density, 1e-6, 1e6},
+    Extent{dimension::damping, 1e-18, 1e6},
 };
 
 /// Edits (insertion, deletion, substitution, swap of neighbours) from `a` to `b`.
@@ -82,6 +84,16 @@ Range Key::range_of(const Dimension& dimension) const {
     closed.least_open = false;
   }
   return closed;
+}
+
+std::string Key::example_of(const Dimension& dimension) const {
+  if (dimension == dimensions.front()) {
+    if (!like.empty()) return std::string(like);
+    // The default as TOML is a text in quotes; what is 0 or no quantity tells nothing.
+    if (type == KeyType::quantity && fallback.starts_with('\'') && !fallback.starts_with("'0 "))
+      return std::string(fallback.substr(1, fallback.size() - 2));
+  }
+  return std::string(example(dimension));
 }
 
 bool Key::is_bare_number() const {

@@ -20,8 +20,14 @@ std::vector<Key> beam_keys() {
             .bound = {.integer = [](Scene& scene, std::size_t) -> int& { return scene.device.structure.modes; }}};
   constexpr Range possible_ratio{.least = -1, .most = 0.5, .least_open = true, .most_open = true};
   return {
-      OfStructure::number<&Structure::length>("length", dimension::length, positive, "along the beam").needed().of(beams),
-      OfStructure::number<&Structure::width>("width", dimension::length, positive, "across the beam").needed().of(beams),
+      OfStructure::number<&Structure::length>("length", dimension::length, positive, "along the beam")
+          .needed()
+          .of(beams)
+          .such_as("250 um"),
+      OfStructure::number<&Structure::width>("width", dimension::length, positive, "across the beam")
+          .needed()
+          .of(beams)
+          .such_as("20 um"),
       OfStructure::number<&Structure::thickness>("thickness", dimension::length, positive, "in the direction of motion")
           .needed()
           .of(beams),
@@ -33,7 +39,8 @@ std::vector<Key> beam_keys() {
       std::move(modes).by_default("4").of(beams),
       OfStructure::number<&Structure::damping_ratio>("damping_ratio", dimension::none, below_one,
                                                      "modal, the same for every mode")
-          .by_default("0.0"),
+          .by_default("0.0")
+          .or_else("for more give [gas] model = \"linear\" and quality_factor = 1 / (2 damping_ratio)"),
       OfStructure::flag<&Structure::plate_strain>("plate_strain", "use E / (1 - nu^2) for a wide beam")
           .by_default("false")
           .of(beams),
@@ -43,6 +50,7 @@ std::vector<Key> beam_keys() {
       OfStructure::number<&Structure::residual_stress>("residual_stress", dimension::pressure, any,
                                                        "along the beam before it bends, positive in tension")
           .by_default("'0 Pa'")
+          .such_as("20 MPa")
           .of({"clamped-clamped"}),
       OfStructure::flag<&Structure::biaxial>(
           "biaxial", "residual_stress is that of the unreleased film: the beam keeps residual_stress (1 - nu)")
@@ -63,7 +71,8 @@ std::vector<Key> plate_keys() {
       number("area", {dimension::area}, positive, "of the plate").needed().of({"plate"}),
       OfStructure::number<&Structure::width>("width", dimension::length, positive,
                                              "needed by gas films, fringing and rough contacts; the length is area / width")
-          .of({"plate"}),
+          .of({"plate"})
+          .such_as("100 um"),
       OfStructure::number<&Structure::thickness>("thickness", dimension::length, positive,
                                                  "needed by fringing laws that depend on it")
           .of({"plate"}),

@@ -13,6 +13,7 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
                                                                        : numbers(parameter.name, level, any, parameter.about);
   key.required = parameter.required;
   key.only_for = {FamilyOf<Family>::name};
+  if (parameter.name == "rise_time" && std::is_same_v<Family, Step>) key.words = {steepest_rise};
   const auto take = [&](const Dimension& dimension, Range range, std::string_view fallback) {
     key.dimensions = {dimension};
     key.range = range;

@@ -8,11 +8,35 @@
 #include "base/engineering.h"
 
 namespace softland {
+namespace {
+
+struct GasNumber {
+  std::string_view key;
+  double Gas::*member;
+};
+constexpr std::array keys_of_some_laws{
+    GasNumber{"viscosity", &Gas::viscosity},     GasNumber{"pressure", &Gas::pressure},
+    GasNumber{"temperature", &Gas::temperature}, GasNumber{"mean_free_path", &Gas::mean_free_path},
+    GasNumber{"film_length", &Gas::film_length}, GasNumber{"slit_height", &Gas::slit_height},
+    GasNumber{"slit_length", &Gas::slit_length}, GasNumber{"far_gap", &Gas::far_gap},
+    GasNumber{"damping", &Gas::damping},         GasNumber{"quality_factor", &Gas::quality_factor}};
+
+}  // namespace
 
 double end_flow(double ratio) {
   double sum = 0;
   for (int n = 39; n > 0; n -= 2) sum += std::tanh(n * pi / (2 * ratio)) / std::pow(n, 5);
   return 1 - 192 / std::pow(pi, 5) * ratio * sum;
+}
+
+Gas under_law(Gas gas, GasModel law) {
+  const Gas absent;
+  const Words& keys = row_of(gas_laws, law).keys;
+  gas.model = law;
+  for (const auto& [key, member] : keys_of_some_laws) {
+    if (!keys.contain(key)) gas.*member = absent.*member;
+  }
+  return gas;
 }
 
 GasLaw gas_law(const Gas& gas, const Structure& s, double unit_quality) {

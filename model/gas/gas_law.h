@@ -125,6 +125,10 @@ static_assert(is_complete<gas_laws>());
 /// Richardson & Yamanami, J. Basic Eng. 88 (1966) 451; the series is that of torsion of a rectangular bar).
 [[nodiscard]] double end_flow(double ratio);
 
+/// The gas under another law: without what only laws of other kinds are given, so that a film whose ends are open stays with the
+/// laws that can have one.
+[[nodiscard]] Gas under_law(Gas gas, GasModel law);
+
 /// Of the compressible film its incompressible limit.
 [[nodiscard]] GasLaw gas_law(const Gas& gas, const Structure& structure, double unit_quality);
 

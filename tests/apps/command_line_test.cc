@@ -404,8 +404,7 @@ TEST(Accuracy, EndsWithFourWhenTheSwitchDoesNotClose) {
 
 TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {
   const Workplace here;
-  write(here.path() / "new.toml", here.run({"new", "nem-casimir"}).out);
-  const Outcome bad = here.run({"export", "new.toml"});
+  const Outcome bad = here.run({"export", std::string(SOFTLAND_SOURCE_DIR) + "/scenes/nem-casimir.toml"});
   EXPECT_EQ(bad.status, 2);
   EXPECT_THAT(bad.err, HasSubstr("there is no waveform to export"));
 }

@@ -33,6 +33,18 @@ Family main_drive(const std::string& waveform) {
   return std::get<Family>(with_main(waveform).drives(pull_in).waveforms.at("main"));
 }
 
+TEST(Drives, StepsRiseAsSteeplyAsTheirDriverPermits) {
+  const auto rise = [](const std::string& driver) {
+    const std::string text = edited(small_scene, "level = \"1.25 Vdp\"", "level = \"50 V\"\nrise_time = \"driver\"") + driver;
+    const Scene scene = read_scene(SceneFile::parse(text, "x.toml"));
+    const auto of = [](const Drives& d) { return std::get<Step>(d.waveforms.at("main")).rise_time; };
+    EXPECT_EQ(of(read_scene(resolved(scene, pull_in)).drives(pull_in)), of(scene.drives(pull_in)));
+    return of(scene.drives(pull_in));
+  };
+  EXPECT_DOUBLE_EQ(rise("[driver.main]\nmax_slew = \"20 V/us\"\nmax_voltage = \"60 V\"\n"), 2.5e-6);
+  EXPECT_EQ(rise(""), 0);
+}
+
 TEST(Drives, StepInVoltsAndInPullInVoltages) {
   EXPECT_EQ(main_drive<Step>("family = \"step\"\nlevel = \"45 V\"\n").level, 45);
   EXPECT_EQ(main_drive<Step>("family = \"step\"\nlevel = \"1.25 Vdp\"\n").level, 1.25 * 40);

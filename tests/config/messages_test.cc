@@ -34,6 +34,8 @@ const std::string main_step = "family = \"step\"\nlevel = \"1.25 Vdp\"";
 const std::string harmonic = "family = \"harmonic\"\n";
 const std::string table = "family = \"table\"\n";
 
+const std::string more_damping = R"(; for more give [gas] model = "linear" and quality_factor = 1 / (2 damping_ratio))";
+
 /// A line in [structure] that is not in the small scene.
 Edit structure_line(const std::string& line, const std::string& expected) { return {"[gap]", line + "\n[gap]", expected}; }
 
@@ -45,13 +47,13 @@ Edit spread_line(const std::string& line, const std::string& expected) {
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Quantities, BadFile, testing::Values(
     Edit{R"("4 um")", R"("4 u")", R"(x.toml:6: structure.thickness = "4 u": unknown unit 'u' (expected a length such as "2 um"))"},
-    Edit{R"("4 um")", R"("4um")", R"(x.toml:6: structure.thickness = "4um": not a number, a space and a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("4_um")", R"(x.toml:6: structure.thickness = "4_um": not a number and a unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"("4")", R"(x.toml:6: structure.thickness = "4": no unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"(4)", R"(x.toml:6: structure.thickness = 4: no unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"(4e-6)", R"(x.toml:6: structure.thickness = 4e-06: no unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"(true)", R"(x.toml:6: structure.thickness = true: not a number with a unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"(["4 um"])", R"(x.toml:6: structure.thickness = ["4 um"]: not a number with a unit (expected a length such as "2 um"))"},
-    Edit{R"("4 um")", R"("")", R"(x.toml:6: structure.thickness = "": not a number, a space and a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("")", R"(x.toml:6: structure.thickness = "": not a number and a unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"("4 GPa")", R"(x.toml:6: structure.thickness = "4 GPa": expected a length [m], got a pressure [Pa])"},
     Edit{R"("4 um")", R"("4 um s/V")", R"(x.toml:6: structure.thickness = "4 um s/V": expected a length [m], got a quantity [m^-1 kg^-1 s^4 A])"},
     Edit{R"("4 um")", R"("-4 um")", R"(x.toml:6: structure.thickness = "-4 um": must be in [1 pm, 1 m])"},
@@ -59,8 +61,15 @@ INSTANTIATE_TEST_SUITE_P(Quantities, BadFile, testing::Values(
     Edit{R"("4 um")", R"("4e999 um")", R"(x.toml:6: structure.thickness = "4e999 um": 4e999 is outside the range of double precision (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"("4 um/s/s")", R"(x.toml:6: structure.thickness = "4 um/s/s": more than one '/' in the unit 'um/s/s' (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"("4 um^x")", R"(x.toml:6: structure.thickness = "4 um^x": 'um^x' needs an integer power between -9 and 9, not 0 (expected a length such as "2 um"))"},
-    Edit{R"("4 um")", R"("nan um")", R"(x.toml:6: structure.thickness = "nan um": not a number, a space and a unit (expected a length such as "2 um"))"},
+    Edit{R"("4 um")", R"("nan um")", R"(x.toml:6: structure.thickness = "nan um": not a number and a unit (expected a length such as "2 um"))"},
     Edit{R"("4 um")", R"(2020-01-01)", R"(x.toml:6: structure.thickness = 2020-01-01: not a number with a unit (expected a length such as "2 um"))"}));
+
+INSTANTIATE_TEST_SUITE_P(Examples, BadFile, testing::Values(
+    Edit{"[contact]", "pressure = 100\n[contact]", R"(x.toml:17: gas.pressure = 100: no unit (expected a pressure such as "101325 Pa"))"},
+    Edit{R"("78 GPa")", "78", R"(x.toml:7: structure.youngs_modulus = 78: no unit (expected a pressure such as "78 GPa"))"},
+    Edit{R"("250 um")", "250", R"(x.toml:4: structure.length = 250: no unit (expected a length such as "250 um"))"},
+    Edit{"[contact]", "mean_free_path = 65\n[contact]", R"(x.toml:17: gas.mean_free_path = 65: no unit (expected a length such as "65 nm"))"},
+    Edit{R"(max_voltage = )", "sample_rate = \"25 MS\"\nmax_voltage = ", R"(x.toml:37: driver.piezo.sample_rate = "25 MS": expected a frequency [Hz], got a conductance [S])"}));
 
 INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
@@ -119,8 +128,9 @@ INSTANTIATE_TEST_SUITE_P(Structure, BadFile, testing::Values(
     Edit{"title =", "metrics = 3\ntitle =", "x.toml:1: metrics = 3: expected a section [metrics]"},
     structure_line("modes = 21", "x.toml:9: structure.modes = 21: must be in [1, 20]"),
     structure_line("modes = 4.0", R"(x.toml:9: structure.modes = 4.0: expected a whole number or "auto")"),
-    structure_line("damping_ratio = 1.0", "x.toml:9: structure.damping_ratio = 1.0: must be in [0, 1)"),
-    structure_line("damping_ratio = inf", "x.toml:9: structure.damping_ratio = inf: must be in [0, 1)"),
+    structure_line("damping_ratio = 1.0", "x.toml:9: structure.damping_ratio = 1.0: must be in [0, 1)" + more_damping),
+    structure_line("damping_ratio = inf", "x.toml:9: structure.damping_ratio = inf: must be in [0, 1)" + more_damping),
+    structure_line("damping_ratio = 2", "x.toml:9: structure.damping_ratio = 2: must be in [0, 1)" + more_damping),
     structure_line(R"(damping_ratio = "2 s")", R"(x.toml:9: structure.damping_ratio = "2 s": expected a plain number, got a time [s])"),
     structure_line("plate_strain = true", "x.toml:9: structure.plate_strain = true: needs structure.poissons_ratio"),
     structure_line(R"(plate_strain = "yes")", R"(x.toml:9: structure.plate_strain = "yes": expected true or false)"),
@@ -163,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(Surface, BadFile, testing::Values(
 INSTANTIATE_TEST_SUITE_P(Dispersion, BadFile, testing::Values(
     Edit{"[gas]", "[dispersion]\n[gas]", "x.toml:14: [dispersion]: missing key 'model' (one of casimir, van-der-waals, auto)"},
     Edit{"[gas]", "[dispersion]\nmodel = \"casimr\"\n[gas]", R"(x.toml:15: dispersion.model = "casimr": unknown value (did you mean 'casimir'?))"},
-    Edit{"[gas]", "[dispersion]\nmodel = \"auto\"\n[gas]", R"(x.toml:14: [dispersion]: missing key 'hamaker_constant' (an energy such as "1 fJ"))"},
+    Edit{"[gas]", "[dispersion]\nmodel = \"auto\"\n[gas]", R"(x.toml:14: [dispersion]: missing key 'hamaker_constant' (an energy such as "3e-19 J"))"},
     Edit{"[gas]", "[dispersion]\nmodel = \"auto\"\nhamaker_constant = \"0 J\"\n[gas]", R"(x.toml:16: dispersion.hamaker_constant = "0 J": must be in [1e-30 J, 1 J])"},
     Edit{"[gas]", casimir + "hamaker_constant = \"4e-19 J\"\n[gas]", R"(x.toml:16: dispersion.hamaker_constant = "4e-19 J": belongs to model = "van-der-waals" or "auto", not to "casimir")"},
     Edit{"[gas]", casimir + "conductor = \"silver\"\n[gas]", R"(x.toml:16: dispersion.conductor = "silver": unknown value (known: ideal, gold))"},
@@ -263,7 +273,7 @@ TEST_P(BadPlate, IsRefusedWithThisMessage) {
 
 // clang-format off
 INSTANTIATE_TEST_SUITE_P(Plates, BadPlate, testing::Values(
-    Edit{"mass = \"2.4e-9 kg\"\n", "", R"(x.toml:1: [structure]: missing key 'mass' (a mass such as "1 kg"))"},
+    Edit{"mass = \"2.4e-9 kg\"\n", "", R"(x.toml:1: [structure]: missing key 'mass' (a mass such as "2.4 ug"))"},
     Edit{"[gas]", "[electrode.tip]\narea = \"5e3 um^2\"\nfringing = \"none\"\n[gas]", R"(x.toml:14: electrode.tip.area = "5e3 um^2": the electrodes of the near side must not have more area together than the plate)"},
     Edit{"mass = \"2.4e-9 kg\"", "mass = \"0 kg\"", R"(x.toml:3: structure.mass = "0 kg": must be in [1e-30 kg, 1000 kg])"},
     Edit{"mass =", "modes = 4\nmass =", R"(x.toml:3: structure.modes = 4: belongs to kind = "cantilever" or "clamped-clamped", not to "plate")"},
@@ -294,7 +304,7 @@ TEST_P(BadOption, IsRefusedWithThisMessage) {
 INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
     Options{{"structure.thickness=2 u"}, R"(--set structure.thickness=2 u: unknown unit 'u' (expected a length such as "2 um"))"},
     Options{{"structure.thickness=2"}, R"(--set structure.thickness=2: no unit (expected a length such as "2 um"))"},
-    Options{{"structure.thickness="}, R"(--set structure.thickness=: not a number, a space and a unit (expected a length such as "2 um"))"},
+    Options{{"structure.thickness="}, R"(--set structure.thickness=: not a number and a unit (expected a length such as "2 um"))"},
     Options{{"structure.thicknes=2 um"}, "--set structure.thicknes=2 um: unknown key (did you mean 'thickness'?)"},
     Options{{"structure.thickness"}, "--set structure.thickness: not of the form key.path=value"},
     Options{{"=2 um"}, "--set =2 um: not a key path such as structure.length"},
@@ -310,11 +320,11 @@ INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
     Options{{"gap.electrode=1 um"}, R"(x.toml:11: gap.contact = "2 um": must be less than gap.electrode = "1 um")"},
     Options{{"electrode.side.fringing=none"}, R"(--set electrode.side.fringing=none: [electrode.side]: missing key 'span' (a list such as ["2 um", "2 um"]))"},
     Options{{"waveform.main.level=70 V"}, "--set waveform.main.level=70 V: [waveform.main]: the voltage reaches 70 V, above the driver's max_voltage of 60 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
-    Options{{"driver.main={min_voltage=\"0 V\", max_voltage=\"60 V\", max_slew=\"20 V/us\"}"}, "x.toml:27: [waveform.main]: the voltage jumps, faster than the driver's max_slew of 20 MV/s; with a rise_time of 2.52 us it is not"},
+    Options{{"driver.main={min_voltage=\"0 V\", max_voltage=\"60 V\", max_slew=\"20 V/us\"}"}, "x.toml:27: [waveform.main]: the voltage jumps, faster than the driver's max_slew of 20 MV/s; rise_time = \"driver\" makes it as steep as that permits, in 2.5 us"},
     Options{{"waveform.side.family=step"}, "--set waveform.side.family=step: [waveform.side]: no such electrode (known: main, piezo)"},
     Options{{"title=\xff"}, "--set title: the value is not UTF-8 text"},
     Options{{"structure.modes=4\nstructure.modes=5"}, R"(--set structure.modes=4\u000astructure.modes=5: expected a whole number or "auto")"},
-    Options{{"structure.thickness=\x1b[31m"}, R"(--set structure.thickness=\u001b[31m: not a number, a space and a unit (expected a length such as "2 um"))"},
+    Options{{"structure.thickness=\x1b[31m"}, R"(--set structure.thickness=\u001b[31m: not a number and a unit (expected a length such as "2 um"))"},
     Options{{"structure.thickness=2 um", "structure.thickness=3 m/s"}, "--set structure.thickness=3 m/s: expected a length [m], got a velocity [m/s]"},
     Options{{"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1"}, "--set a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q=1: not a key path such as structure.length"}));
 // clang-format on

@@ -238,7 +238,7 @@ TEST(Plan, RefusesWhatIsNone) {
       {{"structure.length=1 um:2 um:0"}, "must be a whole number of values"},
       {{"structure.length=1 um:2 um:x"}, "must be a whole number of values"},
       {{"structure.length=1 um:2 um:1"}, "one value cannot be at both ends"},
-      {{"structure.length=1:2:3"}, "no unit (expected a length such as 2 um, or a percentage of the scene's value)"},
+      {{"structure.length=1:2:3"}, "no unit (expected a length such as 250 um, or a percentage of the scene's value)"},
       {{"structure.length=1 V:2 V:3"}, "expected a length [m], got a voltage [V]"},
       {{"structure.length=1 um:2 V:3"}, "'1 um' is a length [m], but '2 V' is a voltage [V]"},
       {{"structure.length=1 parsec:2 um:3"}, "unknown unit 'parsec'"},

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/literals.h"
+#include "model/beam.h"
 #include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
 #include "tests/config/small_scene.h"
@@ -22,6 +23,29 @@ Scene read(const std::string& text) { return read_scene(SceneFile::parse(text, "
 
 Scene read_file(const std::string& name) {
   return read_scene(SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + name));
+}
+
+TEST(Scene, TakesTheStressPerFieldOfALayerInsteadOfTheStrain) {
+  const auto moment = [](const std::string& text) {
+    const Device d = read_scene(SceneFile::parse(text, "x.toml")).device;
+    return piezo_moment_per_volt(d.structure, *d.piezo);
+  };
+  const double by_strain = moment(std::string(small_scene));
+  EXPECT_DOUBLE_EQ(moment(edited(small_scene, R"(d31 = "-171 pm/V")", R"(e31 = "-10.431 C/m^2")")), by_strain);
+}
+
+// The force per velocity of a plate as a whole, by the length along which films act on it.
+TEST(Scene, TakesTheDampingOfAWholePlate) {
+  const auto damping = [](const std::string& damper) {
+    const SceneFile file = SceneFile::parse(
+        "[structure]\nkind = \"plate\"\nmass = \"1 ug\"\nstiffness = \"42 N/m\"\narea = \"1e-8 m^2\"\nwidth = \"50 um\"\n"
+        "[gap]\nelectrode = \"3 um\"\ncontact = \"2 um\"\n[gas]\nmodel = \"linear\"\ndamping = \"" +
+            damper + "\"\n",
+        "x.toml");
+    return read_scene(file).device.gas->damping;
+  };
+  EXPECT_DOUBLE_EQ(damping("2e-5 N s/m"), 2e-5 / 200e-6);
+  EXPECT_DOUBLE_EQ(damping("0.1 N s/m^2"), 0.1);
 }
 
 TEST(Scene, EverySectionOfTheSmallSceneArrives) {
@@ -356,10 +380,13 @@ contact = "2 um"
 TEST(Scene, AWideBeamWithoutPlateStrainIsWarnedAbout) {
   // Exactly five thicknesses is not wide yet.
   EXPECT_THAT(read(edited(small_scene, "\"20 um\"", "\"20.00 um\"")).warnings, testing::IsEmpty());
-  EXPECT_THAT(read(edited(small_scene, "\"20 um\"", "\"20.1 um\"")).warnings,
-              testing::ElementsAre(
-                  "x.toml:5: structure.width = \"20.1 um\": more than five thicknesses; youngs_modulus is used as given, "
-                  "plate_strain = true with poissons_ratio would use E / (1 - nu^2)"));
+  EXPECT_THAT(
+      read(edited(small_scene, "\"20 um\"", "\"20.1 um\"")).warnings,
+      testing::ElementsAre("x.toml:5: structure.width = \"20.1 um\": more than five thicknesses; youngs_modulus is used as given "
+                           "(plate_strain = false), plate_strain = true with poissons_ratio would use E / (1 - nu^2)"));
+  EXPECT_THAT(read(edited(edited(small_scene, "\"20 um\"", "\"20.1 um\""), "[gap]", "plate_strain = false\n[gap]")).warnings,
+              testing::IsEmpty())
+      << "it says so itself";
   EXPECT_THAT(
       read(edited(edited(small_scene, "\"20 um\"", "\"20.1 um\""), "[gap]", "plate_strain = true\npoissons_ratio = 0.44\n[gap]"))
           .warnings,

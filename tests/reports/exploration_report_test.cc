@@ -58,10 +58,10 @@ TEST(ExploredAims, AreRefusedWithTheFiguresThereAre) {
   EXPECT_THAT(aims_refusal("impact_velocity"), HasSubstr("at least two"));
 }
 
-TEST(ExploredFront, HoldsOnlyPointsThatHaveFigures) {
+TEST(ExploredFront, HoldsOnlyPointsThatSettleAndHaveFigures) {
   ExplorationReport report{.columns = {{"a", "a", "", false}, {"b", "b", "", false}}};
-  report.points = {{7, "done", "", {1, 3}},      {8, "no_contact", "", {0, 0}},   {9, "done", "", {3, 1}},
-                   {10, "done", "", {1.5, 1.5}}, {11, "not_settled", "", {3, 3}}, {12, "done", "", {Metrics::unset, 0}}};
+  report.points = {{7, "done", "", {1, 3}},      {8, "no_contact", "", {0, 0}},       {9, "done", "", {3, 1}},
+                   {10, "done", "", {1.5, 1.5}}, {11, "not_settled", "", {0.5, 0.5}}, {12, "done", "", {Metrics::unset, 0}}};
   report.aims = explored_aims(report.columns, "a,b", "--pareto");
   const ExploredFront front = explored_front(report);
   EXPECT_THAT(front.members, ElementsAre(0, 3, 2));

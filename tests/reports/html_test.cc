@@ -103,6 +103,26 @@ TEST(HtmlReport, SaysEverythingWithoutAScript) {
   EXPECT_THAT(page, Not(HasSubstr("{{")));
 }
 
+TEST(HtmlReport, ListsMoreThanNineLevelsInTheOrderOfTime) {
+  json result = test::sample_optimize_result(600);
+  json parameters;
+  for (int k = 1; k <= 12; ++k) {
+    parameters["piezo.level_" + std::to_string(k) + "_V"] = 0.1;
+    parameters["piezo.duration_" + std::to_string(k) + "_s"] = 1e-6;
+  }
+  result["best"]["parameters"] = parameters;
+  const std::string page = html_report(read_result(result));
+  std::size_t last = 0;
+  for (int k = 1; k <= 12; ++k) {
+    for (const char* stem : {"level_", "duration_"}) {
+      const std::size_t at = page.find("piezo." + (stem + std::to_string(k)) + "<");
+      ASSERT_NE(at, std::string::npos) << stem << k;
+      EXPECT_GT(at, last) << stem << k;
+      last = at;
+    }
+  }
+}
+
 TEST(HtmlReport, ListsParametersInTheOrderOfTimeWithTheirBounds) {
   json result = test::sample_optimize_result(300);
   result["best"]["bounds"] = {

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "reports/other_ways_report.h"
+#include "reports/text.h"
 #include "studies/choices.h"
 
 namespace softland::robustness_report_test {
@@ -318,6 +319,51 @@ TEST(DeviceCourses, AreThoseOfTheQuantilesOfTheHighestRebound_optimized) {
     EXPECT_NEAR(metrics(course.trajectory, study().nominal.scene.metrics).major_bounce_height, height, 1e-4 * height)
         << "the same closing, but alone";
   }
+}
+
+TEST(RobustnessReport, FitsOnATerminalWithManyDrivesOfLongNames) {
+  Study s = study();
+  for (int k = 0; k < 9; ++k) {
+    s.found.drives.push_back(s.found.drives.back());
+    s.found.drives.back().name = std::string(60, 'x') + "/of_run_" + std::to_string(k);
+  }
+  std::istringstream lines(robustness_text(s.report()));
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(internal::columns_of(line), 150U) << line;
+  for (int k = 0; k < 9; ++k) EXPECT_THAT(robustness_text(s.report()), HasSubstr("/of_run_" + std::to_string(k)));
+}
+
+// An estimate may leave [0, 1] by chance.
+TEST(RobustnessReport, SharesAreNeverBeyondAll) {
+  Study s = study();
+  for (FigureSensitivity& f : s.sensitivity.figures) {
+    f.estimate.indices->total[0] = {.value = 1.1, .interval = {.low = 0.9, .high = 1.3}};
+    f.estimate.indices->first_order[0] = {.value = -0.02, .interval = {.low = -0.1, .high = 0.05}};
+  }
+  EXPECT_THAT(robustness_text(s.report()), HasSubstr("0.0 % / 100 %"));
+  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("110 %")));
+  EXPECT_THAT(robustness_html(s.report()), HasSubstr("100 % (90 to 100)"));
+  for (FigureChaos& c : s.other_ways->chaos) c.q2 = c.q2_unseen = -0.5;
+  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("150 %")));
+}
+
+TEST(RobustnessReport, SaysWhatIsMissingForShares) {
+  Study s = study();
+  for (FigureSensitivity& f : s.sensitivity.figures) f.estimate = {.rows = 256, .failed_rows = 12};
+  const std::string words = "no shares: 12 of the 256 rows of devices made for them";
+  EXPECT_THAT(robustness_html(s.report()), HasSubstr(words));
+  EXPECT_THAT(robustness_text(s.report()), HasSubstr("t_i: " + words));
+  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr("too many"))) << "all devices of the sample close";
+}
+
+// What is first order says nothing of devices whose spread is another one.
+TEST(RobustnessReport, ShowsNoDerivativesThatTheDevicesContradict) {
+  Study s = study();
+  EXPECT_THAT(robustness_text(s.report()), HasSubstr(" %/%"));
+  for (FigureDerivatives& f : s.derivatives.figures) f.deviation *= 100;
+  EXPECT_THAT(robustness_text(s.report()), Not(HasSubstr(" %/%")));
+  EXPECT_THAT(robustness_html(s.report()), Not(HasSubstr(" %/%")));
+  EXPECT_THAT(robustness_text(s.report()), HasSubstr("are not shown"));
+  EXPECT_FALSE(robustness_json(s.report())["derivatives"]["figures"]["initial_contact_time_s"]["agrees_with_devices"]);
 }
 
 }  // namespace

@@ -106,6 +106,46 @@ TEST(Effects, OfEverySceneNameTheLawsThatItCannotHave) {
   EXPECT_THAT(not_compared(rigid), ElementsAre("guo-alexeenko", "reynolds"));
 }
 
+// What a law is compared with is a scene of its own, which the scene's reader accepts and says the same of.
+TEST(Effects, GiveEveryLawWhatASceneMayGiveIt) {
+  for (const std::string& name : shipped_scenes()) {
+    const Device own = read_scene(scene(name.c_str())).device;
+    for (const GasRow& law : gas_laws) {
+      if (!own.gas || law.value == GasModel::strip_slit || law.value == GasModel::linear) continue;
+      SceneFile file = scene(name.c_str());
+      for (const std::string& key : file.keys("gas")) {
+        if (key != "model" && !law.keys.contain(key)) file.erase("gas." + key);
+      }
+      file.set("gas.model=" + std::string(law.name));
+      const Device other = law.needs_thickness && std::isnan(own.structure.thickness) ? own : read_scene(file).device;
+      const Gas compared = under_law(*own.gas, other.gas->model);
+      EXPECT_EQ(std::isnan(compared.film_length), std::isnan(other.gas->film_length)) << name << " " << law.name;
+      EXPECT_EQ(std::isnan(compared.far_gap), std::isnan(other.gas->far_gap)) << name << " " << law.name;
+      const double gap = own.gap.electrode - own.gap.contact;
+      EXPECT_EQ(damping_per_length(gas_law(compared, own.structure, 1), gap),
+                damping_per_length(gas_law(*other.gas, other.structure, 1), gap))
+          << name << " " << law.name;
+    }
+  }
+}
+
+// The open ends of the film belong to the laws that can have them, and so does a second film on the far side.
+TEST(Effects, OfFilmsWithOpenEndsDoNotWeakenLawsWithoutThem) {
+  const Prepared p = prepare(scene("gap-closing-actuator.toml", {"simulate.accuracy=1e-3"}));
+  const Effects effects = compare_effects(p);
+  EXPECT_TRUE(effects.not_compared.empty()) << effects.not_compared.front().reason;
+  const double kept = end_flow(40 / 76.1);
+  Device ends_closed = p.scene.device;
+  for (const char* law : {"veijola", "gallis-torczynski", "near-contact"}) {
+    const GasRow& row = *find_named(gas_laws, law);
+    ends_closed.gas->model = row.value;
+    ends_closed.gas->film_length = Metrics::unset;
+    const double closed = damping_per_length(gas_law(*ends_closed.gas, ends_closed.structure, 1), 1e-6);
+    EXPECT_NEAR(find(effects, law).magnitude.value, row.keys.contain("film_length") ? kept * closed : closed, 1e-9 * closed)
+        << law;
+  }
+}
+
 TEST(Effects, WithoutContactHaveNoSpreadOfWhatIsMissing) {
   const Effects effects = compare_effects(prepare(gold_at_17_volts({"waveform.main.level=3 V"})));
   EXPECT_TRUE(std::isnan(effects.spread("gas", impact_velocity)));

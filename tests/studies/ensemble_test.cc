@@ -335,5 +335,17 @@ TEST(Robustness, RefusesDrivesThatTheSceneDoesNotAllow) {
   EXPECT_EQ(refused("main", Step{.level = 26}).find("x.toml: drive 'main': "), 0U);
 }
 
+// A key that has two units varies in its own.
+TEST(Ensemble, KeepsTheUnitOfWhatVaries) {
+  const SceneFile file = spring_plate({"structure.width=100 um", "gas.model=linear", "gas.damping=2e-5 N s/m",
+                                       R"(spread."gas.damping"={ distribution = "normal", cov = "5 %" })"});
+  const Prepared nominal = prepare(file);
+  const Ensemble ensemble(nominal, 3, 1);
+  for (std::uint64_t k = 0; k < 3; ++k) {
+    const double given = ensemble.values(k)[0] * nominal.scene.device.gas->damping;
+    EXPECT_NEAR(DeviceBuilder(ensemble).device(k).model->device().gas->damping, given, 1e-9 * given);
+  }
+}
+
 }  // namespace
 }  // namespace softland::ensemble_test

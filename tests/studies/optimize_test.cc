@@ -366,7 +366,9 @@ TEST(Optimize, RunsTheBestSoFarToItsEndWhenToldToStop) {
 }
 
 TEST(Optimize, WarnsOfTheSceneInTheUsersFileAndOnce) {
-  const OptimizeResult& r = reference().result;
+  SceneFile wide = quick();
+  wide.erase("structure.plate_strain");
+  const OptimizeResult r = search(wide, {}, 30).result;
   ASSERT_TRUE(r.best);
   for (const std::vector<std::string>* warnings : {&r.best->warnings, &r.baseline.warnings}) {
     ASSERT_FALSE(warnings->empty());

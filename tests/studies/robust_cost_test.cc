@@ -79,5 +79,42 @@ TEST(RobustCost, TakesWhatHasNotSettledForLater) {
   EXPECT_GT(score(o), RobustCost::not_closed - 1e-12) << "nor closed";
 }
 
+TEST(RobustCost, TakesAFigureThatIsNotKnownForTheWorst) {
+  for (const auto& [target, figure] :
+       {std::pair{Target::drive, &Metrics::drive_energy}, std::pair{Target::force, &Metrics::peak_contact_force}}) {
+    DeviceOutcome o = device();
+    o.metrics.*figure = Metrics::unset;
+    EXPECT_EQ(Score(target)(o), RobustCost::not_closed) << to_string(target);
+  }
+}
+
+// Under every measure: a search has figures to go by, whatever closes several devices at once leaves out.
+TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
+  int scenes = 0;
+  for (const std::string& name : shipped_scenes()) {
+    SceneFile file = scene(name.c_str(), {"simulate.accuracy=1e-3"});
+    const StructureKind kind = read_scene(file).device.structure.kind;
+    if (kind != StructureKind::plate) file.set("structure.modes=2");
+    if (!file.written("contact") || file.keys("electrode").empty()) continue;  // nothing to land on, or to shape
+    ++scenes;
+    for (const Target target : every_target) {
+      const SearchSetting setting = search_setting(file, target, Actuator::electrostatic, "pulse", {});
+      const KnownUnits known;
+      for (const char* measure : {"cvar:0.9", "quantile:0.9", "mean+2sigma", "worst"}) {
+        const RobustAim aim{.measure = parse_robust_measure(measure, conditioned_figures()), .conditions = {}};
+        const RobustCost cost(setting, aim, build_all(Ensemble(setting.given, 16, 1), known, 1, 1));
+        const std::vector<DeviceOutcome> outcomes = cost.close(setting.drives({}), 0, cost.devices(), 1);
+        EXPECT_TRUE(std::isfinite(cost.value(outcomes))) << name << " " << to_string(target) << " " << measure;
+        for (const DeviceOutcome& o : outcomes) {
+          if (target == Target::drive && o.closed()) {
+            EXPECT_TRUE(std::isfinite(o.metrics.drive_energy)) << name;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GE(scenes, 5);
+}
+
 }  // namespace
 }  // namespace softland

@@ -1,6 +1,7 @@
 // The shipped scenes, with changes.
 #pragma once
 
+#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -16,6 +17,14 @@ inline SceneFile scene(const char* name, std::initializer_list<std::string_view>
   SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + name);
   for (const std::string_view change : changes) file.set(change);
   return file;
+}
+
+/// "mem-gold.toml" and all others.
+inline std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(SOFTLAND_SOURCE_DIR) + "/scenes"))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().filename().string());
+  return names;
 }
 
 inline SceneFile gold(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold.toml", changes); }
