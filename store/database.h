@@ -33,6 +33,10 @@ enum class Access {
   immutable   ///< from one that nobody writes to and that has no log: nothing is locked
 };
 
+/// Device and inode: what a file is under any name. None where there is no file.
+using FileNumber = std::pair<unsigned long long, unsigned long long>;
+[[nodiscard]] std::optional<FileNumber> number_of(const std::filesystem::path& file);
+
 /// Remembers that this process has the file open. SQLite's locks are those of the process and vanish when it closes any other
 /// descriptor of the file, so that nobody looks into one that is open.
 class OpenFile {
@@ -43,9 +47,11 @@ class OpenFile {
   OpenFile& operator=(const OpenFile&) = delete;
   /// Whether one of these remembers it.
   [[nodiscard]] static bool is_open(const std::filesystem::path& file);
+  /// Whether this is the file.
+  [[nodiscard]] bool is(const std::filesystem::path& file) const { return number_ && number_ == number_of(file); }
 
  private:
-  std::optional<std::pair<unsigned long long, unsigned long long>> number_;
+  std::optional<FileNumber> number_;
 };
 
 class Statement;
@@ -64,6 +70,13 @@ class Database {
   [[nodiscard]] std::int64_t number_of(const std::string& sql) const;
   /// Throws what a result code means.
   [[noreturn]] void fail(int code) const;
+
+  /// Whether the file at this path is the open one: somebody may have removed, moved or replaced it.
+  [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
+  /// Leaves the log where it is when this is closed: what has its name then belongs to another file.
+  void leave_log() const;
+  /// Writes all that it holds into a file of its own, which may not hold anything yet.
+  void copy_to(const std::filesystem::path& file) const;
 
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
   [[nodiscard]] const std::string& shown() const { return shown_; }

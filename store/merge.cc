@@ -154,6 +154,7 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
   std::error_code ignored;
   require(!fs::exists(fs::symlink_status(out, ignored)), fmt::format("{}: exists already; it is not replaced", out.string()));
   Parts parts = opened(paths);
+  require_room(out);
   const auto lock = lock_store(out, origin.command);
   Merged merged{.plan = parts.front()->plan(), .rows = 0, .written = false, .notes = {}};
   merged.plan.shard = {};

@@ -19,6 +19,7 @@
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
+#include "base/companion.h"
 #include "base/require.h"
 #include "config/plan.h"
 #include "reports/exploration_report.h"
@@ -123,6 +124,8 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   static_cast<void>(claim_places(c, {}));
   require(c.json.empty() || std::filesystem::weakly_canonical(c.json) != std::filesystem::weakly_canonical(out),
           [&] { return fmt::format("--json {}: is the store; name another file", c.json); });
+  require(c.json.empty() || !is_companion(c.json, out),
+          [&] { return fmt::format("--json {}: is a file that the store {} has beside it; name another", c.json, out); });
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   Exploration exploration(Plan(request), work->watch());
   work.reset();

@@ -183,6 +183,52 @@ TEST_F(MergeVerb, MakesOneStoreOfParts) {
              "other.sqlite: holds another plan than part 1.sqlite");
 }
 
+TEST_F(Stores, KeepTheNamesOfTheirCompanions) {
+  make_store(at("a.sqlite"), 10);
+  make_store(at("b.sqlite"), 10);
+  const std::vector<std::string> vary{"--vary", "waveform.main.level=20 V:24 V:2"};
+  const auto with = [](std::vector<std::string> words, std::initializer_list<std::string> more) {
+    words.insert(words.end(), more);
+    return words;
+  };
+  const std::vector<std::string> explore = with({"explore", "gold.toml"}, {vary[0], vary[1]});
+  for (const char* ending : {"-wal", "-shm", "-journal", ".lock"}) {
+    const std::string name = std::string("a.sqlite") + ending;
+    const std::string reason = name + ": has the name that the store ";
+    expect_bad({"table", "b.sqlite", "--out", name}, reason);
+    expect_bad({"table", "a.sqlite", "--out", name}, reason);
+    expect_bad({"modes", "gold.toml", "--json", name}, reason);
+    expect_bad({"simulate", "gold.toml", "--out", name}, "--out " + reason);
+    expect_bad({"merge", "b.sqlite", "--out", name}, reason);
+    expect_bad(with(explore, {"--out", name}), reason);
+    expect_bad(with(explore, {"--point", "1", "--out", name}), reason);
+    expect_bad(with(explore, {"--out", "new.sqlite", "--json", std::string("new.sqlite") + ending}),
+               fmt::format("--json new.sqlite{}: is a file that the store new.sqlite has beside it", ending));
+    EXPECT_FALSE(fs::exists(at(name)));
+    EXPECT_FALSE(fs::exists(at("new.sqlite")));
+  }
+  EXPECT_EQ(dump(at("a.sqlite")), dump(at("b.sqlite")));
+}
+
+// The store of a run that goes on for long is removed, and made anew by somebody else.
+TEST_F(Stores, ThatAreMadeAnewUnderTheirRunEndItAtOnce) {
+  const pid_t child =
+      here.start({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:100000", "--jobs", "1", "--set",
+                  "structure.modes=2", "--set", "simulate.accuracy=1e-3", "--out", "a.sqlite", "--quiet"});
+  const auto rows = [&] { return fs::exists(at("a.sqlite")) ? test::rows_in(at("a.sqlite")).size() : 0; };
+  for (int i = 0; i < 600 && rows() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  ASSERT_GT(rows(), 0u);
+  for (const char* ending : {"", "-wal", "-shm"}) fs::remove(at(std::string("a.sqlite") + ending));
+  make_store(at("b.sqlite"), 10);
+  fs::rename(at("b.sqlite"), at("a.sqlite"));
+  const Outcome o = here.finish(child);
+  EXPECT_EQ(o.status, 74) << o.err;
+  EXPECT_THAT(o.err, AllOf(HasSubstr("softland: a.sqlite: was removed, moved or replaced while it was written"),
+                           HasSubstr("a.sqlite.rescued")));
+  EXPECT_EQ(test::rows_in(at("a.sqlite")).size(), 10u);
+  EXPECT_GT(test::rows_in(at("a.sqlite.rescued")).size(), 0u);
+}
+
 class SlurmVerb : public Stores {
  protected:
   static constexpr const char* folder = "it's $(a) \"map\"";

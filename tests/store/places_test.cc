@@ -9,6 +9,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <functional>
 
 #include "base/output_lost.h"
 #include "base/require.h"
@@ -133,6 +134,36 @@ TEST_F(Place, OfAStoreWithMissingTablesIsRefused) {
   EXPECT_THAT([&] { StudyReader{file}; }, ThrowsMessage<InvalidInput>(HasSubstr("damaged: tables are missing")));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
               ThrowsMessage<InvalidInput>(HasSubstr("is a copy of it")));
+}
+
+TEST_F(Place, OfACompanionOfAStoreIsNoPlaceForOne) {
+  make_store(file, 10);
+  make_store(path("part.sqlite"), 10);
+  const std::string before = content_of(file);
+  for (const char* ending : {"-wal", "-shm", "-journal", ".lock"}) {
+    const fs::path companion = file.string() + ending;
+    const auto is_refused = ThrowsMessage<InvalidInput>(
+        AllOf(HasSubstr(companion.string() + ": has the name that the store "), HasSubstr("gives to a file of its own")));
+    EXPECT_THAT([&] { StudyStore(companion, plan_of(10), origin(), Opening::fresh); }, is_refused);
+    EXPECT_THAT([&] { StudyStore(companion, plan_of(10), origin(), Opening::resume); }, is_refused);
+    EXPECT_THAT([&] { static_cast<void>(merge_studies({path("part.sqlite")}, companion, origin())); }, is_refused);
+    EXPECT_FALSE(fs::exists(companion));
+  }
+  EXPECT_EQ(content_of(file), before);
+}
+
+TEST_F(Place, WithTheLogOfAStoreThatIsGoneIsNotTaken) {
+  make_store(path("part.sqlite"), 10);
+  for (const char* ending : {"-wal", "-shm", "-journal"}) {
+    const std::string left = write(std::string("study.sqlite") + ending, "all that there is of it");
+    const auto is_refused = ThrowsMessage<InvalidInput>(AllOf(HasSubstr(left), HasSubstr("move it or name another store")));
+    EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::fresh); }, is_refused);
+    EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); }, is_refused);
+    EXPECT_THAT([&] { static_cast<void>(merge_studies({path("part.sqlite")}, file, origin())); }, is_refused);
+    EXPECT_EQ(content_of(left), "all that there is of it");
+    EXPECT_FALSE(fs::exists(file));
+    fs::remove(left);
+  }
 }
 
 TEST_F(Place, TakesOneWriterWhoSaysItsName) {
@@ -271,6 +302,84 @@ TEST_F(Place, OnAFullDiskLosesNoRowThatItTold) {
   EXPECT_EQ(status, 0) << "see the failures above";
   make_store(path("whole.sqlite"), 5000);
   EXPECT_EQ(dump(file), dump(path("whole.sqlite")));
+}
+
+// Writes rows until the store says that it lost its place, and returns what it says.
+std::string said_while_writing(StudyStore& store, std::int64_t from, std::int64_t to) {
+  for (std::int64_t point = from; point < to; ++point) {
+    try {
+      store.add(row_of(point));
+      store.flush();
+    } catch (const OutputLost& lost) {
+      return lost.what();
+    }
+  }
+  return "nothing";
+}
+
+TEST_F(Place, ThatIsTakenFromUnderAWriterLosesNoRow) {
+  const auto replaced_by_another = [this] {
+    fs::remove(file);
+    fs::remove(file.string() + "-wal");
+    fs::remove(file.string() + "-shm");
+    make_store(path("another.sqlite"), 7);
+    fs::rename(path("another.sqlite"), file);
+  };
+  const std::vector<std::function<void()>> events{
+      [this] { fs::remove(file); }, [this] { fs::rename(file, path("moved.sqlite")); }, replaced_by_another,
+      [this] { fs::remove(file), write("study.sqlite", "a text"); }, [this] { fs::remove(file.string() + "-wal"); }};
+  make_store(path("whole.sqlite"), 400);
+  for (std::size_t event = 0; event < events.size(); ++event) {
+    for (const auto& entry : fs::directory_iterator(TemporaryFolder::path())) {
+      if (entry.path().filename() != "whole.sqlite") fs::remove(entry.path());
+    }
+    StudyStore store(file, plan_of(400), origin(), Opening::fresh);
+    for (int point = 0; point < 100; ++point) store.add(row_of(point));
+    store.flush();
+    for (int point = 100; point < 200; ++point) store.add(row_of(point));
+    events[event]();
+    const std::string before = event == 2 || event == 3 ? content_of(file) : "";
+    const std::string said = said_while_writing(store, 200, 202);
+    EXPECT_THAT(said, AllOf(HasSubstr("study.sqlite"), HasSubstr("was removed, moved or replaced while it was written"),
+                            HasSubstr("study.sqlite.rescued")))
+        << event;
+    // Those who were computing meanwhile hand in what they have, and are told too.
+    for (int point = 201; point < 400; ++point) EXPECT_THROW(store.add(row_of(point)), OutputLost);
+    EXPECT_THROW(store.close(), OutputLost);
+    EXPECT_EQ(dump(file.string() + ".rescued"), dump(path("whole.sqlite"))) << event;
+    EXPECT_EQ(event == 2 || event == 3 ? content_of(file) : "", before) << "what stands there now is somebody else's";
+    StudyStore(file.string() + ".rescued", plan_of(400), origin(), Opening::resume).close();
+  }
+}
+
+TEST_F(Place, ThatIsTakenBeforeTheStoreIsClosedLosesNoRow) {
+  StudyStore store(file, plan_of(100), origin(), Opening::fresh);
+  for (int point = 0; point < 100; ++point) store.add(row_of(point));
+  store.flush();
+  fs::remove(file);
+  make_store(path("another.sqlite"), 7);
+  run_sql(path("another.sqlite"), "PRAGMA journal_mode = WAL");
+  fs::rename(path("another.sqlite"), file);
+  fs::remove(file.string() + "-wal");
+  const std::string log = write("study.sqlite-wal", "");
+  EXPECT_THAT([&] { store.close(); }, ThrowsMessage<OutputLost>(HasSubstr("study.sqlite.rescued")));
+  EXPECT_TRUE(fs::exists(log)) << "the log of the other store";
+  EXPECT_EQ(rows_in(file).size(), 7u);
+  make_store(path("whole.sqlite"), 100);
+  EXPECT_EQ(dump(file.string() + ".rescued"), dump(path("whole.sqlite")));
+}
+
+TEST_F(Place, WhoseFolderIsTakenIsRescuedElsewhere) {
+  fs::create_directory(path("folder"));
+  StudyStore store(path("folder/study.sqlite"), plan_of(100), origin(), Opening::fresh);
+  for (int point = 0; point < 100; ++point) store.add(row_of(point));
+  store.flush();
+  fs::remove_all(path("folder"));
+  const fs::path before = fs::current_path();
+  fs::current_path(TemporaryFolder::path());
+  EXPECT_THAT([&] { store.close(); }, ThrowsMessage<OutputLost>(HasSubstr(path("study.sqlite.rescued"))));
+  fs::current_path(before);
+  EXPECT_EQ(rows_in(path("study.sqlite.rescued")).size(), 100u);
 }
 
 TEST_F(Place, HeldByAnotherProgramIsToldToBeSo) {
