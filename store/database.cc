@@ -115,6 +115,11 @@ void Database::fail(int code) const {
     case SQLITE_AUTH:
     case SQLITE_TOOBIG:
       throw InvalidInput(fmt::format("{}: {}", shown_, reason));
+    case SQLITE_ERROR:
+    case SQLITE_CONSTRAINT:
+    case SQLITE_MISMATCH:
+    case SQLITE_SCHEMA:
+      throw StatementFailed(fmt::format("{}: the store is damaged: {}", shown_, reason), reason);
     default:
       throw std::runtime_error(fmt::format("{}: SQLite: {} ({})", shown_, reason, code));
   }
@@ -183,6 +188,17 @@ Statement& Statement::bind(int parameter, std::span<const unsigned char> value) 
   return *this;
 }
 
+Statement& Statement::lend(int parameter, std::string_view value) {
+  check(
+      sqlite3_bind_text64(handle_.get(), parameter, value.empty() ? "" : value.data(), value.size(), SQLITE_STATIC, SQLITE_UTF8));
+  return *this;
+}
+
+Statement& Statement::lend(int parameter, std::span<const unsigned char> value) {
+  check(sqlite3_bind_blob64(handle_.get(), parameter, value.data(), value.size(), SQLITE_STATIC));
+  return *this;
+}
+
 bool Statement::step() {
   const int code = sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
@@ -201,8 +217,7 @@ bool Statement::step() {
 void Statement::reset() { sqlite3_reset(handle_.get()); }
 
 double Statement::number(int column) const {
-  return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL ? std::numeric_limits<double>::quiet_NaN()
-                                                                   : sqlite3_column_double(handle_.get(), column);
+  return is_null(column) ? std::numeric_limits<double>::quiet_NaN() : sqlite3_column_double(handle_.get(), column);
 }
 
 std::string Statement::text(int column) const {

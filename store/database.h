@@ -24,6 +24,17 @@ class DamagedStore : public InvalidInput {
   using InvalidInput::InvalidInput;
 };
 
+/// A statement that a sound store understands and this one does not, or that fails at one of its rows.
+class StatementFailed : public DamagedStore {
+ public:
+  StatementFailed(const std::string& message, std::string reason) : DamagedStore(message), reason_(std::move(reason)) {}
+  /// In the words of SQLite.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
+};
+
 /// How a database is opened.
 enum class Access {
   write,      ///< what is there, to change it
@@ -100,11 +111,15 @@ class Statement {
   Statement& bind(int parameter, double value);  ///< NaN: NULL
   Statement& bind(int parameter, std::string_view value);
   Statement& bind(int parameter, std::span<const unsigned char> value);
+  /// Without a copy: what is lent has to live until the statement has been run.
+  Statement& lend(int parameter, std::string_view value);
+  Statement& lend(int parameter, std::span<const unsigned char> value);
   /// Whether there is a row; where there is none the statement can be bound and run again.
   bool step();
   void reset();
 
   [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
+  [[nodiscard]] bool is_null(int column) const { return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL; }
   [[nodiscard]] double number(int column) const;  ///< NULL: NaN
   [[nodiscard]] std::string text(int column) const;
   [[nodiscard]] std::span<const unsigned char> blob(int column) const;
@@ -147,6 +162,23 @@ class Transaction {
 
  private:
   const Database& database_;
+};
+
+/// While it lives everything that is read is of one moment, whoever writes.
+class Snapshot {
+ public:
+  explicit Snapshot(const Database& database) : database_(database), begun_(sqlite3_get_autocommit(database.handle()) != 0) {
+    if (begun_) database_.run("BEGIN");
+  }
+  Snapshot(const Snapshot&) = delete;
+  Snapshot& operator=(const Snapshot&) = delete;
+  ~Snapshot() {
+    if (begun_) sqlite3_exec(database_.handle(), "COMMIT", nullptr, nullptr, nullptr);
+  }
+
+ private:
+  const Database& database_;
+  bool begun_;
 };
 
 }  // namespace softland::internal

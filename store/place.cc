@@ -67,7 +67,12 @@ std::string fault_of(const fs::path& path) {
   if (OpenFile::is_open(path)) return {};
   if (::access(path.c_str(), R_OK) != 0) return std::generic_category().message(errno);
   if (fs::file_size(path, error) == 0 && !error) return "is empty (0 bytes), not a store; remove it or name another file";
+  errno = 0;
   const std::optional<Header> header = header_of(path);
+  if (!header && errno != 0) {
+    const char* more = errno == EMFILE ? "; the limit of open files is too low (ulimit -n)" : "";
+    return fmt::format("cannot be read: {}{}", std::generic_category().message(errno), more);
+  }
   if (!header || std::memcmp(header->data(), magic.data(), magic.size()) != 0)
     return "is no store of softland, or its beginning is damaged: it does not begin as a database of SQLite does";
   if (big_endian(*header, application_id) != store_application) return "is a database of SQLite, but no store of softland";

@@ -120,6 +120,7 @@ class StudyStore::Implementation {
  private:
   void open();
   void start_session(const StoredOrigin& origin, bool resumed);
+  void read_done();
   void prepare_finding();
   void work();
   void commit(const std::vector<StoredRow>& rows);
@@ -195,28 +196,29 @@ void StudyStore::Implementation::open() {
 void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool resumed) {
   const NumberedPlan there = current_plan(*database_);
   require_same_columns(*database_, there.plan, plan_);
+  number_ = number_of_plan(*database_, plan_.text);
+  read_done();
   database_->run(fmt::format("PRAGMA journal_mode = {}; PRAGMA synchronous = FULL", journal_at(path_)));
   Transaction transaction(*database_);
-  number_ = number_of_plan(*database_, plan_.text);
   if (number_ == 0) number_ = insert_plan(*database_, plan_);
   if (resumed) static_cast<void>(insert_session(*database_, number_, origin));
   has_earlier_ = database_->number_of("SELECT count(*) FROM study") > 1;
   if (has_earlier_) database_->run("CREATE INDEX IF NOT EXISTS by_content ON results(content)");
   transaction.commit();
-
-  done_.resize(static_cast<std::size_t>(plan_.points));
-  Statement points = database_->prepare("SELECT point FROM results WHERE plan = ?");
-  points.bind(1, number_);
-  while (points.step()) {
-    const std::int64_t point = points.integer(0);
-    if (point < 0 || point >= plan_.points)
-      throw DamagedStore(fmt::format("{}: the store is damaged: it has a point {}", path_.string(), point));
-    done_[static_cast<std::size_t>(point)] = true;
-  }
   begin_writing();
   if (!has_earlier_) return;
   earlier_rows_ = database_->number_of(fmt::format("SELECT ifnull(sum(rows), 0) FROM tally WHERE plan != {}", number_));
   prepare_finding();
+}
+
+// Before anything is written: a damaged store is left as it is.
+void StudyStore::Implementation::read_done() {
+  done_.resize(static_cast<std::size_t>(plan_.points));
+  if (number_ == 0) return;
+  std::error_code ignored;
+  const bool small = fs::file_size(path_, ignored) <= checked_size;
+  RowReader rows(*database_, {.number = number_, .plan = plan_}, small ? RowReader::Of::rows : RowReader::Of::points);
+  while (rows.next()) done_[static_cast<std::size_t>(rows.row().point)] = true;
 }
 
 void StudyStore::Implementation::begin_writing() {
@@ -229,7 +231,8 @@ void StudyStore::Implementation::begin_writing() {
 
 void StudyStore::Implementation::prepare_finding() {
   earlier_ = std::make_unique<const Database>(fs::canonical(path_), Access::recover, path_.string());
-  find_.emplace(*earlier_, select_rows(plan_.columns) + " WHERE content = ? AND plan != ? ORDER BY plan, point LIMIT 1");
+  find_.emplace(*earlier_,
+                select_rows(*earlier_, plan_.columns) + " WHERE content = ? AND plan != ? ORDER BY plan, point LIMIT 1");
 }
 
 StudyStore::Implementation::~Implementation() {
@@ -428,7 +431,7 @@ std::optional<StoredRow> StudyStore::find(const ContentKey& content) const {
   find.reset();
   find.bind(1, bytes_of(content)).bind(2, implementation_->number_);
   if (!find.step()) return std::nullopt;
-  StoredRow row = row_in(find, implementation_->plan_.columns.size());
+  StoredRow row = row_in(*implementation_->earlier_, find, implementation_->plan_.columns.size());
   find.reset();
   return row;
 }

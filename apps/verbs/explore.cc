@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -130,6 +131,10 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   Exploration exploration(Plan(request), work->watch());
   work.reset();
 
+  require(static_cast<std::uint64_t>(shard.count) <= exploration.plan().points(), [&] {
+    return fmt::format("--shard {}/{}: a study of {} points has at most {} parts", shard.index, shard.count,
+                       exploration.plan().points(), exploration.plan().points());
+  });
   if (r.resume && !c.quiet) tell_of_other_programs(out);
   if (exploration.plan().is_search()) {
     require(shard.count == 1,

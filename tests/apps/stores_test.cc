@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <cmath>
 
@@ -227,6 +228,40 @@ TEST_F(Stores, ThatAreMadeAnewUnderTheirRunEndItAtOnce) {
                            HasSubstr("a.sqlite.rescued")));
   EXPECT_EQ(test::rows_in(at("a.sqlite")).size(), 10u);
   EXPECT_GT(test::rows_in(at("a.sqlite.rescued")).size(), 0u);
+}
+
+TEST_F(Stores, AreOfNoMorePartsThanTheStudyHasPoints) {
+  for (const char* shard : {"1/2147483647", "1/3", "3/3"})
+    expect_bad({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:2", "--shard", shard},
+               std::string("--shard ") + shard + ": a study of 2 points has at most 2 parts");
+  EXPECT_FALSE(fs::exists(at("softland-out.sqlite")));
+}
+
+// What a damaged store holds is told by every verb that reads it, as bad input.
+TEST_F(Stores, ThatAreDamagedAreBadInputToEveryVerb) {
+  ASSERT_EQ(
+      here.run({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:3", "--out", "sound.sqlite", "--quiet"}).status,
+      0);
+  for (const char* sql :
+       {"UPDATE study SET shards = 0", "ALTER TABLE results DROP COLUMN bounce_count",
+        "UPDATE results SET bounce_count = 77 WHERE point = 1", "UPDATE results SET point = 1e300 WHERE point = 2",
+        "PRAGMA writable_schema = 1; UPDATE sqlite_schema SET sql = replace(sql, 'INTEGER', 'INTEG(R') WHERE name = "
+        "'results'"}) {
+    fs::remove(at("a.sqlite"));
+    fs::copy(at("sound.sqlite"), at("a.sqlite"));
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(at("a.sqlite").c_str(), &database), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+    sqlite3_close(database);
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"table", "a.sqlite"},
+                                                  {"report", "a.sqlite"},
+                                                  {"merge", "a.sqlite", "--out", "b.sqlite"},
+                                                  {"explore", "a.sqlite", "--resume", "--quiet"}}) {
+      const Outcome o = here.run(words);
+      EXPECT_EQ(o.status, 2) << sql << ", " << words.front();
+      EXPECT_THAT(o.err, HasSubstr("a.sqlite: the store is damaged: ")) << sql << ", " << words.front();
+    }
+  }
 }
 
 class SlurmVerb : public Stores {
