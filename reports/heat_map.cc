@@ -9,6 +9,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "reports/axis.h"
 #include "reports/escape.h"
@@ -287,6 +288,32 @@ std::string legend(const HeatMap& map, const ColourRange& range, const Prefix& p
 }
 
 }  // namespace
+
+HeatMap thinned_map(HeatMap map, std::size_t most_cells) {
+  std::size_t x_stride = 1, y_stride = 1;
+  const auto kept = [](const HeatMapAxis& axis, std::size_t stride) { return (axis.values.size() + stride - 1) / stride; };
+  while (kept(map.x, x_stride) * kept(map.y, y_stride) > most_cells)
+    ++(kept(map.x, x_stride) > kept(map.y, y_stride) ? x_stride : y_stride);
+  if (x_stride == 1 && y_stride == 1) return map;
+  const std::size_t columns = map.x.values.size();
+  std::vector<double> values;
+  std::vector<std::size_t> missing;
+  for (std::size_t j = 0; j < map.y.values.size(); j += y_stride) {
+    for (std::size_t i = 0; i < columns; i += x_stride) {
+      values.push_back(map.values[j * columns + i]);
+      missing.push_back(map.missing[j * columns + i]);
+    }
+  }
+  map.values = std::move(values);
+  map.missing = std::move(missing);
+  for (auto [axis, stride] : {std::pair{&map.x, x_stride}, std::pair{&map.y, y_stride}}) {
+    if (stride == 1) continue;
+    const std::vector<double> all = std::exchange(axis->values, {});
+    for (std::size_t k = 0; k < all.size(); k += stride) axis->values.push_back(all[k]);
+    axis->label += fmt::format(", one in {} of {} values", stride, all.size());
+  }
+  return map;
+}
 
 std::vector<ContourLine> contour_lines(const std::vector<double>& values, std::size_t columns, double level) {
   return Contour(values, columns, level).lines();

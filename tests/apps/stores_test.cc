@@ -113,6 +113,23 @@ TEST_F(Table, GoesToAFileWhole) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3001);
 }
 
+TEST_F(Table, HasTheSameBytesOnStandardOutputAndInAFile) {
+  {
+    StudyStore store(at("a.sqlite"), test::plan_of(3), test::origin(), StudyStore::Opening::fresh);
+    for (int point = 0; point < 3; ++point) {
+      StoredRow row = row_of(point);
+      row.reason =
+          std::vector<std::string>{"\x01\x1b[31m \u202e\u2028", "no UTF-8: \xff\xc3", "two\nlines,\t\"quoted\"\r"}[point];
+      store.add(row);
+    }
+    store.close();
+  }
+  const std::string csv = printed({"table", "a.sqlite", "--csv"});
+  EXPECT_EQ(printed({"table", "a.sqlite", "--out", "a.csv"}), "");
+  EXPECT_EQ(read(at("a.csv")), csv);
+  EXPECT_THAT(csv, AllOf(HasSubstr("\\u001b[31m"), HasSubstr("\"two\nlines,\t\"\"quoted\"\"")));
+}
+
 TEST_F(Table, HasTheRowsAndColumnsThatAreAskedFor) {
   make_store(at("a.sqlite"), 100);
   EXPECT_EQ(printed({"table", "a.sqlite", "--csv", "--where", "point in (3, 5)", "--select", "bounce_count,point,gap.contact"}),
@@ -343,6 +360,18 @@ TEST_F(SlurmVerb, TakesThePlanOfAStoreToo) {
   const std::string script = printed({"slurm", "whole.sqlite", "--tasks", "3"});
   EXPECT_EQ(plan_in(script), plan_in(read(at("script.sh"))));
   EXPECT_THAT(script, HasSubstr("/softland-out.sqlite"));
+}
+
+TEST_F(SlurmVerb, NamesTheFilesThatItWasToldWhateverTheirBytes) {
+  for (const char* given :
+       {"no UTF-8 \xff\xc3(", "a\u2028b", "\u202egnp", "it's \\ \u202e", "line\nline\ttab", "gr\u00fcn \u00b5m"}) {
+    const std::string name = given;
+    fs::create_directory(at(name));
+    write(at("script.sh"), printed({"slurm", "map.toml", "--tasks", "3", "--out", name + "/map.sqlite"}));
+    write(at("tell.sh"), "eval \"$(grep -a '^out=\\|^parts=' script.sh)\"; printf '%s|%s' \"$out\" \"$parts\"\n");
+    ASSERT_EQ(std::system(fmt::format("cd '{}' && bash tell.sh >told.txt", here.path().string()).c_str()), 0);
+    EXPECT_EQ(read(at("told.txt")), (at(name) / "map.sqlite").string() + "|" + (at(name) / "map-parts").string());
+  }
 }
 
 TEST_F(SlurmVerb, NamesWhatItCannotTake) {

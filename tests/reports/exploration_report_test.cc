@@ -283,6 +283,12 @@ TEST_F(PageInBrowser, ReadsAnExplorationWithTheKeysAlone_browser) {
   EXPECT_THAT(said(front), HasSubstr("true;Limits: structure.thickness from 1.55"));
 }
 
+TEST(ExplorationMap, OfAMillionPointsStaysBelowTwoMegabytes) {
+  ExplorationReport report = sample_grid(1000, 1000);
+  EXPECT_LT(exploration_map_svg(report, 0, 1, 6).size(), most_bytes);
+  EXPECT_LT(exploration_map_svg(report, 1, 0, 4).size(), most_bytes) << "a figure that jumps from cell to cell";
+}
+
 TEST(ExplorationPage, IsMadeOfAnyFigures) {
   const double largest = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
   for (const auto& [low, high] : std::vector<std::array<double, 2>>{{1.8e-6, std::nextafter(1.8e-6, 1)},

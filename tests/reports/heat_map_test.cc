@@ -203,6 +203,25 @@ TEST(AxisOfAPicture, PutsEveryNumberOnThePaper) {
   EXPECT_DOUBLE_EQ(axis.pixel(0.8e308), 40);
 }
 
+TEST(HeatMaps, OfManyCellsAreThinnedAndSaySo) {
+  const HeatMap whole = map_of(tabulated(300, 40, [](double i, double j) { return 1000 * i + j; }), 300);
+  const HeatMap map = thinned_map(whole, 2000);
+  EXPECT_LE(map.values.size(), 2000u);
+  EXPECT_GE(map.values.size(), 1500u);
+  ASSERT_EQ(map.values.size(), map.x.values.size() * map.y.values.size());
+  EXPECT_EQ(map.missing.size(), map.values.size());
+  const auto place = [](const std::vector<double>& values, double value) {
+    return static_cast<double>(std::find(values.begin(), values.end(), value) - values.begin());
+  };
+  for (std::size_t k = 0; k < map.values.size(); ++k) {
+    const double i = place(whole.x.values, map.x.values[k % map.x.values.size()]);
+    const double j = place(whole.y.values, map.y.values[k / map.x.values.size()]);
+    EXPECT_EQ(map.values[k], 1000 * i + j);
+  }
+  EXPECT_THAT(map.x.label, HasSubstr("structure.length, one in 6 of 300 values"));
+  EXPECT_EQ(thinned_map(whole, 12'000).x.label, "structure.length");
+}
+
 TEST(HeatMaps, OfAnyNumbersAreDrawn) {
   for (const auto& [low, high] : strange_ends) {
     std::vector<double> values =
