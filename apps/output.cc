@@ -8,6 +8,7 @@
 
 #include "apps/exit_status.h"
 #include "apps/streams.h"
+#include "base/companion.h"
 #include "base/require.h"
 #include "reports/files.h"
 #include "reports/html.h"
@@ -52,6 +53,8 @@ std::optional<ResultFolder> claim_places(const Common& c, const std::vector<std:
     const fs::path file = folder->path() / name;
     require(!has_file || fs::weakly_canonical(c.json) != fs::weakly_canonical(file),
             fmt::format("--json {}: is the {} that --out writes; name another file", c.json, name));
+    require(!has_file || file.extension() != ".sqlite" || !is_companion(c.json, file),
+            fmt::format("--json {}: is a file that {} has beside it; name another", c.json, file.string()));
   }
   return folder;
 }

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <system_error>
 
+#include "base/companion.h"
 #include "base/output_lost.h"
 #include "base/read_file.h"
 #include "base/require.h"
@@ -19,9 +19,6 @@ namespace fs = std::filesystem;
 constexpr const char* lock_name = "softland.lock";
 constexpr int most_stages = 100;
 
-// What SQLite and a lock leave beside a store whose writer was killed.
-constexpr std::array<std::string_view, 4> companions{"-wal", "-shm", "-journal", ".lock"};
-
 fs::path staged(const fs::path& folder, int k) { return folder / (k == 1 ? "unfinished" : fmt::format("unfinished-{}", k)); }
 
 bool is_of(const std::vector<std::string>& names, const std::string& name) {
@@ -29,6 +26,7 @@ bool is_of(const std::vector<std::string>& names, const std::string& name) {
 }
 
 fs::path created(const std::string& folder) {
+  require_no_companion(folder, "--out " + folder);
   std::error_code error;
   fs::create_directories(folder, error);
   require(!error, fmt::format("--out {}: the folder cannot be created: {}", folder, error.message()));
@@ -81,7 +79,7 @@ void ResultFolder::remove_abandoned() const {
     bool ours = true;
     for (const auto& entry : fs::directory_iterator(stage, error)) {
       std::string name = entry.path().filename();
-      for (const std::string_view end : companions) {
+      for (const std::string_view end : companion_endings) {  // of a store whose writer was killed
         if (name.ends_with(end)) name.resize(name.size() - end.size());
       }
       ours = ours && is_of(files_, name) && !was_read(entry.path());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -70,6 +71,7 @@ void set_calibration(SceneFile& file, const std::string& given) {
   if (given == "none") return;
   constexpr std::string_view before = " in ", after = " classes";
   const std::size_t in = given.ends_with(after) ? given.rfind(before) : std::string::npos;
+  std::set<std::string> seen;
   for (const std::string& one : parts_of(given.substr(0, in))) {
     const std::size_t colon = one.find(':');
     const std::string name = one.substr(0, colon), error = colon == std::string::npos ? "0 %" : one.substr(colon + 1);
@@ -77,6 +79,7 @@ void set_calibration(SceneFile& file, const std::string& given) {
       return fmt::format("--calibrate {}: '{}' is no measurement; there are {} and {}, with an error such as {}:1 %",
                          shown(given), name, measured_pull_in, measured_frequency, measured_pull_in);
     });
+    require(seen.insert(name).second, [&] { return fmt::format("--calibrate {}: {} stands twice", shown(given), name); });
     file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));
   }
   if (in == std::string::npos) return;

@@ -1,6 +1,7 @@
 #include "config/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -219,10 +220,21 @@ class EntryReader {
     for (std::uint64_t i = 0; i < *count; ++i)
       variable_.values.push_back(*count == 1 ? variable_.low
                                              : between(variable_, static_cast<double>(i) / static_cast<double>(*count - 1)));
-    if (!variable_.is_whole) return;
-    for (double& value : variable_.values) value = std::round(value);
-    const auto end = std::unique(variable_.values.begin(), variable_.values.end());
-    require(end == variable_.values.end(), "there are not as many whole numbers in the range");
+    if (variable_.is_whole) require_whole(*count);
+  }
+
+  /// Equal steps from one whole number to another are whole numbers where their number divides the way.
+  void require_whole(std::uint64_t count) const {
+    if (count == 1) return;
+    const auto way = static_cast<std::uint64_t>(std::abs(variable_.high - variable_.low));
+    if (way % (count - 1) == 0 && way > 0) return;
+    std::vector<std::uint64_t> counts;
+    for (std::uint64_t steps = 1; steps <= std::min(way, most_values - 1) && counts.size() < 12; ++steps) {
+      if (way % steps == 0) counts.push_back(steps + 1);
+    }
+    throw InvalidInput(counts.empty() ? std::string("there are not as many whole numbers in the range")
+                                      : fmt::format("{} values in equal steps from {} to {} are not whole numbers; {} values are",
+                                                    count, variable_.low, variable_.high, fmt::join(counts, ", ")));
   }
 
   /// All of one dimension, and of one that the key may have; plain numbers and percentages are factors where the key has a unit.

@@ -288,6 +288,8 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive) {
       // the voltage needs.
       const auto [at, value] = boost::math::tools::brent_find_minima([&](double x) { return -branch(x * end); },
                                                                      std::max(1e-6, place(k - 2) / end), s / end, 30);
+      // One that pulls away from the contact has none: its branch falls from the beginning.
+      if (!(-value > 0)) return {.status = Status::no_contact};
       return {.status = Status::done,
               .voltage = model.value_of_strength(drive, -value),
               .deflection = at * end,

@@ -9,26 +9,50 @@ double Axis::transformed(double value) const { return scale == Scale::linear ? v
 
 double Axis::pixel(double value) const {
   constexpr double farthest = 1e7;  // any paper ends before
-  const double from = transformed(low);
-  const double at = pixel_low + (transformed(value) - from) / (transformed(high) - from) * (pixel_high - pixel_low);
-  return std::clamp(at, -farthest, farthest);
+  const double part = part_between(transformed(low), transformed(high), transformed(value));
+  return std::clamp(pixel_low + part * (pixel_high - pixel_low), -farthest, farthest);
 }
 
-std::vector<double> ticks(const Axis& axis, int wanted) {
-  std::vector<double> out;
-  if (axis.scale == Scale::linear) {
-    const double raw = (axis.high - axis.low) / wanted;
-    const double decade = std::pow(10, std::floor(std::log10(raw)));
-    double step = 10 * decade;
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      if (factor * decade >= raw * (1 - 1e-9)) {
-        step = factor * decade;
-        break;
-      }
+double part_between(double low, double high, double value) {
+  constexpr double middle = 0.5, quarter = 0.25;  // of numbers whose difference is too large to be one
+  const double way = high - low;
+  const double part =
+      std::isfinite(way) ? (value - low) / way : (quarter * value - quarter * low) / (quarter * high - quarter * low);
+  return std::isnan(part) ? middle : part;
+}
+
+namespace {
+
+/// Steps of 1, 2 or 5 of a decade.
+std::vector<double> linear_ticks(double low, double high, int wanted) {
+  const double raw = std::isfinite(high - low) ? (high - low) / wanted : high / wanted - low / wanted;
+  const double decade = std::pow(10, std::floor(std::log10(raw)));
+  double step = 10 * decade;
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * decade >= raw * (1 - 1e-9)) {
+      step = factor * decade;
+      break;
     }
-    for (double k = std::ceil(axis.low / step - 1e-9); k * step <= axis.high + 1e-9 * step; ++k) out.push_back(k * step);
-    return out;
   }
+  const double first = std::ceil(low / step - 1e-9);
+  constexpr double countable = 4503599627370496;  // up to which there are numbers between whole ones
+  if (!(step > 0 && std::abs(first) < countable)) return low < high ? std::vector{low, high} : std::vector{low};
+  std::vector<double> out;
+  for (int k = 0; k <= 10 * wanted; ++k) {
+    const double tick = (first + k) * step;
+    if (!(tick <= high + 1e-9 * step && std::isfinite(tick))) break;
+    out.push_back(tick);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> ticks(const Axis& axis, int wanted) {
+  if (!std::isfinite(axis.low) || !std::isfinite(axis.high) || axis.low > axis.high) return {};
+  if (axis.scale == Scale::linear) return linear_ticks(axis.low, axis.high, wanted);
+  if (!(axis.low > 0)) return {};
+  std::vector<double> out;
   const int first = static_cast<int>(std::ceil(std::log10(axis.low) - 1e-9));
   const int last = static_cast<int>(std::floor(std::log10(axis.high) + 1e-9));
   const int every = std::max(1, (last - first + 7) / 8);
@@ -38,7 +62,7 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
   for (int exponent = first - 1; exponent <= last; ++exponent) {
     for (const double part : {1.0, 2.0, 5.0}) {
       const double tick = part * std::pow(10, exponent);
-      if (tick >= axis.low * (1 - 1e-9) && tick <= axis.high * (1 + 1e-9)) out.push_back(tick);
+      if (std::isfinite(tick) && tick >= axis.low * (1 - 1e-9) && tick <= axis.high * (1 + 1e-9)) out.push_back(tick);
     }
   }
   return out;

@@ -20,7 +20,12 @@ struct Axis {
   [[nodiscard]] double pixel(double value) const;
 };
 
-/// About `wanted` round numbers between the ends of the axis, or its decades.
+/// How far `value` is on the way from `low`, 0, to `high`, 1, for any numbers there are: the way may be longer than the largest
+/// of them. In the middle where there is no way.
+[[nodiscard]] double part_between(double low, double high, double value);
+
+/// About `wanted` round numbers between the ends of the axis, or its decades; the ends themselves where no round number lies
+/// between them that differs from both. None of an axis that has no ends.
 [[nodiscard]] std::vector<double> ticks(const Axis& axis, int wanted);
 
 }  // namespace softland::internal

@@ -374,13 +374,15 @@ std::vector<std::size_t> grid_variables(const ExplorationReport& report) {
 std::string exploration_map_svg(const ExplorationReport& report, std::size_t x, std::size_t y, std::size_t figure) {
   const std::optional<internal::ExploredGrid> grid = internal::grid_of(report);
   require(grid.has_value(), "a map needs points on a grid of at least two variables");
-  const internal::HeatMap map = internal::heat_map_of(report, *grid, x, y, figure);
-  return svg_frame(
-      fmt::format("{} over {} and {}", map.label, map.x.label, map.y.label), report.title, [&](double width, double top) {
-        return std::pair{
-            fmt::format("<g transform=\"translate(0 {:.1f})\">\n{}</g>\n", top, internal::heat_map_elements(map, width)),
-            top + internal::heat_map_height(width)};
-      });
+  constexpr std::size_t most_cells =
+      40'000;  // some 30 bytes each: more are finer than a screen, and than a file that opens at once
+  const internal::HeatMap map = internal::thinned_map(internal::heat_map_of(report, *grid, x, y, figure), most_cells);
+  return svg_frame(fmt::format("{} over {} and {}", map.label, report.columns[x].name, report.columns[y].name), report.title,
+                   [&](double width, double top) {
+                     return std::pair{fmt::format("<g transform=\"translate(0 {:.1f})\">\n{}</g>\n", top,
+                                                  internal::heat_map_elements(map, width)),
+                                      top + internal::heat_map_height(width)};
+                   });
 }
 
 }  // namespace softland

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -51,6 +53,19 @@ Range range_of(const ExplorationReport& report, std::size_t column) {
   return range;
 }
 
+/// Which step from the low end of a column is nearest to a value of it.
+std::size_t step_of(double low, double step, double value) {
+  const double way = value - low;
+  const double count = std::isfinite(way) ? way / step : value / step - low / step;
+  return static_cast<std::size_t>(std::lround(std::clamp(count, 0.0, static_cast<double>(steps))));
+}
+
+/// A value to so many digits.
+double shortened_to(int digits, double value) {
+  const double near = std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+  return std::isfinite(near) ? near : value;
+}
+
 /// The values of a column as steps between its ends; of equal ratios where the column spans decades.
 nlohmann::json column_json(const ExplorationReport& report, std::size_t column, const std::vector<std::size_t>& rows) {
   const Range range = range_of(report, column);
@@ -59,7 +74,7 @@ nlohmann::json column_json(const ExplorationReport& report, std::size_t column, 
   const auto scaled = [&](double value) { return logarithmic ? std::log(value) : value; };
   const double low = range.is_known() ? scaled(range.low) : 0, high = range.is_known() ? scaled(range.high) : 0;
   const bool counted = range.all_whole && !logarithmic && high - low <= steps;
-  const double step = counted ? 1 : (high - low) / steps;
+  const double step = counted ? 1 : std::isfinite(high - low) ? (high - low) / steps : high / steps - low / steps;
   const ExploredColumn& about = report.columns[column];
   nlohmann::json out{{"key", about.key},
                      {"name", about.name},
@@ -74,7 +89,7 @@ nlohmann::json column_json(const ExplorationReport& report, std::size_t column, 
   std::string text;
   for (const std::size_t k : rows) {
     const double value = report.points[k].values[column];
-    append_letters(text, std::isfinite(value) ? static_cast<std::size_t>(std::lround((scaled(value) - low) / step)) : 4095);
+    append_letters(text, std::isfinite(value) ? step_of(low, step, scaled(value)) : 4095);
   }
   out["data"] = std::move(text);
   return out;
@@ -219,9 +234,8 @@ nlohmann::json effects_json(const ExplorationReport& report) {
       if (!range.is_known() || range.low == range.high) continue;
       nlohmann::json bins = nlohmann::json::array();
       for (const EffectBin& bin : effect_of(report, variable, figure)) {
-        nlohmann::json one = nlohmann::json::array({std::stod(fmt::format("{:.6g}", bin.at)), bin.points});
-        for (const double q : bin.quantiles)
-          one.push_back(json_number(std::isfinite(q) ? std::stod(fmt::format("{:.5g}", q)) : q));
+        nlohmann::json one = nlohmann::json::array({shortened_to(6, bin.at), bin.points});
+        for (const double q : bin.quantiles) one.push_back(json_number(shortened_to(5, q)));
         bins.push_back(std::move(one));
       }
       figures[std::to_string(figure)] = std::move(bins);
@@ -345,8 +359,9 @@ std::vector<EffectBin> effect_of(const ExplorationReport& report, std::size_t va
       end = groups[group++].second;
     } while (end < target);
     if (begin == end) break;
-    EffectBin& bin = bins.emplace_back(EffectBin{
-        .at = (pairs[begin + (end - begin - 1) / 2].first + pairs[begin + (end - begin) / 2].first) / 2, .points = end - begin});
+    EffectBin& bin = bins.emplace_back(
+        EffectBin{.at = std::midpoint(pairs[begin + (end - begin - 1) / 2].first, pairs[begin + (end - begin) / 2].first),
+                  .points = end - begin});
     std::vector<double> values;
     for (std::size_t k = begin; k < end; ++k) values.push_back(pairs[k].second);
     std::sort(values.begin(), values.end());
@@ -409,8 +424,7 @@ ExplorationData exploration_data(const ExplorationReport& report, const std::opt
     if (drives == report.waveforms.end()) continue;
     for (const auto& [drive, line] : drives->second) {
       nlohmann::json& shape = out["waveforms"][std::to_string(row_of(k))][drive];
-      for (const auto& [time, level] : line)
-        shape.push_back({std::stod(fmt::format("{:.6g}", time)), std::stod(fmt::format("{:.5g}", level))});
+      for (const auto& [time, level] : line) shape.push_back({shortened_to(6, time), shortened_to(5, level)});
     }
   }
   out["effects"] = effects_json(report);

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/companion.h"
 #include "base/output_lost.h"
 #include "base/read_file.h"
 #include "base/require.h"
@@ -89,6 +90,7 @@ void require_place(bool done, const std::filesystem::path& path, const char* wha
 
 void check_writable(const std::filesystem::path& path) {
   const std::filesystem::path target = behind_links(path);
+  require_no_companion(target, path.string());
   require_place(TemporaryFile(target).open(), path, "write in its folder");
   std::error_code missing;
   const auto old = std::filesystem::status(target, missing);

@@ -11,8 +11,8 @@
 namespace softland {
 
 /// Throws InvalidInput with path and reason unless write_whole() may write there: the folder exists and is writable, and `path`
-/// is neither a folder nor a device or pipe nor, under whatever name, a file that this run has read. For what takes long to
-/// compute, to be asked before.
+/// is neither a folder nor a device or pipe nor the companion of a database nor, under whatever name, a file that this run has
+/// read. For what takes long to compute, to be asked before.
 void check_writable(const std::filesystem::path& path);
 
 /// Writes `content` to `path` whole: a temporary name in the same folder, fsync, rename, fsync of the folder. Of a symbolic link

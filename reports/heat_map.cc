@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <set>
+#include <utility>
 
 #include "reports/axis.h"
 #include "reports/escape.h"
@@ -25,6 +28,12 @@ std::vector<double> finite(const std::vector<double>& values) {
   std::vector<double> out;
   std::copy_if(values.begin(), values.end(), std::back_inserter(out), [](double v) { return std::isfinite(v); });
   return out;
+}
+
+/// The number that is nearest to one that may be beyond all numbers.
+double within(double value) {
+  constexpr double largest = std::numeric_limits<double>::max();
+  return std::clamp(value, -largest, largest);
 }
 
 /// The lines of one level, put together from pieces that each cross one square between four cells. A piece joins two edges of its
@@ -73,7 +82,7 @@ class Contour {
     if (crossed.size() == 2) join(crossed[0], crossed[1]);
     if (crossed.size() != 4) return;
     // A saddle: its middle tells which two corners are connected.
-    const bool middle = (corners[0] + corners[1] + corners[2] + corners[3]) / 4 > level_;
+    const bool middle = std::midpoint(std::midpoint(corners[0], corners[1]), std::midpoint(corners[2], corners[3])) > level_;
     const bool turned = middle == (corners[0] > level_);
     join(crossed[0], crossed[turned ? 1 : 3]);
     join(crossed[2], crossed[turned ? 3 : 1]);
@@ -83,7 +92,7 @@ class Contour {
     const std::size_t cell = edge / 2, i = cell % columns_, j = cell / columns_;
     const bool up = edge % 2 == 1;
     const double a = at(i, j), b = up ? at(i, j + 1) : at(i + 1, j);
-    const double part = (level_ - a) / (b - a);
+    const double part = part_between(a, b, level_);
     return {static_cast<double>(i) + (up ? 0 : part), static_cast<double>(j) + (up ? part : 0)};
   }
 
@@ -113,18 +122,19 @@ class Cells {
     const std::size_t n = values_.size();
     const bool positive = values_.front() > 0;
     // Equal ratios make a logarithmic axis.
-    const double ratio = n > 2 && positive ? std::log(values_[n - 1] / values_[0]) / static_cast<double>(n - 1) : 0;
-    const double first = n > 2 && positive ? std::log(values_[1] / values_[0]) : 1;
+    const auto log_ratio = [&](std::size_t k) { return std::log(values_[k]) - std::log(values_[0]); };
+    const double ratio = n > 2 && positive ? log_ratio(n - 1) / static_cast<double>(n - 1) : 0;
+    const double first = n > 2 && positive ? log_ratio(1) : 1;
     const bool logarithmic = n > 2 && positive && values_[n - 1] / values_[0] > 3 && std::abs(first - ratio) < 0.01 * ratio;
     axis_ = {.scale = logarithmic ? Scale::logarithmic : Scale::linear, .low = 0, .high = 1, .pixel_low = from, .pixel_high = to};
-    const auto between = [&](double a, double b) { return logarithmic ? std::sqrt(a * b) : (a + b) / 2; };
+    const auto between = [&](double a, double b) { return logarithmic ? std::sqrt(a) * std::sqrt(b) : std::midpoint(a, b); };
     const auto beyond = [&](double inner, double end) {
-      return logarithmic ? end * std::sqrt(end / inner) : end + (end - inner) / 2;
+      return within(logarithmic ? end * (std::sqrt(end) / std::sqrt(inner)) : end + (end / 2 - inner / 2));
     };
     const double alone = values_[0] == 0 ? 1 : std::abs(values_[0]) / 2;
-    edges_.push_back(n > 1 ? beyond(values_[1], values_[0]) : values_[0] - alone);
+    edges_.push_back(n > 1 ? beyond(values_[1], values_[0]) : within(values_[0] - alone));
     for (std::size_t k = 1; k < n; ++k) edges_.push_back(between(values_[k - 1], values_[k]));
-    edges_.push_back(n > 1 ? beyond(values_[n - 2], values_[n - 1]) : values_[0] + alone);
+    edges_.push_back(n > 1 ? beyond(values_[n - 2], values_[n - 1]) : within(values_[0] + alone));
     axis_.low = edges_.front();
     axis_.high = edges_.back();
   }
@@ -181,7 +191,7 @@ std::string cells(const HeatMap& map, const Cells& x, const Cells& y, const Colo
   const std::size_t columns = map.x.values.size();
   std::vector<std::size_t> classes;
   for (std::size_t k = 0; k < map.values.size(); ++k) {
-    const double part = (map.values[k] - range.low) / (range.high - range.low);
+    const double part = part_between(range.low, range.high, map.values[k]);
     classes.push_back(std::isfinite(map.values[k])
                           ? static_cast<std::size_t>(std::clamp(part * steps_of_scale, 0.0, steps_of_scale - 1.0))
                           : steps_of_scale + map.missing[k]);
@@ -279,6 +289,32 @@ std::string legend(const HeatMap& map, const ColourRange& range, const Prefix& p
 
 }  // namespace
 
+HeatMap thinned_map(HeatMap map, std::size_t most_cells) {
+  std::size_t x_stride = 1, y_stride = 1;
+  const auto kept = [](const HeatMapAxis& axis, std::size_t stride) { return (axis.values.size() + stride - 1) / stride; };
+  while (kept(map.x, x_stride) * kept(map.y, y_stride) > most_cells)
+    ++(kept(map.x, x_stride) > kept(map.y, y_stride) ? x_stride : y_stride);
+  if (x_stride == 1 && y_stride == 1) return map;
+  const std::size_t columns = map.x.values.size();
+  std::vector<double> values;
+  std::vector<std::size_t> missing;
+  for (std::size_t j = 0; j < map.y.values.size(); j += y_stride) {
+    for (std::size_t i = 0; i < columns; i += x_stride) {
+      values.push_back(map.values[j * columns + i]);
+      missing.push_back(map.missing[j * columns + i]);
+    }
+  }
+  map.values = std::move(values);
+  map.missing = std::move(missing);
+  for (auto [axis, stride] : {std::pair{&map.x, x_stride}, std::pair{&map.y, y_stride}}) {
+    if (stride == 1) continue;
+    const std::vector<double> all = std::exchange(axis->values, {});
+    for (std::size_t k = 0; k < all.size(); k += stride) axis->values.push_back(all[k]);
+    axis->label += fmt::format(", one in {} of {} values", stride, all.size());
+  }
+  return map;
+}
+
 std::vector<ContourLine> contour_lines(const std::vector<double>& values, std::size_t columns, double level) {
   return Contour(values, columns, level).lines();
 }
@@ -298,7 +334,7 @@ bool is_ragged(const std::vector<double>& values, std::size_t columns) {
   long pairs = 0;
   const auto compare = [&](double a, double b) {
     if (!std::isfinite(a) || !std::isfinite(b)) return;
-    sum += std::min(1.0, std::abs(a - b) / (range.high - range.low));
+    sum += std::min(1.0, std::abs(part_between(range.low, range.high, a) - part_between(range.low, range.high, b)));
     ++pairs;
   };
   // What changes steadily along a row or a column is compared with the middle of its neighbours.
@@ -306,8 +342,8 @@ bool is_ragged(const std::vector<double>& values, std::size_t columns) {
   for (std::size_t j = 0; j < rows; ++j) {
     for (std::size_t i = 0; i < columns; ++i) {
       const std::size_t k = j * columns + i;
-      if (i > 0 && i + 1 < columns) compare(values[k], (values[k - 1] + values[k + 1]) / 2);
-      if (j > 0 && j + 1 < rows) compare(values[k], (values[k - columns] + values[k + columns]) / 2);
+      if (i > 0 && i + 1 < columns) compare(values[k], std::midpoint(values[k - 1], values[k + 1]));
+      if (j > 0 && j + 1 < rows) compare(values[k], std::midpoint(values[k - columns], values[k + columns]));
     }
   }
   return pairs > 0 && sum > smooth * static_cast<double>(pairs);
@@ -324,7 +360,7 @@ ColourRange colour_range(const std::vector<double>& values) {
     return {known[cut], known[known.size() - 1 - cut], known[cut] > known.front(), known[known.size() - 1 - cut] < known.back()};
   if (all > 0) return {known.front(), known.back()};
   const double half = known.front() == 0 ? 1 : 0.05 * std::abs(known.front());
-  return {known.front() - half, known.front() + half};
+  return {within(known.front() - half), within(known.front() + half)};
 }
 
 std::string scale_colour(double part) {

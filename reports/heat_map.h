@@ -26,6 +26,9 @@ struct HeatMap {
   std::vector<std::string> reasons;  ///< "no contact", "not computed"
 };
 
+/// The map with at most `most_cells` of its cells, of values in equal distances; its axes say so.
+[[nodiscard]] HeatMap thinned_map(HeatMap map, std::size_t most_cells);
+
 /// A line through a map along which a figure has one value, in units of cells: (i, j) is the centre of cell (i, j).
 using ContourLine = std::vector<std::array<double, 2>>;
 

@@ -68,7 +68,9 @@ double internal::quantile_of_sorted(std::span<const double> sorted, double p) {
   const double fraction = place - static_cast<double>(j);
   // Without a product of 0 and infinity, nor a difference of two infinite values.
   if (fraction == 0 || std::isinf(sorted[j])) return sorted[j];
-  return sorted[j] + fraction * (sorted[j + 1] - sorted[j]);
+  const double step = sorted[j + 1] - sorted[j];
+  if (std::isinf(step)) return (1 - fraction) * sorted[j] + fraction * sorted[j + 1];
+  return sorted[j] + fraction * step;
 }
 
 double conditional_value_at_risk(std::span<const double> sample, double alpha) {
@@ -98,9 +100,12 @@ Histogram histogram(std::span<const double> sample, std::size_t most_bins) {
   const double spread = internal::quantile_of_sorted(finite, 0.75) - internal::quantile_of_sorted(finite, 0.25);
   double bins = 1;
   if (range > 0) bins = std::ceil(spread > 0 ? range * std::cbrt(n) / (2 * spread) : 1 + std::log2(n));
+  if (!std::isfinite(bins)) bins = static_cast<double>(most_bins);
   made.counts.resize(static_cast<std::size_t>(std::clamp(bins, 1.0, static_cast<double>(most_bins))));
   for (const double x : finite) {
-    const double place = range > 0 ? (x - made.low) / range * static_cast<double>(made.counts.size()) : 0;
+    // A quarter of each: the range may be beyond all numbers.
+    const double part = std::isfinite(range) ? (x - made.low) / range : (x / 4 - made.low / 4) / (made.high / 4 - made.low / 4);
+    const double place = range > 0 ? part * static_cast<double>(made.counts.size()) : 0;
     ++made.counts[std::min(static_cast<std::size_t>(place), made.counts.size() - 1)];
   }
   return made;

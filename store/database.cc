@@ -17,18 +17,10 @@ namespace {
 
 constexpr int patience = 10'000;  // [ms] with another program that holds the file
 
-using FileNumber = std::pair<unsigned long long, unsigned long long>;
-
 std::mutex open_mutex;
 std::map<FileNumber, int>& open_files() {
   static std::map<FileNumber, int> files;
   return files;
-}
-
-std::optional<FileNumber> number_of(const std::filesystem::path& file) {
-  struct stat found {};
-  if (::stat(file.c_str(), &found) != 0) return std::nullopt;
-  return FileNumber{found.st_dev, found.st_ino};
 }
 
 // The name of the file as a URI: the only way to say that nobody writes to it.
@@ -51,6 +43,12 @@ std::string reason_of(sqlite3* handle, int code) {
 
 }  // namespace
 
+std::optional<FileNumber> number_of(const std::filesystem::path& file) {
+  struct stat found {};
+  if (::stat(file.c_str(), &found) != 0) return std::nullopt;
+  return FileNumber{found.st_dev, found.st_ino};
+}
+
 OpenFile::OpenFile(const std::filesystem::path& file) : number_(number_of(file)) {
   const std::lock_guard lock(open_mutex);
   if (number_) ++open_files()[*number_];
@@ -62,7 +60,7 @@ OpenFile::~OpenFile() {
 }
 
 bool OpenFile::is_open(const std::filesystem::path& file) {
-  const auto number = number_of(file);
+  const std::optional<FileNumber> number = number_of(file);
   const std::lock_guard lock(open_mutex);
   return number && open_files().contains(*number);
 }
@@ -92,6 +90,8 @@ Database::Database(const std::filesystem::path& file, Access access, std::string
 
 void Database::fail(int code) const {
   const std::string reason = reason_of(handle_.get(), code);
+  if (code == SQLITE_READONLY_DBMOVED)
+    throw OutputLost(fmt::format("{}: was removed, moved or replaced while it was written", shown_));
   switch (code & 0xFF) {
     case SQLITE_NOMEM:
       throw std::bad_alloc();
@@ -115,9 +115,32 @@ void Database::fail(int code) const {
     case SQLITE_AUTH:
     case SQLITE_TOOBIG:
       throw InvalidInput(fmt::format("{}: {}", shown_, reason));
+    case SQLITE_ERROR:
+    case SQLITE_CONSTRAINT:
+    case SQLITE_MISMATCH:
+    case SQLITE_SCHEMA:
+      throw StatementFailed(fmt::format("{}: the store is damaged: {}", shown_, reason), reason);
     default:
       throw std::runtime_error(fmt::format("{}: SQLite: {} ({})", shown_, reason, code));
   }
+}
+
+bool Database::is_at(const std::filesystem::path& path) const {
+  // The number was asked for after the file had been opened: that nobody came between, SQLite says.
+  int moved = 0;
+  const int code = sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_HAS_MOVED, &moved);
+  return open_->is(path) && (code != SQLITE_OK || moved == 0);
+}
+
+void Database::leave_log() const { sqlite3_db_config(handle_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr); }
+
+void Database::copy_to(const std::filesystem::path& file) const {
+  const Database copy(file, Access::create, file.string());
+  sqlite3_backup* backup = sqlite3_backup_init(copy.handle(), "main", handle_.get(), "main");
+  if (backup == nullptr) copy.fail(sqlite3_extended_errcode(copy.handle()));
+  const int step = sqlite3_backup_step(backup, -1), finish = sqlite3_backup_finish(backup);
+  if (finish != SQLITE_OK) copy.fail(finish);
+  if (step != SQLITE_DONE) copy.fail(step);
 }
 
 void Database::run(const std::string& sql) const {
@@ -165,6 +188,17 @@ Statement& Statement::bind(int parameter, std::span<const unsigned char> value) 
   return *this;
 }
 
+Statement& Statement::lend(int parameter, std::string_view value) {
+  check(
+      sqlite3_bind_text64(handle_.get(), parameter, value.empty() ? "" : value.data(), value.size(), SQLITE_STATIC, SQLITE_UTF8));
+  return *this;
+}
+
+Statement& Statement::lend(int parameter, std::span<const unsigned char> value) {
+  check(sqlite3_bind_blob64(handle_.get(), parameter, value.data(), value.size(), SQLITE_STATIC));
+  return *this;
+}
+
 bool Statement::step() {
   const int code = sqlite3_step(handle_.get());
   if (code == SQLITE_ROW) return true;
@@ -183,8 +217,7 @@ bool Statement::step() {
 void Statement::reset() { sqlite3_reset(handle_.get()); }
 
 double Statement::number(int column) const {
-  return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL ? std::numeric_limits<double>::quiet_NaN()
-                                                                   : sqlite3_column_double(handle_.get(), column);
+  return is_null(column) ? std::numeric_limits<double>::quiet_NaN() : sqlite3_column_double(handle_.get(), column);
 }
 
 std::string Statement::text(int column) const {

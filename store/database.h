@@ -24,6 +24,17 @@ class DamagedStore : public InvalidInput {
   using InvalidInput::InvalidInput;
 };
 
+/// A statement that a sound store understands and this one does not, or that fails at one of its rows.
+class StatementFailed : public DamagedStore {
+ public:
+  StatementFailed(const std::string& message, std::string reason) : DamagedStore(message), reason_(std::move(reason)) {}
+  /// In the words of SQLite.
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+
+ private:
+  std::string reason_;
+};
+
 /// How a database is opened.
 enum class Access {
   write,      ///< what is there, to change it
@@ -32,6 +43,10 @@ enum class Access {
   read_only,  ///< from a place that may not
   immutable   ///< from one that nobody writes to and that has no log: nothing is locked
 };
+
+/// Device and inode: what a file is under any name. None where there is no file.
+using FileNumber = std::pair<unsigned long long, unsigned long long>;
+[[nodiscard]] std::optional<FileNumber> number_of(const std::filesystem::path& file);
 
 /// Remembers that this process has the file open. SQLite's locks are those of the process and vanish when it closes any other
 /// descriptor of the file, so that nobody looks into one that is open.
@@ -43,9 +58,11 @@ class OpenFile {
   OpenFile& operator=(const OpenFile&) = delete;
   /// Whether one of these remembers it.
   [[nodiscard]] static bool is_open(const std::filesystem::path& file);
+  /// Whether this is the file.
+  [[nodiscard]] bool is(const std::filesystem::path& file) const { return number_ && number_ == number_of(file); }
 
  private:
-  std::optional<std::pair<unsigned long long, unsigned long long>> number_;
+  std::optional<FileNumber> number_;
 };
 
 class Statement;
@@ -64,6 +81,13 @@ class Database {
   [[nodiscard]] std::int64_t number_of(const std::string& sql) const;
   /// Throws what a result code means.
   [[noreturn]] void fail(int code) const;
+
+  /// Whether the file at this path is the open one: somebody may have removed, moved or replaced it.
+  [[nodiscard]] bool is_at(const std::filesystem::path& path) const;
+  /// Leaves the log where it is when this is closed: what has its name then belongs to another file.
+  void leave_log() const;
+  /// Writes all that it holds into a file of its own, which may not hold anything yet.
+  void copy_to(const std::filesystem::path& file) const;
 
   [[nodiscard]] sqlite3* handle() const { return handle_.get(); }
   [[nodiscard]] const std::string& shown() const { return shown_; }
@@ -87,11 +111,15 @@ class Statement {
   Statement& bind(int parameter, double value);  ///< NaN: NULL
   Statement& bind(int parameter, std::string_view value);
   Statement& bind(int parameter, std::span<const unsigned char> value);
+  /// Without a copy: what is lent has to live until the statement has been run.
+  Statement& lend(int parameter, std::string_view value);
+  Statement& lend(int parameter, std::span<const unsigned char> value);
   /// Whether there is a row; where there is none the statement can be bound and run again.
   bool step();
   void reset();
 
   [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
+  [[nodiscard]] bool is_null(int column) const { return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL; }
   [[nodiscard]] double number(int column) const;  ///< NULL: NaN
   [[nodiscard]] std::string text(int column) const;
   [[nodiscard]] std::span<const unsigned char> blob(int column) const;
@@ -134,6 +162,23 @@ class Transaction {
 
  private:
   const Database& database_;
+};
+
+/// While it lives everything that is read is of one moment, whoever writes.
+class Snapshot {
+ public:
+  explicit Snapshot(const Database& database) : database_(database), begun_(sqlite3_get_autocommit(database.handle()) != 0) {
+    if (begun_) database_.run("BEGIN");
+  }
+  Snapshot(const Snapshot&) = delete;
+  Snapshot& operator=(const Snapshot&) = delete;
+  ~Snapshot() {
+    if (begun_) sqlite3_exec(database_.handle(), "COMMIT", nullptr, nullptr, nullptr);
+  }
+
+ private:
+  const Database& database_;
+  bool begun_;
 };
 
 }  // namespace softland::internal

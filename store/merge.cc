@@ -30,24 +30,18 @@ class Part {
     database_->run("PRAGMA cache_size = -64");  // there may be a thousand parts
   }
   [[nodiscard]] const StoredPlan& plan() const { return current_.plan; }
-  [[nodiscard]] const StoredRow& row() const { return row_; }
+  [[nodiscard]] const StoredRow& row() const { return rows_->row(); }
   [[nodiscard]] const Database& database() const { return *database_; }
 
   bool next() {
-    if (!rows_) {
-      rows_.emplace(*database_, select_rows(plan().columns) + " WHERE plan = ? ORDER BY point");
-      rows_->bind(1, current_.number);
-    }
-    if (!rows_->step()) return false;
-    row_ = row_in(*rows_, plan().columns.size());
-    return true;
+    if (!rows_) rows_.emplace(*database_, current_, RowReader::Of::rows);
+    return rows_->next();
   }
 
  private:
   std::unique_ptr<const Database> database_;
   NumberedPlan current_;
-  std::optional<Statement> rows_;
-  StoredRow row_;
+  std::optional<RowReader> rows_;
 };
 
 using Parts = std::vector<std::unique_ptr<Part>>;
@@ -76,21 +70,29 @@ Parts opened(const std::vector<fs::path>& paths) {
   return parts;
 }
 
+// The first few parts of the plan that nobody gave.
+void add_missing_parts(std::vector<std::string>& notes, const Parts& parts) {
+  constexpr std::size_t most_names = 20;
+  const int count = parts.front()->plan().shard.count;
+  std::set<int> given;
+  for (const auto& part : parts) {
+    if (part->plan().shard.count == count) given.insert(part->plan().shard.index);
+  }
+  const std::size_t missing = static_cast<std::size_t>(count) - given.size();
+  if (missing == 0 || count == 1) return;
+  std::vector<std::string> names;
+  for (int index = 1; names.size() < std::min(missing, most_names); ++index) {
+    if (!given.contains(index)) names.push_back(fmt::format("{}/{}", index, count));
+  }
+  if (missing > names.size()) names.push_back(fmt::format("and {} more", missing - names.size()));
+  notes.push_back(fmt::format("no part was given of {}", fmt::join(names, ", ")));
+}
+
 // Points that no part holds, told by the parts of the plan that they belong to.
 std::vector<std::string> notes_on(const Parts& parts, const StoredPlan& plan, std::int64_t rows) {
   std::vector<std::string> notes;
   if (rows < plan.points) notes.push_back(fmt::format("{} of {} points are missing", plan.points - rows, plan.points));
-  std::set<int> missing;
-  const int count = parts.front()->plan().shard.count;
-  for (int index = 1; index <= count; ++index) missing.insert(index);
-  for (const auto& part : parts) {
-    if (part->plan().shard.count == count) missing.erase(part->plan().shard.index);
-  }
-  if (rows < plan.points && !missing.empty() && count > 1) {
-    std::vector<std::string> names;
-    for (const int index : missing) names.push_back(fmt::format("{}/{}", index, count));
-    notes.push_back(fmt::format("no part was given of {}", fmt::join(names, ", ")));
-  }
+  if (rows < plan.points) add_missing_parts(notes, parts);
   std::set<std::string> programs, processors;
   for (const auto& part : parts) {
     for (const StoredSession& session : sessions_in(part->database())) {
@@ -154,6 +156,7 @@ Merged merge_studies(const std::vector<fs::path>& paths, const fs::path& out, co
   std::error_code ignored;
   require(!fs::exists(fs::symlink_status(out, ignored)), fmt::format("{}: exists already; it is not replaced", out.string()));
   Parts parts = opened(paths);
+  require_room(out);
   const auto lock = lock_store(out, origin.command);
   Merged merged{.plan = parts.front()->plan(), .rows = 0, .written = false, .notes = {}};
   merged.plan.shard = {};

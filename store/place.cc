@@ -14,6 +14,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "base/companion.h"
 #include "base/output_lost.h"
 #include "base/read_file.h"
 #include "base/require.h"
@@ -66,7 +67,12 @@ std::string fault_of(const fs::path& path) {
   if (OpenFile::is_open(path)) return {};
   if (::access(path.c_str(), R_OK) != 0) return std::generic_category().message(errno);
   if (fs::file_size(path, error) == 0 && !error) return "is empty (0 bytes), not a store; remove it or name another file";
+  errno = 0;
   const std::optional<Header> header = header_of(path);
+  if (!header && errno != 0) {
+    const char* more = errno == EMFILE ? "; the limit of open files is too low (ulimit -n)" : "";
+    return fmt::format("cannot be read: {}{}", std::generic_category().message(errno), more);
+  }
   if (!header || std::memcmp(header->data(), magic.data(), magic.size()) != 0)
     return "is no store of softland, or its beginning is damaged: it does not begin as a database of SQLite does";
   if (big_endian(*header, application_id) != store_application) return "is a database of SQLite, but no store of softland";
@@ -109,6 +115,20 @@ void require_store(const fs::path& path) {
   require(fault.empty(), fmt::format("{}: {}", path.string(), fault));
 }
 
+void require_room(const fs::path& path) {
+  require_no_companion(path, path.string());
+  for (const char* ending : {"-wal", "-shm", "-journal"}) {
+    const fs::path companion = beside(path, ending);
+    std::error_code ignored;
+    require(!fs::exists(fs::symlink_status(companion, ignored)), [&] {
+      return fmt::format(
+          "{}: a store would take {} for its own and replace it, which is of one that is gone, or something else; move "
+          "it or name another store",
+          path.string(), companion.string());
+    });
+  }
+}
+
 fs::path lock_of(const fs::path& path) { return beside(path, ".lock"); }
 
 std::unique_ptr<const LockFile> lock_store(const fs::path& path, const std::string& command) {
@@ -119,6 +139,7 @@ std::unique_ptr<const LockFile> lock_store(const fs::path& path, const std::stri
 std::unique_ptr<const Database> open_to_read(const fs::path& path) {
   require_store(path);
   mark_as_read(path);
+  mark_as_database(path);
   const fs::path real = beside(path, "");
   if (writable(path)) return std::make_unique<Database>(real, Access::recover, path.string());
   require(
@@ -180,6 +201,25 @@ std::string kept_copy(const fs::path& path) {
     if (has_content(real.string() + ending)) fs::copy_file(real.string() + ending, copy.string() + ending, none);
   }
   return fmt::format("it is left as it is, and {} is a copy of it", copy.string());
+}
+
+fs::path copied_to_rescue(const Database& database, const fs::path& path, const std::string& said) {
+  std::string reasons;
+  std::error_code ignored;
+  for (const fs::path& folder : {fs::absolute(path).parent_path(), fs::current_path(ignored), fs::temp_directory_path(ignored)}) {
+    try {
+      fs::path name;
+      for (int k = 1; name.empty() || fs::exists(fs::symlink_status(name, ignored)); ++k)
+        name = folder / (path.filename().string() + (k == 1 ? ".rescued" : fmt::format(".rescued-{}", k)));
+      const UnnamedStore made(name);
+      database.copy_to(made.path());
+      made.give_name();
+      return name;
+    } catch (const std::runtime_error& error) {
+      reasons += fmt::format("; {}", error.what());
+    }
+  }
+  throw OutputLost(fmt::format("{}, and what it held could not be rescued{}", said, reasons));
 }
 
 UnnamedStore::UnnamedStore(fs::path name) : name_(std::move(name)), path_(fmt::format("{}.{}.new", name_.string(), ::getpid())) {

@@ -126,16 +126,15 @@ std::map<std::string, std::int64_t> StudyReader::by_status() const {
 
 void StudyReader::read(const std::function<void(const StoredRow&)>& row, const StudyQuery& query, const Watch& watch) const {
   const Database& database = *implementation_->database_;
-  const std::vector<StoredColumn>& columns = plan().columns;
-  std::string sql = select_rows(columns) + " WHERE plan = ?1";
-  if (!query.where.empty()) {
-    check_where(database, plan(), query.where);
-    sql += " AND (" + query.where + "\n)";
+  if (!query.where.empty()) check_where(database, plan(), query.where);
+  try {
+    RowReader rows(database, implementation_->current_, RowReader::Of::rows, query.where);
+    const StopWatched watched(database, watch);
+    while (rows.next()) row(rows.row());
+  } catch (const StatementFailed& error) {
+    require_where(query.where.empty(), query.where, error.reason());
+    throw;
   }
-  const StopWatched watched(database, watch);
-  Statement statement(database, sql + " ORDER BY point");
-  statement.bind(1, implementation_->current_.number);
-  while (statement.step()) row(row_in(statement, columns.size()));
 }
 
 }  // namespace softland

@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/companion.h"
 #include "base/output_lost.h"
 #include "base/require.h"
 #include "base/shortened.h"
@@ -119,15 +120,24 @@ class StudyStore::Implementation {
  private:
   void open();
   void start_session(const StoredOrigin& origin, bool resumed);
+  void read_done();
   void prepare_finding();
   void work();
   void commit(const std::vector<StoredRow>& rows);
   void commit_batch(std::unique_lock<std::mutex>& lock);
+  void keep_in_place();
+  void move_to_rescue(const std::string& what);
+  void begin_writing();
+  void end_log();
   void throw_told();
   void let_go();
 
   std::optional<RowWriter> rows_;
   std::optional<SessionTally> tally_;
+  fs::path log_;  // of the database; empty: it has none
+  std::optional<FileNumber> log_number_;
+  std::string
+      rescued_;  // where everything went from a store that is no longer there, in words; of the writer, until it has ended
 
   std::mutex mutex_;
   std::condition_variable for_writer_, for_callers_;
@@ -136,6 +146,7 @@ class StudyStore::Implementation {
   bool committing_ = false, hurried_ = false, stopping_ = false;
   std::exception_ptr failure_;        // to write rows, which still wait
   std::exception_ptr contradiction_;  // of a row, which was left out
+  std::string lost_;                  // rescued_, for callers
   std::thread writer_;
 };
 
@@ -150,7 +161,10 @@ StudyStore::Implementation::Implementation(const fs::path& path, const StoredPla
             fmt::format("{}: exists already; it is not replaced (--resume continues a study)", path.string()));
     return there;
   };
-  if (is_there()) require_store(path);
+  if (is_there())
+    require_store(path);
+  else
+    require_room(path);
   lock_ = lock_store(path, origin.command);
   const bool resumed = is_there();  // another run may have made it meanwhile
   if (!resumed) create_store(path, plan, origin);
@@ -169,6 +183,7 @@ void StudyStore::Implementation::open() {
   require_only_name(path_);
   std::error_code ignored;
   database_ = std::make_unique<Database>(fs::canonical(path_), Access::write, path_.string());
+  mark_as_database(path_);
   require(sqlite3_db_readonly(database_->handle(), "main") == 0,
           fmt::format("{}: the file cannot be written to", path_.string()));
   check_schema(*database_);
@@ -181,34 +196,43 @@ void StudyStore::Implementation::open() {
 void StudyStore::Implementation::start_session(const StoredOrigin& origin, bool resumed) {
   const NumberedPlan there = current_plan(*database_);
   require_same_columns(*database_, there.plan, plan_);
+  number_ = number_of_plan(*database_, plan_.text);
+  read_done();
   database_->run(fmt::format("PRAGMA journal_mode = {}; PRAGMA synchronous = FULL", journal_at(path_)));
   Transaction transaction(*database_);
-  number_ = number_of_plan(*database_, plan_.text);
   if (number_ == 0) number_ = insert_plan(*database_, plan_);
   if (resumed) static_cast<void>(insert_session(*database_, number_, origin));
   has_earlier_ = database_->number_of("SELECT count(*) FROM study") > 1;
   if (has_earlier_) database_->run("CREATE INDEX IF NOT EXISTS by_content ON results(content)");
   transaction.commit();
-
-  done_.resize(static_cast<std::size_t>(plan_.points));
-  Statement points = database_->prepare("SELECT point FROM results WHERE plan = ?");
-  points.bind(1, number_);
-  while (points.step()) {
-    const std::int64_t point = points.integer(0);
-    if (point < 0 || point >= plan_.points)
-      throw DamagedStore(fmt::format("{}: the store is damaged: it has a point {}", path_.string(), point));
-    done_[static_cast<std::size_t>(point)] = true;
-  }
-  rows_.emplace(*database_, number_, plan_.columns);
-  tally_.emplace(*database_, number_, database_->number_of("SELECT max(session) FROM session"));
+  begin_writing();
   if (!has_earlier_) return;
   earlier_rows_ = database_->number_of(fmt::format("SELECT ifnull(sum(rows), 0) FROM tally WHERE plan != {}", number_));
   prepare_finding();
 }
 
+// Before anything is written: a damaged store is left as it is.
+void StudyStore::Implementation::read_done() {
+  done_.resize(static_cast<std::size_t>(plan_.points));
+  if (number_ == 0) return;
+  std::error_code ignored;
+  const bool small = fs::file_size(path_, ignored) <= checked_size;
+  RowReader rows(*database_, {.number = number_, .plan = plan_}, small ? RowReader::Of::rows : RowReader::Of::points);
+  while (rows.next()) done_[static_cast<std::size_t>(rows.row().point)] = true;
+}
+
+void StudyStore::Implementation::begin_writing() {
+  rows_.emplace(*database_, number_, plan_.columns);
+  tally_.emplace(*database_, number_, database_->number_of("SELECT max(session) FROM session"));
+  log_ = fs::path(sqlite3_db_filename(database_->handle(), "main")).string() + "-wal";
+  log_number_ = internal::number_of(log_);
+  if (!log_number_) log_.clear();
+}
+
 void StudyStore::Implementation::prepare_finding() {
   earlier_ = std::make_unique<const Database>(fs::canonical(path_), Access::recover, path_.string());
-  find_.emplace(*earlier_, select_rows(plan_.columns) + " WHERE content = ? AND plan != ? ORDER BY plan, point LIMIT 1");
+  find_.emplace(*earlier_,
+                select_rows(*earlier_, plan_.columns) + " WHERE content = ? AND plan != ? ORDER BY plan, point LIMIT 1");
 }
 
 StudyStore::Implementation::~Implementation() {
@@ -226,6 +250,30 @@ void StudyStore::Implementation::let_go() {
   database_.reset();
 }
 
+// A file that was removed is still written to, and is gone when it is closed. What it holds, and what comes, goes to another one.
+void StudyStore::Implementation::keep_in_place() {
+  if (!rescued_.empty()) return;
+  if (!database_->is_at(path_)) {
+    database_->leave_log();
+    if (earlier_) earlier_->leave_log();
+    move_to_rescue(path_.string());
+  } else if (!log_.empty() && internal::number_of(log_) != log_number_) {
+    move_to_rescue(log_.string());
+  }
+}
+
+void StudyStore::Implementation::move_to_rescue(const std::string& what) {
+  const std::string said = fmt::format("{}: was removed, moved or replaced while it was written", what);
+  const fs::path rescue = copied_to_rescue(*database_, path_, said);
+  auto rescued = std::make_unique<Database>(rescue, Access::write, rescue.string());
+  rescued->run(fmt::format("PRAGMA journal_mode = {}; PRAGMA synchronous = FULL", journal_at(rescue)));
+  rows_.reset();
+  tally_.reset();
+  database_ = std::move(rescued);
+  begin_writing();
+  rescued_ = fmt::format("{}; all that the store held and what was computed since is in {}, a store", said, rescue.string());
+}
+
 // Tells the caller what went wrong since the last call, after which the rows that wait are tried again.
 void StudyStore::Implementation::throw_told() {
   for (std::exception_ptr* told : {&failure_, &contradiction_}) {
@@ -233,6 +281,7 @@ void StudyStore::Implementation::throw_told() {
     for_writer_.notify_one();
     std::rethrow_exception(std::exchange(*told, nullptr));
   }
+  if (!lost_.empty()) throw OutputLost(lost_);
 }
 
 void StudyStore::Implementation::add(StoredRow row) {
@@ -278,14 +327,28 @@ void StudyStore::Implementation::close() {
     }
     writer_.join();
   }
+  try {
+    end_log();
+  } catch (...) {
+    if (!failure) failure = std::current_exception();
+  }
+  let_go();
+  lock_.reset();
+  if (failure) std::rethrow_exception(failure);
+}
+
+// Leaves one file, of which it is known that it stands where it should.
+void StudyStore::Implementation::end_log() {
+  const bool was_told = !rescued_.empty();
+  if (rows_) keep_in_place();
   find_.reset();
   earlier_.reset();
   // Where somebody reads, the log stays until the last one has done.
   sqlite3_busy_timeout(database_->handle(), 0);
   sqlite3_exec(database_->handle(), "PRAGMA journal_mode = DELETE", nullptr, nullptr, nullptr);
-  let_go();
-  lock_.reset();
-  if (failure) std::rethrow_exception(failure);
+  log_.clear();
+  if (rows_) keep_in_place();
+  if (!was_told && !rescued_.empty()) throw OutputLost(rescued_);
 }
 
 // The thread that writes. After a failure it waits for the next call, which is told.
@@ -307,6 +370,7 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
   lock.unlock();
   std::exception_ptr failure, contradiction;
   try {
+    keep_in_place();
     commit(rows);
   } catch (const Contradiction&) {
     contradiction = std::current_exception();
@@ -315,8 +379,15 @@ void StudyStore::Implementation::commit_batch(std::unique_lock<std::mutex>& lock
   } catch (...) {
     failure = std::current_exception();
   }
+  try {
+    if (!failure) keep_in_place();
+  } catch (...) {
+    failure = std::current_exception();
+    rows.clear();  // the database has them
+  }
   lock.lock();
   committing_ = false;
+  lost_ = rescued_;
   if (failure) waiting_.insert(waiting_.begin(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
   if (failure) failure_ = failure;
   if (contradiction) contradiction_ = contradiction;
@@ -360,7 +431,7 @@ std::optional<StoredRow> StudyStore::find(const ContentKey& content) const {
   find.reset();
   find.bind(1, bytes_of(content)).bind(2, implementation_->number_);
   if (!find.step()) return std::nullopt;
-  StoredRow row = row_in(find, implementation_->plan_.columns.size());
+  StoredRow row = row_in(*implementation_->earlier_, find, implementation_->plan_.columns.size());
   find.reset();
   return row;
 }

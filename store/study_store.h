@@ -33,7 +33,7 @@
 namespace softland {
 
 /// Version of the tables. A store of a later one is refused.
-inline constexpr int store_schema = 1;
+inline constexpr int store_schema = 2;
 inline constexpr std::size_t rows_per_commit = 1000;
 inline constexpr double seconds_per_commit = 1;  ///< [s] after the first row that is not yet durable
 

@@ -1,14 +1,17 @@
 // The tables of a store, and what stands in them.
 //
-//   study    one row per plan: its text, digest of that, points, seed, shard
+//   study    one row per plan: its text, digest of that, points, seed, shard, checksum of these and of columns
 //   columns  of results, with name, unit and kind
 //   session  one row per run: program, processor, command, host, process, times, rows written
-//   results  (plan, point) -> content, status, reason, extra, and the columns
+//   results  (plan, point) -> content, status, reason, extra, checksum of all that stands in the row, and the columns
 //   tally    (plan, status) -> rows
+//
+// Stores of schema 1 have no checksums; they are read, and gone on with, as they are.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -19,7 +22,7 @@
 namespace softland::internal {
 
 /// Columns of results besides those of the plan.
-inline constexpr std::array<const char*, 6> fixed_columns{"plan", "point", "content", "status", "reason", "extra"};
+inline constexpr std::array<const char*, 7> fixed_columns{"plan", "point", "content", "status", "reason", "extra", "checksum"};
 
 /// Throws InvalidInput unless a store can hold such a plan.
 void check_plan(const StoredPlan& plan);
@@ -59,9 +62,43 @@ class SessionTally {
 [[nodiscard]] std::map<std::string, std::int64_t> tally_of(const Database& database, std::int64_t plan);
 
 /// "SELECT ... FROM results" of the columns that row_in() reads.
-[[nodiscard]] std::string select_rows(const std::vector<StoredColumn>& columns);
+[[nodiscard]] std::string select_rows(const Database& database, const std::vector<StoredColumn>& columns);
 [[nodiscard]] std::array<unsigned char, 16> bytes_of(const ContentKey& key);
-[[nodiscard]] StoredRow row_in(const Statement& statement, std::size_t values);
+/// Throws DamagedStore where the row is not what was written.
+[[nodiscard]] StoredRow row_in(const Database& database, const Statement& statement, std::size_t values);
+
+/// The rows of a plan in the order of their points.
+class RowReader {
+ public:
+  enum class Of {
+    rows,   ///< all that stands in them
+    points  ///< their numbers only, which is ten times as quick
+  };
+  /// `where`: an expression over the columns; empty: all rows.
+  RowReader(const Database& database, const NumberedPlan& plan, Of what, const std::string& where = {});
+  /// Goes to the next row; false: that was the last one. Throws DamagedStore where a row is not what was written, where points
+  /// do not rise or are none of the plan's, and at the end where there are more or fewer rows than were counted.
+  bool next();
+  [[nodiscard]] const StoredRow& row() const { return row_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const;
+  void count();
+  void compare() const;
+
+  Snapshot snapshot_;
+  const Database& database_;
+  std::int64_t number_, points_;
+  Shard shard_;
+  std::size_t values_;
+  Of what_;
+  bool all_, ended_ = false;
+  Statement statement_;
+  StoredRow row_;
+  std::int64_t last_ = -1, rows_ = 0;
+  std::map<std::string, std::int64_t, std::less<>> by_status_;
+  std::map<std::string, std::int64_t, std::less<>>::iterator counted_ = by_status_.end();
+};
 
 /// A row that is there already with other bits.
 class Contradiction : public InvalidInput {
@@ -80,6 +117,7 @@ class RowWriter {
   const Database& database_;
   std::int64_t plan_;
   std::vector<StoredColumn> columns_;
+  bool has_checksums_;
   Statement insert_, select_;
 };
 

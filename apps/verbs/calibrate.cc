@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -42,6 +43,7 @@ void read_errors(const std::string& list, MeasurementOptions& options) {
                                                                     {"release", &options.release_error},
                                                                     {"frequency", &options.frequency_error},
                                                                     {"time", &options.time_error}}};
+  std::set<std::string_view> seen;
   for (const std::string& one : parts_of(list)) {
     const std::size_t colon = one.find(':');
     const auto row = std::find_if(errors.begin(), errors.end(), [&](const auto& e) { return e.first == one.substr(0, colon); });
@@ -57,6 +59,7 @@ void read_errors(const std::string& list, MeasurementOptions& options) {
           "--error {}: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\"",
           shown(list));
     });
+    require(seen.insert(row->first).second, [&] { return fmt::format("--error {}: {} stands twice", shown(list), row->first); });
     *row->second = q.value;
   }
 }

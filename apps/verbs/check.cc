@@ -64,6 +64,15 @@ std::string closed_state_words(const ClosedState& state) {
   return words;
 }
 
+// What is to be said of a key, with its place.
+std::string said_of(const SceneFile& file, const std::string& key, std::string_view words) {
+  try {
+    file.refuse(key, words);
+  } catch (const InvalidInput& said) {
+    return said.what();
+  }
+}
+
 int check_verb(const Common& c) {
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
@@ -72,11 +81,10 @@ int check_verb(const Common& c) {
   const std::string title = shortened(printable_line(p.scene.title));
   std::string text = fmt::format("{}: valid{}\n\n", printable_line(c.scene), title.empty() ? "" : " (" + title + ")");
   const auto add = [&](const std::string& name, const std::string& value) { text += fmt::format("{:<20} {}\n", name, value); };
-  std::vector<std::string> frequencies;
+  std::vector<std::string> frequencies, warnings = p.scene.warnings;
   for (const double omega : p.model.angular_frequencies()) frequencies.push_back(quantity(omega / (2 * pi), "Hz", 4));
   add("natural frequencies", fmt::format("{}", fmt::join(frequencies, ", ")));
   if (p.model.has_contact()) add("in-contact period", quantity(p.model.in_contact_period(), "s", 4));
-  std::vector<std::string> warnings = p.scene.warnings;
   std::map<std::string, double> searched_to;  // what a search takes for the limit where the scene has none [V]
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     if (!pulls_in(p.scene.device, k)) {
@@ -87,6 +95,12 @@ int check_verb(const Common& c) {
     const nlohmann::json& v = found["pull_in"];
     if (v["dynamic_V"].is_number())
       searched_to[p.scene.device.electrodes[k].name] = default_max_voltage * v["dynamic_V"].get<double>();
+    if (found["status"] == to_string(Status::no_contact)) {
+      const std::string& name = p.scene.device.electrodes[k].name;
+      add("electrode " + name, "pulls away from the contact where the switch rests: no pull-in voltage");
+      warnings.push_back(said_of(file, "electrode." + name + ".gap", "it pulls away from the contact; its other side is nearer"));
+      continue;
+    }
     add("electrode " + p.scene.device.electrodes[k].name,
         (collapsed(found) ? no_open_state : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(v))) +
             (p.model.has_contact() ? ", release " + volts(v["release_V"]) : ""));

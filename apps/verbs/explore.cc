@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,7 @@
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
+#include "base/companion.h"
 #include "base/require.h"
 #include "config/plan.h"
 #include "reports/exploration_report.h"
@@ -123,10 +125,16 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   static_cast<void>(claim_places(c, {}));
   require(c.json.empty() || std::filesystem::weakly_canonical(c.json) != std::filesystem::weakly_canonical(out),
           [&] { return fmt::format("--json {}: is the store; name another file", c.json); });
+  require(c.json.empty() || !is_companion(c.json, out),
+          [&] { return fmt::format("--json {}: is a file that the store {} has beside it; name another", c.json, out); });
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   Exploration exploration(Plan(request), work->watch());
   work.reset();
 
+  require(static_cast<std::uint64_t>(shard.count) <= exploration.plan().points(), [&] {
+    return fmt::format("--shard {}/{}: a study of {} points has at most {} parts", shard.index, shard.count,
+                       exploration.plan().points(), exploration.plan().points());
+  });
   if (r.resume && !c.quiet) tell_of_other_programs(out);
   if (exploration.plan().is_search()) {
     require(shard.count == 1,

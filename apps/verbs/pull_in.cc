@@ -26,7 +26,7 @@ int pull_in_verb(const Common& c) {
   require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
   nlohmann::json all = nlohmann::json::object();
   std::string text;
-  bool failed = false, never_open = false;
+  bool failed = false, none = false;
   for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
     nlohmann::json one = pull_in_of(prepared, k, work->watch());
     const nlohmann::json& p = one["pull_in"];
@@ -36,6 +36,16 @@ int pull_in_verb(const Common& c) {
       continue;
     }
     text += fmt::format("electrode {}\n", electrodes[k].name);
+    if (one["status"] == to_string(Status::no_contact)) {
+      text += "  pulls away from the contact where the switch rests: no pull-in voltage\n";
+      none = true;
+      if (electrodes.size() > 1) {
+        all[electrodes[k].name] = std::move(one);
+      } else {
+        all = std::move(one);
+      }
+      continue;
+    }
     text += collapsed(one)
                 ? fmt::format("  {}\n", no_open_state)
                 : fmt::format("  static pull-in   {} ({})\n  dynamic pull-in  {}\n", volts(p["static_V"]),
@@ -44,7 +54,7 @@ int pull_in_verb(const Common& c) {
                               dynamic_words(p));
     if (prepared.model.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
     if (collapsed(one))
-      never_open = true;
+      none = true;
     else
       failed = failed || one["status"] != "done";
     if (electrodes.size() == 1) {
@@ -56,7 +66,7 @@ int pull_in_verb(const Common& c) {
   const bool interrupted = work->watch().stopped();
   work.reset();
   print_json_or(c, all, text);
-  return interrupted ? exit_interrupted : failed ? exit_numerical_failure : never_open ? exit_no_success : exit_done;
+  return interrupted ? exit_interrupted : failed ? exit_numerical_failure : none ? exit_no_success : exit_done;
 }
 
 }  // namespace

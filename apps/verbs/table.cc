@@ -101,6 +101,7 @@ std::vector<Column> selected(const StoredPlan& plan, const std::string& select) 
 
 using Sink = std::function<void(std::string_view)>;
 
+// The same bytes wherever they go: a terminal, where nothing acts on it, or a file.
 void write_csv(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns, const Watch& watch,
                const Sink& sink) {
   constexpr std::size_t most = 1 << 16;
@@ -108,12 +109,12 @@ void write_csv(const StudyReader& store, const TableRequest& request, const std:
   const auto line = [&](const auto& cell) {
     for (std::size_t i = 0; i < columns.size(); ++i) text += (i == 0 ? "" : ",") + cell(columns[i]);
     text += '\n';
-    if (text.size() >= most) sink(std::exchange(text, {}));
+    if (text.size() >= most) sink(printable(std::exchange(text, {})));
   };
   line([](const Column& column) { return column.key; });
   store.read([&](const StoredRow& row) { line([&](const Column& column) { return column.csv(row); }); }, {.where = request.where},
              watch);
-  sink(text);
+  sink(printable(text));
 }
 
 void print_table(const StudyReader& store, const TableRequest& request, const std::vector<Column>& columns, const Watch& watch) {

@@ -63,14 +63,17 @@
   const ticks = ({log, low, high}, wanted) => {
     const out = [];
     if (log && high / low > 30) {
-      const every = Math.max(1, Math.ceil(Math.log10(high / low) / wanted));
-      for (let e = Math.ceil(Math.log10(low) - 1e-9); 10 ** e <= high * (1 + 1e-9); e += every) out.push(10 ** e);
+      const last = Math.floor(Math.log10(high) + 1e-9);
+      const every = Math.max(1, Math.ceil((Math.log10(high) - Math.log10(low)) / wanted));
+      for (let e = Math.ceil(Math.log10(low) - 1e-9); e <= last; e += every) out.push(10 ** e);
       return out;
     }
-    const raw = (high - low) / wanted;
+    const raw = Number.isFinite(high - low) ? (high - low) / wanted : high / wanted - low / wanted;
     const decade = 10 ** Math.floor(Math.log10(raw));
     const step = [1, 2, 5, 10].find((f) => f * decade >= raw * (1 - 1e-9)) * decade;
-    for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) out.push(k * step);
+    const first = Math.ceil(low / step - 1e-9);
+    if (!(step > 0 && Math.abs(first) < 2 ** 52)) return [low, high];  // no round number between them
+    for (let k = 0; k <= 10 * wanted && (first + k) * step <= high + 1e-9 * step; ++k) out.push((first + k) * step);
     return out;
   };
 

@@ -1,7 +1,9 @@
 // What the verbs answer when all is well.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -59,6 +61,25 @@ TEST(Program, TellsItsVersion) {
   const Outcome o = here.run({"--version"});
   EXPECT_EQ(o.status, 0);
   EXPECT_THAT(o.out, testing::MatchesRegex("softland [0-9]+\\.[0-9]+\\.[0-9]+[^\n]*\n"));
+}
+
+// An electrode on both sides whose back side is the nearer one.
+TEST(PullInVoltage, OfAnElectrodeThatPullsAwayIsNone) {
+  const Workplace here;
+  const std::string scene = edited(shipped("gap-closing-actuator.toml"), "electrode = \"", "electrode = \"5");
+  write(here.path() / "away.toml", scene);
+  const auto line =
+      std::count(scene.begin(), scene.begin() + static_cast<std::ptrdiff_t>(scene.find("gap", scene.find("[electrode.main]"))),
+                 '\n') +
+      1;
+  const Outcome checked = here.run({"check", "away.toml"});
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("pulls away from the contact where the switch rests: no pull-in voltage"));
+  EXPECT_THAT(checked.out, HasSubstr(fmt::format("warning: away.toml:{}: electrode.main.gap = ", line)));
+  EXPECT_THAT(here.run({"pull-in", "away.toml"}).out, HasSubstr("pulls away from the contact where the switch rests"));
+  const Outcome needed = here.run({"simulate", "away.toml", "--set", "waveform.main.level=1.2 Vdp"});
+  EXPECT_EQ(needed.status, 2);
+  EXPECT_THAT(needed.err, HasSubstr("electrode.main"));
 }
 
 TEST(Program, CalledOptimizeIsThatVerb) {

@@ -331,6 +331,12 @@ sed -i 's/26000\t/2000\t/; s/52000\t/4000\t/' "$work/told/times"
 sed -i 's/26\.0/2.0/; s/52\./4./' "$work/told/lines"
 tool date </dev/null
 change 'int six;' base/two.cc
+for jobs in abc 0 -1 '2 3' 1.5 99999999999; do
+  run env "CMAKE_BUILD_PARALLEL_LEVEL=$jobs" "$project/softland" modes
+  check "$jobs compile jobs are refused" status_is 2
+  check 'with the variable and what it must be' err_is "softland: CMAKE_BUILD_PARALLEL_LEVEL=$jobs: the compile jobs must be a whole number from 1 to 9999"
+  check 'and nothing is built' not made
+done
 run env CMAKE_BUILD_PARALLEL_LEVEL=2 "$project/softland" modes
 check 'a short one says nothing' err_is ''
 rm -r "$work/told" "$tools/date"

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <cmath>
 
@@ -112,6 +113,23 @@ TEST_F(Table, GoesToAFileWhole) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3001);
 }
 
+TEST_F(Table, HasTheSameBytesOnStandardOutputAndInAFile) {
+  {
+    StudyStore store(at("a.sqlite"), test::plan_of(3), test::origin(), StudyStore::Opening::fresh);
+    for (int point = 0; point < 3; ++point) {
+      StoredRow row = row_of(point);
+      row.reason =
+          std::vector<std::string>{"\x01\x1b[31m \u202e\u2028", "no UTF-8: \xff\xc3", "two\nlines,\t\"quoted\"\r"}[point];
+      store.add(row);
+    }
+    store.close();
+  }
+  const std::string csv = printed({"table", "a.sqlite", "--csv"});
+  EXPECT_EQ(printed({"table", "a.sqlite", "--out", "a.csv"}), "");
+  EXPECT_EQ(read(at("a.csv")), csv);
+  EXPECT_THAT(csv, AllOf(HasSubstr("\\u001b[31m"), HasSubstr("\"two\nlines,\t\"\"quoted\"\"")));
+}
+
 TEST_F(Table, HasTheRowsAndColumnsThatAreAskedFor) {
   make_store(at("a.sqlite"), 100);
   EXPECT_EQ(printed({"table", "a.sqlite", "--csv", "--where", "point in (3, 5)", "--select", "bounce_count,point,gap.contact"}),
@@ -181,6 +199,86 @@ TEST_F(MergeVerb, MakesOneStoreOfParts) {
   make_store(at("other.sqlite"), 99);
   expect_bad({"merge", "part 1.sqlite", "other.sqlite", "--out", "new.sqlite"},
              "other.sqlite: holds another plan than part 1.sqlite");
+}
+
+TEST_F(Stores, KeepTheNamesOfTheirCompanions) {
+  make_store(at("a.sqlite"), 10);
+  make_store(at("b.sqlite"), 10);
+  const std::vector<std::string> vary{"--vary", "waveform.main.level=20 V:24 V:2"};
+  const auto with = [](std::vector<std::string> words, std::initializer_list<std::string> more) {
+    words.insert(words.end(), more);
+    return words;
+  };
+  const std::vector<std::string> explore = with({"explore", "gold.toml"}, {vary[0], vary[1]});
+  for (const char* ending : {"-wal", "-shm", "-journal", ".lock"}) {
+    const std::string name = std::string("a.sqlite") + ending;
+    const std::string reason = name + ": has the name that the store ";
+    expect_bad({"table", "b.sqlite", "--out", name}, reason);
+    expect_bad({"table", "a.sqlite", "--out", name}, reason);
+    expect_bad({"modes", "gold.toml", "--json", name}, reason);
+    expect_bad({"simulate", "gold.toml", "--out", name}, "--out " + reason);
+    expect_bad({"merge", "b.sqlite", "--out", name}, reason);
+    expect_bad(with(explore, {"--out", name}), reason);
+    expect_bad(with(explore, {"--point", "1", "--out", name}), reason);
+    expect_bad(with(explore, {"--out", "new.sqlite", "--json", std::string("new.sqlite") + ending}),
+               fmt::format("--json new.sqlite{}: is a file that the store new.sqlite has beside it", ending));
+    EXPECT_FALSE(fs::exists(at(name)));
+    EXPECT_FALSE(fs::exists(at("new.sqlite")));
+  }
+  EXPECT_EQ(dump(at("a.sqlite")), dump(at("b.sqlite")));
+}
+
+// The store of a run that goes on for long is removed, and made anew by somebody else.
+TEST_F(Stores, ThatAreMadeAnewUnderTheirRunEndItAtOnce) {
+  const pid_t child =
+      here.start({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:100000", "--jobs", "1", "--set",
+                  "structure.modes=2", "--set", "simulate.accuracy=1e-3", "--out", "a.sqlite", "--quiet"});
+  const auto rows = [&] { return fs::exists(at("a.sqlite")) ? test::rows_in(at("a.sqlite")).size() : 0; };
+  for (int i = 0; i < 600 && rows() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  ASSERT_GT(rows(), 0u);
+  for (const char* ending : {"", "-wal", "-shm"}) fs::remove(at(std::string("a.sqlite") + ending));
+  make_store(at("b.sqlite"), 10);
+  fs::rename(at("b.sqlite"), at("a.sqlite"));
+  const Outcome o = here.finish(child);
+  EXPECT_EQ(o.status, 74) << o.err;
+  EXPECT_THAT(o.err, AllOf(HasSubstr("softland: a.sqlite: was removed, moved or replaced while it was written"),
+                           HasSubstr("a.sqlite.rescued")));
+  EXPECT_EQ(test::rows_in(at("a.sqlite")).size(), 10u);
+  EXPECT_GT(test::rows_in(at("a.sqlite.rescued")).size(), 0u);
+}
+
+TEST_F(Stores, AreOfNoMorePartsThanTheStudyHasPoints) {
+  for (const char* shard : {"1/2147483647", "1/3", "3/3"})
+    expect_bad({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:2", "--shard", shard},
+               std::string("--shard ") + shard + ": a study of 2 points has at most 2 parts");
+  EXPECT_FALSE(fs::exists(at("softland-out.sqlite")));
+}
+
+// What a damaged store holds is told by every verb that reads it, as bad input.
+TEST_F(Stores, ThatAreDamagedAreBadInputToEveryVerb) {
+  ASSERT_EQ(
+      here.run({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:3", "--out", "sound.sqlite", "--quiet"}).status,
+      0);
+  for (const char* sql :
+       {"UPDATE study SET shards = 0", "ALTER TABLE results DROP COLUMN bounce_count",
+        "UPDATE results SET bounce_count = 77 WHERE point = 1", "UPDATE results SET point = 1e300 WHERE point = 2",
+        "PRAGMA writable_schema = 1; UPDATE sqlite_schema SET sql = replace(sql, 'INTEGER', 'INTEG(R') WHERE name = "
+        "'results'"}) {
+    fs::remove(at("a.sqlite"));
+    fs::copy(at("sound.sqlite"), at("a.sqlite"));
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(at("a.sqlite").c_str(), &database), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(database);
+    sqlite3_close(database);
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"table", "a.sqlite"},
+                                                  {"report", "a.sqlite"},
+                                                  {"merge", "a.sqlite", "--out", "b.sqlite"},
+                                                  {"explore", "a.sqlite", "--resume", "--quiet"}}) {
+      const Outcome o = here.run(words);
+      EXPECT_EQ(o.status, 2) << sql << ", " << words.front();
+      EXPECT_THAT(o.err, HasSubstr("a.sqlite: the store is damaged: ")) << sql << ", " << words.front();
+    }
+  }
 }
 
 class SlurmVerb : public Stores {
@@ -262,6 +360,18 @@ TEST_F(SlurmVerb, TakesThePlanOfAStoreToo) {
   const std::string script = printed({"slurm", "whole.sqlite", "--tasks", "3"});
   EXPECT_EQ(plan_in(script), plan_in(read(at("script.sh"))));
   EXPECT_THAT(script, HasSubstr("/softland-out.sqlite"));
+}
+
+TEST_F(SlurmVerb, NamesTheFilesThatItWasToldWhateverTheirBytes) {
+  for (const char* given :
+       {"no UTF-8 \xff\xc3(", "a\u2028b", "\u202egnp", "it's \\ \u202e", "line\nline\ttab", "gr\u00fcn \u00b5m"}) {
+    const std::string name = given;
+    fs::create_directory(at(name));
+    write(at("script.sh"), printed({"slurm", "map.toml", "--tasks", "3", "--out", name + "/map.sqlite"}));
+    write(at("tell.sh"), "eval \"$(grep -a '^out=\\|^parts=' script.sh)\"; printf '%s|%s' \"$out\" \"$parts\"\n");
+    ASSERT_EQ(std::system(fmt::format("cd '{}' && bash tell.sh >told.txt", here.path().string()).c_str()), 0);
+    EXPECT_EQ(read(at("told.txt")), (at(name) / "map.sqlite").string() + "|" + (at(name) / "map-parts").string());
+  }
 }
 
 TEST_F(SlurmVerb, NamesWhatItCannotTake) {

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/require.h"
 #include "browser.h"
@@ -279,6 +281,33 @@ TEST_F(PageInBrowser, ReadsAnExplorationWithTheKeysAlone_browser) {
                    ".readout').textContent); press('parallel', 'ArrowUp'); "
                    "say(page.querySelector('#parallel .readout').textContent);");
   EXPECT_THAT(said(front), HasSubstr("true;Limits: structure.thickness from 1.55"));
+}
+
+TEST(ExplorationMap, OfAMillionPointsStaysBelowTwoMegabytes) {
+  ExplorationReport report = sample_grid(1000, 1000);
+  EXPECT_LT(exploration_map_svg(report, 0, 1, 6).size(), most_bytes);
+  EXPECT_LT(exploration_map_svg(report, 1, 0, 4).size(), most_bytes) << "a figure that jumps from cell to cell";
+}
+
+TEST(ExplorationPage, IsMadeOfAnyFigures) {
+  const double largest = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
+  for (const auto& [low, high] : std::vector<std::array<double, 2>>{{1.8e-6, std::nextafter(1.8e-6, 1)},
+                                                                    {-1.7e308, 1.7e308},
+                                                                    {-largest, largest},
+                                                                    {0, least},
+                                                                    {least, largest},
+                                                                    {7, 7},
+                                                                    {-std::numeric_limits<double>::infinity(), 1}}) {
+    ExplorationReport report = sample_grid(7, 5);
+    for (ExploredPoint& point : report.points) point.values[6] = point.number % 2 == 0 ? low : high;
+    report.aims = explored_aims(report.columns, "impact_velocity,initial_contact_time", "--pareto");
+    EXPECT_LT(exploration_html(report).size(), most_bytes) << low << " " << high;
+    EXPECT_FALSE(exploration_text(report).empty());
+    EXPECT_TRUE(holds(exploration_map_svg(report, 0, 1, 6), "</svg>"));
+    for (ExploredPoint& point : report.points)
+      point.values[0] = std::isfinite(low) ? std::lerp(low, high, static_cast<double>(point.number / 5) / 6) : 1;
+    EXPECT_LT(exploration_html(report).size(), most_bytes) << "over " << low << " " << high;
+  }
 }
 
 }  // namespace

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/random.h"
+#include "reports/axis.h"
 #include "tests/support/not_finite.h"
 #include "xml.h"
 
@@ -147,6 +150,94 @@ TEST(ScaleColour, GoesFromDarkBlueToYellow) {
   EXPECT_EQ(scale_colour(1), "#fde725");
   EXPECT_EQ(scale_colour(0.5), "#21918c");
   EXPECT_EQ(scale_colour(7), scale_colour(1));
+}
+
+// Ends of columns that no physics gives, but a damaged or strange store does.
+const std::vector<std::array<double, 2>> strange_ends{{1.8e-6, std::nextafter(1.8e-6, 1)},
+                                                      {-std::nextafter(30.0, 31), -30},
+                                                      {7, 7},
+                                                      {0, 0},
+                                                      {-1.7e308, 1.7e308},
+                                                      {-1.7976931348623157e308, 1.7976931348623157e308},
+                                                      {1.7e308, 1.7976931348623157e308},
+                                                      {5e-324, 5e-324},
+                                                      {0, 5e-324},
+                                                      {-5e-324, 5e-324},
+                                                      {5e-324, 1.7976931348623157e308},
+                                                      {1e15, 1e15 + 0.125},
+                                                      {-1e300, 1e-300},
+                                                      {-kInfinity, kInfinity},
+                                                      {0, kInfinity},
+                                                      {kNaN, 1},
+                                                      {1, kNaN},
+                                                      {2, 1}};
+
+TEST(Ticks, OfAnyEndsAreFewAndBetweenThem) {
+  for (const Scale scale : {Scale::linear, Scale::logarithmic}) {
+    for (const auto& [low, high] : strange_ends) {
+      for (const int wanted : {3, 5, 8, 9}) {
+        const std::vector<double> found = ticks({.scale = scale, .low = low, .high = high}, wanted);
+        EXPECT_LE(found.size(), 20u) << low << " " << high;
+        for (const double tick : found) {
+          const double beyond = 2e-9 * std::abs(tick) + 1e-8 * (high / 4 - low / 4);
+          EXPECT_TRUE(std::isfinite(tick) && tick + beyond >= low && tick - beyond <= high) << tick << ": " << low << " " << high;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(ticks({.scale = Scale::linear, .low = -1.7e308, .high = 1.7e308}, 8).size(), 7u);
+}
+
+TEST(AxisOfAPicture, PutsEveryNumberOnThePaper) {
+  for (const Scale scale : {Scale::linear, Scale::logarithmic}) {
+    for (const auto& [low, high] : strange_ends) {
+      const Axis axis{.scale = scale, .low = low, .high = high, .pixel_low = 100, .pixel_high = 20};
+      for (const double value : {low, high, 0.0, -1.0, 1e308, -1e308, 5e-324, kInfinity, kNaN}) {
+        const double pixel = axis.pixel(value);
+        EXPECT_TRUE(std::abs(pixel) <= 1e7) << value << " on " << low << " " << high;
+      }
+    }
+  }
+  const Axis axis{.scale = Scale::linear, .low = -1.6e308, .high = 1.6e308, .pixel_low = 100, .pixel_high = 20};
+  EXPECT_DOUBLE_EQ(axis.pixel(0), 60);
+  EXPECT_DOUBLE_EQ(axis.pixel(0.8e308), 40);
+}
+
+TEST(HeatMaps, OfManyCellsAreThinnedAndSaySo) {
+  const HeatMap whole = map_of(tabulated(300, 40, [](double i, double j) { return 1000 * i + j; }), 300);
+  const HeatMap map = thinned_map(whole, 2000);
+  EXPECT_LE(map.values.size(), 2000u);
+  EXPECT_GE(map.values.size(), 1500u);
+  ASSERT_EQ(map.values.size(), map.x.values.size() * map.y.values.size());
+  EXPECT_EQ(map.missing.size(), map.values.size());
+  const auto place = [](const std::vector<double>& values, double value) {
+    return static_cast<double>(std::find(values.begin(), values.end(), value) - values.begin());
+  };
+  for (std::size_t k = 0; k < map.values.size(); ++k) {
+    const double i = place(whole.x.values, map.x.values[k % map.x.values.size()]);
+    const double j = place(whole.y.values, map.y.values[k / map.x.values.size()]);
+    EXPECT_EQ(map.values[k], 1000 * i + j);
+  }
+  EXPECT_THAT(map.x.label, HasSubstr("structure.length, one in 6 of 300 values"));
+  EXPECT_EQ(thinned_map(whole, 12'000).x.label, "structure.length");
+}
+
+TEST(HeatMaps, OfAnyNumbersAreDrawn) {
+  for (const auto& [low, high] : strange_ends) {
+    std::vector<double> values =
+        tabulated(5, 4, [&](double i, double j) { return static_cast<int>(i + j) % 2 == 0 ? low : high; });
+    values[7] = kNaN;
+    HeatMap map = map_of(values, 5);
+    const std::string drawn = heat_map_elements(map, 900);
+    EXPECT_THAT(drawn, Not(HasSubstr("\"nan"))) << low << " " << high;
+    EXPECT_THAT(drawn, Not(HasSubstr("inf"))) << low << " " << high;
+    if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) continue;
+    map.x.values = {low, std::midpoint(low, high), high};  // axes are of finite numbers
+    map.y.values = {low, high};
+    map.values.resize(6);
+    map.missing.resize(6);
+    EXPECT_THAT(heat_map_elements(map, 900), Not(HasSubstr("\"nan"))) << low << " " << high;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <limits>
 
 #include "base/require.h"
 #include "tests/store/sample.h"
@@ -13,6 +17,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 using Opening = StudyStore::Opening;
 namespace fs = std::filesystem;
@@ -119,6 +124,31 @@ TEST_F(Merge, StopsWhenItIsAsked) {
   const std::atomic<bool> stop = true;
   EXPECT_THROW(static_cast<void>(merge_studies({path("a")}, file, origin(), {.watch = {.stop = &stop}})), Interrupted);
   EXPECT_FALSE(fs::exists(file));
+}
+
+TEST_F(Merge, OfMorePartsThanAProcessMayEverOpenSaysSo) {
+  const std::vector<fs::path> parts = parts_of(24, 12);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const rlimit limit{14, 14};
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+    EXPECT_THAT([&] { static_cast<void>(merge_studies(parts, file, origin())); },
+                ThrowsMessage<InvalidInput>(AllOf(HasSubstr("Too many open files"), Not(HasSubstr("is no store")))));
+    ::_exit(::testing::Test::HasFailure() ? 1 : 0);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0) << "see the failures above";
+}
+
+TEST_F(Merge, NamesTheFirstOfManyPartsThatAreMissing) {
+  const int most = std::numeric_limits<int>::max();
+  make_store(path("a"), 10, {.index = 1, .count = most});
+  make_store(path("b"), 10, {.index = 3, .count = most});
+  const std::vector<std::string> notes = merge_studies({path("a"), path("b")}, file, origin()).notes;
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_THAT(notes[1], AllOf(HasSubstr("no part was given of 2/2147483647, 4/2147483647, "), HasSubstr("and 2147483625 more")));
 }
 
 TEST_F(Merge, OfMorePartsThanAProcessMayOpenFilesAsksForMore) {

@@ -9,6 +9,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <functional>
 
 #include "base/output_lost.h"
 #include "base/require.h"
@@ -94,11 +95,11 @@ TEST_F(Place, WithNamesThatSqliteWouldReadAsSomethingElse) {
 
 TEST_F(Place, OfAStoreOfALaterSchemaIsRefused) {
   make_store(file, 10);
-  run_sql(file, "PRAGMA user_version = 2");
+  run_sql(file, "PRAGMA user_version = 3");
   const std::string before = content_of(file);
   EXPECT_THAT(
       [&] { StudyReader{file}; },
-      ThrowsMessage<InvalidInput>(HasSubstr("was written by a later softland (schema 2 of stores; this one reads up to 1)")));
+      ThrowsMessage<InvalidInput>(HasSubstr("was written by a later softland (schema 3 of stores; this one reads up to 2)")));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
               ThrowsMessage<InvalidInput>(HasSubstr("a later softland")));
   EXPECT_EQ(content_of(file), before);
@@ -133,6 +134,148 @@ TEST_F(Place, OfAStoreWithMissingTablesIsRefused) {
   EXPECT_THAT([&] { StudyReader{file}; }, ThrowsMessage<InvalidInput>(HasSubstr("damaged: tables are missing")));
   EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); },
               ThrowsMessage<InvalidInput>(HasSubstr("is a copy of it")));
+}
+
+// Neither read nor gone on with, in words that name file and fault.
+void expect_damaged(const fs::path& file, std::int64_t points, const std::string& reason) {
+  const auto is_damaged =
+      ThrowsMessage<InvalidInput>(AllOf(HasSubstr(file.string() + ": the store is damaged"), HasSubstr(reason)));
+  EXPECT_THAT([&] { static_cast<void>(rows_in(file)); }, is_damaged);
+  EXPECT_THAT([&] { StudyStore(file, plan_of(points), origin(), Opening::resume); }, is_damaged);
+}
+
+TEST_F(Place, OfAStoreWhoseNumbersCannotBeIsRefused) {
+  for (const auto& [sql, reason] :
+       {std::pair{"UPDATE study SET shards = 0", "it holds the part 1/0 of its plan"},
+        std::pair{"UPDATE study SET shards = -3", "it holds the part 1/-3 of its plan"},
+        std::pair{"UPDATE study SET shard = 4294967297, shards = 4294967297", "the part 4294967297/"},
+        std::pair{"UPDATE study SET points = 0", "its plan has 0 points"},
+        std::pair{"UPDATE study SET points = 9223372036854775807", "its plan has 9223372036854775807"},
+        std::pair{"UPDATE study SET points = 11", "its plan is not the one that was written"},
+        std::pair{"UPDATE columns SET unit = 'mm' WHERE unit = 'm'", "its plan is not the one"},
+        std::pair{"ALTER TABLE results DROP COLUMN bounce_count", "no such column"},
+        std::pair{"ALTER TABLE study DROP COLUMN seed", "no such column: seed"},
+        std::pair{"DELETE FROM results WHERE point = 9", "it has 9 rows, and 10 were written"},
+        std::pair{"UPDATE tally SET status = 'dome' WHERE status = 'done'", "0 rows are dome, and 9 were written"},
+        std::pair{"UPDATE results SET bounce_count = 3 WHERE point = 4", "the row of point 4 is not"},
+        std::pair{"UPDATE results SET status = 'lost' WHERE point = 4", "the row of point 4 is not"},
+        std::pair{"UPDATE results SET point = 77 WHERE point = 4", "the row of point 77 is not"}}) {
+    fs::remove(file);
+    make_store(file, 10);
+    run_sql(file, sql);
+    const auto is_damaged =
+        ThrowsMessage<InvalidInput>(AllOf(HasSubstr("study.sqlite: the store is damaged: "), HasSubstr(reason)));
+    EXPECT_THAT([&] { static_cast<void>(rows_in(file)); }, is_damaged) << sql;
+  }
+}
+
+bool passes_check_of_sqlite(const fs::path& file) {
+  try {
+    return internal::Database(file, internal::Access::read_only, "study.sqlite").text_of("PRAGMA quick_check(1)") == "ok";
+  } catch (const InvalidInput&) {
+    return false;
+  }
+}
+
+TEST_F(Place, WithAPageOfItsNeighbourIsRefused) {
+  make_store(path("sound.sqlite"), 1000);
+  const std::string sound = content_of(path("sound.sqlite"));
+  constexpr std::size_t page = 4096;
+  int unnoticed_by_sqlite = 0;
+  for (std::size_t k = 1; (k + 2) * page <= sound.size(); ++k) {
+    const std::string neighbour = sound.substr(k * page, page);
+    static_cast<void>(write("study.sqlite", std::string(sound).replace((k + 1) * page, page, neighbour)));
+    unnoticed_by_sqlite += passes_check_of_sqlite(file) ? 1 : 0;
+    EXPECT_THAT([&] { static_cast<void>(rows_in(file)); }, ThrowsMessage<InvalidInput>(HasSubstr("the store is damaged"))) << k;
+    EXPECT_THAT([&] { StudyStore(file, plan_of(1000), origin(), Opening::resume); },
+                ThrowsMessage<InvalidInput>(HasSubstr("study.sqlite.damaged")))
+        << k;
+    fs::remove(path("study.sqlite.damaged"));
+  }
+  EXPECT_GT(unnoticed_by_sqlite, 0);
+}
+
+TEST_F(Place, WithAnyByteChangedGivesItsRowsOrIsRefused) {
+  make_store(path("sound.sqlite"), 40);
+  const std::string sound = content_of(path("sound.sqlite")), rows = dump(path("sound.sqlite"));
+  int refused = 0;
+  for (std::size_t k = 0; k < sound.size(); k += sound[k] == 0 ? 331 : 31) {
+    std::string changed = sound;
+    changed[k] = static_cast<char>(changed[k] ^ (1 << (k % 8)));
+    static_cast<void>(write("study.sqlite", changed));
+    try {
+      const std::string found = dump(file);
+      EXPECT_EQ(found, rows) << "byte " << k;
+    } catch (const InvalidInput&) {
+      ++refused;
+    }
+    try {
+      StudyStore(file, plan_of(40), origin(), Opening::resume).close();
+      EXPECT_EQ(dump(file), rows) << "byte " << k;
+    } catch (const InvalidInput&) {
+    }
+    for (const std::string& name : names_in(TemporaryFolder::path())) {
+      if (name != "sound.sqlite") fs::remove(path(name));
+    }
+  }
+  EXPECT_GT(refused, 50);
+}
+
+TEST_F(Place, OfAStoreOfTheFirstSchemaIsReadAndGoneOnWith) {
+  {
+    StudyStore store(file, plan_of(100), origin(), Opening::fresh);
+    for (int point = 0; point < 60; ++point) store.add(row_of(point));
+  }
+  run_sql(file,
+          "ALTER TABLE results DROP COLUMN checksum; ALTER TABLE study DROP COLUMN checksum; PRAGMA user_version = 1; VACUUM");
+  EXPECT_EQ(rows_in(file).size(), 60u);
+  {
+    StudyStore store(file, plan_of(100), origin(), Opening::resume);
+    for (int point = 60; point < 100; ++point) store.add(row_of(point));
+    store.close();
+  }
+  make_store(path("whole.sqlite"), 100);
+  EXPECT_EQ(dump(file), dump(path("whole.sqlite")));
+  static_cast<void>(merge_studies({file}, path("merged.sqlite"), origin()));
+  EXPECT_EQ(dump(path("merged.sqlite")), dump(path("whole.sqlite")));
+  run_sql(file, "DELETE FROM results WHERE point = 9");
+  expect_damaged(file, 100, "it has 99 rows, and 100 were written");
+  // Another plan of the same columns.
+  fs::remove(file);
+  make_store(file, 50);
+  run_sql(file, "ALTER TABLE results DROP COLUMN checksum; ALTER TABLE study DROP COLUMN checksum; PRAGMA user_version = 1");
+  StudyStore finer(file, plan_of(60), origin(), Opening::resume);
+  EXPECT_TRUE(finer.find(row_of(7).content));
+}
+
+TEST_F(Place, OfACompanionOfAStoreIsNoPlaceForOne) {
+  make_store(file, 10);
+  make_store(path("part.sqlite"), 10);
+  const std::string before = content_of(file);
+  for (const char* ending : {"-wal", "-shm", "-journal", ".lock"}) {
+    const fs::path companion = file.string() + ending;
+    const auto is_refused = ThrowsMessage<InvalidInput>(
+        AllOf(HasSubstr(companion.string() + ": has the name that the store "), HasSubstr("gives to a file of its own")));
+    EXPECT_THAT([&] { StudyStore(companion, plan_of(10), origin(), Opening::fresh); }, is_refused);
+    EXPECT_THAT([&] { StudyStore(companion, plan_of(10), origin(), Opening::resume); }, is_refused);
+    EXPECT_THAT([&] { static_cast<void>(merge_studies({path("part.sqlite")}, companion, origin())); }, is_refused);
+    EXPECT_FALSE(fs::exists(companion));
+  }
+  EXPECT_EQ(content_of(file), before);
+}
+
+TEST_F(Place, WithTheLogOfAStoreThatIsGoneIsNotTaken) {
+  make_store(path("part.sqlite"), 10);
+  for (const char* ending : {"-wal", "-shm", "-journal"}) {
+    const std::string left = write(std::string("study.sqlite") + ending, "all that there is of it");
+    const auto is_refused = ThrowsMessage<InvalidInput>(AllOf(HasSubstr(left), HasSubstr("move it or name another store")));
+    EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::fresh); }, is_refused);
+    EXPECT_THAT([&] { StudyStore(file, plan_of(10), origin(), Opening::resume); }, is_refused);
+    EXPECT_THAT([&] { static_cast<void>(merge_studies({path("part.sqlite")}, file, origin())); }, is_refused);
+    EXPECT_EQ(content_of(left), "all that there is of it");
+    EXPECT_FALSE(fs::exists(file));
+    fs::remove(left);
+  }
 }
 
 TEST_F(Place, TakesOneWriterWhoSaysItsName) {
@@ -271,6 +414,84 @@ TEST_F(Place, OnAFullDiskLosesNoRowThatItTold) {
   EXPECT_EQ(status, 0) << "see the failures above";
   make_store(path("whole.sqlite"), 5000);
   EXPECT_EQ(dump(file), dump(path("whole.sqlite")));
+}
+
+// Writes rows until the store says that it lost its place, and returns what it says.
+std::string said_while_writing(StudyStore& store, std::int64_t from, std::int64_t to) {
+  for (std::int64_t point = from; point < to; ++point) {
+    try {
+      store.add(row_of(point));
+      store.flush();
+    } catch (const OutputLost& lost) {
+      return lost.what();
+    }
+  }
+  return "nothing";
+}
+
+TEST_F(Place, ThatIsTakenFromUnderAWriterLosesNoRow) {
+  const auto replaced_by_another = [this] {
+    fs::remove(file);
+    fs::remove(file.string() + "-wal");
+    fs::remove(file.string() + "-shm");
+    make_store(path("another.sqlite"), 7);
+    fs::rename(path("another.sqlite"), file);
+  };
+  const std::vector<std::function<void()>> events{
+      [this] { fs::remove(file); }, [this] { fs::rename(file, path("moved.sqlite")); }, replaced_by_another,
+      [this] { fs::remove(file), write("study.sqlite", "a text"); }, [this] { fs::remove(file.string() + "-wal"); }};
+  make_store(path("whole.sqlite"), 400);
+  for (std::size_t event = 0; event < events.size(); ++event) {
+    for (const auto& entry : fs::directory_iterator(TemporaryFolder::path())) {
+      if (entry.path().filename() != "whole.sqlite") fs::remove(entry.path());
+    }
+    StudyStore store(file, plan_of(400), origin(), Opening::fresh);
+    for (int point = 0; point < 100; ++point) store.add(row_of(point));
+    store.flush();
+    for (int point = 100; point < 200; ++point) store.add(row_of(point));
+    events[event]();
+    const std::string before = event == 2 || event == 3 ? content_of(file) : "";
+    const std::string said = said_while_writing(store, 200, 202);
+    EXPECT_THAT(said, AllOf(HasSubstr("study.sqlite"), HasSubstr("was removed, moved or replaced while it was written"),
+                            HasSubstr("study.sqlite.rescued")))
+        << event;
+    // Those who were computing meanwhile hand in what they have, and are told too.
+    for (int point = 201; point < 400; ++point) EXPECT_THROW(store.add(row_of(point)), OutputLost);
+    EXPECT_THROW(store.close(), OutputLost);
+    EXPECT_EQ(dump(file.string() + ".rescued"), dump(path("whole.sqlite"))) << event;
+    EXPECT_EQ(event == 2 || event == 3 ? content_of(file) : "", before) << "what stands there now is somebody else's";
+    StudyStore(file.string() + ".rescued", plan_of(400), origin(), Opening::resume).close();
+  }
+}
+
+TEST_F(Place, ThatIsTakenBeforeTheStoreIsClosedLosesNoRow) {
+  StudyStore store(file, plan_of(100), origin(), Opening::fresh);
+  for (int point = 0; point < 100; ++point) store.add(row_of(point));
+  store.flush();
+  fs::remove(file);
+  make_store(path("another.sqlite"), 7);
+  run_sql(path("another.sqlite"), "PRAGMA journal_mode = WAL");
+  fs::rename(path("another.sqlite"), file);
+  fs::remove(file.string() + "-wal");
+  const std::string log = write("study.sqlite-wal", "");
+  EXPECT_THAT([&] { store.close(); }, ThrowsMessage<OutputLost>(HasSubstr("study.sqlite.rescued")));
+  EXPECT_TRUE(fs::exists(log)) << "the log of the other store";
+  EXPECT_EQ(rows_in(file).size(), 7u);
+  make_store(path("whole.sqlite"), 100);
+  EXPECT_EQ(dump(file.string() + ".rescued"), dump(path("whole.sqlite")));
+}
+
+TEST_F(Place, WhoseFolderIsTakenIsRescuedElsewhere) {
+  fs::create_directory(path("folder"));
+  StudyStore store(path("folder/study.sqlite"), plan_of(100), origin(), Opening::fresh);
+  for (int point = 0; point < 100; ++point) store.add(row_of(point));
+  store.flush();
+  fs::remove_all(path("folder"));
+  const fs::path before = fs::current_path();
+  fs::current_path(TemporaryFolder::path());
+  EXPECT_THAT([&] { store.close(); }, ThrowsMessage<OutputLost>(HasSubstr(path("study.sqlite.rescued"))));
+  fs::current_path(before);
+  EXPECT_EQ(rows_in(path("study.sqlite.rescued")).size(), 100u);
 }
 
 TEST_F(Place, HeldByAnotherProgramIsToldToBeSo) {

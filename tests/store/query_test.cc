@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 using Query = WithStore;
 
@@ -67,6 +68,16 @@ TEST_F(Query, RefusesWhatIsNoComparison) {
                   AllOf(HasSubstr("no such column: bounces"),
                         HasSubstr("point, status, reason, gap_contact_m, impact_velocity_m_s, bounce_count, bounce_time_s"))));
   EXPECT_EQ(rows_in(file).size(), 10u);
+}
+
+TEST_F(Query, SaysWhatFailsAtARow) {
+  make_store(file, 10);
+  for (const char* where :
+       {"abs(-9223372036854775808) > 1", "abs(point - 9223372036854775807 - 1) > 1", "status like 'x' escape 'ab'"}) {
+    EXPECT_THAT([&] { static_cast<void>(rows_in(file, where)); },
+                ThrowsMessage<InvalidInput>(AllOf(HasSubstr(fmt::format("--where \"{}\": ", where)), Not(HasSubstr("damaged")))))
+        << where;
+  }
 }
 
 TEST_F(Query, StopsWhenItIsAsked) {
