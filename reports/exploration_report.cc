@@ -179,7 +179,7 @@ std::string front_words(const ExplorationReport& report, const ExploredFront& fr
 
 std::string front_section(const ExplorationReport& report, const ExploredFront& front) {
   if (report.aims.empty()) return {};
-  if (front.members.empty()) return section("front", "The front", "<p>No point has all of the figures.</p>\n");
+  if (front.members.empty()) return section("front", "The front", "<p>No point settles and has all of the figures.</p>\n");
   return drawn_section("front", "The front",
                        escaped(front_words(report, front)) +
                            " Move over the picture, or focus it and press ← →, to see a point; grey dots are the other points.");
@@ -324,7 +324,7 @@ std::string exploration_text(const ExplorationReport& report) {
     text += fmt::format("  {:<24}{:>10}\n", with_blanks(status), outcome.points);
   if (report.aims.empty()) return text;
   const ExploredFront front = explored_front(report);
-  if (front.members.empty()) return text + "\nNo point has all of the figures of the front.\n";
+  if (front.members.empty()) return text + "\nNo point settles and has all of the figures of the front.\n";
   text += "\n" + wrapped("Front: " + front_words(report, front)) + "\n";
   std::vector<std::size_t> columns;
   for (const ExploredAim& aim : report.aims) columns.push_back(aim.column);

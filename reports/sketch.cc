@@ -15,7 +15,7 @@
 namespace softland::internal {
 namespace {
 
-constexpr double width = 640;
+constexpr double width = 740;  // with the words beside the measures of a plate between its anchors
 
 std::string rectangle(double left, double top, double wide, double high, const char* what) {
   return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"{}\"/>\n", left, top, wide, high,

@@ -206,9 +206,9 @@ void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool
   const double accuracy = prepared.scene.simulate.accuracy;
   if (may_tighten && run.error > accuracy) {
     c.warnings.push_back(fmt::format(
-        "accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is still known to {} "
-        "only, {}",
-        engineering(accuracy, ""), engineering(own.tolerance, "", 1), engineering(run.error, "", 1),
+        "accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is {}, {}",
+        engineering(accuracy, ""), engineering(own.tolerance, "", 1),
+        std::isfinite(run.error) ? fmt::format("still known to {} only", engineering(run.error, "", 1)) : "not known at all",
         is_tighter         ? "for so small a change decides it"
         : can_tighten(own) ? "and no tighter run comes to its end"
                            : "and rounding forbids a tighter run"));

@@ -114,9 +114,12 @@ int check_verb(const Common& c) {
     const double g = p.scene.device.gap.electrode;
     const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
     const double omega = p.model.angular_frequencies()[0];
-    add("squeeze number", fmt::format("{} at the rest gap, {} closed (first mode; the film laws hold below about {})",
-                                      plain_number(squeeze_number(gas, s.width, g, omega)),
-                                      plain_number(squeeze_number(gas, s.width, closed, omega)), plain_number(incompressible)));
+    const GasRow& law = row_of(gas_laws, gas.model);
+    const std::string holds =
+        std::isfinite(law.most_squeeze) ? fmt::format("; {} holds below about {}", law.name, plain_number(law.most_squeeze)) : "";
+    add("squeeze number",
+        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(gas, s.width, g, omega)),
+                    plain_number(squeeze_number(gas, s.width, closed, omega)), holds));
     add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
                                       plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }

@@ -423,6 +423,17 @@ TEST(Accuracy, EndsWithFourWhenTheSwitchDoesNotClose) {
   EXPECT_TRUE(fs::is_empty(here.path() / "acc"));
 }
 
+TEST(Check, CitesTheLimitOfTheScenesOwnFilm) {
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/gap-closing-actuator.toml";
+  const auto said = [&](const std::string& law) {
+    return here.run({"check", scene, "--quiet", "--set", "gas={ model = \"" + law + "\" }"}).out;
+  };
+  EXPECT_THAT(said("strip"), HasSubstr("(first mode; strip holds below about 10)"));
+  EXPECT_THAT(said("reynolds"), HasSubstr("(first mode; reynolds holds below about 1000)"));
+  EXPECT_THAT(said("guo-alexeenko"), HasSubstr("(first mode)"));
+}
+
 TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {
   const Workplace here;
   const Outcome bad = here.run({"export", std::string(SOFTLAND_SOURCE_DIR) + "/scenes/nem-casimir.toml"});

@@ -201,7 +201,7 @@ TEST(ExplorationPage, BearsNoPointsAndOneAndNoneThatIsDone) {
     point.status = "numerical_failure";
     std::fill(point.values.begin() + 5, point.values.end(), Metrics::unset);
   }
-  EXPECT_TRUE(holds(exploration_html(report), "No point has all of the figures."));
+  EXPECT_TRUE(holds(exploration_html(report), "No point settles and has all of the figures."));
   report.points.resize(1);
   EXPECT_FALSE(exploration_html(report).empty());
   report.points.clear();

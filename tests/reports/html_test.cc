@@ -10,6 +10,8 @@
 #include "reports/escape.h"
 #include "reports/page_files.h"
 #include "reports/result_reader.h"
+#include "reports/sketch.h"
+#include "reports/text.h"
 #include "sample_result.h"
 
 namespace softland {
@@ -155,6 +157,27 @@ TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
   EXPECT_THAT(page, HasSubstr("± integration only"));
   result["certified"] = json::object();
   EXPECT_THAT(html_report(read_result(result)), HasSubstr("± certified"));
+}
+
+// By the width of letters that no sans serif exceeds on the average.
+TEST(Sketch, HoldsAllOfItsWords) {
+  constexpr double letter = 7.5;  // at 12.5 px
+  for (const char* structure : {"cantilever", "clamped-clamped", "plate"}) {
+    const std::string drawing = internal::sketch({.structure = structure,
+                                                  .length = 612.5e-6,
+                                                  .electrode_gap = 5.6312e-6,
+                                                  .contact_gap = 4.6312e-6,
+                                                  .electrodes = {{.name = "main", .span = {}}}});
+    static const std::regex text("<text x=\"([0-9.]+)\" y=\"[0-9.]+\" text-anchor=\"start\">([^<]*)<"),
+        box("viewBox=\"0 0 ([0-9]+)");
+    std::smatch wide;
+    ASSERT_TRUE(std::regex_search(drawing, wide, box));
+    int found = 0;
+    for (auto at = std::sregex_iterator(drawing.begin(), drawing.end(), text); at != std::sregex_iterator(); ++at, ++found)
+      EXPECT_LE(std::stod((*at)[1]) + letter * static_cast<double>(internal::columns_of((*at)[2].str())), std::stod(wide[1]))
+          << (*at)[2];
+    EXPECT_GE(found, 2) << structure;
+  }
 }
 
 TEST(HtmlReport, OfASingleRunHasNoBaselineAndNoSearch) {
