@@ -230,9 +230,8 @@ TEST_F(Stores, KeepTheNamesOfTheirCompanions) {
 
 // The store of a run that goes on for long is removed, and made anew by somebody else.
 TEST_F(Stores, ThatAreMadeAnewUnderTheirRunEndItAtOnce) {
-  const pid_t child =
-      here.start({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:100000", "--jobs", "1", "--set",
-                  "structure.modes=2", "--set", "simulate.accuracy=1e-3", "--out", "a.sqlite", "--quiet"});
+  const pid_t child = here.start({"explore", "gold.toml", "--vary", "waveform.main.level=20 V:24 V:20000", "--jobs", "1", "--set",
+                                  "structure.modes=2", "--set", "simulate.accuracy=1e-3", "--out", "a.sqlite", "--quiet"});
   const auto rows = [&] { return fs::exists(at("a.sqlite")) ? test::rows_in(at("a.sqlite")).size() : 0; };
   for (int i = 0; i < 600 && rows() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   ASSERT_GT(rows(), 0u);
