@@ -40,7 +40,8 @@ std::string baseline_label() { return "plain step"; }
 
 Headline headline(const Result& result) {
   const double window = window_end(result);
-  const bool leaves = result.closed_state && result.closed_state->stable == false;
+  const bool leaves = result.closed_state && result.closed_state->stable == false && result.best.figures &&
+                      touches(*result.best.figures) && result.best.status != "collapsed_onto_electrode";
   const std::string rest = leaves ? " It does not stay closed: the hold levels pull it through the contact in the end." : "";
   if (!result.is_search) {
     if (result.status == "interrupted") return {"The simulation was interrupted.", ""};

@@ -53,7 +53,7 @@ std::string dispersion_words(const Prepared& p, const Watch& watch) {
 
 // Under the hold levels, and up to which voltage.
 std::string closed_state_words(const ClosedState& state) {
-  std::string words = !state.exists   ? "none under the hold levels"
+  std::string words = !state.exists   ? "no equilibrium under the hold levels"
                       : !state.stable ? "stable or not is not judged: one mode of a beam clamped at both ends cannot tell"
                       : *state.stable ? "stable under the hold levels"
                                       : "unstable under the hold levels";

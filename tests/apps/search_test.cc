@@ -266,9 +266,11 @@ TEST_F(Search, PrintsItsResultAsJsonAndNothingElse) {
                                                   "title",
                                                   "tolerance",
                                                   "waveform",
+                                                  "closed_state",
                                                   "made_with"}));
-  EXPECT_EQ(keys(printed["best"]), (std::set<std::string>{"bounds", "cost", "metrics", "parameters", "waveforms"}));
-  EXPECT_EQ(keys(printed["baseline"]), (std::set<std::string>{"cost", "errors", "metrics"}));
+  EXPECT_EQ(keys(printed["best"]),
+            (std::set<std::string>{"bounds", "collapse_time_s", "cost", "metrics", "parameters", "waveforms"}));
+  EXPECT_EQ(keys(printed["baseline"]), (std::set<std::string>{"collapse_time_s", "cost", "errors", "metrics"}));
   for (const char* key : {"metrics", "errors", "best", "scene", "checks"}) EXPECT_EQ(printed[key], whole[key]) << key;
 }
 
@@ -484,7 +486,7 @@ TEST(Export, GivesADeviceTheWaveformOfItsClass) {
 
 TEST(RobustSearch, RefusesToMeasureAPullInVoltageThatThereIsNot) {
   const Workplace here;
-  write(here.path() / "casimir.toml", here.run({"new", "nem-casimir"}).out);
+  fs::copy_file(fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / "nem-casimir.toml", here.path() / "casimir.toml");
   const Outcome o = here.run({"robustness", "casimir.toml", "--samples", "4", "--calibrate", "Vdp"});
   EXPECT_EQ(o.status, 2);
   EXPECT_EQ(o.err, "softland: casimir.toml: Vdp cannot be measured: there is no electrode that pulls in\n");

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 const fs::path source = SOFTLAND_SOURCE_DIR;
 
 std::vector<fs::path> files_in(const fs::path& folder) {
-  std::vector<fs::path> files{fs::directory_iterator(folder), {}};
+  std::vector<fs::path> files{fs::recursive_directory_iterator(folder), {}};
+  std::erase_if(files, [](const fs::path& file) { return !fs::is_regular_file(file); });
   std::sort(files.begin(), files.end());
   return files;
 }

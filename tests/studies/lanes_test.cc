@@ -160,7 +160,9 @@ TEST(Lanes, LeaveTheRestToOneAtATime) {
   pressed.devices[2] = {.values = {}, .model = {}, .refusal = "none"};
   const std::vector<Signal> signals{Signal::constant(400)};
   const std::vector<DeviceOutcome> one_by_one = pressed.close(signals, Vectors::none, 1e-5);
-  EXPECT_NE(one_by_one[0].failure.find("of the electrode"), std::string::npos) << one_by_one[0].failure;
+  EXPECT_EQ(one_by_one[0].metrics.status, Status::collapsed_onto_electrode);
+  EXPECT_EQ(one_by_one[0].failure, "") << "a status of its own";
+  EXPECT_FALSE(one_by_one[0].closed());
   EXPECT_EQ(one_by_one[2].failure, "none");
   for (const Vectors vectors : vectors_here()) EXPECT_EQ(digits(pressed.close(signals, vectors, 1e-5)), digits(one_by_one));
 }
