@@ -45,7 +45,8 @@ void describe(CLI::App& app) {
       "  softland simulate my-switch.toml --set gap.contact=\"1.8 um\" --out closing\n"
       "  softland optimize my-switch.toml --actuator electrostatic --waveform pulse --budget \"90 s\"\n"
       "\nExit status: 0 done, 2 bad input, 3 numerical failure, 4 done but without success, 70 internal error (please report),\n"
-      "71 no memory or threads, 74 output lost (disk full, pipe closed, store removed), 130 interrupted (what there is is written).");
+      "71 no memory or threads, 74 output lost (disk full, pipe closed, store removed), 130 interrupted (what there is is "
+      "written).");
 }
 
 // What the words of the command line ask for goes into the options of `app`; where they ask only for help or the version, that

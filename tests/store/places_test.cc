@@ -439,7 +439,8 @@ TEST_F(Place, ThatIsTakenFromUnderAWriterLosesNoRow) {
   };
   const std::vector<std::function<void()>> events{
       [this] { fs::remove(file); }, [this] { fs::rename(file, path("moved.sqlite")); }, replaced_by_another,
-      [this] { fs::remove(file), write("study.sqlite", "a text"); }, [this] { fs::remove(file.string() + "-wal"); }};
+      [this] { fs::remove(file), static_cast<void>(write("study.sqlite", "a text")); },
+      [this] { fs::remove(file.string() + "-wal"); }};
   make_store(path("whole.sqlite"), 400);
   for (std::size_t event = 0; event < events.size(); ++event) {
     for (const auto& entry : fs::directory_iterator(TemporaryFolder::path())) {
