@@ -118,8 +118,8 @@ TEST_F(Table, HasTheSameBytesOnStandardOutputAndInAFile) {
     StudyStore store(at("a.sqlite"), test::plan_of(3), test::origin(), StudyStore::Opening::fresh);
     for (int point = 0; point < 3; ++point) {
       StoredRow row = row_of(point);
-      row.reason =
-          std::vector<std::string>{"\x01\x1b[31m \u202e\u2028", "no UTF-8: \xff\xc3", "two\nlines,\t\"quoted\"\r"}[point];
+      row.reason = std::vector<std::string>{"\x01\x1b[31m \u202e\u2028", "no UTF-8: \xff\xc3",
+                                            "two\nlines,\t\"quoted\"\r"}[static_cast<std::size_t>(point)];
       store.add(row);
     }
     store.close();
