@@ -423,7 +423,7 @@ TEST(Accuracy, EndsWithFourWhenTheSwitchDoesNotClose) {
   EXPECT_TRUE(fs::is_empty(here.path() / "acc"));
 }
 
-TEST(Check, CitesTheLimitOfTheScenesOwnFilm) {
+TEST(Check, CitesTheLimitOfTheScenesOwnFilm_optimized) {
   const Workplace here;
   const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/gap-closing-actuator.toml";
   const auto said = [&](const std::string& law) {
