@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 
 #include "reports/course.h"
 #include "reports/figure_text.h"
@@ -32,7 +34,77 @@ std::string range_words(const Points& waveform, const DriveScale& scale, bool bo
                      quantity_beside(demand.highest, demand.lowest, scale.unit), slew);
 }
 
+// How much worse a closing is than another: that it stays open, then that it rebounds and how far, then how fast it touches.
+std::array<double, 3> badness(const ResultCheck& check) {
+  if (!check.figures || !touches(*check.figures)) return {2, 0, 0};
+  return {is_clean_run(check) ? 0.0 : 1.0, is_clean_run(check) ? 0.0 : rebound_height(*check.figures),
+          (*check.figures)[&Metrics::impact_velocity]};
+}
+
+std::string speed_of(const ResultCheck& check) { return quantity((*check.figures)[&Metrics::impact_velocity], "m/s"); }
+
+// "it rebounds by up to 2.16 nm and touches at 32.5 mm/s"
+std::string course_of(const ResultCheck& check) {
+  if (!check.figures || !touches(*check.figures)) return "it does not close";
+  const double height = rebound_height(*check.figures);
+  return (height > 0 && !is_clean_run(check) ? fmt::format("it rebounds by up to {} and touches at ", quantity(height, "m"))
+                                             : "it touches at ") +
+         speed_of(check);
+}
+
+// "a tolerance of 1e-9 and with 6, 8 and 10 modes"
+std::string names_of(const std::vector<ResultCheck>& numerics) {
+  std::string tolerance, modes;
+  for (const ResultCheck& check : numerics) {
+    const std::size_t space = check.name.find(' ');
+    const std::string value = check.name.substr(space + 1);
+    if (check.name.starts_with("tolerance ")) {
+      tolerance = "a tolerance of " + value;
+    } else if (check.name.starts_with("modes ")) {
+      modes += (modes.empty() ? "" : &check == &numerics.back() ? " and " : ", ") + value;
+    } else {
+      return "other settings";  // of a file of an earlier version
+    }
+  }
+  return tolerance + (modes.empty() ? "" : (tolerance.empty() ? "" : " and with ") + modes + " modes");
+}
+
+// Where a landing belongs to the modes of its scene.
+std::string of_modes(const Result& result) {
+  if (!result.best.figures || !is_clean(*result.best.figures)) return {};
+  std::vector<ResultCheck> modes;
+  std::ranges::copy_if(result.checks, std::back_inserter(modes),
+                       [](const ResultCheck& check) { return check.name.starts_with("modes "); });
+  if (std::ranges::all_of(modes, is_clean_run)) return {};
+  const ResultCheck& worst = *worst_check(modes);
+  return fmt::format(" This landing belongs to the modes that the scene keeps: with {} of them {}.",
+                     worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
+}
+
+std::string laws_caption(const std::vector<ResultCheck>& laws) {
+  std::string names;
+  for (const ResultCheck& law : laws) names += (names.empty() ? "" : ", ") + law.name.substr(law.name.find(' ') + 1);
+  if (std::ranges::all_of(laws, is_clean_run))
+    return fmt::format(" So it does under other gas laws that hold here ({}), at {} at most.", names,
+                       speed_of(*worst_check(laws)));
+  const ResultCheck& worst = *worst_check(laws);
+  return fmt::format(" Under other gas laws that hold here ({}) this waveform may not land: {} ({}).", names, course_of(worst),
+                     worst.name.substr(worst.name.find(' ') + 1));
+}
+
 }  // namespace
+
+const ResultCheck* worst_check(const std::vector<ResultCheck>& checks) {
+  const auto worst = std::ranges::max_element(checks, {}, badness);
+  return worst == checks.end() ? nullptr : &*worst;
+}
+
+std::string_view worst_figure(const ResultCheck& check) {
+  const std::array<double, 3> bad = badness(check);
+  return bad[0] == 2 ? "initial_contact_time_s" : bad[0] == 1 ? "major_bounce_height_m" : "impact_velocity_m_s";
+}
+
+bool all_checks_land(const Result& result) { return std::ranges::all_of(result.checks, is_clean_run); }
 
 std::string best_label(const Result& result) { return result.is_search ? own_subject : "closing"; }
 
@@ -57,7 +129,7 @@ Headline headline(const Result& result) {
                    : "No feasible waveform was found";
   if (result.baseline.figures)
     line.rest = "; " + closing_clause({.subject = step_subject, .object = "it"}, result.baseline, window);
-  (line.rest.empty() ? line.main : line.rest) += "." + rest;
+  (line.rest.empty() ? line.main : line.rest) += "." + rest + of_modes(result);
   return line;
 }
 
@@ -162,37 +234,24 @@ std::string search_caption(const Result& result) {
 
 bool checks_agree(const Result& result) {
   return figure_of_run(result.best, &Metrics::bounce_count) != 0 ||
-         std::all_of(result.checks.begin(), result.checks.end(), is_clean_run);
+         std::ranges::all_of(result.checks, [](const ResultCheck& check) { return check.is_of_gas() || is_clean_run(check); });
 }
 
 std::string checks_caption(const Result& result) {
-  const std::vector<ResultCheck>& checks = result.checks;
-  if (checks.empty()) return {};
-  std::size_t clean_runs = 0;
-  std::string worst;
-  double worst_height = -1;
-  for (const ResultCheck& check : checks) {
-    if (is_clean_run(check)) {
-      ++clean_runs;
-      continue;
-    }
-    const double height = check.figures ? rebound_height(*check.figures) : Metrics::unset;
-    if (std::isfinite(height) && height > worst_height) {
-      worst_height = height;
-      worst = check.name;
-    }
+  std::vector<ResultCheck> numerics, laws;
+  for (const ResultCheck& check : result.checks) (check.is_of_gas() ? laws : numerics).push_back(check);
+  if (numerics.empty()) return {};
+  const auto clean = static_cast<std::size_t>(std::ranges::count_if(numerics, is_clean_run));
+  std::string words = fmt::format("Simulated again with {}, ", names_of(numerics));
+  const ResultCheck& worst = *worst_check(numerics);
+  if (clean == numerics.size()) {
+    words += fmt::format("it closes without a rebound, at {} at most.", speed_of(worst));
+  } else {
+    words += fmt::format("it closes without a rebound in {} of {} ways; at worst {} ({}).", clean, numerics.size(),
+                         course_of(worst), worst.name);
   }
-  const char* noun = checks.size() == 1 ? "confirmation" : "confirmations";
-  if (clean_runs == checks.size()) {
-    return checks.size() == 1
-               ? "The winner was simulated again another way; that run closes without a rebound too."
-               : fmt::format("The winner was simulated again in {} other ways; all of them close without a rebound.",
-                             checks.size());
-  }
-  std::string words = fmt::format("{} of {} {} of the winner {} without a rebound", clean_runs, checks.size(), noun,
-                                  clean_runs == 1 ? "closes" : "close");
-  if (worst_height > 0) words += fmt::format("; the highest rebound is {} (“{}”)", quantity(worst_height, "m"), worst);
-  return words + ".";
+  if (!laws.empty()) words += laws_caption(laws);
+  return words;
 }
 
 std::string families_caption(const Result& result) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "reports/result.h"
 
@@ -30,8 +32,14 @@ struct Headline {
 [[nodiscard]] std::string robust_caption(const Result& result);
 /// How near the winner comes to the least time of any waveform; empty where that is not known.
 [[nodiscard]] std::string limit_words(const Result& result);
-/// False when the winner is free of rebounds but one of its confirmations is not.
+/// False when the winner is free of rebounds but one of its confirmations under its own gas law is not.
 [[nodiscard]] bool checks_agree(const Result& result);
+/// Whether the winner closes without a rebound in all confirmations.
+[[nodiscard]] bool all_checks_land(const Result& result);
+/// The closing to fear most: one that stays open, then the highest rebound, then the fastest touch. Null where there is none.
+[[nodiscard]] const ResultCheck* worst_check(const std::vector<ResultCheck>& checks);
+/// The key of the figure that makes it so.
+[[nodiscard]] std::string_view worst_figure(const ResultCheck& check);
 
 /// "Softland's waveform" and "plain step", or "closing" for a single run.
 [[nodiscard]] std::string best_label(const Result& result);

@@ -46,6 +46,8 @@ struct ResultRun {
 struct ResultCheck {
   std::string name, status;
   std::optional<FigureValues> figures;
+  /// Under another gas law: what differs is what is simulated, not how.
+  [[nodiscard]] bool is_of_gas() const { return name.starts_with("gas "); }
 };
 
 struct ResultSearch {
@@ -154,6 +156,7 @@ struct Result {
   std::optional<Certificate> certificate;
   std::optional<ClosedState> closed_state;  ///< under the hold levels; none without a contact
   std::vector<ResultCheck> checks;
+  std::optional<double> evaluations_of_modes;  ///< see OptimizeResult
   ResultSearch search;
   std::optional<ResultRobust> robust;
   std::optional<ResultSeeds> seeds;

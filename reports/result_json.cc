@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "reports/findings.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/seeds_report.h"
@@ -170,6 +171,13 @@ void add_search(json& j, const Result& r) {
   for (const ResultCheck& c : r.checks)
     checks.push_back({{"name", c.name}, {"metrics", with_status(figures_json(*c.figures, of_no_drive), c.status)}});
   j["checks"] = std::move(checks);
+  j["confirmed"] = internal::all_checks_land(r);
+  if (const ResultCheck* worst = internal::worst_check(r.checks)) {
+    const std::string_view figure = internal::worst_figure(*worst);
+    const json figures = figures_json(*worst->figures, of_no_drive);
+    j["worst"] = {{"name", worst->name}, {"figure", figure}, {"value", figures[std::string(figure)]}};
+  }
+  if (r.evaluations_of_modes) j["evaluations_with_more_modes"] = json_number(*r.evaluations_of_modes);
 }
 
 }  // namespace

@@ -149,6 +149,7 @@ Result result_of(const OptimizeResult& found, const OptimizeOptions& options, co
   r.work = found.best->trajectory.work;
   r.parameters = found.parameters;
   for (const Variable& v : found.variables) r.bounds[v.name] = {v.lower, v.upper};
+  r.evaluations_of_modes = static_cast<double>(found.evaluations_of_modes);
   for (const ConfirmingRun& c : found.checks) {
     r.checks.push_back(
         {.name = c.name, .status = std::string(to_string(c.metrics.status)), .figures = finite(FigureValues(c.metrics))});

@@ -349,7 +349,7 @@ LimitLanding landing_of(const Prepared& prepared, const LeastTime& found, Actuat
   if (!soft(landing.closing.metrics)) return landing;
   landing.checks = confirm(landing.scene);
   landing.bounce_free =
-      std::all_of(landing.checks.begin(), landing.checks.end(), [&](const ConfirmingRun& c) { return soft(c.metrics); });
+      std::ranges::all_of(landing.checks, [&](const ConfirmingRun& c) { return c.varied == Varied::gas || soft(c.metrics); });
   return landing;
 }
 

@@ -13,6 +13,7 @@
 #include "studies/family_search.h"
 #include "studies/joint_swings.h"
 #include "studies/limit.h"
+#include "studies/modes_of_search.h"
 #include "studies/plain_step.h"
 #include "studies/search_setting.h"
 #include "studies/verification.h"
@@ -20,13 +21,15 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
-constexpr std::size_t most_sure = 4;        // more, where those did not stand up
-constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
-constexpr long fewest_for_landings = 1000;  // evaluations, for which landings at rest are worth their seconds
-constexpr double soft_touch = 0.01;         // of the plain step's impact velocity, at which they touch
-constexpr double distinct = 1.01;           // ratio of the costs of two candidates
-constexpr double opening = 0.6;             // share of the budget that several families divide before the best goes on
+constexpr std::size_t most_candidates = 8;     // of the search, verified at the most
+constexpr std::size_t most_sure = 4;           // more, where those did not stand up
+constexpr std::size_t most_of_family = 4;      // of each family, where none was confirmed
+constexpr long fewest_for_landings = 1000;     // evaluations, for which landings at rest are worth their seconds
+constexpr double least_for_landings = 60;      // [s], likewise
+constexpr double soft_touch = 0.01;            // of the plain step's impact velocity, at which they touch
+constexpr double distinct = 1.01;              // ratio of the costs of two candidates
+constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
+constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
 
 // The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
 // reason.
@@ -72,12 +75,11 @@ class Search {
   // candidates, and the search starts there, or, from those of another family, at the nearest waveform of its own.
   void begin() {
     const SearchSetting& setting = settings_.front();
-    const std::vector<Signal> drives = setting.given.signals();
-    if (!same_drives(drives, setting.baseline_scene.signals()))
-      refine(drives, setting.given.drives.waveforms, with_waveforms(setting.given, {}));
+    if (!setting.begins_plainly())
+      refine(setting.given.signals(), setting.given.drives.waveforms, with_waveforms(setting.given, {}));
     for (const StartingWaveforms& start : options_.starts) {
       const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
-      refine(signals_of(setting.drives(searched)), searched, setting.scene(searched));
+      refine(setting.given.driven(signals_of(setting.drives(searched))), searched, setting.scene(searched));
     }
     for (const auto& landing : landings_at_rest()) {
       for (FamilySearch& family : families_) family.begin_at(landing);
@@ -89,26 +91,30 @@ class Search {
     }
   }
 
+  void begin_at(const std::map<std::string, Waveform>& waveforms) {
+    for (FamilySearch& family : families_) family.begin_at(waveforms);
+  }
+
   // Of a piezo and of several drives, which can bring all modes to rest.
   [[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest() const {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
     const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
-    if (!can_rest || options_.max_evaluations < fewest_for_landings) return {};
-    return softland::landings_at_rest(setting.given, options_.actuator, soft_touch * setting.scale.step.touch_speed,
+    if (!can_rest || options_.max_evaluations < fewest_for_landings || options_.max_seconds < least_for_landings) return {};
+    return softland::landings_at_rest(setting.within_limits(), options_.actuator, soft_touch * setting.scale.step.touch_speed,
                                       {.stop = options_.stop});
   }
 
   OptimizerResult run() {
     const bool has_own = options_.target.has_own_cost();
+    const double all_seconds = options_.max_seconds - seconds();
     if (families_.size() == 1) {
-      go_on(0, options_.max_evaluations, options_.max_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same,
-            false);
+      go_on(0, options_.max_evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, false);
       return all_;
     }
     // The whole search for bounce first: no winner of that is then better than one for another target.
     const long own = has_own ? options_.max_evaluations / own_share : 0;
-    if (!run_families(options_.max_evaluations - own, options_.max_seconds * (has_own ? 1 - 1.0 / own_share : 1),
+    if (!run_families(options_.max_evaluations - own, all_seconds * (has_own ? 1 - 1.0 / own_share : 1),
                       has_own ? Costs::leading : Costs::same) ||
         !has_own)
       return all_;
@@ -118,17 +124,15 @@ class Search {
     return all_;
   }
 
-  // The best of the landings that were given and of what the search came upon, each verified.
-  Verification verified() const {
-    Verification all(settings_.front(), options_);
-    for (const Landing& given : landings_) all.add(given.scene, given.cost, given.family, given.parameters);
+  // The landings that were given and the best of what the search came upon.
+  void verify(Verification& all) const {
+    for (const FoundWaveform& given : landings_) all.add(given);
     std::vector<std::vector<double>> tried;
     std::vector<long> numbers;  // theirs
     const auto add = [&](const Evaluation& e) {
-      const std::size_t k = family_of(e);
       tried.push_back(e.x);
       numbers.push_back(e.index);
-      all.add(families_[k].scene(e), e.value, k, families_[k].named(e));
+      all.add(found(e));
     };
     for (const Evaluation& e : candidates(all_.improvements)) {
       add(e);
@@ -155,7 +159,36 @@ class Search {
         }
       }
     }
-    return all;
+  }
+
+  // Candidates of one family, the best first.
+  struct Promising {
+    std::size_t family = 0;
+    std::vector<std::map<std::string, Waveform>> waveforms = {};
+  };
+
+  // Of the family that comes up with the best by another cost.
+  [[nodiscard]] Promising promising(const SearchSetting& other) const {
+    Promising best;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < families_.size(); ++k) {
+      std::vector<std::pair<double, std::map<std::string, Waveform>>> own;
+      for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
+        std::map<std::string, Waveform> waveforms = families_[k].waveforms(e);
+        own.emplace_back(other.price(other.given.driven(signals_of(other.drives(waveforms)))).own, std::move(waveforms));
+      }
+      std::ranges::stable_sort(own, {}, &std::pair<double, std::map<std::string, Waveform>>::first);
+      if (own.empty() || !(own.front().first < least)) continue;
+      least = own.front().first;
+      best = {.family = k};
+      for (auto& [cost, waveforms] : own) best.waveforms.push_back(std::move(waveforms));
+    }
+    return best;
+  }
+
+  /// Since it was made.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
   // What every family came to.
@@ -171,13 +204,14 @@ class Search {
   }
 
  private:
-  // A landing to begin with. Its parameters are empty where no family can describe it.
-  struct Landing {
-    SceneFile scene;
-    double cost;
-    std::size_t family;
-    std::map<std::string, double> parameters;
-  };
+  [[nodiscard]] FoundWaveform found(const Evaluation& e) const {
+    const std::size_t k = family_of(e);
+    return {.text = families_[k].scene(e),
+            .cost = e.value,
+            .family = names_[k],
+            .variables = settings_[k].space.variables(),
+            .parameters = families_[k].named(e)};
+  }
 
   // Each family has a share of the budget; the best goes on with the rest. By the cost of bounce each begins at what those before
   // it have found; by the own cost, where that would draw all into one valley, only the best does. False where the search is to
@@ -199,12 +233,11 @@ class Search {
     for (FamilySearch& family : families_) family.begin_at(waveforms);
     if (!(cost < never_touched)) return;
     Evaluation given{.index = given_index, .value = cost, .x = {}};
-    Landing landing{.scene = scene, .cost = cost, .family = 0, .parameters = {}};
+    FoundWaveform landing{
+        .text = scene, .cost = cost, .family = names_[0], .variables = settings_[0].space.variables(), .parameters = {}};
     for (std::size_t k = 0; k < families_.size() && given.x.empty(); ++k) {
       given.x = families_[k].point(waveforms);
-      if (given.x.empty()) continue;
-      landing.family = k;
-      landing.parameters = families_[k].named(given);
+      if (!given.x.empty()) landing = {scene, cost, names_[k], settings_[k].space.variables(), families_[k].named(given)};
     }
     landings_.push_back(std::move(landing));
     if (progress_.best_cost <= cost) return;
@@ -281,20 +314,79 @@ class Search {
     if (all_.termination == Termination::no_feasible_point) all_.termination = Termination::evaluation_budget;
   }
 
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
-
   const std::vector<SearchSetting>& settings_;
   const OptimizeOptions& options_;
   std::vector<std::string> names_;  // of the families
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::deque<FamilySearch> families_;
-  std::vector<Landing> landings_;
+  std::vector<FoundWaveform> landings_;
   OptimizeProgress progress_;
   OptimizerResult all_;
   std::uint64_t runs_ = 0;
   long next_index_ = 0;
+};
+
+// A search goes on where what it has found belongs to the modes of the scene: with gentle edges, then by the worst of beams. What
+// was searched with gentle edges is only sifted and polished so. These evaluations are not on record: a search that is resumed
+// makes them again.
+class SearchBeyondModes {
+ public:
+  /// `seconds` since the search began.
+  SearchBeyondModes(const OptimizeOptions& options, std::function<double()> seconds, Verification& verified)
+      : options_(options), seconds_(std::move(seconds)), verified_(verified) {
+    own_.starts.clear();
+    own_.memory = nullptr;
+    own_.more_evaluations = 0;
+    own_.on_start = {};
+    own_.on_progress = {};
+    own_.on_improvement = {};
+  }
+
+  /// After a search without gentle edges, which `gentle` has; the evaluations.
+  long go_on(const Search& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
+    if (!verified_.belongs_to_modes()) return 0;
+    if (gentle.empty()) return sift(search, settings);
+    if (!begin("searching on with gentler edges", options_.max_evaluations / 2)) return 0;
+    Search other(gentle, own_);
+    other.begin();
+    (void)other.run();
+    other.verify(verified_);
+    return sift(other, gentle);
+  }
+
+  /// After a search with gentle edges, or whose drivers have no others; the evaluations.
+  long sift(const Search& search, const std::vector<SearchSetting>& settings) {
+    if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
+    if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst))
+      return evaluations_;
+    const auto [k, waveforms] = search.promising(by_the_worst_of_modes(settings.front()));
+    const std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
+    own_.family = families_of(options_.family)[k];
+    Search other(worst, own_);
+    for (const auto& start : waveforms) other.begin_at(start);
+    (void)other.run();
+    other.verify(verified_);
+    return evaluations_;
+  }
+
+ private:
+  // False where there is no time.
+  bool begin(std::string what, long evaluations) {
+    own_.max_evaluations = std::max(evaluations, 1L);
+    own_.max_seconds = options_.max_seconds - seconds_();
+    own_.on_evaluation = [this, what = std::move(what), begun = evaluations_](const Evaluation&, const OptimizeProgress&) {
+      ++evaluations_;
+      if (options_.on_preparation)
+        options_.on_preparation(what, static_cast<double>(evaluations_ - begun) / static_cast<double>(own_.max_evaluations));
+    };
+    return own_.max_seconds > 0 && (options_.stop == nullptr || !*options_.stop);
+  }
+
+  const OptimizeOptions& options_;
+  std::function<double()> seconds_;
+  OptimizeOptions own_ = options_;
+  Verification& verified_;
+  long evaluations_ = 0;
 };
 
 }  // namespace
@@ -318,18 +410,23 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
                       {.stop = options.stop, .progress = options.on_preparation}, options.conditions);
   const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
-  Search search(settings, options);
+  const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family);
+  const bool is_gentle = begins_gently(gentle, options.starts);
+  Search search(is_gentle ? gentle : settings, options);
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;
   result.search = search.run();
-  Verification verified = search.verified();
-  const std::size_t family = verified.family().value_or(0);
+  Verification verified(setting, options);
+  search.verify(verified);
   result.families = search.families();
-  result.family = result.families[family].family;
-  result.prefix = prefix_of(options.family, result.family);
-  result.variables = settings[family].space.variables();
+  result.family = result.families.front().family;  // where there is no winner
+  result.variables = setting.space.variables();
+  SearchBeyondModes beyond(
+      options, [&] { return search.seconds(); }, verified);
+  result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);
   verified.move_to(result);
+  result.prefix = prefix_of(options.family, result.family);
   return result;
 }
 

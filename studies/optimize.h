@@ -18,6 +18,7 @@
 #include "config/criterion.h"
 #include "objectives/cost.h"
 #include "optimizers/problem.h"
+#include "studies/confirmation.h"
 #include "studies/evaluation_memory.h"
 #include "studies/search_space.h"
 #include "studies/simulate.h"
@@ -75,14 +76,6 @@ struct OptimizeOptions {
   std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
 };
 
-struct ConfirmingRun {
-  std::string name;  ///< "tolerance 1e-9", "6 modes"
-  Metrics metrics;
-};
-
-/// The same closing by a tighter integrator, and with a richer beam where there is one.
-[[nodiscard]] std::vector<ConfirmingRun> confirm(const Prepared& winner);
-
 /// What the search within one family came to.
 struct SearchedFamilyResult {
   std::string family;
@@ -106,7 +99,9 @@ struct OptimizeResult {
   double baseline_cost = std::numeric_limits<double>::quiet_NaN();
   OptimizerResult search;
   bool goal_met = false;
-  bool confirmed = false;  ///< the goal is met in the confirming runs too
+  bool confirmed = false;  ///< the goal is met with a tighter integrator and with more modes too
+  /// Evaluations on top of the search's, each with all these numbers of modes, where its landings belonged to those of the scene.
+  long evaluations_of_modes = 0;
   bool better_than_baseline = false;
   /// A goal that is met is a success, whatever the plain step does.
   [[nodiscard]] bool is_success() const { return best && (goal_met || better_than_baseline); }

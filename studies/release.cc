@@ -285,8 +285,9 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
     r.checks.push_back({name, figures});
   };
   check("tolerance " + engineering(tight_tolerance, ""), given.model, tight_tolerance);
-  if (const std::optional<Device> richer = with_more_modes(given.scene.device))
-    check(fmt::format("{} modes", richer->structure.modes), Switch(*richer, given.quadrature), given.tolerance);
+  for (const Device& richer : with_more_modes(given.scene.device))
+    check(fmt::format("modes {}", richer.structure.modes), Switch(richer, quadrature_of_richer(given.quadrature, richer)),
+          given.tolerance);
   r.better = better(r.best->figures, r.plain.figures);
   const auto meets_goal = [&](const auto& run) { return is_open_with_drives(run.figures, r.band); };
   r.goal_met = meets_goal(*r.best);

@@ -22,6 +22,7 @@ constexpr double latest_touch = 2.5;  // times the baseline's first touch
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
 constexpr double most_broken = 10;         // a condition, by a part of its limit
+constexpr double hopeless = 0.25;          // of the cost of the plain step: what costs more is not tried with richer beams
 constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
@@ -57,8 +58,12 @@ const FigureWithSlope* figure_with_slope(const Criterion& one) {
 
 struct RecordedClosing {
   RecordedClosing(const SearchSetting& setting, std::vector<Signal> under)
+      : RecordedClosing(setting, std::move(under), setting.given.model, setting.run.closed_potential) {}
+  RecordedClosing(const SearchSetting& setting, std::vector<Signal> under, const Switch& model, double closed_potential)
       : signals(std::move(under)), observer(setting.scale.contact_gap, setting.given.scene.metrics), tape(observer) {
-    const Trajectory end = observe_closing(setting.given.model, signals, setting.run_of(signals), tape);
+    ClosingOptions run = setting.run_of(signals);
+    run.closed_potential = closed_potential;
+    const Trajectory end = observe_closing(model, signals, run, tape);
     status = end.status;
     figures = observer.cost.figures(end);
     metrics = observer.metrics.metrics(end);
@@ -135,7 +140,7 @@ std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform
 
 bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) const {
   return std::all_of(searched.begin(), searched.end(),
-                     [&](const auto& one) { return violation(signal(one.second), given.drives.limits.at(one.first)).empty(); });
+                     [&](const auto& one) { return violation(signal(one.second), limits.at(one.first)).empty(); });
 }
 
 // A drive that still changes after the score would open the switch again unseen.
@@ -146,9 +151,21 @@ ClosingOptions SearchSetting::run_of(const std::vector<Signal>& signals) const {
   return own;
 }
 
-Prices SearchSetting::price(const std::vector<Signal>& signals) const { return price(RecordedClosing(*this, signals)); }
+Prices SearchSetting::price(const std::vector<Signal>& signals) const { return worst_price(RecordedClosing(*this, signals)); }
 
-Prices SearchSetting::price(const RecordedClosing& closing) const {
+Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
+  Prices worst = price_of(closing);
+  for (const RicherBeam& beam : richer) {
+    if (!(worst.own < hopeless * baseline_cost)) break;
+    const Prices other = price_of(RecordedClosing(*this, closing.signals, beam.model, beam.closed_potential));
+    worst.leading = std::max(worst.leading, other.leading);
+    worst.own = std::max(worst.own, other.own);
+    worst.lands = worst.lands && other.lands;
+  }
+  return worst;
+}
+
+Prices SearchSetting::price_of(const RecordedClosing& closing) const {
   const CostFigures& figures = closing.figures;
   const auto by = [&](const Aim& one) { return cost(one, closing.status, figures, scale, given.scene.metrics); };
   Prices prices{.leading = by(Target::bounce)};
@@ -182,7 +199,7 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
     if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
   }
   auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(signals_of(drives(searched))));
-  Prices found = price(*closing);
+  Prices found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
   found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
   if (memory != nullptr) memory->note(key, {.cost = found.own, .leading = found.leading, .lands = found.lands});
@@ -190,6 +207,7 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
 }
 
 std::string SearchSetting::gradient_refusal(const Aim& aim) const {
+  if (!richer.empty()) return "the worst of several beams has no gradient";
   if (aim.is_about(Target::drive)) return "the energy of the drives has no gradient";
   for (const Criterion& one : conditions) {
     const Figure& figure = all_figures[one.figure];
@@ -260,6 +278,14 @@ void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) c
   }
 }
 
+bool SearchSetting::begins_plainly() const { return same_drives(given.signals(), baseline_scene.signals()); }
+
+Prepared SearchSetting::within_limits() const {
+  Prepared limited = given;
+  limited.drives.limits = limits;
+  return limited;
+}
+
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                              const Watch& watch, std::vector<Criterion> conditions) {
   Prepared given = prepare_and_choose(file, true, watch);
@@ -290,6 +316,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   });
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
   SearchSpace space(given, actuator, family, scale.step.first_touch);
+  std::map<std::string, DriverLimits> limits = given.drives.limits;
   return {.target = target,
           .conditions = std::move(conditions),
           .given = std::move(given),
@@ -298,7 +325,8 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
           .scale = scale,
           .baseline_cost = baseline_cost,
           .run = std::move(run),
-          .space = std::move(space)};
+          .space = std::move(space),
+          .limits = std::move(limits)};
 }
 
 std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,

@@ -34,6 +34,12 @@ struct LastClosing {
   std::shared_ptr<const RecordedClosing> closing = {};
 };
 
+/// A switch with more modes than the scene's.
+struct RicherBeam {
+  Switch model;
+  double closed_potential = std::numeric_limits<double>::quiet_NaN();  ///< see ClosingOptions
+};
+
 struct SearchSetting {
   Aim target;
   std::vector<Criterion> conditions;  ///< that a landing has to fulfil, on figures of all_figures
@@ -44,6 +50,9 @@ struct SearchSetting {
   double baseline_cost = 0;
   ClosingOptions run;  ///< of a candidate
   SearchSpace space;
+  std::map<std::string, DriverLimits> limits;  ///< that searched waveforms keep: those of the drivers, or gentler edges
+  /// Where there are any, a candidate is priced by the worst of its closings with the scene's modes and with these.
+  std::vector<RicherBeam> richer = {};
 
   /// The scene with these waveforms of the searched drives; the others stand as in the baseline.
   [[nodiscard]] SceneFile scene(const std::map<std::string, Waveform>& searched) const;
@@ -54,7 +63,6 @@ struct SearchSetting {
   /// How a candidate under these signals is run.
   [[nodiscard]] ClosingOptions run_of(const std::vector<Signal>& signals) const;
   [[nodiscard]] Prices price(const std::vector<Signal>& signals) const;
-  [[nodiscard]] Prices price(const RecordedClosing& closing) const;
   /// Of a point of the search space, on the nominal device; infinite where it leaves the limits of a driver. What `memory` holds
   /// is not simulated again; what is, becomes `last`.
   [[nodiscard]] Prices price_at(std::span<const double> x, EvaluationMemory* memory = nullptr, LastClosing* last = nullptr) const;
@@ -75,6 +83,14 @@ struct SearchSetting {
   [[nodiscard]] std::string gradient_refusal(const Aim& aim) const;
   /// Throws InvalidInput with the name of the first that a search cannot begin with, and why.
   void check_starts(const std::vector<StartingWaveforms>& starts) const;
+  /// Whether the scene holds no waveform but the plain step.
+  [[nodiscard]] bool begins_plainly() const;
+  /// The scene, whose drivers have the limits that searched waveforms keep.
+  [[nodiscard]] Prepared within_limits() const;
+
+ private:
+  [[nodiscard]] Prices price_of(const RecordedClosing& closing) const;
+  [[nodiscard]] Prices worst_price(const RecordedClosing& closing) const;
 };
 
 /// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.

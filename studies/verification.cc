@@ -1,15 +1,14 @@
 #include "studies/verification.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
 
-#include "base/engineering.h"
 #include "objectives/figures.h"
+#include "studies/confirmation.h"
+#include "studies/modes_of_search.h"
 
 namespace softland {
 namespace {
@@ -28,7 +27,8 @@ double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
 }  // namespace
 
 Verification::Verification(const SearchSetting& setting, const OptimizeOptions& options)
-    : given_(setting.given),
+    : worst_(by_the_worst_of_modes(setting)),
+      given_(setting.given),
       baseline_(setting.baseline.metrics),
       target_(options.target),
       conditions_(options.conditions),
@@ -39,16 +39,21 @@ bool Verification::Verified::better_than(const Verified& other) const {
          std::tuple(-static_cast<int>(other.belief), other.broken, other.figure, other.cost);
 }
 
-void Verification::add(const SceneFile& text, double cost, std::size_t family, std::map<std::string, double> parameters) {
-  Prepared scene = read_back(text, "best.toml", given_);
+std::optional<Varied> Verification::undone_by(const Prepared& scene) const {
+  for (const OtherWay& way : other_numerics(scene)) {
+    if (!met(simulated(scene, way).metrics)) return way.varied;
+  }
+  return std::nullopt;
+}
+
+void Verification::add(const FoundWaveform& candidate) {
+  Prepared scene = read_back(candidate.text, "best.toml", given_);
   Closing closing = simulate(scene, true, watch_);
   const Metrics& m = closing.metrics;
   Verified now{.scene = std::move(scene),
                .closing = closing,
-               .checks = {},
-               .family = family,
-               .parameters = std::move(parameters),
-               .cost = cost,
+               .found = candidate,
+               .cost = candidate.cost,
                .figure = figure(target_, m, baseline_),
                .broken = broken(conditions_, m),
                .belief = met(m)                             ? Belief::meets_goal
@@ -57,18 +62,16 @@ void Verification::add(const SceneFile& text, double cost, std::size_t family, s
                                                             : Belief::touches};
   if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))
     now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
-  if (now.belief == Belief::meets_goal || !best_ || now.better_than(*best_)) now.checks = confirm(now.scene);
-  if (now.belief == Belief::meets_goal &&
-      std::all_of(now.checks.begin(), now.checks.end(), [&](const ConfirmingRun& c) { return met(c.metrics); }))
-    now.belief = Belief::confirmed;
+  if (now.belief == Belief::meets_goal) {
+    now.failed = undone_by(now.scene);
+    if (!now.failed) now.belief = Belief::confirmed, now.cost = worst_.price(now.scene.signals()).own;
+  }
   if (!best_ || now.better_than(*best_)) best_ = std::move(now);
 }
 
 double Verification::best_cost() const { return best_ ? best_->cost : std::numeric_limits<double>::infinity(); }
 
 bool Verification::decided(double cost) const { return confirmed() && best_->cost <= cost; }
-
-std::optional<std::size_t> Verification::family() const { return best_ ? std::optional(best_->family) : std::nullopt; }
 
 void Verification::move_to(OptimizeResult& result) {
   if (!best_) return;
@@ -77,15 +80,17 @@ void Verification::move_to(OptimizeResult& result) {
   const Metrics& m = best_->closing.metrics;
   // Where the plain step does not bounce either, what is left to gain is in the cost.
   const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
-  result.better_than_baseline = own < of_step || (own == of_step && result.goal_met && best_->cost < result.baseline_cost);
+  result.better_than_baseline = own < of_step || (own == of_step && result.goal_met && best_->found.cost < result.baseline_cost);
   for (const Criterion& one : conditions_) {
     if (softland::broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
   }
+  result.checks = confirm(best_->scene);
   result.best_scene = std::move(best_->scene);
   result.best = std::move(best_->closing);
-  result.checks = std::move(best_->checks);
-  result.parameters = std::move(best_->parameters);
-  result.best_cost = best_->cost;
+  result.family = std::move(best_->found.family);
+  result.variables = std::move(best_->found.variables);
+  result.parameters = std::move(best_->found.parameters);
+  result.best_cost = best_->found.cost;
 }
 
 // Of a confirming run nothing is known that is not of the motion: its hold force and drives are those of the winner.
@@ -97,24 +102,6 @@ std::vector<Criterion> Verification::known(const Metrics& m) const {
     if (std::isfinite(all_figures[one.figure].value(m))) all.push_back(one);
   }
   return all;
-}
-
-std::vector<ConfirmingRun> confirm(const Prepared& winner) {
-  const std::vector<Signal> signals = winner.signals();
-  const auto run = [&](const Switch& model, double tolerance) {
-    return metrics(simulate_closing(model, signals, {.duration = winner.duration, .tolerance = tolerance}), winner.scene.metrics);
-  };
-  std::vector<ConfirmingRun> runs{{"tolerance " + engineering(tight_tolerance, ""), run(winner.model, tight_tolerance)}};
-  if (const std::optional<Device> richer = with_more_modes(winner.scene.device))
-    runs.push_back({fmt::format("{} modes", richer->structure.modes), run(Switch(*richer, winner.quadrature), winner.tolerance)});
-  return runs;
-}
-
-std::optional<Device> with_more_modes(Device device) {
-  constexpr int more = 2, most = 20;
-  if (device.structure.kind == StructureKind::plate) return std::nullopt;
-  device.structure.modes = std::min(most, device.structure.modes + more);
-  return device;
 }
 
 bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {

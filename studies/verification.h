@@ -1,8 +1,7 @@
 // What of a search's candidates is believed: none before its run over the whole window, nor preferred where a tighter integrator
-// or a richer beam undoes its landing.
+// or a richer beam undoes its landing. Of those that stand up to these the best is the one whose worst is best.
 #pragma once
 
-#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,10 +12,14 @@
 
 namespace softland {
 
-/// Of the integrator, in a run that confirms another.
-inline constexpr double tight_tolerance = 1e-9;
-/// The richer beam of a run that confirms another; none of a plate, which has one mode.
-[[nodiscard]] std::optional<Device> with_more_modes(Device device);
+/// What a search came upon.
+struct FoundWaveform {
+  SceneFile text;
+  double cost = 0;
+  std::string family;
+  std::vector<Variable> variables;           ///< of the family
+  std::map<std::string, double> parameters;  ///< by drive.name; empty where the family cannot describe it
+};
 
 /// Verifies candidates, and keeps the best.
 class Verification {
@@ -24,16 +27,15 @@ class Verification {
   /// Keeps references to `setting`.
   Verification(const SearchSetting& setting, const OptimizeOptions& options);
 
-  /// A candidate of a family, by its number, as a scene file, with its parameters by drive.name.
-  void add(const SceneFile& text, double cost, std::size_t family, std::map<std::string, double> parameters);
-  /// The cost of the best so far; infinite where there is none.
+  void add(const FoundWaveform& candidate);
+  /// The cost of the best so far, by the worst of beams where it is confirmed; infinite where there is none.
   [[nodiscard]] double best_cost() const;
   /// Whether the best was confirmed by a tighter integrator and a richer beam.
   [[nodiscard]] bool confirmed() const { return best_ && best_->belief == Belief::confirmed; }
   /// Whether no candidate that costs as much or more can be better.
   [[nodiscard]] bool decided(double cost) const;
-  /// The family of the best; none where there is no candidate.
-  [[nodiscard]] std::optional<std::size_t> family() const;
+  /// Whether the best meets its goal with the modes of the scene, and not with more of them.
+  [[nodiscard]] bool belongs_to_modes() const { return best_ && best_->failed == Varied::modes; }
   /// Hands the winner over, where there is one.
   void move_to(OptimizeResult& result);
 
@@ -45,20 +47,21 @@ class Verification {
   struct Verified {
     Prepared scene;
     Closing closing;
-    std::vector<ConfirmingRun> checks;
-    std::size_t family = 0;
-    std::map<std::string, double> parameters;
-    double cost = 0;
+    FoundWaveform found;
+    double cost = 0;    // the search's own; of what is confirmed the worst of beams
     double figure = 0;  // the target's own; rebounds that are not significant are equal
     double broken = 0;  // by how much it breaks the conditions
     Belief belief = Belief::touches;
+    std::optional<Varied> failed = {};  // what meets the goal no more, where this is varied
 
     [[nodiscard]] bool better_than(const Verified& other) const;
   };
 
   [[nodiscard]] bool met(const Metrics& m) const;
+  [[nodiscard]] std::optional<Varied> undone_by(const Prepared& scene) const;
   [[nodiscard]] std::vector<Criterion> known(const Metrics& m) const;
 
+  const SearchSetting worst_;  // prices candidates by the worst of beams
   const Prepared& given_;
   const Metrics& baseline_;
   Aim target_;

@@ -196,7 +196,7 @@ json sample_optimize_result(std::size_t rows_per_curve) {
        {{0, 0}, {5e-6, 0.17327}, {19.74662e-6, 0.17327}, {24.74662e-6, 0.60281}, {40.90419e-6, 0.60281}, {45.90419e-6, 0}}}};
   result["baseline"]["waveforms"] = {{"main", {{0, 28.087}}}, {"piezo", {{0, 0}}}};
   result["checks"] = {{{"name", "tolerance 1e-9"}, {"metrics", metrics(44.502e-6, 44.502e-6, 0, 0, 0.88e-3, 2.7e-6)}},
-                      {{"name", "6 modes"}, {"metrics", metrics(44.31e-6, 47.92e-6, 1, 3.2e-9, 2.3e-3, 4.1e-6)}}};
+                      {{"name", "modes 6"}, {"metrics", metrics(44.31e-6, 47.92e-6, 1, 3.2e-9, 2.3e-3, 4.1e-6)}}};
   result["curves"]["baseline"] = curve(rows_per_curve, [&](double time) { return plain_step(time, arcs); });
   result["curves"]["best"] = curve(rows_per_curve, soft_landing);
   for (const Arc& arc : arcs)

@@ -114,9 +114,9 @@ TEST(TextReport, KeepsItsSentencesWithinAHundredColumns) {
 TEST(TextReport, ConfirmsOnlyAWinnerThatLandsSoftly) {
   json result = sample_optimize_result(few_rows);
   ASSERT_EQ(result["best"]["metrics"]["bounce_count"], 0);
-  EXPECT_THAT(text_report(read_result(result)), HasSubstr("1 of 2 confirmations"));
+  EXPECT_THAT(text_report(read_result(result)), HasSubstr("in 1 of 2"));
   result["best"]["metrics"]["bounce_count"] = 7;
-  EXPECT_THAT(text_report(read_result(result)), Not(HasSubstr("onfirm")));
+  EXPECT_THAT(text_report(read_result(result)), Not(HasSubstr("Simulated again")));
 }
 
 TEST(TextReport, PassesOverWhatIsNotThere) {

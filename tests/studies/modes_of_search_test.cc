@@ -1,0 +1,178 @@
+// Landings that do not belong to the modes of their scene: gentle edges, the worst of beams, and the other ways in which a winner
+// is simulated.
+#include "studies/modes_of_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/random.h"
+#include "model/constants.h"
+#include "studies/choices.h"
+#include "studies/confirmation.h"
+#include "studies/optimize.h"
+#include "tests/studies/scenes.h"
+
+namespace softland {
+namespace {
+
+constexpr const char* families_with_slew = "step+pulse+catch+ramp+knots:6+coast+dual-pulse+staircase:4+s-curve+bspline:8+sines:4";
+
+// Found with jumps: it lands with four modes, and rebounds with eight.
+SceneFile landed_with_four_modes() {
+  SceneFile file = gold_pzt({"simulate.duration=300 us"});
+  file.set_waveform("piezo",
+                    BSpline{.levels = {-0.14759406469072628, -0.33593656547169154, -0.6781618776155263, -0.9569755388600174,
+                                       -0.43833753411517623, -0.9947848905786536, -0.7117460245344545, 0.9956114451761955,
+                                       0.9489187859469514, 0.9236979507763792, 0.8429819293390053, 0.9664974161937026, 1,
+                                       0.2712759246976191, -0.9906464786491784, -1, 0, 0},
+                            .duration = 2.3647036736505757e-05});
+  return file;
+}
+
+std::vector<double> somewhere(const SearchSpace& space, std::uint64_t number) {
+  std::vector<double> x;
+  for (const Variable& v : space.variables())
+    x.push_back(std::lerp(v.lower, v.upper,
+                          static_cast<double>(random_bits(7, Stream::library_seed, 1000 * number + x.size()) >> 11) / 0x1p53));
+  return x;
+}
+
+// Of every family: what a search may try crosses its range in no less than a period of the highest mode, within the driver's own
+// limits.
+TEST(GentleEdges, AreThoseOfEveryWaveformOfEveryFamily) {
+  const std::vector<SearchSetting> steep = search_settings(gold_pzt(), Target::bounce, Actuator::both, families_with_slew, {});
+  const std::vector<SearchSetting> gentle = with_gentle_edges(steep, Actuator::both, families_with_slew);
+  ASSERT_EQ(gentle.size(), steep.size());
+  const double fastest = steep.front().given.model.angular_frequencies().maxCoeff();
+  bool steeper = false;
+  for (std::size_t k = 0; k < gentle.size(); ++k) {
+    for (std::uint64_t n = 0; n < 40; ++n) {
+      const std::vector<double> x = somewhere(gentle[k].space, n);
+      for (const auto& [drive, waveform] : gentle[k].space.waveforms(x)) {
+        const DriverLimits& own = steep[k].given.drives.limits.at(drive);
+        const double most = (own.max_voltage - own.min_voltage) * fastest / (2 * pi);
+        EXPECT_LE(signal(waveform).peak_slew(), most * (1 + 1e-6)) << families_of(families_with_slew)[k] << ", " << drive;
+        steeper = steeper || signal(steep[k].space.waveforms(somewhere(steep[k].space, n)).at(drive)).peak_slew() > 2 * most;
+      }
+    }
+    EXPECT_EQ(gentle[k].given.drives.limits.at("piezo").max_slew, std::numeric_limits<double>::infinity())
+        << "what the sources do stays as the scene says";
+  }
+  EXPECT_TRUE(steeper) << "there is something to be gentle about";
+}
+
+TEST(GentleEdges, AreNotForPlatesNorForDriversThatHaveTheirOwn) {
+  const auto gentle_of = [](const SceneFile& file, Actuator actuator) {
+    return with_gentle_edges(search_settings(file, Target::bounce, actuator, "pulse", {}), actuator, "pulse");
+  };
+  EXPECT_TRUE(gentle_of(scene("two-electrodes.toml"), Actuator::electrostatic).empty());
+  const SceneFile limited = gold_pzt({"driver.piezo.max_slew=5 V/us"});
+  EXPECT_TRUE(gentle_of(limited, Actuator::pzt).empty());
+  EXPECT_FALSE(gentle_of(limited, Actuator::both).empty()) << "the electrode has none";
+}
+
+// A scene or an option with steeper edges asks for them.
+TEST(GentleEdges, AreWhereSearchesOfAPiezoBeginUnlessTheyBeginSteeper) {
+  const auto begin = [](const SceneFile& file, Actuator actuator, const std::vector<StartingWaveforms>& starts) {
+    return begins_gently(with_gentle_edges(search_settings(file, Target::bounce, actuator, "pulse", {}), actuator, "pulse"),
+                         starts);
+  };
+  EXPECT_TRUE(begin(gold_pzt(), Actuator::pzt, {}));
+  EXPECT_TRUE(begin(gold_pzt(), Actuator::both, {}));
+  EXPECT_FALSE(begin(gold_pzt(), Actuator::electrostatic, {}));
+  const auto pulse = [](double edge) { return Pulse{.levels = {0.5, -0.5, 0}, .times = {12e-6, 24e-6}, .edge = edge}; };
+  SceneFile own = gold_pzt();
+  own.set_waveform("piezo", pulse(2e-6));
+  EXPECT_TRUE(begin(own, Actuator::pzt, {}));
+  own.set_waveform("piezo", pulse(0.1e-6));
+  EXPECT_FALSE(begin(own, Actuator::pzt, {}));
+  EXPECT_TRUE(begin(gold_pzt(), Actuator::pzt, {{.name = "gentle", .waveforms = {{"piezo", pulse(2e-6)}}}}));
+  EXPECT_FALSE(begin(gold_pzt(), Actuator::pzt, {{.name = "steep", .waveforms = {{"piezo", pulse(0.1e-6)}}}}));
+}
+
+// Against the same search of a scene with more modes.
+TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
+  const SceneFile file = landed_with_four_modes();
+  const SearchSetting plain = search_setting(file, Target::bounce, Actuator::pzt, "bspline:16", {});
+  const SearchSetting worst = by_the_worst_of_modes(plain);
+  ASSERT_EQ(worst.richer.size(), 3U);
+  const std::vector<Signal> signals = plain.given.signals();
+  const double own = plain.price(signals).own;
+  double expected = own;
+  for (const int modes : {6, 8, 10}) {
+    SearchSetting alone = plain;
+    Device device = plain.given.scene.device;
+    device.structure.modes = modes;
+    alone.given.model = Switch(device, quadrature_of_richer(plain.given.quadrature, device));
+    if (const auto closed = closed_equilibrium(alone.given.model, hold_levels(plain.baseline_scene.signals())))
+      alone.run.closed_potential = closed->potential;
+    expected = std::max(expected, alone.price(signals).own);
+  }
+  EXPECT_DOUBLE_EQ(worst.price(signals).own, expected);
+  EXPECT_GT(expected, 1.05 * own);
+  EXPECT_TRUE(plain.price(signals).lands);
+  EXPECT_FALSE(worst.price(signals).lands);
+  const auto x = plain.space.parameters(plain.given.drives.waveforms);
+  ASSERT_TRUE(x);
+  EXPECT_DOUBLE_EQ(worst.price_at(*x).own, expected);
+  EXPECT_FALSE(worst.gradient_refusal(Target::bounce).empty());
+}
+
+TEST(Confirmation, IsByTheIntegratorByRicherBeamsAndByGasLawsWhoseLimitsHold) {
+  const auto names = [](const SceneFile& file) {
+    std::vector<std::string> all;
+    for (const ConfirmingRun& run : confirm(prepare_and_choose(file, true))) all.push_back(run.name);
+    return all;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names(gold({"simulate.duration=60 us"})),
+            (Names{"tolerance 1e-9", "modes 6", "modes 8", "modes 10", "gas veijola", "gas gallis-torczynski"}));
+  const SceneFile narrow =
+      gold({"simulate.duration=60 us", "gas.model=veijola", "gap.contact=2.9 um"});  // a Knudsen number of 0.11
+  EXPECT_EQ(names(narrow), (Names{"tolerance 1e-9", "modes 6", "modes 8", "modes 10", "gas gallis-torczynski"}));
+  SceneFile many = gold({"simulate.duration=60 us", "structure.modes=17"});
+  many.erase("gas");
+  EXPECT_EQ(names(many), (Names{"tolerance 1e-9", "modes 19"}));
+  EXPECT_EQ(names(scene("two-electrodes.toml")).front(), "tolerance 1e-9");
+}
+
+// What the first command promises, from three seeds: soft with six, eight and ten modes as with four.
+TEST(WorstOfModes, LandsThePiezoSwitchWithAnyNumberOfModes_slow) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const OptimizeResult r = optimize(gold_pzt(), {.actuator = Actuator::pzt,
+                                                   .family = std::string(default_families(Shaped::piezo)),
+                                                   .max_evaluations = default_budget(Target::bounce, Shaped::piezo),
+                                                   .seed = seed,
+                                                   .jobs = 2});
+    ASSERT_TRUE(r.best);
+    EXPECT_TRUE(r.confirmed);
+    EXPECT_GT(r.evaluations_of_modes, 0);
+    EXPECT_LE(r.best->metrics.permanent_contact_time, 26e-6) << seed;
+    EXPECT_LE(r.best->metrics.impact_velocity, 10e-3) << seed;
+    for (const ConfirmingRun& run : r.checks) {
+      if (run.varied == Varied::gas) continue;
+      EXPECT_EQ(run.metrics.bounce_count, 0) << seed << ", " << run.name;
+      EXPECT_LE(run.metrics.impact_velocity, 10e-3) << seed << ", " << run.name;
+      EXPECT_LE(run.metrics.permanent_contact_time, 26e-6) << seed << ", " << run.name;
+    }
+  }
+}
+
+// A piezo that is asked for steep edges lands with the scene's modes and not with more of them: it goes on with gentle ones.
+TEST(WorstOfModes, GoesOnWhereALandingBelongsToTheModesOfItsScene) {
+  const OptimizeResult free =
+      optimize(landed_with_four_modes(), {.actuator = Actuator::pzt, .family = "bspline:16", .max_evaluations = 100, .jobs = 2});
+  ASSERT_TRUE(free.best);
+  EXPECT_TRUE(free.goal_met);
+  EXPECT_GT(free.evaluations_of_modes, 50) << "half the budget with gentle edges, then the worst of beams";
+  EXPECT_EQ(free.best_scene->drives.limits.at("piezo").max_slew, std::numeric_limits<double>::infinity()) << "the driver's own";
+  EXPECT_EQ(free.confirmed, std::ranges::all_of(free.checks, [](const ConfirmingRun& run) {
+              return run.varied == Varied::gas || run.metrics.bounce_count == 0;
+            }));
+}
+
+}  // namespace
+}  // namespace softland
