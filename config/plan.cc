@@ -142,6 +142,8 @@ class KeyFinder {
       require(found.key.element >= 1 && found.key.element <= size, [&] {
         return fmt::format("{} is a list of {}: name one of them, such as {}[1]", found.key.path, size, found.key.path);
       });
+      require(!in.is_nested(key.name),
+              [&] { return fmt::format("{} holds several pads, of which none can vary alone", found.key.path); });
       found.base = in.quantities(key.name)[found.key.element - 1];
     } else if (key.type == KeyType::quantity && in.has_value(key.name) && !in.is_word(key.name)) {
       found.base = in.quantities(key.name).front();
@@ -258,8 +260,13 @@ class EntryReader {
     }
     const Dimension given = all.front().dimension;
     const std::vector<Dimension>& allowed = keys_.front().schema->dimensions;
-    const bool fits = variable_.is_whole ? given == dimension::none
-                                         : allowed.empty() || std::find(allowed.begin(), allowed.end(), given) != allowed.end();
+    const std::optional<Quantity>& base = keys_.front().base;
+    // Where a place is written as a length, a percentage is of that.
+    const bool is_of_value = keys_.front().schema->bound.place != nullptr && given == dimension::none && is_percent && base &&
+                             base->dimension != dimension::none;
+    const bool fits = variable_.is_whole
+                          ? given == dimension::none
+                          : allowed.empty() || (!is_of_value && std::ranges::find(allowed, given) != allowed.end());
     variable_.dimension = given;
     variable_.is_factor = keys_.size() > 1 || (!fits && given == dimension::none && is_percent);
     if (variable_.is_factor) {

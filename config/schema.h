@@ -12,8 +12,10 @@
 #include "config/units.h"
 
 namespace softland {
+
+struct Place;
 struct Scene;
-}
+}  // namespace softland
 
 namespace softland::internal {
 
@@ -33,11 +35,11 @@ struct Range {
   [[nodiscard]] std::string rule(std::string_view unit) const;
 };
 
-/// The member of a scene that a key sets, by its kind: of these at most one is there (for two numbers, `number` and `last`). The
-/// second argument tells which electrode is meant.
+/// The member of a scene that a key sets, by its kind: of these at most one is there. The second argument tells which electrode
+/// is meant, that of a place which element of the list.
 struct Bound {
   double& (*number)(Scene&, std::size_t) = nullptr;
-  double& (*last)(Scene&, std::size_t) = nullptr;
+  Place& (*place)(Scene&, std::size_t, std::size_t element) = nullptr;
   bool& (*flag)(Scene&, std::size_t) = nullptr;
   int& (*integer)(Scene&, std::size_t) = nullptr;
   std::string& (*text)(Scene&, std::size_t) = nullptr;
@@ -49,10 +51,11 @@ struct Key {
   KeyType type = KeyType::quantity;
   /// quantity, quantities: the dimensions a value may have; empty: decided by another key. The first one names the key's SI unit.
   std::vector<Dimension> dimensions = {};
-  Range range = {};       ///< see range_of()
-  std::size_t count = 0;  ///< quantities: how many; 0: any number
+  Range range = {};        ///< see range_of()
+  std::size_t count = 0;   ///< quantities: how many; 0: any number
+  bool is_nested = false;  ///< quantities: may be a list of such lists, read one after the other
   std::vector<std::string_view> choices = {};
-  std::vector<std::string_view> words = {};  ///< integer, quantity: what may stand instead of a number
+  std::vector<std::string_view> words = {};  ///< integer, quantity, an element of quantities: what may stand instead of a number
   std::string_view fallback = {};            ///< the default as TOML; empty: none
   bool required = false;
   std::vector<std::string_view> only_for = {};    ///< choices of the section's selector this key belongs to; empty: all

@@ -72,6 +72,42 @@ Quantity parse_number(const Key& key, const toml::node& node) {
   return quantity;
 }
 
+Quantity parse_element(const Key& key, const toml::node& node) {
+  const auto* text = node.as_string();
+  const bool is_tip = text && text->get() == tip && std::ranges::find(key.words, tip) != key.words.end();
+  return is_tip ? Quantity{.value = 1} : parse_number(key, node);
+}
+
+std::vector<Quantity> parse_list(const Key& key, const toml::array& array) {
+  std::vector<Quantity> values;
+  const auto in_list = [](std::size_t number, const auto& parse) {
+    try {
+      return parse();
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("value {}: {}", number, error.what()));
+    }
+  };
+  if (key.is_nested && !array.empty() && array.front().is_array()) {
+    for (std::size_t k = 0; k < array.size(); ++k) {
+      in_list(k + 1, [&] {
+        const toml::array* inner = array[k].as_array();
+        if (inner == nullptr) throw InvalidInput("a list of lists holds nothing else");
+        std::ranges::copy(parse_list(key, *inner), std::back_inserter(values));
+      });
+    }
+    return values;
+  }
+  for (const auto& element : array) values.push_back(in_list(values.size() + 1, [&] { return parse_element(key, element); }));
+  if (key.count != 0 && values.size() != key.count)
+    throw InvalidInput(fmt::format("needs {} values, got {} (expected {})", key.count, values.size(), wanted(key)));
+  return values;
+}
+
+// A percentage is of the beam's length.
+Place place_of(const Quantity& quantity) {
+  return quantity.dimension == dimension::none ? Place::share(quantity.value) : Place(quantity.value);
+}
+
 std::string parse_choice(const Key& key, const std::string& text) {
   if (std::find(key.choices.begin(), key.choices.end(), text) == key.choices.end()) {
     throw InvalidInput("unknown value" + hint(text, key.choices));
@@ -194,20 +230,7 @@ SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node
       if (text && std::find(key.words.begin(), key.words.end(), text->get()) != key.words.end()) return text->get();
       return std::vector{parse_number(key, node)};
     case KeyType::quantities:
-      if (const auto* array = node.as_array()) {
-        std::vector<Quantity> values;
-        for (const auto& element : *array) {
-          try {
-            values.push_back(parse_number(key, element));
-          } catch (const InvalidInput& error) {
-            throw InvalidInput(fmt::format("value {}: {}", values.size() + 1, error.what()));
-          }
-        }
-        if (key.count != 0 && values.size() != key.count) {
-          throw InvalidInput(fmt::format("needs {} values, got {}", key.count, values.size()));
-        }
-        return values;
-      }
+      if (const auto* array = node.as_array()) return parse_list(key, *array);
       break;
   }
   throw InvalidInput(fmt::format("expected {}", wanted(key)));
@@ -231,6 +254,10 @@ int SectionReader::integer(std::string_view key) const { return static_cast<int>
 bool SectionReader::is_word(std::string_view key) const {
   const auto found = values_.find(key);
   return found != values_.end() && std::holds_alternative<std::string>(found->second);
+}
+bool SectionReader::is_nested(std::string_view key) const {
+  const toml::array* list = is_given(key) ? table_->get(key)->as_array() : nullptr;
+  return list != nullptr && !list->empty() && list->front().is_array();
 }
 const std::vector<std::string>& SectionReader::texts(std::string_view key) const {
   return std::get<std::vector<std::string>>(values_.at(key));
@@ -295,9 +322,8 @@ toml::table SectionReader::in_si_units() const {
 void SectionReader::set_members(Scene& scene, std::size_t entry) const {
   for (const auto& [name, value] : values_) {
     const Bound& bound = find(name)->bound;
-    if (bound.last != nullptr) {
-      bound.number(scene, entry) = quantities(name)[0].value;
-      bound.last(scene, entry) = quantities(name)[1].value;
+    if (bound.place != nullptr) {
+      for (std::size_t k = 0; k < quantities(name).size(); ++k) bound.place(scene, entry, k) = place_of(quantities(name)[k]);
     } else if (bound.number != nullptr) {
       bound.number(scene, entry) = number(name);
     } else if (bound.flag != nullptr) {
@@ -320,8 +346,13 @@ void SectionReader::require_of_plate(std::string_view key, std::string_view need
 
 void SectionReader::require_on_beam(std::string_view key) const {
   const SectionReader structure(file_, "structure");
-  require(quantities(key)[0].value < quantities(key)[1].value, key, "the end must lie beyond the begin");
-  require(quantities(key)[1].value <= structure.number("length"), key, "must end on the beam: " + structure.written("length"));
+  const double length = structure.number("length");
+  const std::vector<Quantity>& places = quantities(key);
+  for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
+    const double begin = place_of(places[k]).on(length), end = place_of(places[k + 1]).on(length);
+    require(begin < end, key, "the end must lie beyond the begin");
+    require(end <= length, key, "must end on the beam: " + structure.written("length"));
+  }
 }
 
 }  // namespace softland::internal

@@ -38,6 +38,8 @@ class SectionReader {
   [[nodiscard]] int integer(std::string_view key) const;
   /// Whether a word stands where a number could.
   [[nodiscard]] bool is_word(std::string_view key) const;
+  /// Whether a list of lists stands there.
+  [[nodiscard]] bool is_nested(std::string_view key) const;
   [[nodiscard]] bool flag(std::string_view key) const;
   /// Of a text or a choice.
   [[nodiscard]] const std::string& text(std::string_view key) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -88,11 +89,22 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
           .dimensions = {error->dimension}};
 }
 
+/// "electrode.main.span[2]" as its path and 2.
+std::pair<std::string, std::size_t> without_element(const std::string& name) {
+  const std::size_t bracket = name.find('[');
+  std::size_t element = 0;
+  if (bracket == std::string::npos || !name.ends_with(']')) return {name, 0};
+  const char* const end = name.data() + name.size() - 1;
+  const auto [rest, error] = std::from_chars(name.data() + bracket + 1, end, element);
+  return error == std::errc() && rest == end ? std::pair(name.substr(0, bracket), element) : std::pair(name, std::size_t{0});
+}
+
 /// The key that an entry of [spread] names. Throws InvalidInput unless it is a number that is in force in this scene.
 FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader& in, const std::string& name) {
   std::vector<std::string> parts;
+  const auto [path, element] = without_element(name);
   try {
-    parts = split_path(name);
+    parts = split_path(path);
   } catch (const InvalidInput& error) {
     file.fail_section(in.path(), error.what());
   }
@@ -104,13 +116,16 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
   if (section && section->may_vary && parts.size() == depth && file.find({parts.begin(), parts.end() - 1})) {
     const SectionReader of_key(file, parts[0], section->is_named ? entry_name : std::string());
     for (const Key& key : section->keys) {
-      if (key.type == KeyType::quantity && of_key.find(key.name) == &key && of_key.has_value(key.name))
-        candidates.push_back(key.name);
+      const bool is_number = key.type == KeyType::quantity ? element == 0
+                                                           : key.bound.place != nullptr && element >= 1 && element <= key.count &&
+                                                                 !of_key.is_nested(key.name);
+      if (is_number && of_key.find(key.name) == &key && of_key.has_value(key.name)) candidates.push_back(key.name);
     }
     if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) {
       const Key& key = *of_key.find(parts.back());
-      const Quantity given = of_key.quantities(key.name).front();
-      FoundKey found{.varied = {.path = name,
+      const Quantity given = of_key.quantities(key.name)[element == 0 ? 0 : element - 1];
+      FoundKey found{.varied = {.path = path,
+                                .element = element,
                                 .unit = unit_symbol(given.dimension),
                                 .nominal = given.value,
                                 .measured_in = given.dimension,
@@ -118,13 +133,15 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
                                 .drive = {},
                                 .refusal = {}},
                      .dimensions = {given.dimension}};
-      if (key.bound.number != nullptr) {
+      if (key.bound.number != nullptr || element > 0) {
         std::size_t entry = 0;
         if (section->name == "electrode") {
           const auto& all = scene.device.electrodes;
           while (entry < all.size() && all[entry].name != entry_name) ++entry;
         }
-        found.varied.member = [number = key.bound.number, entry](Scene& s) -> double& { return number(s, entry); };
+        found.varied.member = [bound = key.bound, entry, element = element](Scene& s) -> double& {
+          return element > 0 ? bound.place(s, entry, element - 1).value : bound.number(s, entry);
+        };
       }
       found.varied.refusal = refusal_outside(key.range_of(given.dimension), found.varied.unit);
       return found;
@@ -267,8 +284,8 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
     const VariedKey& varied = key.varied;
     if (scale.is_factor() && varied.nominal == 0) {
       in.fail(varied.drive ? fmt::format("{} is nominally 0, and stays 0 by any factor: give it a distribution in {}",
-                                         varied.path, varied.unit)
-                           : fmt::format("{} is 0 in this scene, and stays 0 by any factor", varied.path));
+                                         varied.name(), varied.unit)
+                           : fmt::format("{} is 0 in this scene, and stays 0 by any factor", varied.name()));
     }
     if (varied.drive && varied.drive->error == DriveError::jitter) {
       // Its value is no time, but what the times of the edges are drawn from.
@@ -334,11 +351,11 @@ void read_correlation(const SceneFile::Impl& file, DeviceSpread& spread) {
 
 /// Two variables must not set one key.
 void check_keys_once(const SceneFile::Impl& file, const DeviceSpread& spread) {
-  std::set<std::string_view> seen;
+  std::set<std::string> seen;
   for (const SpreadVariable& variable : spread.variables) {
     for (const VariedKey& key : variable.keys) {
-      if (!seen.insert(key.path).second)
-        file.fail_section(join_path("spread", variable.name), fmt::format("{} varies by another entry already", key.path));
+      if (!seen.insert(key.name()).second)
+        file.fail_section(join_path("spread", variable.name), fmt::format("{} varies by another entry already", key.name()));
     }
   }
 }

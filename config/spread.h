@@ -36,6 +36,7 @@ struct VariedDrive {
 /// A number of a scene that varies from device to device.
 struct VariedKey {
   std::string path;            ///< "structure.thickness", "driver.main.gain"
+  std::size_t element = 0;     ///< of a list, counted from 1; 0: it is none
   std::string unit;            ///< SI unit
   double nominal = 0;          ///< the scene's value
   Dimension measured_in = {};  ///< among the dimensions that the key may have
@@ -46,6 +47,9 @@ struct VariedKey {
   std::optional<VariedDrive> drive;
   /// Why a device cannot have this value; empty where it can.
   std::function<std::string(double)> refusal;
+
+  /// "electrode.main.span[2]"
+  [[nodiscard]] std::string name() const { return element == 0 ? path : path + "[" + std::to_string(element) + "]"; }
 };
 
 /// A quantity that varies, with the keys that follow it.

@@ -137,9 +137,10 @@ std::vector<BeamSection> beam_sections(const Device& device) {
     add(0, s.length, plain);
     return sections;
   }
-  add(0, device.piezo->begin, plain);
-  add(device.piezo->begin, device.piezo->end, layered_section(s, *device.piezo));
-  add(device.piezo->end, s.length, plain);
+  const double begin = device.piezo->begin.on(s.length), end = device.piezo->end.on(s.length);
+  add(0, begin, plain);
+  add(begin, end, layered_section(s, *device.piezo));
+  add(end, s.length, plain);
   return sections;
 }
 

@@ -96,7 +96,7 @@ void check_gap_and_electrodes(const Device& d) {
                        engineering(d.gap.electrode, "m"));
   });
   for (const Electrode& e : d.electrodes) {
-    span(e.begin, e.end, s.length, "electrode." + e.name + ".span");
+    for (const Stretch& pad : e.pads(s.length)) span(pad.begin, pad.end, s.length, "electrode." + e.name + ".span");
     if (e.side != Side::near) positive(e.gap, "m", ("electrode." + e.name + ".gap").c_str());
     if (row_of(fringing_laws, e.fringing).needs_thickness) positive(s.thickness, "m", "structure.thickness");
   }
@@ -184,7 +184,7 @@ void check_contact(const Device& d) {
 
 void check_piezo(const Piezo& p, const Structure& s) {
   require(s.kind != StructureKind::plate, "piezo: a rigid plate does not bend; a layer needs a beam");
-  span(p.begin, p.end, s.length, "piezo.span");
+  span(p.begin.on(s.length), p.end.on(s.length), s.length, "piezo.span");
   positive(p.thickness, "m", "piezo.thickness");
   positive(p.youngs_modulus, "Pa", "piezo.youngs_modulus");
   positive(p.density, "kg/m^3", "piezo.density");
@@ -206,31 +206,39 @@ void check_dispersion(const Dispersion& v, const Gap& gap) {
 
 }  // namespace
 
+std::vector<Stretch> Electrode::pads(double length) const {
+  std::vector<Stretch> all{{begin.on(length), end.on(length)}};
+  for (const Span& pad : further) all.push_back({pad.begin.on(length), pad.end.on(length)});
+  return all;
+}
+
 std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const std::vector<Electrode>& electrodes) {
+  struct Pad {
+    std::size_t electrode;
+    Stretch at;
+  };
   const double rounding = 1e-12 * s.length;
   for (const Side side : {Side::near, Side::far}) {
     const std::string_view side_name = side == Side::near ? "near" : "far";
-    std::vector<std::size_t> here;  // from the clamped end on
+    std::vector<Pad> here;  // from the clamped end on
     for (std::size_t k = 0; k < electrodes.size(); ++k) {
-      if (electrodes[k].side == side || electrodes[k].side == Side::both) here.push_back(k);
+      if (electrodes[k].side != side && electrodes[k].side != Side::both) continue;
+      for (const Stretch& pad : electrodes[k].pads(s.length)) here.push_back({k, pad});
     }
     const bool plate = s.kind == StructureKind::plate;
-    if (!plate) {
-      std::stable_sort(here.begin(), here.end(),
-                       [&](std::size_t a, std::size_t b) { return electrodes[a].begin < electrodes[b].begin; });
-    }
+    if (!plate) std::ranges::stable_sort(here, {}, [](const Pad& pad) { return pad.at.begin; });
     double taken = 0;  // of the length: up to here on a beam, in all on a plate
     for (std::size_t i = 0; i < here.size(); ++i) {
-      const Electrode& e = electrodes[here[i]];
-      if (i > 0 && (plate ? taken + e.end - e.begin > s.length + rounding : e.begin < taken - rounding)) {
-        const std::string& other = electrodes[here[i - 1]].name;
+      const Stretch& pad = here[i].at;
+      if (i > 0 && (plate ? taken + pad.end - pad.begin > s.length + rounding : pad.begin < taken - rounding)) {
+        const std::string& other = electrodes[here[i - 1].electrode].name;
         return ElectrodeConflict{
-            here[i], plate
-                         ? fmt::format("the electrodes of the {} side must not have more area together than the plate", side_name)
-                         : fmt::format("must not overlap electrode.{}, which ends at {} on the {} side too", other,
-                                       engineering(taken, "m"), side_name)};
+            here[i].electrode,
+            plate ? fmt::format("the electrodes of the {} side must not have more area together than the plate", side_name)
+                  : fmt::format("must not overlap electrode.{}, which ends at {} on the {} side too", other,
+                                engineering(taken, "m"), side_name)};
       }
-      taken = plate ? taken + e.end - e.begin : e.end;
+      taken = plate ? taken + pad.end - pad.begin : pad.end;
     }
   }
   return std::nullopt;

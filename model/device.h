@@ -56,13 +56,47 @@ enum class Side { near, far, both };
 inline constexpr auto sides = std::to_array<Named<Side>>({{Side::near, "near"}, {Side::far, "far"}, {Side::both, "both"}});
 static_assert(is_complete<sides>());
 
+/// A place on the beam, from the clamped end: a distance [m], or a share of the beam's length, which it follows.
+struct Place {
+  constexpr Place() = default;
+  constexpr Place(double distance) : value(distance) {}  // a length is a place
+  [[nodiscard]] static constexpr Place share(double of_length) {
+    Place place(of_length);
+    place.is_share = true;
+    return place;
+  }
+  /// [m]
+  [[nodiscard]] constexpr double on(double length) const { return is_share ? value * length : value; }
+  [[nodiscard]] bool operator==(const Place&) const = default;
+
+  double value = 0;
+  bool is_share = false;
+};
+
+/// From where to where something lies along the beam.
+struct Span {
+  Place begin, end;
+  [[nodiscard]] bool operator==(const Span&) const = default;
+};
+
+/// The same on a beam of some length [m].
+struct Stretch {
+  double begin = 0, end = 0;
+  [[nodiscard]] bool holds(double x) const { return x >= begin && x < end; }
+};
+
+/// One voltage, on one pad or several.
 struct Electrode {
   std::string name = {};
-  double begin = 0;  ///< [m] from the clamped end; of a plate only the length counts: the electrode's area over the plate's width
-  double end = 0;    ///< [m]
+  Place begin;  ///< of a plate only the length counts: the electrode's area over the plate's width
+  Place end;
+  std::vector<Span> further = {};  ///< pads beside that first one
   Fringing fringing = Fringing::meijs_fokkema;
   Side side = Side::near;
   double gap = 0;  ///< far, both: rest distance of the face on the far side to the moving part [m]
+
+  /// All pads on a beam of this length [m].
+  [[nodiscard]] std::vector<Stretch> pads(double length) const;
 };
 
 /// Laws of the squeeze film: their table is in model/gas/gas_law.h.
@@ -146,8 +180,8 @@ struct Contact {
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.
 struct Piezo {
-  double begin = 0;                                       ///< Lp1 [m]
-  double end = 0;                                         ///< Lp2 [m]
+  Place begin;                                            ///< Lp1
+  Place end;                                              ///< Lp2
   double thickness = 0;                                   ///< bp [m]
   double youngs_modulus = 0;                              ///< Ep [Pa]
   double density = 0;                                     ///< [kg/m^3]

@@ -6,6 +6,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/lanes.h"
 #include "model/dual.h"
@@ -147,6 +150,31 @@ class DistributedLawOf final : public DistributedLaw {
   Eigen::Index begin_, end_;
   double floor_;
   Eigen::ArrayXd share_;  // 1 at the law's points, 0 at those that fill its lanes
+};
+
+/// One law on several stretches of the beam.
+class LawOnPads final : public DistributedLaw {
+ public:
+  explicit LawOnPads(std::vector<std::shared_ptr<const DistributedLaw>> pads) : pads_(std::move(pads)) {}
+
+  void add_load(const GapField& field, double drive, double* load) const override {
+    for (const auto& pad : pads_) pad->add_load(field, drive, load);
+  }
+  void add_derivatives(const GapField& field, double drive, double* by_deflection, double* by_velocity) const override {
+    for (const auto& pad : pads_) pad->add_derivatives(field, drive, by_deflection, by_velocity);
+  }
+  void add_curvatures(const GapField& field, double drive, double* by_deflections, double* by_both,
+                      double* by_velocities) const override {
+    for (const auto& pad : pads_) pad->add_curvatures(field, drive, by_deflections, by_both, by_velocities);
+  }
+  [[nodiscard]] double potential(const GapField& field, const Eigen::ArrayXd& weights) const override {
+    double sum = 0;
+    for (const auto& pad : pads_) sum += pad->potential(field, weights);
+    return sum;
+  }
+
+ private:
+  std::vector<std::shared_ptr<const DistributedLaw>> pads_;
 };
 
 }  // namespace softland

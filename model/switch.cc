@@ -72,16 +72,19 @@ struct Switch::Frame {
 
     [[nodiscard]] static Places of(const Device& d) {
       std::set<double> corners{0, d.structure.length};
-      for (const Electrode& e : d.electrodes) corners.insert({e.begin, std::min(e.end, d.structure.length)});
-      if (d.piezo) corners.insert({d.piezo->begin, d.piezo->end});
+      const double length = d.structure.length, piezo_begin = d.piezo ? d.piezo->begin.on(length) : 0,
+                   piezo_end = d.piezo ? d.piezo->end.on(length) : 0;
+      for (const Electrode& e : d.electrodes)
+        for (const Stretch& pad : e.pads(length)) corners.insert({pad.begin, std::min(pad.end, length)});
+      if (d.piezo) corners.insert({piezo_begin, piezo_end});
       if (touches_along_pad(d)) {
         const auto [begin, end] = d.pad();
         corners.insert({begin, end});
       }
       return {.corners = {corners.begin(), corners.end()},
               .contact = d.contact_position(),
-              .piezo_begin = d.piezo ? d.piezo->begin : 0,
-              .piezo_end = d.piezo ? d.piezo->end : 0};
+              .piezo_begin = piezo_begin,
+              .piezo_end = piezo_end};
     }
     [[nodiscard]] bool operator==(const Places&) const = default;
   };
@@ -197,13 +200,17 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   };
   electrodes_ = device_.electrodes.size();
   for (const Electrode& e : device_.electrodes) {
-    const PointRange range = points_in(positions_, e.begin, e.end);
-    driven_laws_.push_back(electrostatic(e.fringing, s, [&](const auto& law) {
-      if (e.side == Side::near) return erased(law, range, gap_floor());
-      const auto far = on_far_side(law, e.gap);
-      return e.side == Side::far ? erased(far, range, gap_floor())
-                                 : erased(BothSides<std::decay_t<decltype(law)>>{.near = law, .far = far}, range, gap_floor());
-    }));
+    std::vector<std::shared_ptr<const DistributedLaw>> pads;
+    for (const Stretch& pad : e.pads(s.length)) {
+      const PointRange range = points_in(positions_, pad.begin, pad.end);
+      pads.push_back(electrostatic(e.fringing, s, [&](const auto& law) {
+        if (e.side == Side::near) return erased(law, range, gap_floor());
+        const auto far = on_far_side(law, e.gap);
+        return e.side == Side::far ? erased(far, range, gap_floor())
+                                   : erased(BothSides<std::decay_t<decltype(law)>>{.near = law, .far = far}, range, gap_floor());
+      }));
+    }
+    driven_laws_.push_back(pads.size() == 1 ? pads.front() : std::make_shared<const LawOnPads>(std::move(pads)));
   }
   if (device_.dispersion) {
     driven_laws_.push_back(dispersion_force(*device_.dispersion, s.width, {0, n}, gap_floor()));

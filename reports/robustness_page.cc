@@ -342,13 +342,13 @@ std::string robustness_html(const RobustnessReport& report) {
   const auto [main, rest] = headline_of(found);
   const Calibration& calibration = found.drives.back().known.calibration();
   std::string about = fmt::format(
-      "<p>{} devices of the spread ({} points): {}. {}{}</p>\n", found.devices, name_of(point_sets, options.points),
+      "<p>{} devices of the spread ({} points): {}. {}{}{}</p>\n", found.devices, name_of(point_sets, options.points),
       escaped(spread_words(nominal.scene.spread)),
       calibration.is_empty() ? "All have the volts that were designed for the nominal device."
                              : "The plain step has the volts of the nominal device; every other drive is in the units of each "
                                "device, known of it: " +
                                    calibration_words(calibration) + ".",
-      error_words(nominal.scene.spread));
+      error_words(nominal.scene.spread), escaped(outside_words(found)));
   if (found.interrupted) about += "<p>Interrupted: these are not all devices.</p>\n";
   return internal::page({.title = nominal.scene.title,
                          .origin = "robustness",

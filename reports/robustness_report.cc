@@ -77,7 +77,7 @@ json spread_json(const DeviceSpread& spread) {
   json all = json::array();
   for (const SpreadVariable& v : spread.variables) {
     json keys = json::array();
-    for (const VariedKey& key : v.keys) keys.push_back(key.path);
+    for (const VariedKey& key : v.keys) keys.push_back(key.name());
     all.push_back({{"name", v.name},
                    {"keys", std::move(keys)},
                    {"distribution", name_of(distribution_kinds, v.distribution.kind())},

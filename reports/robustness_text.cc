@@ -129,7 +129,8 @@ std::string robustness_text(const RobustnessReport& report) {
                                   : "The plain step has the volts of the nominal device, every other drive the units of each "
                                     "device, known of it: " +
                                         calibration_words(calibration) + ".",
-                              error_words(nominal.scene.spread))) +
+                              error_words(nominal.scene.spread)) +
+                  outside_words(found)) +
           "\n\n";
   if (found.devices == 0) return text;
   text += figures_text(found);

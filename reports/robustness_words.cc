@@ -12,7 +12,7 @@ std::string spread_words(const DeviceSpread& spread) {
   std::string words;
   for (const SpreadVariable& v : spread.variables) {
     std::string keys;
-    for (const VariedKey& key : v.keys) keys += (keys.empty() ? "" : " and ") + key.path;
+    for (const VariedKey& key : v.keys) keys += (keys.empty() ? "" : " and ") + key.name();
     const double size = v.distribution.standard_deviation();
     words += fmt::format("{}{} {} ({})", words.empty() ? "" : ", ", keys,
                          v.is_factor ? "± " + percent(size) : "± " + quantity(size, v.keys.front().unit),
@@ -23,6 +23,18 @@ std::string spread_words(const DeviceSpread& spread) {
 
 std::string_view error_words(const DeviceSpread& spread) {
   return spread.varies_drives() ? " The sources of the drives err as the spread says." : "";
+}
+
+std::string outside_words(const Robustness& found) {
+  if (found.drives.empty()) return {};
+  const std::vector<DeviceOutcome>& outcomes = found.drives.back().outcomes;
+  const auto outside = [](const DeviceOutcome& o) { return !o.failure.empty() && o.metrics.status == Status::not_run; };
+  const auto count = std::ranges::count_if(outcomes, outside);
+  if (count == 0) return {};
+  const std::string& why = std::ranges::find_if(outcomes, outside)->failure;
+  return fmt::format(
+      " {} of them cannot be, and count as those that do not close; the first: {}.{}", count, why,
+      why.find(".span = ") == std::string::npos ? "" : " A span up to \"tip\", or in percent, follows the length.");
 }
 
 std::string calibration_words(const Calibration& c) {

@@ -15,6 +15,8 @@ namespace softland::internal {
 [[nodiscard]] std::string spread_words(const DeviceSpread& spread);
 /// A sentence where the sources of the drives err; empty where they do not.
 [[nodiscard]] std::string_view error_words(const DeviceSpread& spread);
+/// How many devices cannot be, and why the first of them cannot; empty where all can.
+[[nodiscard]] std::string outside_words(const Robustness& found);
 /// "Vdp ± 1 %, frequency ± 0.5 %"
 [[nodiscard]] std::string calibration_words(const Calibration& calibration);
 [[nodiscard]] bool is_erring(const Calibration& calibration);

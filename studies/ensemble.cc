@@ -95,7 +95,8 @@ SceneFile Ensemble::scene(const std::vector<double>& values) const {
     for (const VariedKey& key : spread.variables[i].keys) {
       if (key.drive) continue;
       file.assign(key.path,
-                  Quantity{.value = DeviceSpread::value(spread.variables[i], key, values[i]), .dimension = key.measured_in});
+                  Quantity{.value = DeviceSpread::value(spread.variables[i], key, values[i]), .dimension = key.measured_in},
+                  key.element);
     }
   }
   return file;
@@ -107,7 +108,7 @@ SampledDevice DeviceBuilder::device(std::vector<double> values) {
     const SpreadVariable& variable = ensemble_->nominal().scene.spread.variables[i];
     for (const VariedKey& key : variable.keys) {
       if (const std::string rule = key.refusal(DeviceSpread::value(variable, key, sampled.values[i])); !rule.empty()) {
-        sampled.refusal = fmt::format("{} {}", key.path, rule);
+        sampled.refusal = fmt::format("{} {}", key.name(), rule);
         return sampled;
       }
     }

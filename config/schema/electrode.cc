@@ -28,7 +28,7 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
     return;
   }
   in.require(!in.is_given("area"), "area", "belongs to a plate; the electrode of a beam has a span");
-  if (!in.is_given("span")) in.fail(R"(missing key 'span' (a list such as ["2 um", "2 um"]))");
+  if (!in.is_given("span")) in.fail(R"(missing key 'span' (a list such as ["10 um", "tip"]))");
   in.require_on_beam("span");
 }
 
@@ -57,23 +57,24 @@ void check_electrode(Scene& scene, const SectionReader& in, std::size_t k) {
 }  // namespace
 
 Section electrode_section() {
-  return {.name = "electrode",
-          .is_named = true,
-          .may_vary = true,
-          .keys = {OfElectrode::span<&Electrode::begin, &Electrode::end>(
-                       "span", "begin and end, from the clamped end; beams only and required there"),
-                   number("area", {dimension::area}, positive, "plates only; absent: that of the plate"),
-                   OfElectrode::choice<sides, &Electrode::side>(
-                       "side", "of the beam: near is that of the contact; far pulls away from it")
-                       .by_default("'near'"),
-                   OfElectrode::number<&Electrode::gap>(
-                       "gap", dimension::length, positive,
-                       "far, both: rest distance of the face on the far side to the beam; required there"),
-                   OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
-                       .by_default("'meijs-fokkema'")},
-          .about = "an electrode under the beam",
-          .begin = begin_electrode,
-          .check = check_electrode};
+  return {
+      .name = "electrode",
+      .is_named = true,
+      .may_vary = true,
+      .keys = {OfElectrode::spans<&Electrode::begin, &Electrode::end, &Electrode::further>(
+                   "span", "begin and end, from the clamped end; of several pads a list of these; beams only and required there"),
+               number("area", {dimension::area}, positive, "plates only; absent: that of the plate"),
+               OfElectrode::choice<sides, &Electrode::side>("side",
+                                                            "of the beam: near is that of the contact; far pulls away from it")
+                   .by_default("'near'"),
+               OfElectrode::number<&Electrode::gap>(
+                   "gap", dimension::length, positive,
+                   "far, both: rest distance of the face on the far side to the beam; required there"),
+               OfElectrode::choice<fringing_laws, &Electrode::fringing>("fringing", "law of the fringing field")
+                   .by_default("'meijs-fokkema'")},
+      .about = "an electrode under the beam",
+      .begin = begin_electrode,
+      .check = check_electrode};
 }
 
 }  // namespace softland::internal

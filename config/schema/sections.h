@@ -1,9 +1,11 @@
 // Makers of sections and keys: every section of a scene has a file beside this one.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/choice.h"
 #include "config/scene.h"
@@ -15,6 +17,7 @@ namespace softland::internal {
 inline constexpr Range any{};
 inline constexpr Range positive{.least = 0, .least_open = true};
 inline constexpr Range not_negative{.least = 0};
+inline constexpr std::string_view tip = "tip";  // the end of the beam
 inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 inline constexpr Range below_one{.least = 0, .most = 1, .most_open = true};
 
@@ -49,13 +52,29 @@ struct Of {
     key.bound.number = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*member; };
     return key;
   }
-  /// Begin and end.
+  /// Begin and end: lengths, percentages of the beam's length, or its tip.
   template <auto first, auto last>
   [[nodiscard]] static Key span(std::string_view name, std::string_view about) {
-    Key key = internal::numbers(name, {dimension::length}, not_negative, about);
+    Key key = internal::numbers(name, {dimension::length, dimension::none}, not_negative, about);
     key.count = 2;
-    key.bound.number = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*first; };
-    key.bound.last = [](Scene& scene, std::size_t entry) -> double& { return part(scene, entry).*last; };
+    key.words = {tip};
+    key.bound.place = [](Scene& scene, std::size_t entry, std::size_t element) -> Place& {
+      return element == 0 ? part(scene, entry).*first : part(scene, entry).*last;
+    };
+    return key;
+  }
+  /// The same of one or several pads.
+  template <auto first, auto last, auto further>
+  [[nodiscard]] static Key spans(std::string_view name, std::string_view about) {
+    Key key = span<first, last>(name, about);
+    key.is_nested = true;
+    key.bound.place = [](Scene& scene, std::size_t entry, std::size_t element) -> Place& {
+      if (element < 2) return element == 0 ? part(scene, entry).*first : part(scene, entry).*last;
+      std::vector<Span>& pads = part(scene, entry).*further;
+      pads.resize(std::max(pads.size(), element / 2));
+      Span& pad = pads[element / 2 - 1];
+      return element % 2 == 0 ? pad.begin : pad.end;
+    };
     return key;
   }
   template <auto member>

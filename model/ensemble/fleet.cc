@@ -43,8 +43,9 @@ LaneLayout layout_of(const Switch& model) {
                     .film = model.gas().has_value()};
   if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
   const auto over = [&](double x) {
-    const auto found = std::find_if(device.electrodes.begin(), device.electrodes.end(),
-                                    [&](const Electrode& e) { return x >= e.begin && x < e.end; });
+    const auto found = std::ranges::find_if(device.electrodes, [&](const Electrode& e) {
+      return std::ranges::any_of(e.pads(device.structure.length), [&](const Stretch& pad) { return pad.holds(x); });
+    });
     return found == device.electrodes.end() ? -1 : to_int(found - device.electrodes.begin());
   };
   for (int p = 0; p < layout.points; ++p) {
@@ -166,9 +167,8 @@ std::string why_not_in_lanes(const Switch& model) {
     if (e.side != Side::near) return "an electrode on the far side";
     if (e.fringing != device.electrodes.front().fringing) return "electrodes of different fringing";
     if (!lane_fringing(e.fringing)) return "fringing by bao-2001";
-    const auto meets = [&](const Electrode& other) { return &other != &e && e.begin < other.end && other.begin < e.end; };
-    if (std::any_of(device.electrodes.begin(), device.electrodes.end(), meets)) return "electrodes that overlap";
   }
+  if (electrode_conflict(device.structure, device.electrodes)) return "electrodes that overlap";
   return {};
 }
 

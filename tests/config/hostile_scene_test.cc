@@ -118,7 +118,7 @@ std::vector<Hostile> hostile_scenes() {
       {"array for a section", edited(scene, "[gap]", "[[gap]]"), "expected a section [gap]"},
       {"list of mixed units", edited(scene, R"(["60 um", "240 um"])", R"(["60 um", "0.24 V"])"),
        "value 2: expected a length [m], got a voltage [V]"},
-      {"list of lists", edited(scene, R"(["60 um", "240 um"])", R"([["60 um"], "240 um"])"), "value 1: not a number with a unit"},
+      {"list of lists", edited(scene, R"(["60 um", "240 um"])", R"([["60 um"], "240 um"])"), "value 1: needs 2 values, got 1"},
       {"very long list", edited(scene, R"(["60 um", "240 um"])", "[" + repeated("\"1 um\", ", 5000) + "]"),
        "needs 2 values, got 5000"},
       {"electrode off the beam", edited(scene, R"(["60 um", "240 um"])", R"(["60 um", "1 mm"])"),

@@ -81,6 +81,22 @@ TEST(Plan, InMultiplesOfAPullInVoltageKeepsThem) {
             1.05 * 40);
 }
 
+// Of a place that is a length a percentage is of that length; of one that is a percentage it is one of the beam's.
+TEST(Plan, OfAPlaceVariesAsItIsWritten) {
+  const Plan of_length = plan({"electrode.main.span[2]=50 %:100 %:2"});
+  EXPECT_TRUE(of_length.variables()[0].is_factor);
+  EXPECT_EQ(scene_at(of_length, 0).device.electrodes[0].end, Place(120e-6));
+  PlanRequest of_share = request({"electrode.main.span[2]=50 %:100 %:2"});
+  of_share.scene.set(R"(electrode.main.span=["20 %", "tip"])");
+  const Plan p(of_share);
+  EXPECT_FALSE(p.variables()[0].is_factor);
+  EXPECT_EQ(scene_at(p, 0).device.electrodes[0].end, Place::share(0.5));
+  EXPECT_THAT(refusal({"electrode.main.span[2]=200 um:240 um:2"}), "");
+  PlanRequest of_pads = request({"electrode.main.span[2]=50 %:100 %:2"});
+  of_pads.scene.set(R"(electrode.main.span=[["20 um", "60 um"], ["80 um", "tip"]])");
+  EXPECT_THROW((void)Plan(of_pads), InvalidInput);
+}
+
 TEST(Plan, OfAFactorMultipliesTheScenesOwnNumbers) {
   const Plan p = plan({"gap.electrode * gap.contact=0.9:1.1:3", "structure.thickness=90 %:110 %:3"});
   EXPECT_EQ(p.variables()[0].name, "gap.electrode*gap.contact");

@@ -129,6 +129,46 @@ TEST(Scene, ElectrodesStandOnTheirSide) {
   EXPECT_FALSE(far.drives({}).limits.contains("main")) << "no pull-in voltage, no default limit";
 }
 
+TEST(Scene, SpansMayFollowTheLengthAndHaveSeveralPads) {
+  const auto electrode = [](const std::string& span) {
+    return read(edited(small_scene, R"(["60 um", "240 um"])", span)).device.electrodes[0];
+  };
+  const Electrode whole = electrode(R"(["24 %", "tip"])");
+  EXPECT_EQ(whole.begin, Place::share(0.24));
+  EXPECT_EQ(whole.end, Place::share(1));
+  const std::vector<Stretch> at = whole.pads(200e-6);
+  ASSERT_EQ(at.size(), 1U);
+  EXPECT_DOUBLE_EQ(at[0].begin, 48e-6);
+  EXPECT_DOUBLE_EQ(at[0].end, 200e-6);
+  const Electrode pads = electrode(R"([["60 um", "100 um"], ["50 %", "240 um"]])");
+  EXPECT_EQ(pads.begin, Place(60e-6));
+  EXPECT_EQ(pads.end, Place(100e-6));
+  EXPECT_EQ(pads.further, (std::vector<Span>{{Place::share(0.5), Place(240e-6)}}));
+  const std::string text = edited(small_scene, R"(["60 um", "240 um"])", R"(["24 %", "tip"])");
+  EXPECT_NE(SceneFile::parse(text, "x.toml").text().find(R"(span = ["24 %", "tip"])"), std::string::npos) << "as written";
+  EXPECT_EQ(read(edited(small_scene, R"(["5 um", "240 um"])", R"(["2 %", "tip"])")).device.piezo->end, Place::share(1));
+}
+
+TEST(Scene, RefusesSpansThatMakeNoSense) {
+  const auto reason = [](const std::string& span) -> std::string {
+    try {
+      (void)read(edited(small_scene, R"(["60 um", "240 um"])", span));
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(reason(R"(["60 um", "101 %"])"), HasSubstr("must end on the beam"));
+  EXPECT_THAT(reason(R"(["tip", "240 um"])"), HasSubstr("the end must lie beyond the begin"));
+  EXPECT_THAT(reason(R"([["60 um", "100 um"], ["90 um", "240 um"]])"), HasSubstr("must not overlap electrode.main"));
+  EXPECT_THAT(reason(R"([["60 um", "100 um"], ["110 um"]])"), HasSubstr("value 2: needs 2 values, got 1"));
+  EXPECT_THAT(reason(R"([["60 um", "100 um"], "110 um"])"), HasSubstr("value 2: a list of lists holds nothing else"));
+  EXPECT_THAT(reason(R"([["60 um", "root"]])"), HasSubstr("value 1: value 2: "));
+  EXPECT_THAT(reason(R"([])"), HasSubstr("needs 2 values, got 0"));
+  EXPECT_THAT(reason(R"(["60 V", "tip"])"), HasSubstr("expected a length [m], got a voltage [V]"));
+}
+
 TEST(Scene, WhatIsNotGivenTakesTheDefaultsOfTheStructs) {
   const Scene scene = read(edited(small_scene, "[simulate]\naccuracy = 1e-5\n", ""));
   EXPECT_EQ(scene.device.structure.modes, Structure{}.modes);
@@ -215,7 +255,7 @@ TEST(Scene, APlateIsAStripOfItsAreaAndWidth) {
   EXPECT_EQ(d.structure.width, 123e-6);
   EXPECT_DOUBLE_EQ(d.structure.length, 510e-6);
   EXPECT_EQ(d.structure.modes, 1);
-  EXPECT_DOUBLE_EQ(d.electrodes[0].end - d.electrodes[0].begin, 510e-6)
+  EXPECT_DOUBLE_EQ(d.electrodes[0].end.value - d.electrodes[0].begin.value, 510e-6)
       << "without an area of its own it is as large as the plate";
 
   const Device square = read(R"([structure]
@@ -232,7 +272,7 @@ fringing = "none"
 )")
                             .device;
   EXPECT_DOUBLE_EQ(square.structure.width, 100e-6) << "where no law needs its width";
-  EXPECT_DOUBLE_EQ(square.electrodes[0].end, 25e-6);
+  EXPECT_DOUBLE_EQ(square.electrodes[0].end.value, 25e-6);
 }
 
 TEST(Scene, EveryFringingLawHasAName) {

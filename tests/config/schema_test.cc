@@ -37,7 +37,8 @@ Scene whole_scene() {
 }
 
 bool is_bound(const Bound& b) {
-  return b.number != nullptr || b.flag != nullptr || b.integer != nullptr || b.text != nullptr || b.choose != nullptr;
+  return b.number != nullptr || b.flag != nullptr || b.integer != nullptr || b.text != nullptr || b.choose != nullptr ||
+         b.place != nullptr;
 }
 
 TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
@@ -57,8 +58,8 @@ TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {
     for (const Key& key : section.keys) {
       if (!is_bound(key.bound)) continue;
       SCOPED_TRACE(fmt::format("{}.{}", section.name, key.name));
-      EXPECT_EQ(key.bound.number != nullptr, key.type == KeyType::quantity || key.type == KeyType::quantities);
-      EXPECT_EQ(key.bound.last != nullptr, key.type == KeyType::quantities);
+      EXPECT_EQ(key.bound.number != nullptr, key.type == KeyType::quantity);
+      EXPECT_EQ(key.bound.place != nullptr, key.type == KeyType::quantities);
       EXPECT_EQ(key.bound.flag != nullptr, key.type == KeyType::flag);
       EXPECT_EQ(key.bound.integer != nullptr, key.type == KeyType::integer);
       EXPECT_EQ(key.bound.text != nullptr, key.type == KeyType::text);
@@ -77,7 +78,8 @@ TEST(Schema, NoTwoKeysSetTheSameMember) {
       if (!seen.insert(key.name).second) continue;  // the same key of another kind of structure
       const Bound& b = key.bound;
       for (const void* member : {b.number != nullptr ? static_cast<const void*>(&b.number(scene, 0)) : nullptr,
-                                 b.last != nullptr ? static_cast<const void*>(&b.last(scene, 0)) : nullptr,
+                                 b.place != nullptr ? static_cast<const void*>(&b.place(scene, 0, 0)) : nullptr,
+                                 b.place != nullptr ? static_cast<const void*>(&b.place(scene, 0, 1)) : nullptr,
                                  b.flag != nullptr ? static_cast<const void*>(&b.flag(scene, 0)) : nullptr,
                                  b.integer != nullptr ? static_cast<const void*>(&b.integer(scene, 0)) : nullptr}) {
         if (member == nullptr) continue;

@@ -83,6 +83,26 @@ gaps = { keys = ["gap.electrode", "gap.contact"], distribution = "normal", cov =
   EXPECT_DOUBLE_EQ(scene.device.gas->viscosity, 1.5 * 1.86e-5);
 }
 
+// As --vary names them.
+TEST(Spread, TakesTheEndsOfASpan) {
+  const DeviceSpread spread = spread_of(R"(
+"electrode.main.span[2]" = { distribution = "normal", standard_deviation = "1 um" }
+"piezo.span[1]" = { distribution = "normal", cov = "2 %" }
+)");
+  Scene scene = read_scene(SceneFile::parse(with_spread(R"("electrode.main.span" = 1)").substr(0, small_scene.size()), "x.toml"));
+  ASSERT_EQ(spread.variables.size(), 2U);
+  const VariedKey& end = spread.variables[0].keys[0];
+  EXPECT_EQ(end.name(), "electrode.main.span[2]");
+  EXPECT_DOUBLE_EQ(end.nominal, 240e-6);
+  end.member(scene) = 230e-6;
+  EXPECT_EQ(scene.device.electrodes[0].end, Place(230e-6));
+  spread.variables[1].keys[0].member(scene) = 6e-6;
+  EXPECT_EQ(scene.device.piezo->begin, Place(6e-6));
+  for (const char* wrong : {"electrode.main.span", "electrode.main.span[0]", "electrode.main.span[3]", "gap.contact[1]"})
+    EXPECT_THROW((void)spread_of(fmt::format(R"("{}" = {{ distribution = "normal", cov = "2 %" }})", wrong)), InvalidInput)
+        << wrong;
+}
+
 TEST(Spread, RefusesValuesThatTheKeyCannotHave) {
   const DeviceSpread spread = spread_of(R"("structure.thickness" = { distribution = "normal", cov = "2 %" })");
   EXPECT_EQ(spread.variables[0].keys[0].refusal(4e-6), "");

@@ -409,7 +409,7 @@ TEST(PiezoMoment, OfTheGoldDeviceIsTheReference) {
 
 TEST(PiezoMoment, BendsTheBeamIntoACircularArcAsFarAsTheLayerReaches) {
   const Device d = test::gold_pzt_cantilever();
-  const double begin = d.piezo->begin, end = d.piezo->end, tip_position = d.contact_position();
+  const double begin = d.piezo->begin.value, end = d.piezo->end.value, tip_position = d.contact_position();
   const double moment = piezo_moment_per_volt(d.structure, *d.piezo);
   const auto tip = [&](int modes) {
     const BeamModes beam(beam_sections(d), modes);

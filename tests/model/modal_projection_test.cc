@@ -47,7 +47,7 @@ Beam beam() {
   const BeamModes own(beam_sections(d), modes);
   Beam b{.places = {}, .tip = own.value(d.contact_position()), .frequencies = own.angular_frequencies()};
   const Electrode& e = d.electrodes.front();
-  const std::array corners{0.0, e.begin, e.end, d.structure.length};
+  const std::array corners{0.0, e.begin.on(d.structure.length), e.end.on(d.structure.length), d.structure.length};
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
     const double length = corners[k + 1] - corners[k];
     if (length == 0) continue;

@@ -76,7 +76,8 @@ TEST(Surface, ResidualCompressionSoftensACantileverUntilItBuckles) {
   const double buckling_length = pi / 2 * std::sqrt(plain_section(d.structure, d.surface).rigidity / pull);
   EXPECT_NEAR(buckling_length, 0.875_um, 0.001_um);
   const auto of_length = [&](double length) {
-    d.structure.length = d.electrodes[0].end = length;
+    d.structure.length = length;
+    d.electrodes[0].end = length;
     return d;
   };
   // The first frequency goes to zero there. Its square: Rayleigh's quotient of the buckled shape, 1 - cos(pi x / (2 L)), times

@@ -60,6 +60,10 @@ std::vector<Combination> combinations() {
   two.electrodes[0].end = 150_um;
   two.electrodes.push_back({.name = "second", .begin = 150_um, .end = 250_um, .fringing = Fringing::linear});
   all.push_back({"two electrodes", two});
+  Device pads = test::gold_cantilever();  // of one electrode
+  pads.electrodes[0].end = 100_um;
+  pads.electrodes[0].further = {{.begin = 130_um, .end = 180_um}, {.begin = 200_um, .end = 250_um}};
+  all.push_back({"three pads", pads});
   for (const bool gas : {false, true}) {
     for (const bool stretching : {false, true}) {
       for (const double stress : {-1e6, 0.0, 20e6}) {
@@ -212,7 +216,7 @@ TEST(Switch, BuiltLikeAnotherIsTheSameSwitch) {
       [](Device& d) { d.structure.width *= 0.98, d.structure.youngs_modulus *= 1.03, d.structure.density *= 1.01; },
       [](Device& d) { d.gap.electrode *= 1.02, d.gap.contact *= 1.02; },
       [](Device& d) { d.structure.length *= 1.01; },
-      [](Device& d) { d.electrodes[0].begin += 0.01 * d.structure.length; },
+      [](Device& d) { d.electrodes[0].begin.value += 0.01 * d.structure.length; },
       [](Device& d) { d.contact->pad_length *= 1.1; },
       [](Device& d) { d.structure.modes = 3; },
       [](Device& d) { d.piezo.reset(); },
@@ -240,6 +244,28 @@ TEST(Switch, TwiceTheQuadratureIsTwiceThePointsOfEveryPanel) {
   Device d = test::gold_cantilever();
   d.electrodes[0].begin = 0.3_um;  // a panel so short that it has as few points as there may be
   EXPECT_EQ(Switch(d, fine).points(), 2 * Switch(d, coarse).points());
+}
+
+// An electrode of several pads is several electrodes under one voltage.
+TEST(Switch, PadsOfOneElectrodeActAsElectrodesOfOneVoltage) {
+  for (const Side side : {Side::near, Side::far, Side::both}) {
+    Device pads = test::gold_cantilever(), apart = pads;
+    for (Device* d : {&pads, &apart})
+      d->electrodes[0] = {.name = "one", .begin = 30_um, .end = 100_um, .side = side, .gap = 5_um};
+    pads.electrodes[0].further = {{.begin = 130_um, .end = Place::share(1)}};
+    apart.electrodes.push_back({.name = "two", .begin = 130_um, .end = 250_um, .side = side, .gap = 5_um});
+    const Switch one(pads), two(apart);
+    ASSERT_EQ(one.points(), two.points());
+    ASSERT_EQ(one.drives(), 1U);
+    const Eigen::VectorXd q = Eigen::VectorXd::Constant(one.modes(), 2e-13), v = Eigen::VectorXd::Constant(one.modes(), 1e-8);
+    Switch::Workspace work = one.workspace();
+    Eigen::VectorXd a(one.modes()), b(one.modes());
+    one.accelerations(q.data(), v.data(), std::vector{17.0}, false, work, a.data());
+    const double charge = one.capacitance(0, q.data(), work);
+    two.accelerations(q.data(), v.data(), std::vector{17.0, 17.0}, false, work, b.data());
+    EXPECT_LT((a - b).norm(), 1e-13 * b.norm());
+    EXPECT_NEAR(charge, two.capacitance(0, q.data(), work) + two.capacitance(1, q.data(), work), 1e-13 * charge);
+  }
 }
 
 TEST(Switch, StaticForceIsMinusTheGradientOfThePotential) {
@@ -326,7 +352,7 @@ TEST(Quadrature, CornersThatDifferByARoundingAreOne) {
   Device d = test::gold_cantilever();
   d.electrodes[0].end = d.structure.length - d.contact->pad_length;
   const Eigen::Index points = Switch(d).points();
-  d.electrodes[0].end = std::nextafter(d.electrodes[0].end, 0.0);
+  d.electrodes[0].end = std::nextafter(d.electrodes[0].end.value, 0.0);
   EXPECT_EQ(Switch(d).points(), points);
 }
 

@@ -104,6 +104,7 @@ std::vector<Case> cases() {
   all.push_back(
       {"dither", gold_at_17_volts({"waveform.main={family=\"harmonic\", base=\"17 V\", amplitude=\"3 V\", frequency=\"90 kHz\", "
                                    "start=\"5 us\", end=\"70 us\", fade=\"3 us\"}"})});
+  all.push_back({"two pads", gold_at_17_volts({"electrode.main.span=[[\"60 um\", \"140 um\"], [\"160 um\", \"98 %\"]]"})});
   all.push_back({"piezo", gold_pzt({"simulate.duration=60 us"})});  // later it is chaotic
   return all;
 }

@@ -82,7 +82,7 @@ TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
                                "driver.main.source_resistance=10 Mohm", "electrode.main.fringing=none"});
   const Prepared p = prepare(file);
   const Device& device = p.scene.device;
-  const double area = (device.electrodes[0].end - device.electrodes[0].begin) * device.structure.width;
+  const double area = (device.electrodes[0].end.value - device.electrodes[0].begin.value) * device.structure.width;
   const double capacitance = 8.8541878128e-12 * area / device.gap.electrode;
   ASSERT_TRUE(p.loads.contains("main"));
   EXPECT_NEAR(p.loads.at("main"), capacitance, 1e-9 * capacitance);
