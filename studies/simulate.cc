@@ -290,8 +290,10 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   return c;
 }
 
-void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals) {
-  const auto closed = closed_equilibrium(model, hold_levels(signals));
+void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
+              const std::optional<ClosedEquilibrium>& near) {
+  const std::vector<double> levels = hold_levels(signals);
+  const auto closed = near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels);
   const bool stays = keeps_closed(model, closed);
   if (stays) trajectory.hold_force = closed->contact_force;
   const std::optional<Contact>& contact = model.device().contact;

@@ -9,6 +9,7 @@
 
 #include "base/watch.h"
 #include "model/closing.h"
+#include "model/pull_in.h"
 #include "objectives/figures.h"
 #include "studies/prepared.h"
 
@@ -53,7 +54,9 @@ inline constexpr std::string_view not_held =
 
 /// Sets the hold force of the closed equilibrium under the hold levels of these drives, and whether anything holds the switch:
 /// not where it has a contact and no such equilibrium, unless the contact may hold on by adhesion, nor where it is unstable.
-void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals);
+/// `near`: that of a switch and drives little different, from which it is found sooner.
+void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
+              const std::optional<ClosedEquilibrium>& near = {});
 
 /// Peak voltage and peak slew of these drives in the window.
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);
