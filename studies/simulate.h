@@ -30,7 +30,8 @@ struct Judge {
 struct Closing {
   Trajectory trajectory;
   Metrics metrics;
-  /// Absolute error estimates: the difference to the judge's and what rounding leaves, or what certify() makes of it. NaN where
+  /// Absolute error estimates: the difference to the judge's and what rounding leaves, that of the drive energy at least the
+  /// residual of the energies, or what certify() makes of it. NaN where
   /// not estimated: t_p, t_b and N_B have none but from certify(), nor what comes after the runs part in a rebound's height,
   /// since no two runs tell the range of a chaotic figure.
   FigureValues errors;
@@ -43,6 +44,9 @@ struct Closing {
 
 /// A stated error is this often the difference of two runs, of which the tighter one errs as well.
 inline constexpr double stated_safety = 2;
+
+/// What a run misses in the balance of its energies its drives may have given: no error of the drive energy is less.
+void allow_for_residual(FigureValues& errors, const Trajectory& run);
 
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const Prepared& prepared);
