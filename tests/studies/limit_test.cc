@@ -60,6 +60,15 @@ TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_slow) {
   }
 }
 
+// Modes that differ by decades: of four the least time is 11.85 us.
+TEST(LeastTime, OfAPiezoIsFoundAndShorterWithSixModes_slow) {
+  const Prepared p = prepare_and_choose(gold_pzt({"structure.modes=6"}), true);
+  const LeastTime found = least_time(p, {.actuator = Actuator::pzt, .impact_velocity = 1.33e-3});
+  ASSERT_EQ(found.status, Status::done) << found.message;
+  EXPECT_NEAR(found.time, 11.67e-6, 0.02e-6);
+  EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
+}
+
 // Pulled from rest to its first turn, let go to the other side, pulled from there to x_s and let go again: it arrives with speed
 // v. A plate that one pull does not close; the quickest way may turn a little earlier or later than this one.
 double two_swings(const Structure& s, const Gap& gap, double volts, double v) {
