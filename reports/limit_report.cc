@@ -127,10 +127,12 @@ void add_curve(internal::CurveTables& tables, const std::string& name, const std
 
 internal::Chart curve(const std::string& table, const std::string& title, const std::string& x_label, const std::string& x_unit,
                       const internal::CurveTable& columns) {
+  constexpr double beside = 0.1;  // of the only place of a curve: what is shown on either side
   const auto [low, high] = std::minmax_element(columns.at("x").begin(), columns.at("x").end());
+  const double around = *low < *high ? 0 : beside * *low;
   internal::Chart chart{
       .id = table, .title = title, .x_column = "x", .x_label = x_label, .x_unit = x_unit, .y_label = "least time", .y_unit = "s"};
-  chart.x_home = chart.x_whole = {*low, *high};
+  chart.x_home = chart.x_whole = {*low - around, *high + around};
   chart.series = {{.table = table, .column = "time", .label = "least time of a touch"}};
   for (std::size_t k = 0; k < columns.at("x").size(); ++k)
     chart.marks.push_back({columns.at("x")[k], columns.at("time")[k], internal::Role::best, ""});
@@ -194,6 +196,7 @@ std::string limit_text(const Limit& limit) {
 
 std::string limit_svg(const Limit& limit) {
   internal::Picture drawn;
+  if (limit.landing) drawn = gap_and_drives(result_of(limit.landing->scene, limit.landing->closing, {}));
   add_curve(drawn.tables, "speed", limit.over_velocity, [](const LeastTime& l) { return l.permitted; });
   add_curve(drawn.tables, "peak", limit.over_peak, [](const LeastTime& l) { return l.peak; });
   if (drawn.tables.contains("peak")) {
@@ -209,7 +212,7 @@ std::string limit_svg(const Limit& limit) {
   const std::string headline =
       found ? fmt::format("No waveform touches before {} at {} or less{}", quantity(limit.touch.time, "s", 4),
                           quantity(limit.impact_velocity, "m/s"), model.empty() ? "" : fmt::format(", with {}", model))
-            : "The least time was not found";
+            : "The least time was not found: " + why_not(limit.touch);
   return svg_page(headline, limit.given.scene.title, drawn, 1);
 }
 
