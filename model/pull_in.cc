@@ -63,20 +63,38 @@ class Statics {
   // A holder keeps the contact point at s under constant voltages; unknown is the force with which the beam presses on it, beyond
   // what a contact along the pad carries.
   std::optional<Held> pinned(std::span<const double> volts, double s) {
-    Held h{.q = pushed(s)};
+    std::optional<Held> h = Held{.q = pushed(s)};
     std::vector<double> part(volts.begin(), volts.end());
     for (const double load : {0.25, 0.5, 0.75, 1.0}) {
       std::transform(volts.begin(), volts.end(), part.begin(), [&](double v) { return v * std::sqrt(load); });
-      const auto next =
-          newton(s, h, [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
-            evaluate(at.q, part, residual, by_q);
-            residual -= at.unknown * model_.contact_shape();
-            by_unknown = -model_.contact_shape();
-          });
-      if (!next) return std::nullopt;
-      h = *next;
+      h = pinned(part, s, std::move(*h));
+      if (!h) break;
     }
     return h;
+  }
+
+  // The same from a state near it.
+  std::optional<Held> pinned(std::span<const double> volts, double s, Held near) {
+    return newton(s, std::move(near),
+                  [&](const Held& at, Eigen::VectorXd& residual, Eigen::MatrixXd& by_q, Eigen::VectorXd& by_unknown) {
+                    evaluate(at.q, volts, residual, by_q);
+                    residual -= at.unknown * model_.contact_shape();
+                    by_unknown = -model_.contact_shape();
+                  });
+  }
+
+  // On the contact, from a state near it.
+  std::optional<Eigen::VectorXd> closed(std::span<const double> volts, Eigen::VectorXd near) {
+    Eigen::VectorXd force;
+    Eigen::MatrixXd by_q;
+    for (int i = 0; i < most_iterations; ++i) {
+      evaluate(near, volts, true, force, by_q);
+      const Eigen::VectorXd step = -solve_linear(squares_.cwiseInverse().asDiagonal() * by_q, force.cwiseQuotient(squares_));
+      if (!step.allFinite()) return std::nullopt;
+      near += step;
+      if (has_converged(step)) return is_above_floor() ? std::optional(std::move(near)) : std::nullopt;
+    }
+    return std::nullopt;
   }
 
   double potential(const Eigen::VectorXd& q, std::span<const double> volts) {
@@ -84,13 +102,19 @@ class Statics {
   }
 
  private:
+  static constexpr int most_iterations = 60;
+
   // Static modal forces and their derivative, without a contact that acts at the point that is held.
   void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, Eigen::VectorXd& force, Eigen::MatrixXd& by_q) {
+    evaluate(q, volts, model_.has_pad_contact(), force, by_q);
+  }
+
+  void evaluate(const Eigen::VectorXd& q, std::span<const double> volts, const ContactState& contact, Eigen::VectorXd& force,
+                Eigen::MatrixXd& by_q) {
     const auto n = model_.modes();
     force.resize(n);
     by_q.resize(n, n);
     Eigen::MatrixXd by_v(n, n);
-    const ContactState contact = model_.has_pad_contact();
     model_.accelerations(q.data(), rest_.data(), volts, contact, work_, force.data());
     model_.jacobian(q.data(), rest_.data(), volts, contact, work_, by_q, by_v);
   }
@@ -103,7 +127,7 @@ class Statics {
     Eigen::VectorXd residual, by_unknown;
     Eigen::MatrixXd by_q, bordered(n + 1, n + 1);
     Eigen::VectorXd right(n + 1);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < most_iterations; ++i) {
       equations(h, residual, by_q, by_unknown);
       // Rows in units of each mode's own stiffness: unscaled they span ten decades.
       bordered.topLeftCorner(n, n) = squares_.cwiseInverse().asDiagonal() * by_q;
@@ -116,14 +140,16 @@ class Statics {
       if (!step.allFinite()) return std::nullopt;
       h.q += step.head(n);
       h.unknown += step[n];
-      const double moved = step.head(n).cwiseProduct(shape).cwiseAbs().sum();
-      if (moved < 1e-13 * model_.device().gap.electrode) {
-        // Below the floor the laws are no longer physics: a state there is none.
-        return Switch::smallest_gap(work_) > model_.gap_floor() ? std::optional(h) : std::nullopt;
-      }
+      if (has_converged(step.head(n))) return is_above_floor() ? std::optional(h) : std::nullopt;
     }
     return std::nullopt;
   }
+
+  [[nodiscard]] bool has_converged(const Eigen::VectorXd& step) const {
+    return step.cwiseProduct(model_.contact_shape()).cwiseAbs().sum() < 1e-13 * model_.device().gap.electrode;
+  }
+  // Of the state evaluated last: below the floor the laws are no longer physics, and a state there is none.
+  [[nodiscard]] bool is_above_floor() const { return Switch::smallest_gap(work_) > model_.gap_floor(); }
 
   const Switch& model_;
   Switch::Workspace work_;
@@ -408,18 +434,31 @@ double pull_through_voltage(const Switch& model, std::size_t drive, std::span<co
   return high;
 }
 
+namespace {
+
+ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, double contact_force, std::span<const double> volts) {
+  Switch::Workspace work = model.workspace();
+  return {.q = q,
+          .contact_force = contact_force,
+          .potential = model.potential(q.data(), volts, true, work),
+          .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
+}
+
+double static_push(const Switch& model, const Eigen::VectorXd& q) {
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
+  return model.contact_push(q.data(), still.data(), true);
+}
+
+}  // namespace
+
 std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::span<const double> volts) {
   if (!model.has_contact()) return std::nullopt;
   Statics statics(model);
   const double plane = model.device().gap.contact, step = model.penetration_scale() / 16;
-  Switch::Workspace work = model.workspace();
   if (model.rigid_contact() != nullptr) {
     const auto held = statics.pinned(volts, plane);
     if (!held || !(held->unknown > 0)) return std::nullopt;
-    return ClosedEquilibrium{.q = held->q,
-                             .contact_force = held->unknown,
-                             .potential = model.potential(held->q.data(), volts, true, work),
-                             .smallest_eigenvalue = smallest_closed_eigenvalue(model, held->q, volts)};
+    return closed_at(model, held->q, held->unknown, volts);
   }
   // What the contact carries at a depth, less the force with which the beam presses there.
   const auto excess = [&](double depth) {
@@ -435,11 +474,22 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
   const double depth = bracketed_zero(excess, over->last, over->next);
   const auto held = statics.pinned(volts, plane + depth);
   if (!held) return std::nullopt;
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
-  return ClosedEquilibrium{.q = held->q,
-                           .contact_force = model.contact_push(held->q.data(), still.data(), true),
-                           .potential = model.potential(held->q.data(), volts, true, work),
-                           .smallest_eigenvalue = smallest_closed_eigenvalue(model, held->q, volts)};
+  return closed_at(model, held->q, static_push(model, held->q), volts);
+}
+
+std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, std::span<const double> volts,
+                                                         const ClosedEquilibrium& near) {
+  Statics statics(model);
+  const double plane = model.device().gap.contact;
+  std::optional<ClosedEquilibrium> found;
+  if (model.rigid_contact() != nullptr) {
+    const auto held = statics.pinned(volts, plane, {.q = near.q, .unknown = near.contact_force});
+    if (held) found = closed_at(model, held->q, held->unknown, volts);
+  } else if (const auto q = statics.closed(volts, near.q); q && model.contact_deflection(q->data()) > plane) {
+    found = closed_at(model, *q, static_push(model, *q), volts);
+  }
+  const bool is_one = found && found->contact_force > 0 && keeps_closed(model, found);
+  return is_one ? found : closed_equilibrium(model, volts);
 }
 
 DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, const Watch& watch,

@@ -479,6 +479,10 @@ ControlledCourse solve(const ControlProblem& problem, const ControlledCourse& gu
   options->SetNumericValue("mu_init", 1e-3);
   options->SetNumericValue("bound_push", 1e-4);
   options->SetNumericValue("bound_frac", 1e-4);
+  // With its own pivots of 1e-6 MUMPS miscounts the signs of the eigenvalues where states differ by decades, and Ipopt adds ever
+  // more to the Hessian. Minimum degree fills these matrices less than the order that MUMPS would choose.
+  options->SetNumericValue("mumps_pivtol", 1e-3);
+  options->SetIntegerValue("mumps_pivot_order", 0);
   // An empty name: without it Ipopt would read a file ipopt.opt from the working directory.
   auto status = application->Initialize("");
   if (status == Ipopt::Solve_Succeeded) status = application->OptimizeTNLP(new Program(problem, guess, result));

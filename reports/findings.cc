@@ -294,7 +294,8 @@ std::string limit_words(const Result& result) {
   const double touch = figure_of_run(result.best, &Metrics::initial_contact_time);
   if (!result.limit || !std::isfinite(result.limit->least_time) || !std::isfinite(touch)) return {};
   return fmt::format(
-      "Touches in {} times the least time that any waveform of these drives takes to touch no faster than {} ({}).",
+      "Touches in {} times the least time that any waveform of these drives takes, with the modes of the scene, to touch no "
+      "faster than {} ({}).",
       plain_number(touch / result.limit->least_time, 4), quantity(result.limit->impact_velocity, "m/s"),
       quantity(result.limit->least_time, "s", 4));
 }

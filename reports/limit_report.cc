@@ -49,6 +49,7 @@ json landing_json(const LimitLanding& landing) {
   for (const ConfirmingRun& c : landing.checks) checks.push_back({{"name", c.name}, {"metrics", metrics_json(c.metrics)}});
   return {{"way", least_json(landing.way)},
           {"at_rest", std::isfinite(landing.way.room)},
+          {"catch_delay_s", json_number(landing.catch_delay)},
           {"catch_s", json_number(landing.catch_time)},
           {"bounce_free", landing.bounce_free},
           {"metrics", metrics_json(landing.closing.metrics)},
@@ -86,6 +87,13 @@ std::string least_row(const std::string& name, const LeastTime& least) {
                    least.from_start ? "found from the waveform of --start" : "");
 }
 
+// The model for which a least time is a bound: a beam with more modes may touch earlier. Empty for a plate, which has one mode.
+std::string model_of(const Limit& limit) {
+  if (limit.given.scene.device.structure.kind == StructureKind::plate) return {};
+  const auto modes = limit.given.model.modes();
+  return fmt::format("{} mode{}", modes, modes == 1 ? "" : "s");
+}
+
 // What follows the touch of a landing.
 std::string words_after(const LimitLanding& landing) {
   if (landing.bounce_free) return "no rebound, confirmed";
@@ -96,6 +104,14 @@ std::string words_after(const LimitLanding& landing) {
     if (c.metrics.bounce_count > 0 || c.metrics.status != Status::done)
       words += fmt::format(", but with {} up to {}", c.name, quantity(c.metrics.major_bounce_height, "m"));
   }
+  return words;
+}
+
+std::string words_of_catch(const LimitLanding& landing) {
+  const double pulled = landing.catch_time - landing.catch_delay;
+  if (!(pulled > 0)) return "landing";
+  std::string words = fmt::format("landing, then a catch of {}", quantity(pulled, "s"));
+  if (landing.catch_delay > 0) words += fmt::format(" after {}", quantity(landing.catch_delay, "s"));
   return words;
 }
 
@@ -111,10 +127,12 @@ void add_curve(internal::CurveTables& tables, const std::string& name, const std
 
 internal::Chart curve(const std::string& table, const std::string& title, const std::string& x_label, const std::string& x_unit,
                       const internal::CurveTable& columns) {
+  constexpr double beside = 0.1;  // of the only place of a curve: what is shown on either side
   const auto [low, high] = std::minmax_element(columns.at("x").begin(), columns.at("x").end());
+  const double around = *low < *high ? 0 : beside * *low;
   internal::Chart chart{
       .id = table, .title = title, .x_column = "x", .x_label = x_label, .x_unit = x_unit, .y_label = "least time", .y_unit = "s"};
-  chart.x_home = chart.x_whole = {*low, *high};
+  chart.x_home = chart.x_whole = {*low - around, *high + around};
   chart.series = {{.table = table, .column = "time", .label = "least time of a touch"}};
   for (std::size_t k = 0; k < columns.at("x").size(); ++k)
     chart.marks.push_back({columns.at("x")[k], columns.at("time")[k], internal::Role::best, ""});
@@ -128,6 +146,7 @@ json limit_json(const Limit& limit, const Provenance& provenance) {
           {"status", limit.interrupted ? "interrupted" : to_string(limit.touch.status)},
           {"actuator", name_of(actuators, limit.options.actuator)},
           {"permitted_impact_velocity_m_s", json_number(limit.impact_velocity)},
+          {"modes", limit.given.model.modes()},
           {"plain_step", metrics_json(limit.step)},
           {"touch", least_json(limit.touch)},
           {"at_rest", least_json(limit.rest)},
@@ -151,10 +170,8 @@ std::string limit_text(const Limit& limit) {
   if (limit.landing) {
     const Metrics& m = limit.landing->closing.metrics;
     const std::string after = words_after(*limit.landing);
-    text += limit_row(limit.landing->catch_time > 0
-                          ? fmt::format("landing, then a catch of {}", quantity(limit.landing->catch_time, "s"))
-                          : std::string("landing"),
-                      quantity(m.initial_contact_time, "s", 4), quantity(m.impact_velocity, "m/s"), after);
+    text += limit_row(words_of_catch(*limit.landing), quantity(m.initial_contact_time, "s", 4),
+                      quantity(m.impact_velocity, "m/s"), after);
   }
   const auto list = [&](const std::string& title, const std::vector<LeastTime>& all, const auto& name) {
     if (all.empty()) return;
@@ -166,17 +183,20 @@ std::string limit_text(const Limit& limit) {
   };
   list("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); });
   list("volts up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); });
+  const std::string model = model_of(limit);
   return text + "\n" +
-         wrapped(
-             "No waveform of these drives touches earlier at that speed, as far as Ipopt can tell: the optimum is a local one, "
-             "found from the quickest single swing" +
-             std::string(limit.options.start.empty() ? "" : " or from the waveform of --start") +
-             ". A beam whose modes still ring may bounce after a soft touch: the landing was simulated.") +
+         wrapped("No waveform of these drives touches earlier at that speed" +
+                 (model.empty() ? "" : " in this model of " + model) +
+                 ", as far as Ipopt can tell: the optimum is a local one, found from the quickest single swing" +
+                 std::string(limit.options.start.empty() ? "" : " or from the waveform of --start") +
+                 (model.empty() ? "." : ". A beam has more modes, by which a waveform can gain.") +
+                 " A beam whose modes still ring may bounce after a soft touch: the landing was simulated.") +
          "\n";
 }
 
 std::string limit_svg(const Limit& limit) {
   internal::Picture drawn;
+  if (limit.landing) drawn = gap_and_drives(result_of(limit.landing->scene, limit.landing->closing, {}));
   add_curve(drawn.tables, "speed", limit.over_velocity, [](const LeastTime& l) { return l.permitted; });
   add_curve(drawn.tables, "peak", limit.over_peak, [](const LeastTime& l) { return l.peak; });
   if (drawn.tables.contains("peak")) {
@@ -187,10 +207,12 @@ std::string limit_svg(const Limit& limit) {
                                  drawn.tables.at("speed")));
     drawn.charts.back().x_scale = internal::Scale::logarithmic;
   }
-  const std::string headline = limit.touch.status == Status::done
-                                   ? fmt::format("No waveform touches before {} at {} or less",
-                                                 quantity(limit.touch.time, "s", 4), quantity(limit.impact_velocity, "m/s"))
-                                   : "The least time was not found";
+  const bool found = limit.touch.status == Status::done;
+  const std::string model = model_of(limit);
+  const std::string headline =
+      found ? fmt::format("No waveform touches before {} at {} or less{}", quantity(limit.touch.time, "s", 4),
+                          quantity(limit.impact_velocity, "m/s"), model.empty() ? "" : fmt::format(", with {}", model))
+            : "The least time was not found: " + why_not(limit.touch);
   return svg_page(headline, limit.given.scene.title, drawn, 1);
 }
 

@@ -11,7 +11,8 @@ namespace softland {
 
 [[nodiscard]] nlohmann::json limit_json(const Limit& limit, const Provenance& provenance);
 [[nodiscard]] std::string limit_text(const Limit& limit);
-/// Least time against the peak voltage and against the permitted speed, and the landing's waveforms and gap.
+/// The landing's gap and waveforms, and the least time against the peak voltage and against the permitted speed, as far as they
+/// were found.
 [[nodiscard]] std::string limit_svg(const Limit& limit);
 
 }  // namespace softland

@@ -86,13 +86,17 @@ std::string svg_page(const std::string& headline, const std::string& words, cons
   });
 }
 
-std::string svg_gap_chart(const Result& result) {
+internal::Picture gap_and_drives(const Result& result) {
   using namespace internal;
   Picture drawn = picture(result);
   std::erase_if(drawn.charts,
                 [](const Chart& chart) { return chart.id != "gap" && chart.id != "landing" && !chart.id.starts_with("drive"); });
   for (Chart& chart : drawn.charts) chart.height = chart.id.starts_with("drive") ? 120 : 220;
-  return svg_page(headline(result).whole(), result.title, drawn);
+  return drawn;
+}
+
+std::string svg_gap_chart(const Result& result) {
+  return svg_page(headline(result).whole(), result.title, gap_and_drives(result));
 }
 
 }  // namespace softland

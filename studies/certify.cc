@@ -166,6 +166,7 @@ Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
     }
     c.errors[figure] = figure.is_count() ? std::ceil(error - 0.5) : error;
   }
+  allow_for_residual(c.errors, c.trajectory);
   if (!certificate.ill_conditioned.empty()) certificate.grazing = grazing_rebound(cloud, prepared.scene.metrics);
   c.certificate = std::make_shared<const Certificate>(std::move(certificate));
   return c;

@@ -302,11 +302,12 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
 namespace {
 
 // A device that is quiet at the end of the window has not settled where its hold levels do not keep it closed.
-void judge_hold(DeviceOutcome& outcome, const SampledDevice& device, const std::vector<Signal>& signals) {
+void judge_hold(DeviceOutcome& outcome, const SampledDevice& device, const std::vector<Signal>& signals,
+                const std::optional<ClosedEquilibrium>& nominal) {
   Metrics& m = outcome.metrics;
   if (!outcome.closed() || !m.settled) return;
   Trajectory end;
-  set_hold(end, *device.model, signals);
+  set_hold(end, *device.model, signals, nominal);
   if (end.is_held) return;
   m.settled = false;
   m.status = Status::not_settled;
@@ -326,7 +327,10 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
   const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
   if (any([](const EnsembleDrive& d) { return !d.known.calibration().is_empty(); }))
     meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.known.calibration().pull_in_error.has_value(); }));
-  for (const EnsembleDrive& drive : drives) nominal_signals_.push_back(nominal.driven(signals_of(drive.waveforms)));
+  for (const EnsembleDrive& drive : drives) {
+    nominal_signals_.push_back(nominal.driven(signals_of(drive.waveforms)));
+    nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));
+  }
 }
 
 std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const SampledDevice> devices,
@@ -358,7 +362,7 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, nominal_->scene.metrics, vectors_);
     for (std::size_t n = 0; n < places.size(); ++n) {
-      judge_hold(closed[n], *closings[n].device, *closings[n].signals);
+      judge_hold(closed[n], *closings[n].device, *closings[n].signals, nominal_closed_[d]);
       outcomes[d][places[n]] = std::move(closed[n]);
     }
   }

@@ -13,6 +13,7 @@
 #include "base/watch.h"
 #include "model/closing.h"
 #include "model/ensemble/fleet.h"
+#include "model/pull_in.h"
 #include "objectives/metrics.h"
 #include "sampling/classes.h"
 #include "sampling/points.h"
@@ -190,7 +191,8 @@ class DeviceCloser {
   Vectors vectors_;
   DeviceDrives device_drives_;
   std::optional<DeviceMeter> meter_;
-  std::vector<std::vector<Signal>> nominal_signals_;  // of every drive
+  std::vector<std::vector<Signal>> nominal_signals_;              // of every drive
+  std::vector<std::optional<ClosedEquilibrium>> nominal_closed_;  // under its hold levels
 };
 
 /// The closings of all devices under each of these drives: the outcomes of a drive, by device. Asked to stop, they are those of

@@ -29,7 +29,6 @@ constexpr double piece_angle = 0.75;  // of the fastest mode in a piece of the m
 // Of the optimum and a simulation: relative, of the time of the touch, or of the gap as far as one misses it.
 constexpr double agreement = 1e-4;
 constexpr double longest_swing = 3;       // periods of the first mode
-constexpr double grazing = 0.9;           // of the permitted speed: what a landing at rest touches with at least
 constexpr double softness = 0.2;          // of the permitted speed: how much faster a simulation may touch
 constexpr double catch_tolerance = 1e-6;  // of the integrator, where catches are compared
 constexpr int refinements = 3;            // of the knots: each halves their shortest interval
@@ -37,6 +36,7 @@ constexpr int most_meshes = 3;            // each half as wide as the one before
 
 // Of the gap: how near every mode comes to its place in the closed equilibrium.
 constexpr std::array rest_rooms = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
+constexpr long nearing_iterations = 100;  // of Ipopt from one to the next: where there is a way it takes about thirty
 
 std::vector<double> uniform_knots(int intervals) {
   std::vector<double> knots;
@@ -78,12 +78,16 @@ std::map<std::string, Waveform> tables_of(const FreeFlight& flight, const Contro
   return waveforms;
 }
 
-// What follows the touch: a pull until `until` [s], then the hold levels.
-std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const LeastTime& found, double until,
+// What follows the touch: full pull from one time to another [s], then the hold levels.
+struct Catch {
+  double begin = 0, end = 0;  // after the touch
+};
+
+std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const LeastTime& found, const Catch& pulled,
                                            const std::map<std::string, Waveform>& held) {
   std::map<std::string, Waveform> caught = found.waveforms;
   const std::map<std::string, double> pull = flight.volts(flight.pull());
-  const double end = found.course.time * flight.time_unit();
+  const double touch = found.course.time * flight.time_unit();
   for (auto& [name, waveform] : caught) {
     auto& table = std::get<Table>(waveform);
     const auto hold_of = held.find(name);
@@ -93,8 +97,8 @@ std::map<std::string, Waveform> with_catch(const FreeFlight& flight, const Least
       table.time.insert(table.time.end(), {begin, begin + std::abs(volts - from) / flight.max_slew(name)});
       table.voltage.insert(table.voltage.end(), {from, volts});
     };
-    if (until > end) pass_to(end, pull.at(name));
-    pass_to(until, hold);
+    if (pulled.end > pulled.begin) pass_to(touch + pulled.begin, pull.at(name));
+    pass_to(touch + pulled.end, hold);
   }
   return caught;
 }
@@ -145,7 +149,7 @@ class LeastTimeSearch {
     pose(longest_time(), landing);
     (void)come_to_rest(landing->state, [&] {
       const LeastTime way{.waveforms = tables_of(flight_, course_), .course = course_};
-      all.push_back(with_catch(flight_, way, course_.time * flight_.time_unit(), plain));
+      all.push_back(with_catch(flight_, way, {}, plain));
     });
     return all;
   }
@@ -187,17 +191,17 @@ class LeastTimeSearch {
   void pose(double longest, const std::optional<FreeFlight::Landing>& landing) {
     const double speed = options_.impact_velocity / flight_.speed_unit();
     const double fastest = prepared_.model.angular_frequencies().maxCoeff() * flight_.time_unit();
-    problem_ = {.system = &flight_,
-                .start = flight_.start(),
-                .bounds = flight_.bounds(),
-                .on_the_way = {{.row = flight_.tip(), .upper = 1}},
-                .at_the_end = {{.row = flight_.tip(), .lower = 1, .upper = 1},
-                               {.row = flight_.tip_speed(), .lower = (landing ? grazing : 0) * speed, .upper = speed}},
-                .shortest = course_.time / 10,
-                .longest = longest / flight_.time_unit(),
-                .knots = uniform_knots(first_knots),
-                .longest_piece = piece_angle / (fastest * course_.time),
-                .stop = options_.watch.stop};
+    problem_ = {
+        .system = &flight_,
+        .start = flight_.start(),
+        .bounds = flight_.bounds(),
+        .on_the_way = {{.row = flight_.tip(), .upper = 1}},
+        .at_the_end = {{.row = flight_.tip(), .lower = 1, .upper = 1}, {.row = flight_.tip_speed(), .lower = 0, .upper = speed}},
+        .shortest = course_.time / 10,
+        .longest = longest / flight_.time_unit(),
+        .knots = uniform_knots(first_knots),
+        .longest_piece = piece_angle / (fastest * course_.time),
+        .stop = options_.watch.stop};
     // A beam stays at rest where the drives have come to the levels under which it does.
     for (Index k = 0; landing && flight_.ramps() && k < flight_.controls(); ++k)
       problem_.bounds[static_cast<std::size_t>(k)].after = landing->controls[k];
@@ -234,14 +238,17 @@ class LeastTimeSearch {
         mode.upper = landed[r] + room;
       }
     };
+    const long usual = problem_.max_iterations;
     for (const double room : rest_rooms) {
       leave(room);
       const Status status = improve();
       if (status == Status::interrupted) return status;
       if (status != Status::done) break;
       result_.room = room;
+      problem_.max_iterations = nearing_iterations;
       if (nearer) nearer();
     }
+    problem_.max_iterations = usual;
     if (std::isnan(result_.room)) return Status::numerical_failure;
     leave(result_.room);
     return Status::done;
@@ -254,7 +261,7 @@ class LeastTimeSearch {
       result_.time = course_.time * flight_.time_unit();
       result_.impact_velocity = flight_.tip_speed().dot(course_.states.col(course_.states.cols() - 1)) * flight_.speed_unit();
       result_.waveforms =
-          with_catch(flight_, {.waveforms = tables_of(flight_, course_), .course = course_}, 2 * result_.time, {});
+          with_catch(flight_, {.waveforms = tables_of(flight_, course_), .course = course_}, {.end = result_.time}, {});
       const Arrival touch = arrival(prepared_, result_.waveforms, options_.actuator, 2 * result_.time);
       result_.simulated_time = touch.time;
       result_.simulated_velocity = touch.velocity;
@@ -316,42 +323,62 @@ std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& pr
 
 namespace {
 
-// The catch that rebounds least, of those that end up to a few times the time of the touch after it.
-double best_catch(const Prepared& prepared, const FreeFlight& flight, const LeastTime& found,
-                  const std::map<std::string, Waveform>& plain, const Watch& watch) {
-  constexpr double longest_catch = 3, step = 0.1;  // times that of the touch
-  const double period = 2 * pi / prepared.model.angular_frequencies()[0];
-  double best = 0, least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k * step <= longest_catch && !watch.stopped(); ++k) {
-    const std::vector<Signal> signals = driven(prepared, with_catch(flight, found, (1 + k * step) * found.time, plain), plain);
-    const ClosingOptions options{.duration = (1 + k * step) * found.time + period, .tolerance = catch_tolerance};
-    const Metrics m = metrics(simulate_closing(prepared.model, signals, options), prepared.scene.metrics);
-    if (!(m.major_bounce_height < least)) continue;
-    least = m.major_bounce_height;
-    best = k * step * found.time;
-    if (least == 0) break;
-  }
-  return best;
-}
+// A catch that begins at once presses a beam whose modes are just swinging back from the contact: times that of the touch.
+constexpr std::array catch_delays = {0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.04};
 
-LimitLanding landing_of(const Prepared& prepared, const LeastTime& found, Actuator actuator, bool catches, const Watch& watch) {
-  const FreeFlight flight(prepared, actuator, std::isfinite(found.peak) ? found.peak : std::numeric_limits<double>::infinity());
-  const std::map<std::string, Waveform> plain = plain_step(prepared, actuator);
-  LeastTime until_touch = found;
-  until_touch.waveforms = tables_of(flight, found.course);
-  const double catch_time = catches ? best_catch(prepared, flight, until_touch, plain, watch) : 0;
-  std::map<std::string, Waveform> all = with_catch(flight, until_touch, found.time + catch_time, plain);
-  all.insert(plain.begin(), plain.end());
-  Prepared scene = read_back(with_waveforms(prepared, all), "best.toml", prepared);
-  Closing closing = simulate(scene, false);
-  const auto soft = [](const Metrics& m) { return m.status == Status::done && m.settled && m.bounce_count == 0; };
-  LimitLanding landing{.way = found, .catch_time = catch_time, .scene = std::move(scene), .closing = std::move(closing)};
-  if (!soft(landing.closing.metrics)) return landing;
-  landing.checks = confirm(landing.scene);
-  landing.bounce_free =
-      std::ranges::all_of(landing.checks, [&](const ConfirmingRun& c) { return c.varied == Varied::gas || soft(c.metrics); });
-  return landing;
-}
+// What can follow the touch of a way to it.
+class AfterTouch {
+ public:
+  AfterTouch(const Prepared& prepared, const LeastTime& way, Actuator actuator)
+      : prepared_(prepared),
+        flight_(prepared, actuator, std::isfinite(way.peak) ? way.peak : std::numeric_limits<double>::infinity()),
+        plain_(plain_step(prepared, actuator)),
+        way_(way),
+        until_touch_(way) {
+    until_touch_.waveforms = tables_of(flight_, way.course);
+  }
+
+  // The one that rebounds least, of those that begin after a delay and end up to a few times the time of the touch later.
+  [[nodiscard]] Catch best_catch(double delay, const Watch& watch) const {
+    constexpr double longest = 3, step = 0.1;  // times that of the touch
+    const double period = 2 * pi / prepared_.model.angular_frequencies()[0];
+    Catch best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k * step <= longest && !watch.stopped() && least > 0; ++k) {
+      const Catch other{.begin = delay * way_.time, .end = (delay + k * step) * way_.time};
+      const std::vector<Signal> signals = driven(prepared_, with_catch(flight_, until_touch_, other, plain_), plain_);
+      const ClosingOptions options{.duration = way_.time + other.end + period, .tolerance = catch_tolerance};
+      const Metrics m = metrics(simulate_closing(prepared_.model, signals, options), prepared_.scene.metrics);
+      if (m.major_bounce_height < least) best = other, least = m.major_bounce_height;
+    }
+    return best;
+  }
+
+  [[nodiscard]] LimitLanding landing(const Catch& pulled) const {
+    std::map<std::string, Waveform> all = with_catch(flight_, until_touch_, pulled, plain_);
+    all.insert(plain_.begin(), plain_.end());
+    Prepared scene = read_back(with_waveforms(prepared_, all), "best.toml", prepared_);
+    Closing closing = simulate(scene, false);
+    const auto soft = [](const Metrics& m) { return m.status == Status::done && m.settled && m.bounce_count == 0; };
+    LimitLanding landing{.way = way_,
+                         .catch_delay = pulled.begin,
+                         .catch_time = pulled.end,
+                         .scene = std::move(scene),
+                         .closing = std::move(closing)};
+    if (!soft(landing.closing.metrics)) return landing;
+    landing.checks = confirm(landing.scene);
+    landing.bounce_free =
+        std::ranges::all_of(landing.checks, [&](const ConfirmingRun& c) { return c.varied == Varied::gas || soft(c.metrics); });
+    return landing;
+  }
+
+ private:
+  const Prepared& prepared_;
+  FreeFlight flight_;
+  std::map<std::string, Waveform> plain_;
+  const LeastTime& way_;
+  LeastTime until_touch_;  // with waveforms that end there
+};
 
 bool is_better(const LimitLanding& a, const std::optional<LimitLanding>& b) {
   if (!b) return true;
@@ -416,10 +443,17 @@ class LimitStudy {
     return known_.emplace(share, least_time(result_.given, other)).first->second;
   }
 
+  // Of several catches the first whose landing is confirmed.
   void land(const LeastTime& way, bool catches) {
-    if (way.status != Status::done || watch_.stopped()) return;
-    LimitLanding landing = landing_of(result_.given, way, result_.options.actuator, catches, watch_);
-    if (is_better(landing, result_.landing)) result_.landing = std::move(landing);
+    if (way.status != Status::done) return;
+    const AfterTouch after(result_.given, way, result_.options.actuator);
+    for (const double delay : catch_delays) {
+      if (watch_.stopped()) return;
+      LimitLanding landing = after.landing(catches ? after.best_catch(delay, watch_) : Catch{});
+      const bool is_last = !catches || landing.bounce_free;
+      if (is_better(landing, result_.landing)) result_.landing = std::move(landing);
+      if (is_last) return;
+    }
   }
 
   void over_peaks() {

@@ -1,6 +1,7 @@
 // The limit of what any drive waveform can do: the least time in which a switch can be brought to touch its contact at no more
 // than a given speed, with the voltages that its drivers have. A landing cannot be quicker than its touch, so that this is a
-// yardstick for every waveform, whatever its family; robustness and what happens after the touch come on top.
+// yardstick for every waveform, whatever its family; robustness and what happens after the touch come on top. It is one for the
+// model with its number of modes: a beam has more, by which a waveform can gain.
 //
 // The contact point may cross its plane at the end only. The optimum is local: it begins with the quickest single swing (full
 // pull, then full release, as a mass on a spring is stopped: Leus & Elata 2008, J. MEMS 17, 236) and is as good as any that was
@@ -68,6 +69,7 @@ struct LeastTime {
 /// while its modes ring down (the catch), and ends on the hold levels.
 struct LimitLanding {
   LeastTime way = {};
+  double catch_delay = 0;                  ///< from the touch until the pull, before which all is as at the touch [s]
   double catch_time = 0;                   ///< from the touch until the hold levels [s]; 0: held at once
   Prepared scene;                          ///< read back from its text
   Closing closing;                         ///< over the scene's whole window

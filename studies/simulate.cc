@@ -203,6 +203,7 @@ void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool
   c.errors = difference(own.metrics, judge.metrics, own.tolerance, prepared.scene.device.gap.contact);
   forget_what_is_chaotic(c.errors, own, judge, prepared.scene.metrics);
   for (const Figure& figure : all_figures) c.errors[figure] *= stated_safety;
+  allow_for_residual(c.errors, own.trajectory);
   const double accuracy = prepared.scene.simulate.accuracy;
   if (may_tighten && run.error > accuracy) {
     c.warnings.push_back(fmt::format(
@@ -238,6 +239,11 @@ void say_interrupted(Closing& c) {
 }
 
 }  // namespace
+
+void allow_for_residual(FigureValues& errors, const Trajectory& run) {
+  double& drive_energy = errors[&Metrics::drive_energy];
+  if (drive_energy < run.energy_error) drive_energy = run.energy_error;
+}
 
 double least_peak_force(const Prepared& prepared) {
   constexpr double share = 0.01;
@@ -290,8 +296,10 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   return c;
 }
 
-void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals) {
-  const auto closed = closed_equilibrium(model, hold_levels(signals));
+void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
+              const std::optional<ClosedEquilibrium>& near) {
+  const std::vector<double> levels = hold_levels(signals);
+  const auto closed = near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels);
   const bool stays = keeps_closed(model, closed);
   if (stays) trajectory.hold_force = closed->contact_force;
   const std::optional<Contact>& contact = model.device().contact;

@@ -9,6 +9,7 @@
 
 #include "base/watch.h"
 #include "model/closing.h"
+#include "model/pull_in.h"
 #include "objectives/figures.h"
 #include "studies/prepared.h"
 
@@ -29,7 +30,8 @@ struct Judge {
 struct Closing {
   Trajectory trajectory;
   Metrics metrics;
-  /// Absolute error estimates: the difference to the judge's and what rounding leaves, or what certify() makes of it. NaN where
+  /// Absolute error estimates: the difference to the judge's and what rounding leaves, that of the drive energy at least the
+  /// residual of the energies, or what certify() makes of it. NaN where
   /// not estimated: t_p, t_b and N_B have none but from certify(), nor what comes after the runs part in a rebound's height,
   /// since no two runs tell the range of a chaotic figure.
   FigureValues errors;
@@ -43,6 +45,9 @@ struct Closing {
 /// A stated error is this often the difference of two runs, of which the tighter one errs as well.
 inline constexpr double stated_safety = 2;
 
+/// What a run misses in the balance of its energies its drives may have given: no error of the drive energy is less.
+void allow_for_residual(FigureValues& errors, const Trajectory& run);
+
 /// Below this a peak contact force is as good as none [N]: a hundredth of what bends the beam by the contact gap.
 [[nodiscard]] double least_peak_force(const Prepared& prepared);
 
@@ -53,7 +58,9 @@ inline constexpr std::string_view not_held =
 
 /// Sets the hold force of the closed equilibrium under the hold levels of these drives, and whether anything holds the switch:
 /// not where it has a contact and no such equilibrium, unless the contact may hold on by adhesion, nor where it is unstable.
-void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals);
+/// `near`: that of a switch and drives little different, from which it is found sooner.
+void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
+              const std::optional<ClosedEquilibrium>& near = {});
 
 /// Peak voltage and peak slew of these drives in the window.
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);

@@ -94,8 +94,9 @@ void add_limit(Verb& verb) {
   verb.with_out("folder for limit.json, limit.svg and the landing as best.toml and best.csv");
   verb.footer(
       "The least time is that of the best waveform of any shape within the limits of [driver.*], found by direct collocation:\n"
-      "the yardstick for every searched waveform. It is a lower bound for landings of these volts at that speed; the landing\n"
-      "that is reported has been simulated, and may take longer where a beam must come to rest.\n"
+      "the yardstick for every searched waveform. It is a lower bound for landings of these volts at that speed in the model\n"
+      "that the scene describes: a beam of more modes may touch a little earlier (--set structure.modes=6). The landing that is\n"
+      "reported has been simulated, and may take longer where a beam must come to rest.\n"
       "Examples:\n  softland limit scenes/mem-gold.toml\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator both --impact-velocity \"1 mm/s\" --out limit\n"
       "  softland limit scenes/mem-gold-pzt.toml --actuator pzt --start softland-out --no-curves");

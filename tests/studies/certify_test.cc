@@ -109,6 +109,25 @@ TEST(Certify, CoversTheTrueErrorsOfRandomScenes) {
   EXPECT_LE(missed, 2);  // of a bound for 95 %: of 25 three or more would have a chance of 13 %
 }
 
+TEST(Certify, NoErrorOfADriveEnergyIsBelowTheResidualOfTheEnergies) {
+  int seen = 0;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    SceneFile file = test::random_scene(3, i);
+    file.set("simulate.accuracy=1e-3");
+    const Prepared p = prepare(file);
+    constexpr long most_steps = 1000;
+    const ClosingOptions options{.duration = p.duration, .tolerance = p.tolerance, .max_steps = most_steps};
+    if (p.model.film_states() > 0 || simulate_closing(p.model, p.signals(), options).work.steps >= most_steps) continue;
+    for (const Closing& c : {simulate(p, true), certify(p)}) {
+      const double error = c.errors[&Metrics::drive_energy];
+      if (!std::isfinite(error)) continue;
+      EXPECT_GE(error, c.trajectory.energy_error) << i;
+      ++seen;
+    }
+  }
+  EXPECT_GE(seen, 8);
+}
+
 TEST(Certify, GivesChaoticFiguresAsACloudAndSaysWhereItParts) {
   const Prepared p = prepared_gold("600 us", "1e-3");
   const Closing c = certify(p);

@@ -156,6 +156,53 @@ TEST(ClosedState, DevicesThatAreNotHeldHaveNotSettled) {
   EXPECT_GT(left, 0U);
 }
 
+// Of the devices of a scene, from the closed equilibrium of the nominal one: the same as by the walk from the contact plane.
+void expect_the_same_near(const Prepared& p, const std::vector<double>& volts, std::uint64_t devices) {
+  const auto nominal = closed_equilibrium(p.model, volts);
+  if (!nominal) return;
+  constexpr double same = 1e-9;  // of the contact force: both are solved to rounding
+  const Ensemble ensemble(p, devices, 5);
+  DeviceBuilder builder(ensemble);
+  for (std::uint64_t k = 0; k < devices; ++k) {
+    const SampledDevice device = builder.device(k);
+    if (!device.model) continue;
+    const auto walked = closed_equilibrium(*device.model, volts), found = closed_equilibrium_near(*device.model, volts, *nominal);
+    EXPECT_EQ(keeps_closed(*device.model, found), keeps_closed(*device.model, walked)) << p.scene.file.name() << k;
+    if (!found || !walked) continue;
+    EXPECT_NEAR(found->contact_force, walked->contact_force, same * walked->contact_force) << k;
+  }
+}
+
+TEST(ClosedState, OfADeviceIsFoundFromThatOfTheNominalOne) {
+  for (const std::string& name : shipped_scenes()) {
+    const Prepared p = prepare(scene(name.c_str()));
+    if (p.scene.spread.empty() || !p.model.has_contact()) continue;
+    for (const double share : {0.8, 1.0, 1.3}) {
+      std::vector<double> volts = hold_levels(p.signals());
+      for (double& level : volts) level *= share;
+      expect_the_same_near(p, volts, 60);
+    }
+  }
+}
+
+TEST(ClosedState, IsFoundByTheWalkWhereNewtonsMethodEndsNowhere) {
+  for (const SceneFile& file : {gold(), bridge({level(40)})}) {
+    const Prepared p = prepare(file);
+    const std::vector<double> volts = hold_levels(p.signals());
+    const ClosedEquilibrium nowhere{.q = Eigen::VectorXd::Constant(p.model.modes(), std::nan(""))};
+    const auto walked = closed_equilibrium(p.model, volts), found = closed_equilibrium_near(p.model, volts, nowhere);
+    ASSERT_TRUE(walked && found) << file.name();
+    EXPECT_EQ(found->contact_force, walked->contact_force) << file.name();
+  }
+}
+
+TEST(ClosedState, OfADeviceThatIsPulledThroughIsNotFoundFromOneThatHolds) {
+  SceneFile file = bridge({level(0.99 * pulled_through())});
+  file.set("spread.\"structure.residual_stress\"={ distribution = \"normal\", standard_deviation = \"5 MPa\" }");
+  const Prepared p = prepare(file);
+  expect_the_same_near(p, hold_levels(p.signals()), 40);
+}
+
 TEST(ClosedState, OfEveryShippedSceneIsStableBelowWhereItIsPulledThrough_optimized) {
   for (const auto& entry : std::filesystem::directory_iterator(std::string(SOFTLAND_SOURCE_DIR) + "/scenes")) {
     if (entry.path().extension() != ".toml") continue;

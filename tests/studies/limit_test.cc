@@ -60,6 +60,39 @@ TEST(LeastTime, OfTheGoldCantileverIsThatOfAnIndependentCalculation_slow) {
   }
 }
 
+// A waveform that touches as softly as the tighter bound permits does so under the looser one.
+void expect_no_longer_where_more_speed_is_permitted(const Prepared& p, bool at_rest, std::initializer_list<double> speeds) {
+  constexpr double same = 1e-3;
+  double before = std::numeric_limits<double>::infinity();
+  for (const double speed : speeds) {
+    const LeastTime found = least_time(p, {.impact_velocity = speed, .at_rest = at_rest});
+    ASSERT_EQ(found.status, Status::done) << speed << ": " << found.message;
+    EXPECT_LE(found.time, (1 + same) * before) << speed;
+    EXPECT_LE(found.impact_velocity, (1 + same) * speed);
+    before = found.time;
+  }
+}
+
+TEST(LeastTime, DoesNotGrowWithThePermittedSpeed) {
+  const Prepared p = prepare_and_choose(spring_plate(), true);
+  for (const bool at_rest : {false, true}) expect_no_longer_where_more_speed_is_permitted(p, at_rest, {2e-3, 0.02, 0.2});
+}
+
+TEST(LeastTime, OfTheGoldCantileverDoesNotGrowWithThePermittedSpeed_slow) {
+  const Prepared p = prepare_and_choose(gold(), true);
+  for (const bool at_rest : {false, true})
+    expect_no_longer_where_more_speed_is_permitted(p, at_rest, {0.5e-3, 1e-3, 2e-3, 5e-3, 10e-3, 30e-3});
+}
+
+// Modes that differ by decades: of four the least time is 11.85 us.
+TEST(LeastTime, OfAPiezoIsFoundAndShorterWithSixModes_slow) {
+  const Prepared p = prepare_and_choose(gold_pzt({"structure.modes=6"}), true);
+  const LeastTime found = least_time(p, {.actuator = Actuator::pzt, .impact_velocity = 1.33e-3});
+  ASSERT_EQ(found.status, Status::done) << found.message;
+  EXPECT_NEAR(found.time, 11.67e-6, 0.02e-6);
+  EXPECT_NEAR(found.simulated_time / found.time, 1, 1e-4);
+}
+
 // Pulled from rest to its first turn, let go to the other side, pulled from there to x_s and let go again: it arrives with speed
 // v. A plate that one pull does not close; the quickest way may turn a little earlier or later than this one.
 double two_swings(const Structure& s, const Gap& gap, double volts, double v) {
@@ -241,6 +274,16 @@ TEST(Limit, LandsTheGoldCantileverWithoutAReboundInTheLeastTime_slow) {
   EXPECT_LE(found.landing->closing.metrics.permanent_contact_time, 1.02 * found.touch.time);
   EXPECT_EQ(found.rest.status, Status::done) << found.rest.message;
   EXPECT_GT(found.rest.time, found.touch.time);
+}
+
+// By an independent calculation: 0 V until just after the touch, full pull until 75 us.
+TEST(Limit, LandsTheGoldCantileverByACatchThatBeginsLater_slow) {
+  const Limit found = limit(gold(), {.impact_velocity = 10e-3, .curves = false});
+  ASSERT_TRUE(found.landing.has_value());
+  EXPECT_TRUE(found.landing->bounce_free);
+  EXPECT_GT(found.landing->catch_delay, 0);
+  EXPECT_GT(found.landing->catch_time, found.landing->catch_delay);
+  EXPECT_LE(found.landing->closing.metrics.initial_contact_time, 31.1e-6);
 }
 
 TEST(Limit, DoesNotBelieveALandingThatARicherBeamUndoes_slow) {

@@ -1,0 +1,92 @@
+// What the user sees of a limit: of a plate, which takes a second.
+#include "reports/limit_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "xml.h"
+
+namespace softland {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const Limit& of_a_plate() {
+  static const Limit found = limit(SceneFile::parse(R"(
+title = "A plate"
+[structure]
+kind = "plate"
+area = "1e-8 m^2"
+mass = "2.4e-9 kg"
+stiffness = "42 N/m"
+[gap]
+electrode = "3.8 um"
+contact = "2.6 um"
+[electrode.main]
+fringing = "none"
+[contact]
+model = "linear"
+stiffness = "1e5 N/m"
+[waveform.main]
+family = "step"
+level = "100 V"
+[driver.main]
+min_voltage = "0 V"
+max_voltage = "120 V"
+[simulate]
+duration = "300 us"
+)",
+                                                    "plate.toml"),
+                                   {.curves = false});
+  return found;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST(LimitPicture, WithoutCurvesShowsTheLanding) {
+  ASSERT_TRUE(of_a_plate().landing.has_value());
+  const std::string svg = limit_svg(of_a_plate());
+  EXPECT_EQ(test::xml_fault(svg), "");
+  for (const char* words : {"Gap (µm)", "Voltage (V)", ">contact plane<"}) EXPECT_THAT(svg, HasSubstr(words));
+  EXPECT_GE(count(svg, "<polyline") + count(svg, "<path"), 2U);
+}
+
+// The others were not found.
+TEST(LimitPicture, OfACurveOfOnePlaceHasAxesAround) {
+  Limit found = of_a_plate();
+  found.landing.reset();
+  found.over_peak = {{.status = Status::no_contact, .peak = 60}, {.status = Status::done, .time = 40e-6, .peak = 120}};
+  const std::string svg = limit_svg(found);
+  EXPECT_EQ(test::xml_fault(svg), "");
+  EXPECT_THAT(svg, HasSubstr("Least time against the peak voltage"));
+  for (const char* tick : {">110<", ">120<", ">130<"}) EXPECT_THAT(svg, HasSubstr(tick));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+TEST(LimitPicture, WhereNothingWasFoundSaysWhy) {
+  Limit nothing = of_a_plate();
+  nothing.landing.reset();
+  nothing.touch = {.status = Status::no_contact, .message = "full pull does not bring the switch to its contact"};
+  EXPECT_THAT(limit_svg(nothing), HasSubstr("full pull does not bring the switch to its contact"));
+}
+
+TEST(LimitReport, SaysForWhichModelALeastTimeIsABound) {
+  const nlohmann::json of_plate = limit_json(of_a_plate(), {});
+  EXPECT_EQ(of_plate.at("modes"), 1);
+  EXPECT_THAT(limit_text(of_a_plate()), Not(HasSubstr("mode,")));
+  Limit of_beam = of_a_plate();
+  of_beam.given.scene.device.structure.kind = StructureKind::cantilever;
+  EXPECT_THAT(limit_text(of_beam), HasSubstr("in this model of 1 mode,"));
+  EXPECT_THAT(limit_svg(of_beam), HasSubstr("with 1 mode<"));
+}
+
+}  // namespace
+}  // namespace softland
