@@ -71,6 +71,7 @@ struct References {
   const PullInVoltages& pull_in;
   const std::optional<double>& main_hold;                     ///< level at which the main electrode holds the switch [V]
   double max_slew = std::numeric_limits<double>::infinity();  ///< of the driver [V/s]
+  double before = 0;                                          ///< value before t = 0 [V]
 };
 
 /// Volts, or a percentage of the base or, for the piezo, of the main hold level.
@@ -124,7 +125,7 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
     } else if (p.meaning == Meaning::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
     } else if (in.is_word(p.name)) {  // steepest_rise
-      value = std::abs(base) / to.max_slew;
+      value = std::abs(base - to.before) / to.max_slew;
     } else if (in.has_value(p.name)) {
       value = in.number(p.name);
     }
@@ -141,9 +142,9 @@ Waveform read_waveform(const SectionReader& in, const References& to) {
   return waveform.value();
 }
 
-Signal compile(const SectionReader& in, const Waveform& waveform) {
+Signal compile(const SectionReader& in, const Waveform& waveform, double before) {
   try {
-    return signal(waveform);
+    return signal(waveform, before);
   } catch (const InvalidParameter& error) {
     in.require(!in.is_given(error.parameter()), error.parameter(), error.what());
     in.fail(error.what());
@@ -205,12 +206,12 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
 }
 
 // What a step needs that is faster than its driver, and nothing else is wrong with.
-std::string missing_rise(const Waveform& waveform, const DriverLimits& limits) {
+std::string missing_rise(const Waveform& waveform, double before, const DriverLimits& limits) {
   const Step* const step = std::get_if<Step>(&waveform);
-  if (step == nullptr || std::max(step->level, 0.0) > limits.max_voltage || std::min(step->level, 0.0) < limits.min_voltage)
+  if (step == nullptr || std::max(step->level, before) > limits.max_voltage || std::min(step->level, before) < limits.min_voltage)
     return {};
   return fmt::format("; rise_time = \"{}\" makes it as steep as that permits, in {}", steepest_rise,
-                     engineering(std::abs(step->level) / limits.max_slew, "s", 3));
+                     engineering(std::abs(step->level - before) / limits.max_slew, "s", 3));
 }
 
 /// The electrode whose hold level a percentage of the piezo's amplitude refers to; empty when there is none.
@@ -240,6 +241,11 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
+    const double offset = drive == dispersion_drive ? -1 : 0;  // the value of a force factor is what it has beyond 1
+    double before = 0;
+    if (in.is_given(before_key)) {
+      before = drives.before[name] = offset + volts(in.quantities(before_key).front(), known);
+    }
     Waveform waveform = read_waveform(in, {.drive = drive,
                                            .pull_in = known,
                                            .main_hold = main_hold,

@@ -18,6 +18,7 @@ inline constexpr std::string_view dispersion_drive = "dispersion";
 /// Keys that a parameter's own may be replaced by.
 inline constexpr std::string_view frequency_key = "frequency";  ///< of an angular frequency
 inline constexpr std::string_view file_key = "file";            ///< of the rows of a table
+inline constexpr std::string_view before_key = "before";        ///< of every family: the value before t = 0
 /// What may stand as the rise time of a step: that of the driver's max_slew.
 inline constexpr std::string_view steepest_rise = "driver";
 

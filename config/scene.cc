@@ -194,6 +194,12 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
   for (const auto& [name, waveform] : drives.waveforms) file.set_waveform(name, waveform);
   return file;
+  for (const auto& [name, value] : drives.before) {
+    const bool is_factor = name == internal::dispersion_drive;
+    file.assign(internal::join_path(internal::join_path("waveform", name), internal::before_key),
+                is_factor ? Quantity{.value = 1 + value, .dimension = dimension::none}
+                          : Quantity{.value = value, .dimension = dimension::voltage});
+  }
 }
 
 SceneFile canonical(const SceneFile& file, const std::string& name) {

@@ -325,7 +325,7 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
   const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
   if (any([](const EnsembleDrive& d) { return !d.known.calibration().is_empty(); }))
     meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.known.calibration().pull_in_error.has_value(); }));
-  for (const EnsembleDrive& drive : drives) nominal_signals_.push_back(nominal.driven(signals_of(drive.waveforms)));
+  for (const EnsembleDrive& drive : drives) nominal_signals_.push_back(nominal.driven(drive.waveforms));
 }
 
 std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const SampledDevice> devices,

@@ -279,7 +279,7 @@ MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOpti
   const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
   const Prepared& nominal = setting.given;
   const std::vector<Waveform> recipe = nominal.in_drive_order(nominal.drives.waveforms);
-  require(!same_drives(signals_of(recipe), setting.baseline_scene.signals()), [&] {
+  require(!same_drives(nominal.told(recipe), setting.baseline_scene.signals()), [&] {
     return fmt::format(
         "{}: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what "
         "softland optimize has found",

@@ -77,7 +77,7 @@ class Search {
       refine(drives, setting.given.drives.waveforms, with_waveforms(setting.given, {}));
     for (const StartingWaveforms& start : options_.starts) {
       const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
-      refine(signals_of(setting.drives(searched)), searched, setting.scene(searched));
+      refine(setting.given.told(setting.drives(searched)), searched, setting.scene(searched));
     }
     for (const auto& landing : landings_at_rest()) {
       for (FamilySearch& family : families_) family.begin_at(landing);

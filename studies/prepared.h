@@ -48,8 +48,20 @@ struct Prepared {
   /// One signal per drive in that order, as its source gives it; what is not driven stays at 0 V.
   [[nodiscard]] std::vector<Signal> signals() const;
   /// What the sources make of signals that they are told to give, one per drive in that order.
+  /// What a drive stands at before t = 0 [V].
+  [[nodiscard]] double before(const std::string& drive) const;
+  /// The same of every drive, in that order.
+  [[nodiscard]] std::vector<double> values_before() const;
+  /// Where runs start: the open switch at rest under those. None where there is no stable equilibrium.
+  [[nodiscard]] std::optional<Eigen::VectorXd> rest() const { return model.open_equilibrium(values_before()); }
+  /// What the source of drive k is told for a waveform of its own or another: that from t = 0 on, and before what the scene says.
+  /// Throws as signal() does.
+  [[nodiscard]] Signal told(std::size_t k, const Waveform& waveform) const;
+  /// One per drive in that order.
+  [[nodiscard]] std::vector<Signal> told(const std::vector<Waveform>& waveforms) const;
   [[nodiscard]] std::vector<Signal> driven(std::vector<Signal> told) const;
   /// What the source of drive k makes of a signal.
+  [[nodiscard]] std::vector<Signal> driven(const std::vector<Waveform>& waveforms) const { return driven(told(waveforms)); }
   [[nodiscard]] Signal driven(std::size_t k, Signal told) const;
   /// The pull-in voltages as units.
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;

@@ -70,6 +70,7 @@ struct DriveSearch {
   const SearchedFamily* family = nullptr;
   std::size_t count = 0;   ///< of levels, knots, pulses or sines, where the family has any number of them
   double hold = 0;         ///< [V]
+  double before = 0;       ///< what it stands at before t = 0 [V]
   bool brakes = false;     ///< an electrode on the far side
   double first_touch = 0;  ///< of the plain step [s]
   DriverLimits limits;

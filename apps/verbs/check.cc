@@ -139,7 +139,8 @@ int check_verb(const Common& c) {
                         "optimize, release, limit and robustness refuse the scene as it is",
                         name, given_quantity(signal.peak(), "V"), name));
     }
-    add("drive " + name, fmt::format("hold {}, peak {}, {}", given_quantity(signal.hold_level(), "V"),
+    const std::string before = signal.before() == 0 ? "" : fmt::format("{} before t = 0, ", given_quantity(signal.before(), "V"));
+    add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));
   }
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");
