@@ -35,8 +35,8 @@ inline constexpr std::string_view steepest_rise = "driver";
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode);
 
 /// Checks every [waveform.NAME] and [driver.NAME] as far as this is possible without pull-in voltages. Throws InvalidInput.
-/// Returns the electrodes that need theirs.
-[[nodiscard]] std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device& device);
+/// Sets Scene::need_pull_in and Scene::standing.
+void check_drives(const SceneFile::Impl& file, Scene& scene);
 
 /// Everything in volts, waveforms inside their limits. Throws InvalidInput.
 [[nodiscard]] Drives read_drives(const SceneFile::Impl& file, const Device& device,

@@ -131,6 +131,9 @@ struct Scene {
   Calibration calibration;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
+  /// What each drive stands at where the pull-in voltages of another are asked for, in the order of Switch::drives(): its hold
+  /// level where that does not depend on Vsp or Vdp, else 0 V; of the dispersion force the factor less one.
+  std::vector<double> standing;
   std::vector<std::string> warnings;
   SceneFile file;
 

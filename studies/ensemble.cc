@@ -153,7 +153,9 @@ double DeviceMeter::frequency() const { return nominal_->model.angular_frequenci
 
 double DeviceMeter::pull_in(const Switch& model) const {
   constexpr double looser = 10;  // the integrator: no measurement is as good
-  return dynamic_pull_in(model, electrode_, static_pull_in(model, electrode_), {}, looser * precision_, precision_).voltage;
+  const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
+  const StaticPullIn statically = static_pull_in(model, electrode_, bias);
+  return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision_, precision_).voltage;
 }
 
 DeviceUnits DeviceMeter::exact(const Switch& model) const {

@@ -162,9 +162,15 @@ void check_sources(const Prepared& p) {
 
 }  // namespace
 
-ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, const Watch& watch) {
-  ElectrodePullIn found{.statically = static_pull_in(model, electrode)};
-  found.dynamically = dynamic_pull_in(model, electrode, found.statically, watch);
+std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
+  std::vector<double> bias = scene.standing;
+  bias[drive] = 0;
+  return bias;
+}
+
+ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
+  ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch);
   return found;
 }
 
@@ -180,7 +186,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch,
     const std::string& name = scene.device.electrodes[k].name;
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
     if (!needed && !default_limits) continue;
-    const ElectrodePullIn found = find_pull_in(p.model, k, watch);
+    const ElectrodePullIn found = find_pull_in(p.model, k, bias_of(scene, k), watch);
     watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
     if (needed && !ok) {

@@ -230,6 +230,25 @@ TEST(PullIn, PrintsTheAgreedJson) {
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
 }
 
+TEST(PullIn, SaysAtWhichBiasItsVoltagesAre) {
+  const Workplace here;
+  const std::vector<std::string> own{"pull-in", "pzt.toml", "--set", R"(waveform.piezo={family="step",level="0.3 V"})"};
+  const Outcome held = here.run(own), given = here.run({"pull-in", "pzt.toml", "--bias", "piezo=0.3 V"});
+  EXPECT_EQ(held.status, 0) << held.err;
+  EXPECT_EQ(held.out, given.out) << "its hold level, or what --bias says";
+  EXPECT_THAT(held.out, HasSubstr("  under            piezo 300.00"));
+  EXPECT_THAT(here.run({"pull-in", "pzt.toml"}).out, Not(HasSubstr("under")));
+  const auto voltage = [&](const char* bias) {
+    return json::parse(here.run({"pull-in", "pzt.toml", "--json", "-", "--bias", bias}).out)["pull_in"]["static_V"].get<double>();
+  };
+  EXPECT_LT(voltage("piezo=-0.1 V"), voltage("piezo=0 V"));
+  EXPECT_GT(voltage("piezo=0.3 V"), voltage("piezo=0 V"));
+  EXPECT_EQ(json::parse(here.run({"pull-in", "pzt.toml", "--json", "-", "--bias", "piezo=0.3 V"}).out)["bias_V"],
+            (json{{"piezo", 0.3}}));
+  const Outcome check = here.run({"check", "pzt.toml", "--set", own.back()});
+  EXPECT_THAT(check.out, HasSubstr(", under piezo 300.00"));
+}
+
 TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne_optimized) {
   const Workplace here;
   EXPECT_THAT(here.run({"pull-in", "gold.toml"}).out, Not(HasSubstr("overdamped")));

@@ -111,7 +111,7 @@ TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
   ASSERT_NE(own, of_other);
   PullInMemory memory;
   const auto found = [&](const SceneFile& scene, const Switch& model) {
-    return memory.finder(scene)(model, 0, {}).dynamically.voltage;
+    return memory.finder(scene)(model, 0, {}, {}).dynamically.voltage;
   };
   EXPECT_EQ(found(short_gold(), ours.model), own);
   SceneFile driven = short_gold();
