@@ -461,6 +461,13 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
                            .smallest_eigenvalue = smallest_closed_eigenvalue(model, held->q, volts)};
 }
 
+bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias, const Watch& watch, double tolerance) {
+  const StaticPullIn statically = static_pull_in(model, drive, bias);
+  if (statically.status != Status::done) return statically.status != Status::no_contact;
+  if (value >= statically.voltage) return true;
+  return StepTrial(model, drive, statically, bias, tolerance).reaches(value, watch.stop, [](double) {});
+}
+
 DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, Bias bias,
                               const Watch& watch, double tolerance, double precision) {
   if (static_result.status != Status::done) return {.status = static_result.status};

@@ -93,4 +93,10 @@ struct DynamicPullIn {
                                             Bias bias = {}, const Watch& watch = {}, double tolerance = 1e-8,
                                             double precision = dynamic_pull_in_precision);
 
+/// Whether a constant step of `drive` to `value` from rest under the bias reaches the contact plane: whether `value` is at least
+/// the dynamic pull-in voltage, at the price of one trial. True where the bias leaves no open state. Throws as static_pull_in()
+/// does.
+[[nodiscard]] bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias = {}, const Watch& watch = {},
+                               double tolerance = 1e-8);
+
 }  // namespace softland

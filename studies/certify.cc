@@ -9,6 +9,7 @@
 
 #include "base/require.h"
 #include "studies/omissions.h"
+#include "studies/open_state.h"
 
 namespace softland {
 namespace {
@@ -59,8 +60,9 @@ std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fi
       }
       const std::vector<Signal> signals = moved.signals();
       Trajectory t = simulate_closing(fine, signals, options);
-      set_hold(t, fine, signals);
+      set_rest(t, fine, signals);
       found.push_back(metrics(t, prepared.scene.metrics));
+      set_open_figures(found.back(), t, fine, signals);
     }
   }
   return found;
@@ -147,7 +149,9 @@ Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
   for (Trajectory& t : cloud) {
     t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move
     t.is_held = c.trajectory.is_held;
+    t.hold_capacitance = c.trajectory.hold_capacitance;
     runs.push_back(metrics(t, prepared.scene.metrics));
+    set_open_figures(runs.back(), t, fine, signals);
   }
   Certificate certificate{.ill_conditioned = {}, .grazing = {}, .runs = static_cast<int>(runs.size())};
   for (const Figure& figure : all_figures) {

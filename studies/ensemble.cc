@@ -143,8 +143,7 @@ DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in, double prec
     return fmt::format("{}: Vdp cannot be measured: there is no electrode that pulls in", nominal.scene.file.name());
   });
   const std::string name = searched_electrode(nominal.scene.device);
-  const std::vector<std::string> names = nominal.drive_names();
-  electrode_ = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  electrode_ = searched_drive(nominal.scene.device);
   pull_in_ = pull_in(nominal.model);
   require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
 }

@@ -165,6 +165,7 @@ Prices SearchSetting::price(const RecordedClosing& closing) const {
   }
   Metrics metrics = closing.metrics;
   metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
+  metrics.capacitance = baseline.metrics.capacitance;
   set_drive_figures(metrics, given, closing.signals);
   prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
   for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, metrics));

@@ -177,6 +177,13 @@ std::string searched_electrode(const Device& device) {
   return pulling->name;
 }
 
+std::size_t searched_drive(const Device& device) {
+  const std::string name = searched_electrode(device);
+  const auto at =
+      std::find_if(device.electrodes.begin(), device.electrodes.end(), [&](const Electrode& e) { return e.name == name; });
+  return static_cast<std::size_t>(at - device.electrodes.begin());
+}
+
 std::vector<std::string> braking_electrodes(const Prepared& prepared) {
   std::vector<std::string> names;
   for (const Electrode& e : prepared.scene.device.electrodes) {

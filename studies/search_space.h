@@ -121,6 +121,8 @@ class SearchSpace {
 /// The electrode that a search closes the switch with: `main` if there is one, else the first that pulls in. Throws InvalidInput
 /// when there is none.
 [[nodiscard]] std::string searched_electrode(const Device& device);
+/// Its number among the drives.
+[[nodiscard]] std::size_t searched_drive(const Device& device);
 /// Electrodes on the far side whose driver has limits: a search brakes with them. The others keep the scene's waveform.
 [[nodiscard]] std::vector<std::string> braking_electrodes(const Prepared& prepared);
 
