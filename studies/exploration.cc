@@ -116,7 +116,10 @@ std::vector<PointFigure> pull_in_figures(const Device& device) {
     const char *what = is_electrode ? "pull_in" : "factor", *name = is_electrode ? "pull-in" : "factor";
     figures.push_back({of + "static_" + what, std::string("Static ") + name + words, unit});
     figures.push_back({of + "dynamic_" + what, std::string("Dynamic ") + name + words, unit});
-    if (is_electrode) figures.push_back({of + "release", "Release" + words, unit});
+    if (is_electrode) {
+      figures.push_back({of + "release", "Release" + words, unit});
+      figures.push_back({of + "pull_in_deflection", "Deflection at static pull-in" + words, "m"});
+    }
   }
   return figures;
 }
@@ -324,7 +327,9 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
     const double offset = is_electrode ? 0 : 1;  // the value of the dispersion force is its factor less one
     row.figures.push_back(finite(offset + found.statically.voltage));
     row.figures.push_back(finite(offset + found.dynamically.voltage));
-    if (is_electrode) row.figures.push_back(finite(release_voltage(p.model, k, bias)));
+    if (!is_electrode) continue;
+    row.figures.push_back(finite(release_voltage(p.model, k, bias)));
+    row.figures.push_back(finite(found.statically.deflection));
   }
   return row;
 }

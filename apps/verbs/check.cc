@@ -102,7 +102,7 @@ int check_verb(const Common& c) {
       warnings.push_back(said_of(file, "electrode." + name + ".gap", "it pulls away from the contact; its other side is nearer"));
       continue;
     }
-    const std::string bias = bias_words(found);
+    const std::string bias = bias_words(p, k);
     add("electrode " + p.scene.device.electrodes[k].name,
         (collapsed(found) ? no_open_state : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(v))) +
             (p.model.has_contact() ? ", release " + volts(v["release_V"]) : "") + (bias.empty() ? "" : ", under " + bias));

@@ -251,7 +251,7 @@ TEST(PullIn, PrintsTheAgreedJson) {
   EXPECT_EQ(o.err, "");
   const json j = json::parse(o.out);
   EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in"}));
-  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "static_kind", "dynamic_V", "release_V"}));
+  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V"}));
   EXPECT_EQ(j["status"], "done");
   EXPECT_LT(j["pull_in"]["dynamic_V"], j["pull_in"]["static_V"]);
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
@@ -274,6 +274,19 @@ TEST(PullIn, SaysAtWhichBiasItsVoltagesAre) {
             (json{{"piezo", 0.3}}));
   const Outcome check = here.run({"check", "pzt.toml", "--set", own.back()});
   EXPECT_THAT(check.out, HasSubstr(", under piezo 300.00"));
+}
+
+TEST(PullIn, WritesASweepAndDrawsIt) {
+  const Workplace here;
+  const Outcome o = here.run({"pull-in", "gold.toml", "--sweep", "0 V:20 V:41", "--out", "swept"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("sweep.csv, sweep.svg"));
+  EXPECT_THAT(o.out, HasSubstr("  pull-in position 1.653"));
+  const std::string csv = read(here.path() / "swept/sweep.csv"), svg = read(here.path() / "swept/sweep.svg");
+  EXPECT_TRUE(csv.starts_with("voltage_V,deflection_m,capacitance_F,branch\n0,0,")) << csv.substr(0, 80);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * 41);
+  EXPECT_THAT(svg, HasSubstr("Pull-in at 15.23"));
+  EXPECT_THAT(svg, HasSubstr(">down<"));
 }
 
 TEST(PullIn, SaysWhenTheDynamicOneEqualsTheStaticOne_optimized) {
