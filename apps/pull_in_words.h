@@ -12,13 +12,20 @@ namespace softland::apps {
 
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
-/// Pull-in of electrode `k`, without any waveform of the scene: {"status", "pull_in": {"static_V", ...}}.
+/// Pull-in of electrode `k` under the bias of the other drives (bias_of()): {"status", "pull_in": {"static_V", ...}}, and
+/// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force.
 [[nodiscard]] nlohmann::json pull_in_of(const Prepared& prepared, std::size_t k, const Watch& watch);
 
 /// Whether this, as pull_in_of() has found it, is a switch that closes by itself.
 [[nodiscard]] bool collapsed(const nlohmann::json& pull_in);
 
 [[nodiscard]] std::string volts(const nlohmann::json& value);
+
+/// "piezo -1.5 V": the other drives of pull_in_of() that do not stand at 0; empty where all do.
+[[nodiscard]] std::string bias_words(const Prepared& prepared, std::size_t k);
+
+/// How far the contact point is deflected at the static pull-in voltage.
+[[nodiscard]] std::string deflection_words(const nlohmann::json& pull_in);
 
 /// The dynamic pull-in voltage; a step that damping lets not overshoot needs no less than the static one.
 [[nodiscard]] std::string dynamic_words(const nlohmann::json& pull_in);

@@ -106,7 +106,7 @@ Scene judge(const Options& options, std::uint64_t index) {
   scene.outcome = Outcome::certified;
   const Metrics truth = metrics(best, p.scene.metrics);
   for (const Figure& figure : all_figures) {
-    if (!figure.is_told_by_two_runs() || figure.conditioning == Conditioning::rest) continue;
+    if (!figure.is_told_by_two_runs() || figure.conditioning == Conditioning::open) continue;
     const double own = figure.value(plain.metrics), other = figure.value(truth), error = plain.errors[figure];
     if (!std::isfinite(own)) continue;
     Stated& stated = scene.stated[figure.key];
@@ -126,7 +126,8 @@ Scene judge(const Options& options, std::uint64_t index) {
     }
   }
   for (const Figure& figure : all_figures) {
-    if (!figure.has_error() || figure.conditioning == Conditioning::rest) continue;  // no run gives an equilibrium
+    if (!figure.has_error() || figure.conditioning == Conditioning::rest || figure.conditioning == Conditioning::open)
+      continue;  // no run gives an equilibrium
     Tally& tally = scene.tallies[figure.key];
     const double own = figure.value(c.metrics), other = figure.value(truth);
     if (!std::isfinite(own)) continue;

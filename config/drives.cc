@@ -71,6 +71,7 @@ struct References {
   const PullInVoltages& pull_in;
   const std::optional<double>& main_hold;                     ///< level at which the main electrode holds the switch [V]
   double max_slew = std::numeric_limits<double>::infinity();  ///< of the driver [V/s]
+  double before = 0;                                          ///< value before t = 0 [V]
 };
 
 /// Volts, or a percentage of the base or, for the piezo, of the main hold level.
@@ -124,7 +125,7 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
     } else if (p.meaning == Meaning::angular_frequency && in.is_given(frequency_key)) {
       value = 2 * std::numbers::pi * in.number(frequency_key);
     } else if (in.is_word(p.name)) {  // steepest_rise
-      value = std::abs(base) / to.max_slew;
+      value = std::abs(base - to.before) / to.max_slew;
     } else if (in.has_value(p.name)) {
       value = in.number(p.name);
     }
@@ -141,9 +142,9 @@ Waveform read_waveform(const SectionReader& in, const References& to) {
   return waveform.value();
 }
 
-Signal compile(const SectionReader& in, const Waveform& waveform) {
+Signal compile(const SectionReader& in, const Waveform& waveform, double before) {
   try {
-    return signal(waveform);
+    return signal(waveform, before);
   } catch (const InvalidParameter& error) {
     in.require(!in.is_given(error.parameter()), error.parameter(), error.what());
     in.fail(error.what());
@@ -205,12 +206,12 @@ void check_order(const SectionReader& in, const DriverLimits& limits) {
 }
 
 // What a step needs that is faster than its driver, and nothing else is wrong with.
-std::string missing_rise(const Waveform& waveform, const DriverLimits& limits) {
+std::string missing_rise(const Waveform& waveform, double before, const DriverLimits& limits) {
   const Step* const step = std::get_if<Step>(&waveform);
-  if (step == nullptr || std::max(step->level, 0.0) > limits.max_voltage || std::min(step->level, 0.0) < limits.min_voltage)
+  if (step == nullptr || std::max(step->level, before) > limits.max_voltage || std::min(step->level, before) < limits.min_voltage)
     return {};
   return fmt::format("; rise_time = \"{}\" makes it as steep as that permits, in {}", steepest_rise,
-                     engineering(std::abs(step->level) / limits.max_slew, "s", 3));
+                     engineering(std::abs(step->level - before) / limits.max_slew, "s", 3));
 }
 
 /// The electrode whose hold level a percentage of the piezo's amplitude refers to; empty when there is none.
@@ -240,12 +241,18 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
+    const double offset = drive == dispersion_drive ? -1 : 0;  // the value of a force factor is what it has beyond 1
+    double before = 0;
+    if (in.is_given(before_key)) {
+      before = drives.before[name] = offset + volts(in.quantities(before_key).front(), known);
+    }
     Waveform waveform = read_waveform(in, {.drive = drive,
                                            .pull_in = known,
                                            .main_hold = main_hold,
-                                           .max_slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity()});
-    if (drive == dispersion_drive) waveform = raised(std::move(waveform), -1);
-    const Signal compiled = compile(in, waveform);
+                                           .max_slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity(),
+                                           .before = before});
+    if (offset != 0) waveform = raised(std::move(waveform), offset);
+    const Signal compiled = compile(in, waveform, before);
     if (const double peak = compiled.peak(); drive != dispersion_drive && !any_voltage().contains(peak)) {
       file.fail_section(in.path(), fmt::format("reaches {}: {}", engineering(peak, "V"), any_voltage().rule("V")));
     }
@@ -254,13 +261,26 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
       if (std::string broken = violation(compiled, *limits); !broken.empty()) {
         if (!driver.is_present())
           broken += fmt::format("; without [{}] the limits are 0 V and {} Vdp", driver.path(), default_max_voltage);
-        broken += missing_rise(waveform, *limits);
+        broken += missing_rise(waveform, before, *limits);
         file.fail_section(in.path(), broken);
       }
     }
     drives.waveforms[name] = std::move(waveform);
   }
   return drives;
+}
+
+/// The hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V].
+std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt) {
+  std::map<std::string, PullInVoltages> pull_in;
+  for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
+  const Drives drives = read_all(file, scene.device, pull_in, LimitChecks::without_pull_in);
+  std::vector<double> levels;
+  for (const std::string_view drive : drive_names(scene.device)) {
+    const auto found = drives.waveforms.find(std::string(drive));
+    levels.push_back(found == drives.waveforms.end() ? 0 : signal(found->second).hold_level());
+  }
+  return levels;
 }
 
 }  // namespace
@@ -319,10 +339,10 @@ void check_drive_name(const SceneFile::Impl& file, const std::string& electrode)
   }
 }
 
-std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device& device) {
+void check_drives(const SceneFile::Impl& file, Scene& scene) {
+  const Device& device = scene.device;
   check_names(file, "waveform", device);
   check_names(file, "driver", device);
-  std::vector<std::string> need_pull_in;
   for (const std::string_view drive : drive_names(device)) {
     const SectionReader waveform(file, "waveform", drive);
     const SectionReader driver(file, "driver", drive);
@@ -334,13 +354,17 @@ std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device&
           file.fail_section(driver.path(), fmt::format("missing key '{}' (a voltage such as \"1 V\")", key));
       }
     }
-    if (!waveform.keys_in_pull_in_units().empty() || !driver.keys_in_pull_in_units().empty()) need_pull_in.emplace_back(drive);
+    if (!waveform.keys_in_pull_in_units().empty() || !driver.keys_in_pull_in_units().empty())
+      scene.need_pull_in.emplace_back(drive);
   }
-  // The rules of a family do not depend on how large a volt is: any pull-in voltage will do for them.
-  std::map<std::string, PullInVoltages> any;
-  for (const std::string& drive : need_pull_in) any[drive] = {.static_pull_in = 1, .dynamic_pull_in = 1};
-  static_cast<void>(read_all(file, device, any, LimitChecks::without_pull_in));
-  return need_pull_in;
+  // The rules of a family do not depend on how large a volt is: any pull-in voltage will do for them. What another one changes is
+  // not given in volts.
+  scene.standing = levels_held(file, scene, 1);
+  if (scene.need_pull_in.empty()) return;
+  const std::vector<double> of_half = levels_held(file, scene, 0.5);
+  for (std::size_t k = 0; k < of_half.size(); ++k) {
+    if (scene.standing[k] != of_half[k]) scene.standing[k] = 0;
+  }
 }
 
 Drives read_drives(const SceneFile::Impl& file, const Device& device, const std::map<std::string, PullInVoltages>& pull_in) {

@@ -18,6 +18,7 @@ inline constexpr std::string_view dispersion_drive = "dispersion";
 /// Keys that a parameter's own may be replaced by.
 inline constexpr std::string_view frequency_key = "frequency";  ///< of an angular frequency
 inline constexpr std::string_view file_key = "file";            ///< of the rows of a table
+inline constexpr std::string_view before_key = "before";        ///< of every family: the value before t = 0
 /// What may stand as the rise time of a step: that of the driver's max_slew.
 inline constexpr std::string_view steepest_rise = "driver";
 
@@ -34,8 +35,8 @@ inline constexpr std::string_view steepest_rise = "driver";
 void check_drive_name(const SceneFile::Impl& file, const std::string& electrode);
 
 /// Checks every [waveform.NAME] and [driver.NAME] as far as this is possible without pull-in voltages. Throws InvalidInput.
-/// Returns the electrodes that need theirs.
-[[nodiscard]] std::vector<std::string> check_drives(const SceneFile::Impl& file, const Device& device);
+/// Sets Scene::need_pull_in and Scene::standing.
+void check_drives(const SceneFile::Impl& file, Scene& scene);
 
 /// Everything in volts, waveforms inside their limits. Throws InvalidInput.
 [[nodiscard]] Drives read_drives(const SceneFile::Impl& file, const Device& device,

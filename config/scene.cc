@@ -138,10 +138,11 @@ toml::table sections_of(const SceneFile::Impl& file, KeysOf&& keys_of) {
 Scene read_scene(const SceneFile& file) {
   const SceneFile::Impl& impl = file.impl();
   check_section_names(impl);
-  Scene scene{.title = {}, .device = {}, .simulate = {}, .metrics = {}, .need_pull_in = {}, .warnings = {}, .file = file};
+  Scene scene{
+      .title = {}, .device = {}, .simulate = {}, .metrics = {}, .need_pull_in = {}, .standing = {}, .warnings = {}, .file = file};
   read_sections(scene, impl);
   check_electrodes(scene.device, impl);
-  scene.need_pull_in = internal::check_drives(impl, scene.device);
+  internal::check_drives(impl, scene);
   internal::read_spread(scene, impl);
   scene.calibration = read_calibration(impl);
   scene.warnings = find_warnings(impl, scene.device);
@@ -193,6 +194,12 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   // Written and read once more: like any other file, the result then has lines to cite.
   SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
   for (const auto& [name, waveform] : drives.waveforms) file.set_waveform(name, waveform);
+  for (const auto& [name, value] : drives.before) {
+    const bool is_factor = name == internal::dispersion_drive;
+    file.assign(internal::join_path(internal::join_path("waveform", name), internal::before_key),
+                is_factor ? Quantity{.value = 1 + value, .dimension = dimension::none}
+                          : Quantity{.value = value, .dimension = dimension::voltage});
+  }
   return file;
 }
 

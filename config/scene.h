@@ -46,7 +46,8 @@ class SceneFile {
   /// Takes a section or a key out, if it is there.
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a
-  /// Table stand in the scene itself. Throws InvalidInput for a waveform outside its family's rules.
+  /// Table stand in the scene itself. What it stands at before t = 0 stays as it is written. Throws InvalidInput for a waveform
+  /// outside its family's rules.
   void set_waveform(const std::string& drive, const Waveform& given);
 
   /// Forgets where keys were written: messages about them then say the name of the file alone.
@@ -90,6 +91,7 @@ inline constexpr double default_max_voltage = 1.5;
 
 struct Drives {
   std::map<std::string, Waveform> waveforms;
+  std::map<std::string, double> before;        ///< what is given of them before t = 0 [V]; others stand at 0 V
   std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])
   std::map<std::string, DriverModel> models;   ///< only sources that are not ideal
 };
@@ -129,6 +131,9 @@ struct Scene {
   Calibration calibration;
   /// Drives (electrode names) whose waveform or written limits use Vsp or Vdp.
   std::vector<std::string> need_pull_in;
+  /// What each drive stands at where the pull-in voltages of another are asked for, in the order of Switch::drives(): its hold
+  /// level where that does not depend on Vsp or Vdp, else 0 V; of the dispersion force the factor less one.
+  std::vector<double> standing;
   std::vector<std::string> warnings;
   SceneFile file;
 

@@ -502,6 +502,8 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
         }
       },
       waveform);
+  if (const toml::node* before = impl_->find({"waveform", drive, std::string(internal::before_key)}))
+    before->visit([&](const auto& node) { table.insert(internal::before_key, node); });
   toml::table* waveforms = impl_->root["waveform"].as_table();
   if (!waveforms) waveforms = impl_->root.insert_or_assign("waveform", toml::table{}).first->second.as_table();
   waveforms->insert_or_assign(drive, std::move(table));

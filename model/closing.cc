@@ -34,12 +34,15 @@ class Run {
 
   Trajectory run() {
     const auto begin = std::chrono::steady_clock::now();
-    if (model_.rest()) {
+    if (parts_.rest) {
       go_through_stretches();
       finish();
     } else {
       end(Status::collapsed_at_rest);
-      out_.message = "with every drive at rest the switch has no stable open state: the dispersion force closes it by itself";
+      out_.message =
+          model_.rest()
+              ? "under what the drives stand at before t = 0 the switch has no stable open state: they close it"
+              : "with every drive at rest the switch has no stable open state: the dispersion force closes it by itself";
     }
     out_.work = stepping_.work();
     out_.work.rhs_evaluations = parts_.equations.evaluations();

@@ -1,5 +1,5 @@
-// Time integration of one closing: from rest under 0 V, through every waveform breakpoint and every make and break of contact.
-// An opening is integrated in the same way, from rest on the contact.
+// Time integration of one closing: from rest under what the drives stand at before t = 0, through every waveform breakpoint and
+// every make and break of contact. An opening is integrated in the same way, from rest on the contact.
 //
 // The integrator restarts at waveform breakpoints, at make and break of contact, and, where the contact law has memory, where it
 // passes from one of its curves to another (turning points while loading among them) or is not smooth, so it only ever sees

@@ -258,15 +258,18 @@ void LinearizedClosing::linearize_step() {
 // The rest that the closing starts from moves so that the forces on it stay 0.
 void LinearizedClosing::begin_at_rest() {
   rest_ = MatrixXd::Zero(size_, moving_);
-  if (moving_ == 0 || !model_.device().dispersion || !model_.rest()) return;
-  const VectorXd &q = *model_.rest(), still = VectorXd::Zero(n_);
-  const std::vector<double> off(signals_.size(), 0.0);
+  const std::vector<double> before = values_before(signals_);
+  const bool is_straight =
+      !model_.device().dispersion && std::all_of(before.begin(), before.end(), [](double v) { return v == 0; });
+  const std::optional<VectorXd> rest = moving_ == 0 || is_straight ? std::nullopt : model_.open_equilibrium(before);
+  if (!rest) return;
+  const VectorXd &q = *rest, still = VectorXd::Zero(n_);
   MatrixXd by_q(n_, n_), by_v(n_, n_);
-  model_.jacobian(q.data(), still.data(), off, false, work_, by_q, by_v);
+  model_.jacobian(q.data(), still.data(), before, false, work_, by_q, by_v);
   VectorXd force(n_);
   const MatrixXd stiffness = by_q;
   for (Index j = 0; j < moving_; ++j) {
-    by_device_->accelerations(static_cast<std::size_t>(j), q.data(), still.data(), off, false, by_q, force);
+    by_device_->accelerations(static_cast<std::size_t>(j), q.data(), still.data(), before, false, by_q, force);
     rest_.col(j).head(n_) = -fastest_ * solve_linear(stiffness, force);
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/decompositions.h"
+#include "base/require.h"
 #include "integrators/roots.h"
 #include "model/closing.h"
 #include "model/constants.h"
@@ -37,11 +38,11 @@ class Statics {
     return shape * (s / model_.contact_shape().dot(shape));
   }
 
-  // `drive` alone holds the contact point at s against the contact force P(s - dt).
-  std::optional<Held> on_branch(std::size_t drive, double s, Held start) {
+  // `drive` holds the contact point at s against the contact force P(s - dt), the other drives standing at `bias`.
+  std::optional<Held> on_branch(std::size_t drive, std::span<const double> bias, double s, Held start) {
     // The force at unit strength as a difference: taken near the strength sought, where it does not drown in the others.
     const double scale = start.unknown > 0 ? start.unknown : 1;
-    std::vector<double> some(model_.drives(), 0.0), none = some;
+    std::vector<double> some(bias.begin(), bias.end()), none = some;
     some[drive] = model_.value_of_strength(drive, scale);
     none[drive] = model_.value_of_strength(drive, 0);
     const Eigen::VectorXd& shape = model_.contact_shape();
@@ -156,16 +157,26 @@ class Statics {
   Eigen::VectorXd rest_, squares_;
 };
 
+// The drives of a switch at a bias, `drive` itself at 0.
+std::vector<double> standing(const Switch& model, std::size_t drive, Bias bias) {
+  require(bias.empty() || bias.size() == model.drives(), "a bias needs a value for every drive of the switch");
+  std::vector<double> values(bias.begin(), bias.end());
+  values.resize(model.drives(), 0.0);
+  values[drive] = 0;
+  return values;
+}
+
 // The static branch of one drive as a function of the contact point's deflection.
 class EquilibriumBranch {
  public:
-  EquilibriumBranch(const Switch& model, std::size_t drive) : statics_(model), drive_(drive) {}
+  EquilibriumBranch(const Switch& model, std::size_t drive, Bias bias)
+      : statics_(model), drive_(drive), bias_(standing(model, drive, bias)) {}
 
   // Strength at deflection s; NaN where there is no equilibrium. Starts from the last one found, so ask in small steps.
   double operator()(double s) {
     if (start_.q.size() == 0) start_ = {.q = statics_.pushed(s)};
-    auto found = statics_.on_branch(drive_, s, start_);
-    if (!found) found = statics_.on_branch(drive_, s, {.q = statics_.pushed(s), .unknown = start_.unknown});
+    auto found = statics_.on_branch(drive_, bias_, s, start_);
+    if (!found) found = statics_.on_branch(drive_, bias_, s, {.q = statics_.pushed(s), .unknown = start_.unknown});
     if (!found) return nan;
     start_ = *found;
     return found->unknown;
@@ -175,6 +186,7 @@ class EquilibriumBranch {
  private:
   Statics statics_;
   std::size_t drive_;
+  std::vector<double> bias_;
   Held start_;
 };
 
@@ -228,23 +240,27 @@ std::optional<Minimum> first_minimum(F&& f, double step) {
 // Steps of one drive, from rest.
 class StepTrial {
  public:
-  StepTrial(const Switch& model, std::size_t drive, const StaticPullIn& static_result, double tolerance)
+  StepTrial(const Switch& model, std::size_t drive, const StaticPullIn& static_result, Bias bias, double tolerance)
       : model_(model),
         drive_(drive),
+        bias_(standing(model, drive, bias)),
+        rest_(model.open_equilibrium(bias_)),
         static_(static_result),
         tolerance_(tolerance),
         statics_(model),
-        branch_(model, drive),
+        branch_(model, drive, bias),
         work_(model.workspace()) {}
 
+  [[nodiscard]] bool has_rest() const { return rest_.has_value(); }
   // Whether a step reaches the contact plane. tell(part) is called now and then, with the part of the time that is over.
   template <class Tell>
   bool reaches(double value, const std::atomic<bool>* stop, Tell&& tell) {
-    std::vector<double> all(model_.drives(), 0.0);
+    std::vector<double> all = bias_;
     all[drive_] = value;
     const Pass barrier = pass(value, all);
-    if (model_.potential(model_.rest()->data(), all, false, work_) < barrier.potential) return false;
-    std::vector<Signal> signals(model_.drives());
+    if (model_.potential(rest_->data(), all, false, work_) < barrier.potential) return false;
+    std::vector<Signal> signals;
+    for (const double standing : bias_) signals.push_back(Signal::standing(standing));
     signals[drive_] = Signal::constant(value);
     ClosingOptions options{
         .duration = 100 * 2 * pi / model_.angular_frequencies()[0], .tolerance = tolerance_, .after_contact = 0, .stop = stop};
@@ -280,6 +296,8 @@ class StepTrial {
 
   const Switch& model_;
   std::size_t drive_;
+  std::vector<double> bias_;
+  std::optional<Eigen::VectorXd> rest_;
   const StaticPullIn& static_;
   double tolerance_;
   Statics statics_;
@@ -295,15 +313,16 @@ bool pulls_in(const Device& device, std::size_t drive) {
 
 std::string_view to_string(StaticKind kind) { return kind == StaticKind::fold ? "fold" : "contact"; }
 
-StaticPullIn static_pull_in(const Switch& model, std::size_t drive) {
+StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
   if (!pulls_in(model.device(), drive)) return {.status = Status::no_contact};
-  // The branch of the dispersion force begins at the straight beam and factor 0, that of an electrode where the switch rests at 0
-  // V.
-  const bool from_straight = model.drive_kind(drive) == DriveKind::dispersion;
-  if (!from_straight && !model.rest()) return {.status = Status::collapsed_at_rest};
-  EquilibriumBranch branch(model, drive);
+  // The branch of an electrode begins where the switch rests at 0 V, that of the dispersion force at factor 0.
+  std::vector<double> at_begin = standing(model, drive, bias);
+  at_begin[drive] = model.value_of_strength(drive, 0);
+  const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(at_begin);
+  if (!rest) return {.status = Status::collapsed_at_rest};
+  EquilibriumBranch branch(model, drive, bias);
   const double end = model.device().gap.contact;
-  const double begin = from_straight ? 0 : model.contact_deflection(model.rest()->data());
+  const double begin = model.contact_deflection(rest->data());
   const auto place = [&](double k) { return begin + (end - begin) * k / branch_steps; };
   double best = 0;
   for (int k = 1; k <= branch_steps; ++k) {
@@ -327,9 +346,9 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive) {
       .status = Status::done, .voltage = model.value_of_strength(drive, best), .deflection = end, .kind = StaticKind::contact};
 }
 
-double release_voltage(const Switch& model, std::size_t drive) {
+double release_voltage(const Switch& model, std::size_t drive, Bias bias) {
   if (!model.has_contact() || !pulls_in(model.device(), drive)) return nan;
-  EquilibriumBranch branch(model, drive);
+  EquilibriumBranch branch(model, drive, bias);
   const double plane = model.device().gap.contact;
   for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
   if (model.rigid_contact() != nullptr) {
@@ -411,7 +430,7 @@ double pull_through_voltage(const Switch& model, std::size_t drive, std::span<co
     return keeps_closed(model, closed_equilibrium(model, levels));
   };
   // Below its release voltage nothing holds the switch.
-  const double start = std::fmax(std::abs(volts[drive]), factor * release_voltage(model, drive));
+  const double start = std::fmax(std::abs(volts[drive]), factor * release_voltage(model, drive, volts));
   if (!(start > 0)) return nan;
   double low = start, high = start;
   if (holds(start)) {
@@ -492,11 +511,18 @@ std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, st
   return is_one ? found : closed_equilibrium(model, volts);
 }
 
-DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, const Watch& watch,
-                              double tolerance, double precision) {
+bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias, const Watch& watch, double tolerance) {
+  const StaticPullIn statically = static_pull_in(model, drive, bias);
+  if (statically.status != Status::done) return statically.status != Status::no_contact;
+  if (value >= statically.voltage) return true;
+  return StepTrial(model, drive, statically, bias, tolerance).reaches(value, watch.stop, [](double) {});
+}
+
+DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result, Bias bias,
+                              const Watch& watch, double tolerance, double precision) {
   if (static_result.status != Status::done) return {.status = static_result.status};
-  if (!model.rest()) return {.status = Status::collapsed_at_rest};
-  StepTrial steps(model, drive, static_result, tolerance);
+  StepTrial steps(model, drive, static_result, bias, tolerance);
+  if (!steps.has_rest()) return {.status = Status::collapsed_at_rest};
   const double halvings = std::log2(0.5 / precision);  // of the bracket
   double done = 0;
   const auto reaches = [&](double value) {

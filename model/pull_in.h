@@ -1,9 +1,9 @@
 // Where the switch snaps in and lets go: static and dynamic pull-in, release, and the closed equilibrium.
 //
-// Static equilibria of one electrode at voltage V, other drives 0:   omega_i^2 q_i = V^2 g_i(q) + f_i(q) - phi_i(x_c) P(y(x_c) -
-// dt) with f the dispersion force at factor 1 are followed by the deflection of the contact point, which goes through the fold
-// without turning back; V^2 is an unknown there. The same functions take the dispersion force as the drive, its factor as the
-// unknown.
+// Static equilibria of one electrode at voltage V, the other drives standing at a bias:   omega_i^2 q_i = V^2 g_i(q) + f_i(q) -
+// phi_i(x_c) P(y(x_c) - dt) with f the dispersion force at factor 1 are followed by the deflection of the contact point, which
+// goes through the fold without turning back; V^2 is an unknown there. The same functions take the dispersion force as the drive,
+// its factor as the unknown.
 #pragma once
 
 #include <limits>
@@ -30,16 +30,20 @@ struct StaticPullIn {
   StaticKind kind = StaticKind::fold;  ///< fold of the branch, or the contact point reaches the contact plane before it
 };
 
-/// Fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that comes first.
-/// The branch of an electrode begins at the switch's rest, status collapsed_at_rest where there is none, no_contact for one on
-/// the far side; that of the dispersion force at factor 0, so that a negative answer says how much too strong the nominal force
-/// is.
-[[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive);
+/// What the drives other than the one that is asked about stand at for ever: a value of every drive, as in Switch::drives(), of
+/// which that drive's own does not count. None: all of them are 0.
+using Bias = std::span<const double>;
 
-/// Release voltage [V]: the smallest voltage with a closed equilibrium, 0 where the dispersion force keeps the switch closed by
-/// itself. NaN where there is no contact law, where the contact is
-/// too soft to keep the beam off the electrode at any voltage, or where the branch could not be followed.
-[[nodiscard]] double release_voltage(const Switch& model, std::size_t drive);
+/// Fold of the static branch of `drive`, or the voltage at which the contact point reaches the contact plane if that comes first.
+/// The branch of an electrode begins at the switch's rest under the bias, status collapsed_at_rest where there is none,
+/// no_contact for one on the far side; that of the dispersion force at factor 0, so that a negative answer says how much too
+/// strong the nominal force is. Throws InvalidInput for a bias of another number of drives.
+[[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias = {});
+
+/// Release voltage [V]: the smallest voltage with a closed equilibrium, 0 where the dispersion force, or the bias, keeps the
+/// switch closed by itself. NaN where there is no contact law, where the contact is too soft to keep the beam off the electrode
+/// at any voltage, or where the branch could not be followed. Throws as static_pull_in() does.
+[[nodiscard]] double release_voltage(const Switch& model, std::size_t drive, Bias bias = {});
 
 /// Where the beam comes to rest on the contact.
 struct ClosedEquilibrium {
@@ -81,15 +85,22 @@ struct ClosedEquilibrium {
 /// How closely a dynamic pull-in voltage is bracketed, relative, unless more is asked for; the upper end is given.
 inline constexpr double dynamic_pull_in_precision = 1e-7;
 
-/// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest whose contact point reaches the contact plane, whether
-/// or not it stays, within 100 periods of the first mode, to `precision`. At most the static pull-in voltage, at
-/// which the thickest film gives way in the end. NaN with a status when static pull-in fails, or `watch` asks to stop.
+/// Dynamic pull-in voltage Vdp [V]: the smallest constant step from rest under the bias whose contact point reaches the contact
+/// plane, whether or not it stays, within 100 periods of the first mode, to `precision`. At most the static pull-in voltage, at
+/// which the thickest film gives way in the end. NaN with a status when static pull-in, which is that under the same bias,
+/// fails, or `watch` asks to stop. Throws as static_pull_in() does.
 struct DynamicPullIn {
   Status status = Status::not_run;
   double voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]; of the dispersion force its factor less one
 };
 [[nodiscard]] DynamicPullIn dynamic_pull_in(const Switch& model, std::size_t drive, const StaticPullIn& static_result,
-                                            const Watch& watch = {}, double tolerance = 1e-8,
+                                            Bias bias = {}, const Watch& watch = {}, double tolerance = 1e-8,
                                             double precision = dynamic_pull_in_precision);
+
+/// Whether a constant step of `drive` to `value` from rest under the bias reaches the contact plane: whether `value` is at least
+/// the dynamic pull-in voltage, at the price of one trial. True where the bias leaves no open state. Throws as static_pull_in()
+/// does.
+[[nodiscard]] bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias = {}, const Watch& watch = {},
+                               double tolerance = 1e-8);
 
 }  // namespace softland

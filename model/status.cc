@@ -8,6 +8,8 @@ std::string_view to_string(Status status) {
       return "not_run";
     case Status::done:
       return "done";
+    case Status::open:
+      return "open";
     case Status::no_contact:
       return "no_contact";
     case Status::not_settled:

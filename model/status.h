@@ -8,6 +8,7 @@ namespace softland {
 enum class Status {
   not_run,
   done,
+  open,                      ///< it stays open, as its drives ask it to: no closing was due
   no_contact,                ///< the contact point never reached the contact gap in the window
   not_settled,               ///< a rebound was under way, or contact had only just begun, at the end of the window
   collapsed_at_rest,         ///< no stable static equilibrium to start from

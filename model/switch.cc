@@ -239,7 +239,8 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
     contact_ = contact_law(*device_.contact, s.width);
     penetration_scale_ = penetration_under(force);
   }
-  rest_ = find_rest();
+  rest_ = Eigen::VectorXd::Zero(modes());
+  if (device_.dispersion) rest_ = equilibrium_from(*rest_, std::vector<double>(drives(), 0.0));
 }
 
 // The interference that carries a force, by bisection: laws grow. A pad is tilted as by that force at the contact point.
@@ -259,21 +260,45 @@ double Switch::penetration_under(double force) const {
   return high;
 }
 
-// Newton's method from the straight beam. The load grows ever faster as the gap closes, so the iterates stay on the near side of
-// the equilibrium and stable; where one is not, there is no stable equilibrium.
-std::optional<Eigen::VectorXd> Switch::find_rest() const {
+std::vector<double> Switch::share_of(double share, std::span<const double> values) const {
+  std::vector<double> part(values.begin(), values.end());
+  for (std::size_t k = 0; k < part.size(); ++k)
+    part[k] = drive_kind(k) == DriveKind::piezo ? share * values[k] : value_of_strength(k, share * strength(k, values[k]));
+  return part;
+}
+
+// At once where that works, else in shares of the load: a beam that stretches is far stiffer bent than Newton's method expects of
+// the straight one.
+std::optional<Eigen::VectorXd> Switch::open_equilibrium(std::span<const double> values) const {
+  if (std::all_of(values.begin(), values.end(), [](double value) { return value == 0; })) return rest_;
   Eigen::VectorXd q = Eigen::VectorXd::Zero(modes());
-  if (!device_.dispersion) return q;
+  if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, values)) return found;
+  constexpr double shortest = 1e-3;
+  double step = 0.25;
+  for (double share = 0; share < 1 && step > shortest;) {
+    const double next = std::min(1.0, share + step);
+    if (std::optional<Eigen::VectorXd> found = equilibrium_from(q, share_of(next, values))) {
+      q = std::move(*found);
+      share = next;
+    } else {
+      step /= 2;
+    }
+  }
+  return step > shortest ? std::optional(q) : std::nullopt;
+}
+
+// Newton's method. The load grows ever faster as the gap closes, so the iterates stay on the near side of the equilibrium and
+// stable; where one is not, there is no stable equilibrium.
+std::optional<Eigen::VectorXd> Switch::equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const {
   constexpr int most_iterations = 200;  // near the fold an iteration gains a factor of two
   constexpr double rounding = 1e-14;    // of the gap
-  const Eigen::VectorXd zero = q;
-  const std::vector<double> drives(this->drives(), 0.0);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(modes());
   Workspace work = workspace();
   Eigen::VectorXd force(modes());
   Eigen::MatrixXd by_q(modes(), modes()), by_v(modes(), modes());
   for (int i = 0; i < most_iterations; ++i) {
-    accelerations(q.data(), zero.data(), drives, false, work, force.data());
-    jacobian(q.data(), zero.data(), drives, false, work, by_q, by_v);
+    accelerations(q.data(), zero.data(), values, false, work, force.data());
+    jacobian(q.data(), zero.data(), values, false, work, by_q, by_v);
     if (!(smallest_gap(work) > gap_floor())) return std::nullopt;
     // In units of each mode's own stiffness.
     const std::optional<Eigen::VectorXd> moved =

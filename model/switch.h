@@ -53,7 +53,7 @@ class Switch {
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
   [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
   /// Number of drives: the electrodes in order, then the dispersion force, then the piezo, if there are any. The values of
-  /// electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one. Every drive is 0 before t = 0.
+  /// electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one.
   [[nodiscard]] std::size_t drives() const { return driven_laws_.size() + (device_.piezo ? 1 : 0); }
   [[nodiscard]] DriveKind drive_kind(std::size_t drive) const {
     if (drive < electrodes_) return DriveKind::electrode;
@@ -148,9 +148,11 @@ class Switch {
     return std::isfinite(most_gap_) && work.field.gap.head(points()).maxCoeff() > most_gap_;
   }
 
-  /// The stable static equilibrium under drives of 0, which every run starts from; none when the beam collapses by itself or
+  /// The stable static equilibrium under drives of 0, modal coordinates [m kg^(1/2)]; none when the beam collapses by itself or
   /// rests on the contact plane.
   [[nodiscard]] const std::optional<Eigen::VectorXd>& rest() const { return rest_; }
+  /// The same under these values of all drives, reached from the straight beam as they grow: what a run starts from.
+  [[nodiscard]] std::optional<Eigen::VectorXd> open_equilibrium(std::span<const double> values) const;
   /// Charge on drive k per its own volt (capacitance) [F]; 0 unless it is an electrode.
   [[nodiscard]] double capacitance(std::size_t drive, const double* q, Workspace& work) const;
   /// Potential of a drive's law at unit strength [J]; 0 for the piezo.
@@ -211,7 +213,9 @@ class Switch {
   [[nodiscard]] Lane projected(const Workspace& work, std::size_t first) const;
   /// Derivatives of the modal forces by modal coordinates, of those of the load by the local ones. Uses the load of `work`.
   void project_slopes(const Eigen::ArrayXd& slopes, Workspace& work, Eigen::Ref<Eigen::MatrixXd> by) const;
-  [[nodiscard]] std::optional<Eigen::VectorXd> find_rest() const;
+  /// A share of what drives of these values do: V^2 of an electrode, the factor of the dispersion force, V of the piezo.
+  [[nodiscard]] std::vector<double> share_of(double share, std::span<const double> values) const;
+  [[nodiscard]] std::optional<Eigen::VectorXd> equilibrium_from(Eigen::VectorXd q, std::span<const double> values) const;
 
   Device device_;
   std::shared_ptr<const Frame> frame_;

@@ -56,6 +56,9 @@ struct Trajectory {
       std::numeric_limits<double>::quiet_NaN();  ///< 2 pi over the first frequency of the beam pinned at x_c [s]
   double hold_force =
       std::numeric_limits<double>::quiet_NaN();  ///< of the closed equilibrium under the hold levels, if computed [N]
+  /// Between the electrode that closes the switch and the beam, where the hold levels leave it [F]: closed, or where nothing
+  /// touched, open.
+  double hold_capacitance = std::numeric_limits<double>::quiet_NaN();
   bool is_held = true;  ///< false where the switch is known to have no stable closed equilibrium under the hold levels
   double collapse_time = std::numeric_limits<double>::quiet_NaN();  ///< at which the beam met the electrode [s]
   double smallest_gap = std::numeric_limits<double>::quiet_NaN();   ///< beam to electrode, anywhere, ever [m]

@@ -15,7 +15,8 @@ double Figure::value(const Metrics& metrics) const {
   if (const auto* const count = std::get_if<int Metrics::*>(&member)) return followed ? metrics.**count : Metrics::unset;
   const bool touched = std::isfinite(metrics.initial_contact_time);
   const bool yes = metrics.*std::get<bool Metrics::*>(member);
-  return touched && !followed ? Metrics::unset : yes ? 1 : 0;
+  const bool is_open = metrics.status == Status::open;  // nothing had to settle on the contact
+  return is_open || (touched && !followed) ? Metrics::unset : yes ? 1 : 0;
 }
 
 double Figure::counted(const Metrics& metrics, const MetricsOptions& options) const {

@@ -22,7 +22,8 @@ enum class Conditioning {
   high_rebound,  ///< one rebound: two runs differ by the error, unless they part before it
   every_touch,   ///< all touches: two runs differ by the error as long as they have the same touches
   last_rebound,  ///< the end of a sequence of rebounds, chaotic past the first large one: only a cloud of runs tells the range
-  rest,          ///< the closed equilibrium: the quadrature alone
+  open,          ///< the motion of a switch that stays open: two runs differ by the error
+  rest,          ///< the equilibrium under the hold levels: the quadrature alone
   drives         ///< the drives alone: it has no error
 };
 
@@ -43,7 +44,7 @@ struct Figure {
   /// Whether the difference of two runs is an estimate of its error.
   [[nodiscard]] constexpr bool is_told_by_two_runs() const {
     return conditioning == Conditioning::first_touch || conditioning == Conditioning::high_rebound ||
-           conditioning == Conditioning::every_touch;
+           conditioning == Conditioning::every_touch || conditioning == Conditioning::open;
   }
   /// Whether certify() gives it an error.
   [[nodiscard]] constexpr bool has_error() const { return !is_yes_or_no() && conditioning != Conditioning::drives; }
@@ -94,6 +95,13 @@ inline constexpr std::array all_figures{Figure{.key = "initial_contact_time_s",
                                                .better = Better::lower,
                                                .conditioning = Conditioning::high_rebound,
                                                .member = &Metrics::major_bounce_height},
+                                        Figure{.key = "first_rebound_time_s",
+                                               .name = "First rebound lasts",
+                                               .symbol = "t_1",
+                                               .unit = "s",
+                                               .better = Better::lower,
+                                               .conditioning = Conditioning::high_rebound,
+                                               .member = &Metrics::first_rebound_time},
                                         Figure{.key = "impact_velocity_m_s",
                                                .name = "Impact speed",
                                                .symbol = "v_i",
@@ -121,6 +129,32 @@ inline constexpr std::array all_figures{Figure{.key = "initial_contact_time_s",
                                                .unit = "N",
                                                .conditioning = Conditioning::rest,
                                                .member = &Metrics::hold_force},
+                                        Figure{.key = "capacitance_F",
+                                               .name = "Capacitance at the hold level",
+                                               .symbol = "capacitance",
+                                               .unit = "F",
+                                               .conditioning = Conditioning::rest,
+                                               .member = &Metrics::capacitance},
+                                        Figure{.key = "static_deflection_m",
+                                               .name = "Static deflection",
+                                               .symbol = "static deflection",
+                                               .unit = "m",
+                                               .conditioning = Conditioning::open,
+                                               .member = &Metrics::static_deflection},
+                                        Figure{.key = "overshoot_m",
+                                               .name = "Overshoot",
+                                               .symbol = "overshoot",
+                                               .unit = "m",
+                                               .better = Better::lower,
+                                               .conditioning = Conditioning::open,
+                                               .member = &Metrics::overshoot},
+                                        Figure{.key = "open_settling_time_s",
+                                               .name = "Settling time, open",
+                                               .symbol = "open settling time",
+                                               .unit = "s",
+                                               .better = Better::lower,
+                                               .conditioning = Conditioning::open,
+                                               .member = &Metrics::open_settling_time},
                                         Figure{.key = "drive_energy_J",
                                                .name = "Drive energy",
                                                .symbol = "drive energy",

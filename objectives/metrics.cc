@@ -26,7 +26,7 @@ void LandingFigures::touch(const Touch& touch) {
 void LandingFigures::rebound(const Rebound& rebound) {
   highest_ = std::max(highest_, rebound.height);
   if (!(rebound.height > options_.significant_rebound)) return;
-  ++significant_;
+  if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;  // NaN while it is under way
   last_end_ = rebound.end;
 }
 
@@ -57,6 +57,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   if (!ran_to_the_end || !sound) return result;
 
   result.drive_energy = end.energy.source_work;
+  result.capacitance = end.hold_capacitance;
   if (!course.touched) {
     if (end.status == Status::done) result.status = Status::no_contact;
     return result;
@@ -69,6 +70,7 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   }
 
   result.major_bounce_height = highest_;
+  result.first_rebound_time = first_duration_;
   result.bounce_count = significant_;
   const double permanent = significant_ > 0 ? last_end_ : result.initial_contact_time;
   const double rest = course.last_time - permanent;

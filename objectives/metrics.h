@@ -24,12 +24,18 @@ struct Metrics {
   double bounce_time = unset;             ///< t_b = t_p - t_i [s]
   int bounce_count = 0;                   ///< N_B, significant rebounds; meaningless when nothing touched
   double major_bounce_height = unset;     ///< B_H [m]; 0 when there is no rebound
+  double first_rebound_time = unset;      ///< duration of the first significant rebound [s]; 0 when there is none
   double impact_velocity = unset;         ///< v_i [m/s]
   double peak_contact_force = unset;      ///< [N]
   double impact_energy = unset;           ///< sum over touches of the largest stored contact energy [J]
   double hold_force = unset;              ///< [N]
+  double capacitance = unset;             ///< Trajectory::hold_capacitance [F]
   double drive_energy = unset;            ///< [J]
   bool settled = false;
+  // Set by simulate() where nothing touched: see set_open_figures().
+  double static_deflection = unset;   ///< of the contact point in the open equilibrium under the hold levels [m]
+  double overshoot = unset;           ///< furthest beyond it, seen from where the run started [m]
+  double open_settling_time = unset;  ///< from when on the contact point stays near it [s]; NaN where it does not
   // Set by simulate(), which knows the drives.
   double peak_voltage =
       unset;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
@@ -58,7 +64,7 @@ class LandingFigures {
 
  private:
   MetricsOptions options_;
-  double highest_ = 0, last_end_ = Metrics::unset;
+  double highest_ = 0, first_duration_ = 0, last_end_ = Metrics::unset;
   int significant_ = 0;
   bool touched_ = false;
   double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0;
@@ -86,8 +92,8 @@ class MetricsObserver final : public ClosingObserver {
 
 /// Never throws: trouble is in the status (the trajectory's own if that is not `done`, else done | no_contact | not_settled, or
 /// numerical_failure when a knot is not finite or goes back in time). A run that did not reach the end of its window gives
-/// initial_contact_time and impact_velocity when it touched before, and nothing else. No touch: drive_energy alone. A run that
-/// ends at the touch, for want of a contact: initial_contact_time, impact_velocity and drive_energy. Not
+/// initial_contact_time and impact_velocity when it touched before, and nothing else. No touch: drive_energy and capacitance
+/// alone. A run that ends at the touch, for want of a contact: initial_contact_time, impact_velocity and drive_energy. Not
 /// settled: less than one in_contact_period after permanent contact (first contact where there is no significant rebound), or a
 /// significant rebound and a period that is NaN.
 [[nodiscard]] Metrics metrics(const Trajectory& trajectory, const MetricsOptions& options = {});

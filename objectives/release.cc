@@ -32,13 +32,15 @@ class OpenBand {
     advance(b.time, b.position);
   }
 
-  [[nodiscard]] double settled_from() const { return inside_ ? settled_from_ : ReleaseFigures::unset; }
-  [[nodiscard]] double overshoot() const { return overshoot_; }
-  [[nodiscard]] double residual() const { return residual_; }
+  [[nodiscard]] BandFigures figures() const {
+    return {
+        .settled_from = inside_ ? settled_from_ : ReleaseFigures::unset, .below = below_, .above = above_, .residual = residual_};
+  }
 
  private:
   void reach(double time, double position) {
-    overshoot_ = std::max(overshoot_, band_.open_position - position);
+    below_ = std::max(below_, band_.open_position - position);
+    above_ = std::max(above_, position - band_.open_position);
     if (time >= band_.drives_end) reach_end_of_drives(position);
   }
   void reach_end_of_drives(double position) { residual_ = std::fmax(residual_, std::abs(position - band_.open_position)); }
@@ -54,25 +56,30 @@ class OpenBand {
 
   const ReleaseBand& band_;
   bool inside_ = false;
-  double settled_from_ = 0, overshoot_ = 0, residual_ = ReleaseFigures::unset;
+  double settled_from_ = 0, below_ = 0, above_ = 0, residual_ = ReleaseFigures::unset;
 };
 
 }  // namespace
 
+BandFigures band_figures(const Trajectory& course, const ReleaseBand& band) {
+  OpenBand open(band);
+  for (std::size_t i = 1; i < course.points.size(); ++i) open.follow(course.points[i - 1], course.points[i]);
+  return open.figures();
+}
+
 ReleaseFigures release_figures(const Trajectory& opening, const ReleaseBand& band) {
   ReleaseFigures figures{.status = opening.status};
   if (opening.status != Status::done) return figures;
-  OpenBand course(band);
-  for (std::size_t i = 1; i < opening.points.size(); ++i) course.follow(opening.points[i - 1], opening.points[i]);
+  const BandFigures course = band_figures(opening, band);
   if (!opening.touches.empty()) {
     figures.release_time = opening.touches.back().end;
     figures.touches = static_cast<int>(opening.touches.size()) - 1;
   }
   const bool open = std::isfinite(figures.release_time);
-  figures.overshoot = course.overshoot();
+  figures.overshoot = course.below;
   if (open) {
-    figures.residual_vibration = course.residual();
-    figures.settling_time = course.settled_from();
+    figures.residual_vibration = course.residual;
+    figures.settling_time = course.settled_from;
   }
   if (!std::isfinite(figures.settling_time)) figures.status = Status::not_settled;
   return figures;

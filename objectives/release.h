@@ -14,6 +14,15 @@ struct ReleaseBand {
   double drives_end = 0;     ///< from when on the drives stand at their open levels [s]
 };
 
+/// How the contact point comes to rest in a band.
+struct BandFigures {
+  double settled_from = std::numeric_limits<double>::quiet_NaN();  ///< from when on it stays in the band [s]; NaN: it does not
+  double below = 0, above = 0;  ///< furthest from the open position, away from the contact and towards it [m]; 0 if never
+  double residual = std::numeric_limits<double>::quiet_NaN();  ///< ReleaseFigures::residual_vibration
+};
+/// Between knots the motion is the quintic through them.
+[[nodiscard]] BandFigures band_figures(const Trajectory& course, const ReleaseBand& band);
+
 struct ReleaseFigures {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
@@ -28,8 +37,7 @@ struct ReleaseFigures {
   int touches = 0;  ///< of the contact after it has first left it
 };
 
-/// Of an opening (ClosingOptions::begins_closed). Between knots the motion is the quintic through them. Of a run that did not
-/// come to its end the status alone.
+/// Of an opening (ClosingOptions::begins_closed). Of a run that did not come to its end the status alone.
 [[nodiscard]] ReleaseFigures release_figures(const Trajectory& opening, const ReleaseBand& band);
 
 }  // namespace softland

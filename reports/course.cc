@@ -72,6 +72,18 @@ double figure_of_run(const ResultRun& run, Figure::Member member) {
   return run.figures ? (*run.figures)[member] : Metrics::unset;
 }
 
+namespace {
+
+std::string open_clause(const Actor& actor, const FigureValues& figures) {
+  const double settling = figures[&Metrics::open_settling_time];
+  return fmt::format(
+      "{} stays open, as its drives ask it to, deflected by {}{}", actor.subject,
+      quantity(figures[&Metrics::static_deflection], "m"),
+      std::isfinite(settling) ? ", and settles after " + quantity(settling, "s") : ", and has not settled when the window ends");
+}
+
+}  // namespace
+
 std::string closing_clause(const Actor& actor, const ResultRun& run, double window) {
   if (run.status == "collapsed_at_rest") return actor.subject + " has no stable rest position: it collapses before it is driven";
   if (run.status == "collapsed_onto_electrode") return actor.subject + " is pulled through the contact onto the electrode";
@@ -79,6 +91,7 @@ std::string closing_clause(const Actor& actor, const ResultRun& run, double wind
   if (!run.figures) return "there are no figures for " + actor.subject;
   const FigureValues& figures = *run.figures;
   const std::string end = std::isfinite(window) ? quantity(window, "s") : std::string();
+  if (run.status == "open") return open_clause(actor, figures);
   if (!touches(figures)) {
     return fmt::format("{} does not close{}{}", actor.subject, actor.object.empty() ? "" : " " + actor.object,
                        end.empty() ? "" : " within " + end);

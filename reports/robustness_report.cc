@@ -63,7 +63,7 @@ json waveforms_json(const Prepared& nominal, const DriveRobustness& drive, doubl
   const std::vector<std::string> names = nominal.drive_names();
   for (const auto& [name, waveform] : drive.waveforms) {
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    const Signal s = nominal.driven(k, signal(waveform));
+    const Signal s = nominal.driven(k, nominal.told(k, waveform));
     const bool is_factor = name == dispersion_drive;
     json points = json::array();
     for (const auto& [t, v] : polyline(s, duration, 1e-3 * (s.maximum(duration) - s.minimum(duration)), 0))

@@ -46,7 +46,8 @@ std::vector<Judged> judged(const SceneFile& file, int modes, const Watch& watch)
   for (const Figure& figure : compared_figures) list.push_back({figure.value(m), scale[figure]});
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
-    const StaticPullIn statically = known == p.pull_in.end() ? static_pull_in(p.model, k) : known->second.statically;
+    const StaticPullIn statically =
+        known == p.pull_in.end() ? static_pull_in(p.model, k, bias_of(p.scene, k)) : known->second.statically;
     list.push_back({statically.voltage, 0});
     if (known != p.pull_in.end()) list.push_back({known->second.dynamically.voltage, 0});
   }

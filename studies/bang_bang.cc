@@ -48,7 +48,8 @@ std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coas
   return found;
 }
 
-std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven, const std::vector<double>& coasting) {
+std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven, const std::vector<double>& coasting,
+                                  std::span<const double> before) {
   const auto n = static_cast<std::size_t>(model.modes());
   const double shape = model.contact_shape()[0];
   const double contact = model.device().gap.contact;
@@ -60,7 +61,8 @@ std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>
       return model.potential(q.data(), values, false, work);
     };
   };
-  const double from = model.rest() ? model.contact_deflection(model.rest()->data()) : 0;
+  const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(before);
+  const double from = rest ? model.contact_deflection(rest->data()) : 0;
   return bang_bang(potential(driven), potential(coasting), 1 / (shape * shape), from, contact);
 }
 

@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "studies/prepared.h"
@@ -41,8 +42,9 @@ struct BangBang {
 [[nodiscard]] std::optional<BangBang> bang_bang(const Potential& driven, const Potential& coasting, double mass, double from,
                                                 double contact);
 
-/// That of a switch which moves in its first mode alone, under these values of its drives while it is driven and while it coasts.
+/// That of a switch which moves in its first mode alone, under these values of its drives while it is driven and while it coasts,
+/// from rest under those `before` (none: 0).
 [[nodiscard]] std::optional<BangBang> bang_bang(const Switch& model, const std::vector<double>& driven,
-                                                const std::vector<double>& coasting);
+                                                const std::vector<double>& coasting, std::span<const double> before = {});
 
 }  // namespace softland

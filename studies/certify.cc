@@ -9,6 +9,7 @@
 
 #include "base/require.h"
 #include "studies/omissions.h"
+#include "studies/open_state.h"
 
 namespace softland {
 namespace {
@@ -39,8 +40,9 @@ std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fi
     const auto at = std::find_if(electrodes.begin(), electrodes.end(), [&](const Electrode& e) { return e.name == name; });
     const auto k = static_cast<std::size_t>(at - electrodes.begin());
     const Switch model(written.device, quadrature);
-    const StaticPullIn statically = static_pull_in(model, k);
-    const DynamicPullIn dynamically = dynamic_pull_in(model, k, statically, watch);
+    const std::vector<double> bias = bias_of(written, k);
+    const StaticPullIn statically = static_pull_in(model, k, bias);
+    const DynamicPullIn dynamically = dynamic_pull_in(model, k, statically, bias, watch);
     const ElectrodePullIn& own = prepared.pull_in.at(name);
     const double by_static = error_safety * std::abs(statically.voltage - own.statically.voltage);
     const double by_dynamic = error_safety * std::abs(dynamically.voltage - own.dynamically.voltage) +
@@ -58,8 +60,9 @@ std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fi
       }
       const std::vector<Signal> signals = moved.signals();
       Trajectory t = simulate_closing(fine, signals, options);
-      set_hold(t, fine, signals);
+      set_rest(t, fine, signals);
       found.push_back(metrics(t, prepared.scene.metrics));
+      set_open_figures(found.back(), t, fine, signals);
     }
   }
   return found;
@@ -146,7 +149,9 @@ Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
   for (Trajectory& t : cloud) {
     t.hold_force = c.trajectory.hold_force;  // that of the closed equilibrium, which one part in 1e7 does not move
     t.is_held = c.trajectory.is_held;
+    t.hold_capacitance = c.trajectory.hold_capacitance;
     runs.push_back(metrics(t, prepared.scene.metrics));
+    set_open_figures(runs.back(), t, fine, signals);
   }
   Certificate certificate{.ill_conditioned = {}, .grazing = {}, .runs = static_cast<int>(runs.size())};
   for (const Figure& figure : all_figures) {

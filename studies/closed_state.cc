@@ -24,12 +24,12 @@ ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& si
 
 std::string unstable_rest(const Switch& model, const std::vector<Signal>& signals) {
   constexpr double rounding = 1e-9;  // of the force that bends the beam by the contact gap
-  if (!model.rest()) return {};
+  const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(values_before(signals));
+  if (!rest) return {};
   const std::vector<double> levels = hold_levels(signals);
-  const Eigen::VectorXd& rest = *model.rest();
-  const double left = static_force(model, rest, levels).cwiseQuotient(model.angular_frequencies()).squaredNorm();
+  const double left = static_force(model, *rest, levels).cwiseQuotient(model.angular_frequencies()).squaredNorm();
   if (left > rounding * rounding * model.bending_energy()) return {};
-  const double smallest = open_tangent_eigenvalue(model, rest, levels);
+  const double smallest = open_tangent_eigenvalue(model, *rest, levels);
   if (smallest > 0) return {};
   return fmt::format(
       "the hold levels leave the switch where it rests, in an unstable equilibrium (smallest eigenvalue of the tangent {}): the "

@@ -89,7 +89,7 @@ class Surroundings {
       units = known_.of(meter_->exact(*sampled.model), 0, 0);
       require(std::isfinite(units.volts), "its pull-in voltage cannot be found");
     }
-    return drives_.differ(units) ? drives_.signals(drive_.waveforms, units, own) : nominal_.driven(signals_of(drive_.waveforms));
+    return drives_.differ(units) ? drives_.signals(drive_.waveforms, units, own) : nominal_.driven(drive_.waveforms);
   }
   [[nodiscard]] std::vector<Signal> signals() { return signals(values_); }
   // Whether a quantity changes what a device is driven with.

@@ -83,7 +83,7 @@ DeviceDrives::Driven DeviceDrives::driven(const std::vector<Waveform>& nominal, 
     for (const Source& source : sources_[k]) {
       if (source.error == DriveError::gain) all.waveforms[k] = scaled(std::move(all.waveforms[k]), values[source.variable], 1);
     }
-    all.signals.push_back(signal(all.waveforms[k]));
+    all.signals.push_back(nominal_->told(k, all.waveforms[k]));
     for (const Source& source : sources_[k]) {
       const double value = values[source.variable];
       switch (source.error) {

@@ -17,7 +17,8 @@ struct DeviceUnits {
   double volts = 1, time = 1;
 };
 
-/// The waveforms, in the order of Switch::drives(), in the units of one device. The voltages of a piezo do not follow the pull-in
+/// The waveforms, in the order of Switch::drives(), in the units of one device. What drives stand at before t = 0 stays what it
+/// is: no measured unit and no error of a source changes it. The voltages of a piezo do not follow the pull-in
 /// voltage, nor does the factor of a dispersion force.
 [[nodiscard]] std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device,
                                              const DeviceUnits& units);

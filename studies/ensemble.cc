@@ -144,8 +144,7 @@ DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in, double prec
     return fmt::format("{}: Vdp cannot be measured: there is no electrode that pulls in", nominal.scene.file.name());
   });
   const std::string name = searched_electrode(nominal.scene.device);
-  const std::vector<std::string> names = nominal.drive_names();
-  electrode_ = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  electrode_ = searched_drive(nominal.scene.device);
   pull_in_ = pull_in(nominal.model);
   require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
 }
@@ -154,7 +153,9 @@ double DeviceMeter::frequency() const { return nominal_->model.angular_frequenci
 
 double DeviceMeter::pull_in(const Switch& model) const {
   constexpr double looser = 10;  // the integrator: no measurement is as good
-  return dynamic_pull_in(model, electrode_, static_pull_in(model, electrode_), {}, looser * precision_, precision_).voltage;
+  const std::vector<double> bias = bias_of(nominal_->scene, electrode_);
+  const StaticPullIn statically = static_pull_in(model, electrode_, bias);
+  return dynamic_pull_in(model, electrode_, statically, bias, {}, looser * precision_, precision_).voltage;
 }
 
 DeviceUnits DeviceMeter::exact(const Switch& model) const {
@@ -328,7 +329,7 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
   if (any([](const EnsembleDrive& d) { return !d.known.calibration().is_empty(); }))
     meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.known.calibration().pull_in_error.has_value(); }));
   for (const EnsembleDrive& drive : drives) {
-    nominal_signals_.push_back(nominal.driven(signals_of(drive.waveforms)));
+    nominal_signals_.push_back(nominal.driven(drive.waveforms));
     nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));
   }
 }

@@ -116,7 +116,10 @@ std::vector<PointFigure> pull_in_figures(const Device& device) {
     const char *what = is_electrode ? "pull_in" : "factor", *name = is_electrode ? "pull-in" : "factor";
     figures.push_back({of + "static_" + what, std::string("Static ") + name + words, unit});
     figures.push_back({of + "dynamic_" + what, std::string("Dynamic ") + name + words, unit});
-    if (is_electrode) figures.push_back({of + "release", "Release" + words, unit});
+    if (is_electrode) {
+      figures.push_back({of + "release", "Release" + words, unit});
+      figures.push_back({of + "pull_in_deflection", "Deflection at static pull-in" + words, "m"});
+    }
   }
   return figures;
 }
@@ -316,14 +319,17 @@ PointRow Exploration::pulled_in(const SceneFile& scene, const Watch& watch) {
   PointRow row{.status = std::string(to_string(Status::done)), .reason = {}, .figures = {}};
   for (const std::size_t k : pulling_drives(device)) {
     const bool is_electrode = k < device.electrodes.size();
+    const std::vector<double> bias = bias_of(p.scene, k);
     const auto known = is_electrode ? p.pull_in.find(device.electrodes[k].name) : p.pull_in.end();
-    const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, watch);
+    const ElectrodePullIn found = known != p.pull_in.end() ? known->second : electrode_pull_in(p.model, k, bias, watch);
     const Status status = found.statically.status == Status::done ? found.dynamically.status : found.statically.status;
     if (status != Status::done) row.status = to_string(status);
     const double offset = is_electrode ? 0 : 1;  // the value of the dispersion force is its factor less one
     row.figures.push_back(finite(offset + found.statically.voltage));
     row.figures.push_back(finite(offset + found.dynamically.voltage));
-    if (is_electrode) row.figures.push_back(finite(release_voltage(p.model, k)));
+    if (!is_electrode) continue;
+    row.figures.push_back(finite(release_voltage(p.model, k, bias)));
+    row.figures.push_back(finite(found.statically.deflection));
   }
   return row;
 }

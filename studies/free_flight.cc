@@ -31,6 +31,9 @@ FreeFlight::FreeFlight(const Prepared& prepared, Actuator actuator, double peak)
       work_(prepared.model.workspace()) {
   require(model_.film_states() == 0, "the least time is not known where the gas film is compressible: gas.model = strip or none");
   require(model_.rest().has_value(), "the least time is not known of a switch without an open state");
+  for (const auto& [name, value] : prepared.drives.before)
+    require(value == 0,
+            fmt::format("the least time is known from rest without drives only: waveform.{}.{} must be absent", name, "before"));
   const VectorXd& at_contact = model_.contact_shape();
   const double least = at_contact.cwiseAbs().maxCoeff() / 10;
   const VectorXd scale = at_contact.cwiseAbs().cwiseMax(least);

@@ -32,7 +32,7 @@ Levels levels_of(const DriveSearch& s, const Prepared& given, double share) {
 std::vector<std::map<std::string, Waveform>> joint_swings(const Prepared& given, const SearchSpace& space) {
   const std::vector<DriveSearch>& drives = space.drives();
   const bool is_one_electrode = drives.size() == 1 && drives.front().drive != piezo_drive;
-  if (is_one_electrode || given.model.film_states() > 0 || !given.model.rest()) return {};
+  if (is_one_electrode || given.model.film_states() > 0 || !given.rest()) return {};
   const std::vector<std::string> names = given.drive_names();
   const double period = internal::first_period(given);
   std::vector<std::map<std::string, Waveform>> all;
@@ -45,7 +45,7 @@ std::vector<std::map<std::string, Waveform>> joint_swings(const Prepared& given,
       pulling[at] = own.pulling;
       releasing[at] = own.releasing;
     }
-    const std::optional<Swing> swing = quickest_swing(given.model, pulling, releasing, longest * period);
+    const std::optional<Swing> swing = quickest_swing(given.model, pulling, releasing, longest * period, given.values_before());
     if (!swing) continue;
     for (const double push : internal::pushes) {
       std::map<std::string, Waveform> landing;

@@ -108,7 +108,7 @@ std::vector<Signal> driven(const Prepared& prepared, std::map<std::string, Wavef
                            const std::map<std::string, Waveform>& plain) {
   searched.insert(plain.begin(), plain.end());
   searched.insert(prepared.drives.waveforms.begin(), prepared.drives.waveforms.end());
-  return prepared.driven(signals_of(prepared.in_drive_order(searched)));
+  return prepared.driven(prepared.in_drive_order(searched));
 }
 
 struct Arrival {

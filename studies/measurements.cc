@@ -50,9 +50,11 @@ void over_devices(std::size_t devices, int jobs, const char* what, const Watch& 
       watch.stop);
 }
 
-double closing_time(const Switch& model, const std::vector<double>& volts, double duration) {
+// Of a step of one drive, the others standing at a bias.
+double closing_time(const Switch& model, std::size_t drive, double step, Bias bias, double duration) {
   std::vector<Signal> signals;
-  for (const double one : volts) signals.push_back(Signal::constant(one));
+  for (const double standing : bias) signals.push_back(Signal::standing(standing));
+  signals[drive] = Signal::constant(step);
   const Trajectory end =
       simulate_closing(model, signals, {.duration = duration, .tolerance = EnsembleRun{}.tolerance, .after_contact = 0});
   return end.touches.empty() ? unknown : end.touches.front().begin;
@@ -67,17 +69,17 @@ struct Instrument {
 
 std::vector<Instrument> instruments(const Prepared& nominal, const DeviceMeter& meter, const MeasurementOptions& options) {
   const std::size_t electrode = meter.electrode();
+  const std::vector<double> bias = bias_of(nominal.scene, electrode);
   std::vector<Instrument> all{
       {"Vdp", "V", options.pull_in_error, [&meter](const Switch& m) { return meter.exact(m).volts * meter.pull_in(); }},
-      {"Vsp", "V", options.static_pull_in_error, [electrode](const Switch& m) { return static_pull_in(m, electrode).voltage; }},
-      {"release", "V", options.release_error, [electrode](const Switch& m) { return release_voltage(m, electrode); }},
+      {"Vsp", "V", options.static_pull_in_error, [=](const Switch& m) { return static_pull_in(m, electrode, bias).voltage; }},
+      {"release", "V", options.release_error, [=](const Switch& m) { return release_voltage(m, electrode, bias); }},
       {"frequency", "Hz", options.frequency_error, [](const Switch& m) { return m.angular_frequencies()[0] / (2 * pi); }}};
   const double duration = periods_to_close / meter.frequency();
   for (const double step : options.steps) {
-    std::vector<double> volts(nominal.model.drives(), 0.0);
-    volts[electrode] = step * meter.pull_in();
+    const double volts = step * meter.pull_in();
     all.push_back({fmt::format("time at {:g} Vdp", step), "s", options.time_error,
-                   [volts, duration](const Switch& m) { return closing_time(m, volts, duration); }});
+                   [=](const Switch& m) { return closing_time(m, electrode, volts, bias, duration); }});
   }
   return all;
 }
@@ -279,7 +281,7 @@ MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOpti
   const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", watch);
   const Prepared& nominal = setting.given;
   const std::vector<Waveform> recipe = nominal.in_drive_order(nominal.drives.waveforms);
-  require(!same_drives(signals_of(recipe), setting.baseline_scene.signals()), [&] {
+  require(!same_drives(nominal.told(recipe), setting.baseline_scene.signals()), [&] {
     return fmt::format(
         "{}: its drive is the plain step, which lands no device softly: there is no waveform to pin. Give what "
         "softland optimize has found",

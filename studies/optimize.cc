@@ -79,7 +79,7 @@ class Search {
       refine(setting.given.signals(), setting.given.drives.waveforms, with_waveforms(setting.given, {}));
     for (const StartingWaveforms& start : options_.starts) {
       const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
-      refine(setting.given.driven(signals_of(setting.drives(searched))), searched, setting.scene(searched));
+      refine(setting.given.driven(setting.drives(searched)), searched, setting.scene(searched));
     }
     for (const auto& landing : landings_at_rest()) {
       for (FamilySearch& family : families_) family.begin_at(landing);
@@ -175,7 +175,7 @@ class Search {
       std::vector<std::pair<double, std::map<std::string, Waveform>>> own;
       for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
         std::map<std::string, Waveform> waveforms = families_[k].waveforms(e);
-        own.emplace_back(other.price(other.given.driven(signals_of(other.drives(waveforms)))).own, std::move(waveforms));
+        own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, std::move(waveforms));
       }
       std::ranges::stable_sort(own, {}, &std::pair<double, std::map<std::string, Waveform>>::first);
       if (own.empty() || !(own.front().first < least)) continue;

@@ -13,7 +13,7 @@ Step step_of(const Prepared& given, const std::string& drive) {
   const double hold = found == given.drives.waveforms.end() ? 0.0 : signal(found->second).hold_level();
   const auto limits = given.drives.limits.find(drive);
   const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
-  return {.level = hold, .rise_time = std::abs(hold) / slew};
+  return {.level = hold, .rise_time = std::abs(hold - given.before(drive)) / slew};
 }
 
 }  // namespace
@@ -40,8 +40,9 @@ std::map<std::string, Waveform> plain_step(const Prepared& prepared, Actuator ac
 }
 
 bool same_drives(const std::vector<Signal>& a, const std::vector<Signal>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const Signal& one, const Signal& other) { return one.pieces() == other.pieces(); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Signal& one, const Signal& other) {
+    return one.before() == other.before() && one.pieces() == other.pieces();
+  });
 }
 
 }  // namespace softland

@@ -30,7 +30,27 @@ std::vector<Waveform> Prepared::in_drive_order(const std::map<std::string, Wavef
   return result;
 }
 
-std::vector<Signal> Prepared::signals() const { return driven(signals_of(in_drive_order(drives.waveforms))); }
+double Prepared::before(const std::string& drive) const {
+  const auto found = drives.before.find(drive);
+  return found == drives.before.end() ? 0 : found->second;
+}
+
+std::vector<double> Prepared::values_before() const {
+  std::vector<double> values;
+  for (const std::string& name : drive_names()) values.push_back(before(name));
+  return values;
+}
+
+Signal Prepared::told(std::size_t k, const Waveform& waveform) const { return signal(waveform, values_before()[k]); }
+
+std::vector<Signal> Prepared::told(const std::vector<Waveform>& waveforms) const {
+  const std::vector<double> before = values_before();
+  std::vector<Signal> signals;
+  for (std::size_t k = 0; k < before.size(); ++k) signals.push_back(signal(waveforms[k], before[k]));
+  return signals;
+}
+
+std::vector<Signal> Prepared::signals() const { return driven(in_drive_order(drives.waveforms)); }
 
 Signal Prepared::driven(std::size_t k, Signal told) const {
   if (drives.models.empty()) return told;
@@ -87,7 +107,7 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   const double usual = periods * 2 * pi / model.angular_frequencies()[0];
   if (!(usual <= longest_window)) return usual;
   std::vector<Signal> steps;
-  for (const double level : hold_levels(signals)) steps.push_back(Signal::constant(level));
+  for (const Signal& signal : signals) steps.push_back(Signal::constant(signal.hold_level(), signal.before()));
   const Trajectory closing = simulate_closing(
       model, steps, {.duration = longest * usual, .tolerance = loose, .after_contact = 0, .max_steps = most_steps});
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
@@ -118,7 +138,7 @@ void check_window(const Prepared& p) {
 void load_sources(Prepared& p) {
   const Switch& model = p.model;
   std::vector<double> open(static_cast<std::size_t>(model.modes()), 0.0);
-  if (model.rest()) std::copy_n(model.rest()->data(), open.size(), open.begin());
+  if (const auto rest = p.rest()) std::copy_n(rest->data(), open.size(), open.begin());
   Switch::Workspace work = model.workspace();
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
@@ -142,9 +162,15 @@ void check_sources(const Prepared& p) {
 
 }  // namespace
 
-ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, const Watch& watch) {
-  ElectrodePullIn found{.statically = static_pull_in(model, electrode)};
-  found.dynamically = dynamic_pull_in(model, electrode, found.statically, watch);
+std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
+  std::vector<double> bias = scene.standing;
+  bias[drive] = 0;
+  return bias;
+}
+
+ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
+  ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
+  found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch);
   return found;
 }
 
@@ -160,7 +186,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch,
     const std::string& name = scene.device.electrodes[k].name;
     const bool needed = std::find(scene.need_pull_in.begin(), scene.need_pull_in.end(), name) != scene.need_pull_in.end();
     if (!needed && !default_limits) continue;
-    const ElectrodePullIn found = find_pull_in(p.model, k, watch);
+    const ElectrodePullIn found = find_pull_in(p.model, k, bias_of(scene, k), watch);
     watch.throw_if_stopped();
     const bool ok = found.dynamically.status == Status::done;
     if (needed && !ok) {
@@ -172,7 +198,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch,
   p.drives = scene.drives(p.voltage_units());
   load_sources(p);
   p.duration = scene.simulate.duration > 0 ? scene.simulate.duration
-                                           : default_window(p.model, signals_of(p.in_drive_order(p.drives.waveforms)));
+                                           : default_window(p.model, p.told(p.in_drive_order(p.drives.waveforms)));
   check_window(p);
   check_sources(p);
   p.tolerance =

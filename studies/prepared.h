@@ -27,6 +27,9 @@ inline constexpr std::string_view piezo_drive = "piezo";
 /// The name of the dispersion force's factor among the drives. Its signal is the factor less one.
 inline constexpr std::string_view dispersion_drive = "dispersion";
 
+/// What the other drives stand at where the pull-in voltages of this one are asked for: Scene::standing, its own at 0 V.
+[[nodiscard]] std::vector<double> bias_of(const Scene& scene, std::size_t drive);
+
 struct DescribedEffects;
 
 struct Prepared {
@@ -45,8 +48,20 @@ struct Prepared {
   [[nodiscard]] std::vector<std::string> drive_names() const;
   /// One waveform per drive in that order; what has none stays at 0 V.
   [[nodiscard]] std::vector<Waveform> in_drive_order(const std::map<std::string, Waveform>& waveforms) const;
+  /// What a drive stands at before t = 0 [V].
+  [[nodiscard]] double before(const std::string& drive) const;
+  /// The same of every drive, in that order.
+  [[nodiscard]] std::vector<double> values_before() const;
+  /// Where runs start: the open switch at rest under those. None where there is no stable equilibrium.
+  [[nodiscard]] std::optional<Eigen::VectorXd> rest() const { return model.open_equilibrium(values_before()); }
+  /// What the source of drive k is told for a waveform of its own or another: that from t = 0 on, and before what the scene says.
+  /// Throws as signal() does.
+  [[nodiscard]] Signal told(std::size_t k, const Waveform& waveform) const;
+  /// One per drive in that order.
+  [[nodiscard]] std::vector<Signal> told(const std::vector<Waveform>& waveforms) const;
   /// One signal per drive in that order, as its source gives it; what is not driven stays at 0 V.
   [[nodiscard]] std::vector<Signal> signals() const;
+  [[nodiscard]] std::vector<Signal> driven(const std::vector<Waveform>& waveforms) const { return driven(told(waveforms)); }
   /// What the sources make of signals that they are told to give, one per drive in that order.
   [[nodiscard]] std::vector<Signal> driven(std::vector<Signal> told) const;
   /// What the source of drive k makes of a signal.
@@ -59,10 +74,10 @@ struct Prepared {
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film
 [[nodiscard]] SwitchOptions quadrature_for(double accuracy, int modes);
 
-/// Finds the pull-in voltages of an electrode of a switch, by its number: electrode_pull_in(), or who remembers what that has
-/// found.
-using PullInFinder = std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, const Watch& watch)>;
-[[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, const Watch& watch = {});
+/// Finds the pull-in voltages of an electrode of a switch, by its number, under a bias of the other drives: electrode_pull_in(),
+/// or who remembers what that has found.
+using PullInFinder = std::function<ElectrodePullIn(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch)>;
+[[nodiscard]] ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch = {});
 
 /// Reads, composes and resolves a scene; pull-in voltages are computed for the electrodes that need them (and, with
 /// `default_limits`, for all that have no written limit). What the scene leaves to softland is not chosen yet (choices.h):

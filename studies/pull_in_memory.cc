@@ -1,5 +1,8 @@
 #include "studies/pull_in_memory.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <exception>
 #include <utility>
 
@@ -9,14 +12,14 @@ PullInFinder PullInMemory::finder(const SceneFile& scene) {
   SceneFile same = scene;
   for (const char* path : {"title", "waveform", "driver", "metrics", "spread", "calibration", "simulate.duration"})
     same.erase(path);
-  return [this, text = same.text()](const Switch& model, std::size_t electrode, const Watch& watch) {
-    return find(text, model, electrode, watch);
+  return [this, text = same.text()](const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
+    return find(text, model, electrode, bias, watch);
   };
 }
 
-ElectrodePullIn PullInMemory::find(const std::string& switch_text, const Switch& model, std::size_t electrode,
+ElectrodePullIn PullInMemory::find(const std::string& switch_text, const Switch& model, std::size_t electrode, Bias bias,
                                    const Watch& watch) {
-  std::string key = switch_text + std::to_string(electrode);
+  std::string key = fmt::format("{}{} {}", switch_text, electrode, fmt::join(bias, " "));
   std::promise<ElectrodePullIn> mine;
   {
     std::unique_lock lock(mutex_);
@@ -33,7 +36,7 @@ ElectrodePullIn PullInMemory::find(const std::string& switch_text, const Switch&
     }
   }
   try {
-    const ElectrodePullIn found = electrode_pull_in(model, electrode, watch);
+    const ElectrodePullIn found = electrode_pull_in(model, electrode, bias, watch);
     mine.set_value(found);
     return found;
   } catch (...) {

@@ -85,7 +85,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              int jobs) const {
   constexpr std::size_t together = 64;  // devices of one task
-  const std::vector<Signal> nominal = setting_.given.driven(signals_of(waveforms));
+  const std::vector<Signal> nominal = setting_.given.driven(waveforms);
   std::vector<DeviceOutcome> outcomes(last - first);
   run_tasks((outcomes.size() + together - 1) / together, jobs, [&](std::size_t task) {
     const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);

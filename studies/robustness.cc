@@ -74,7 +74,8 @@ std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& dr
             [&] { return fmt::format("{}: drives '{}', which the first scene does not have", drive.name, name); });
     const auto limits = nominal.drives.limits.find(name);
     if (limits == nominal.drives.limits.end()) continue;
-    const std::string broken = violation(signal(waveform), limits->second);
+    const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    const std::string broken = violation(nominal.told(k, waveform), limits->second);
     require(broken.empty(), [&] { return fmt::format("{}: drive '{}': {}", drive.name, name, broken); });
   }
   return nominal.in_drive_order(drive.waveforms);
@@ -169,9 +170,9 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   plain.waveforms.insert(nominal.drives.waveforms.begin(), nominal.drives.waveforms.end());  // of the drives that do not step
   std::vector<NamedDrive> all;
   const auto is_judged = [&](const NamedDrive& drive) {  // the scene's own drive may be the plain step
-    const std::vector<Signal> own = signals_of(waveforms_of(nominal, drive));
+    const std::vector<Signal> own = nominal.told(waveforms_of(nominal, drive));
     return drive.calibration.is_empty() && std::any_of(all.begin(), all.end(), [&](const NamedDrive& other) {
-             return other.calibration.is_empty() && same_drives(own, signals_of(waveforms_of(nominal, other)));
+             return other.calibration.is_empty() && same_drives(own, nominal.told(waveforms_of(nominal, other)));
            });
   };
   all.push_back(plain);
@@ -295,7 +296,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
     if (!drive.waveforms.contains(names[k]) && !drives.has_errors(k)) continue;
     file.set_waveform(names[k], own[k]);
     if (const auto limits = nominal.drives.limits.find(names[k]); limits != nominal.drives.limits.end())
-      allow(file, "driver." + names[k], signal(own[k]), limits->second);
+      allow(file, "driver." + names[k], nominal.told(k, own[k]), limits->second);
   }
   return file;
 }

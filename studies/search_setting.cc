@@ -139,8 +139,11 @@ std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform
 }
 
 bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) const {
-  return std::all_of(searched.begin(), searched.end(),
-                     [&](const auto& one) { return violation(signal(one.second), limits.at(one.first)).empty(); });
+  const std::vector<std::string> names = given.drive_names();
+  return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
+    const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), one.first) - names.begin());
+    return violation(given.told(k, one.second), limits.at(one.first)).empty();
+  });
 }
 
 // A drive that still changes after the score would open the switch again unseen.
@@ -179,6 +182,7 @@ Prices SearchSetting::price_of(const RecordedClosing& closing) const {
   }
   Metrics metrics = closing.metrics;
   metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
+  metrics.capacitance = baseline.metrics.capacitance;
   set_drive_figures(metrics, given, closing.signals);
   prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
   for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, metrics));
@@ -198,7 +202,7 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
   if (memory != nullptr) {
     if (const auto known = memory->recall(key)) return {.leading = known->leading, .own = known->cost, .lands = known->lands};
   }
-  auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(signals_of(drives(searched))));
+  auto closing = std::make_shared<const RecordedClosing>(*this, given.driven(drives(searched)));
   Prices found = worst_price(*closing);
   if (last != nullptr) *last = {.x = key.x, .closing = std::move(closing)};
   found.leading += 0.0, found.own += 0.0;  // of zeros a memory need not keep the sign
@@ -229,7 +233,7 @@ std::vector<Criterion> SearchSetting::followed_conditions() const {
 SignalSlopes SearchSetting::signal_slopes(std::span<const double> x, const std::vector<ParameterGroup>& groups) const {
   std::vector<double> lower, upper;
   for (const Variable& v : space.variables()) lower.push_back(v.lower), upper.push_back(v.upper);
-  const auto signals_at = [&](std::span<const double> at) { return given.driven(signals_of(drives(space.waveforms(at)))); };
+  const auto signals_at = [&](std::span<const double> at) { return given.driven(drives(space.waveforms(at))); };
   return {signals_at, x, lower, upper, groups};
 }
 
@@ -251,7 +255,7 @@ std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const 
   } else {
     const std::map<std::string, Waveform> searched = space.waveforms(x);
     if (!is_allowed(searched)) return gradient;
-    closing = std::make_shared<const RecordedClosing>(*this, given.driven(signals_of(drives(searched))));
+    closing = std::make_shared<const RecordedClosing>(*this, given.driven(drives(searched)));
   }
   LinearizedClosing motion(given.model, closing->signals, closing->tape);
   const CostSlopes slopes = cost_slopes(given.model, closing->signals, motion, given.scene.metrics);

@@ -177,6 +177,13 @@ std::string searched_electrode(const Device& device) {
   return pulling->name;
 }
 
+std::size_t searched_drive(const Device& device) {
+  const std::string name = searched_electrode(device);
+  const auto at =
+      std::find_if(device.electrodes.begin(), device.electrodes.end(), [&](const Electrode& e) { return e.name == name; });
+  return static_cast<std::size_t>(at - device.electrodes.begin());
+}
+
 std::vector<std::string> braking_electrodes(const Prepared& prepared) {
   std::vector<std::string> names;
   for (const Electrode& e : prepared.scene.device.electrodes) {
@@ -214,7 +221,7 @@ std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
     const double volts = s.voltage(time);
     return squared ? volts * std::abs(volts) : volts;
   };
-  const Signal given = signal(waveform);
+  const Signal given = signal(waveform, before);
   const double end = std::max(beyond * given.breakpoints().back(), least * first_touch);
   const auto course = [&](const Signal& s) {
     VectorXd all(instants);
@@ -222,7 +229,7 @@ std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
     return all;
   };
   const VectorXd wanted = course(given);
-  const auto apart = [&](std::span<const double> x) -> VectorXd { return course(signal(this->waveform(x))) - wanted; };
+  const auto apart = [&](std::span<const double> x) -> VectorXd { return course(signal(this->waveform(x), before)) - wanted; };
   const auto difference = [&](std::span<const double> x) { return apart(x).squaredNorm() / instants; };
   std::vector<double> best;
   double fewest = std::numeric_limits<double>::infinity();
@@ -249,7 +256,7 @@ std::string DriveSearch::misfit(const Waveform& waveform) const {
   if (!(std::abs(held - hold) <= rounding * (limits.max_voltage - limits.min_voltage)))
     return fmt::format("drive '{}' ends on {}, and the scene holds {}, which no search changes", drive, engineering(held, "V", 6),
                        engineering(hold, "V", 6));
-  const std::string broken = violation(signal(waveform), limits);
+  const std::string broken = violation(signal(waveform, before), limits);
   return broken.empty() ? broken : fmt::format("drive '{}': {}", drive, broken);
 }
 
@@ -262,6 +269,7 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
         fmt::format("optimize needs [driver.{}] with min_voltage and max_voltage: it never searches an unlimited drive", drive));
     DriveSearch s{.drive = drive,
                   .hold = hold_level(prepared, drive),
+                  .before = prepared.before(drive),
                   .brakes = brakes,
                   .first_touch = first_touch,
                   .limits = limits->second,

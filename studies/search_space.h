@@ -70,6 +70,7 @@ struct DriveSearch {
   const SearchedFamily* family = nullptr;
   std::size_t count = 0;   ///< of levels, knots, pulses or sines, where the family has any number of them
   double hold = 0;         ///< [V]
+  double before = 0;       ///< what it stands at before t = 0 [V]
   bool brakes = false;     ///< an electrode on the far side
   double first_touch = 0;  ///< of the plain step [s]
   DriverLimits limits;
@@ -120,6 +121,8 @@ class SearchSpace {
 /// The electrode that a search closes the switch with: `main` if there is one, else the first that pulls in. Throws InvalidInput
 /// when there is none.
 [[nodiscard]] std::string searched_electrode(const Device& device);
+/// Its number among the drives.
+[[nodiscard]] std::size_t searched_drive(const Device& device);
 /// Electrodes on the far side whose driver has limits: a search brakes with them. The others keep the scene's waveform.
 [[nodiscard]] std::vector<std::string> braking_electrodes(const Prepared& prepared);
 

@@ -101,15 +101,15 @@ std::optional<ThrowAndCoast> throw_and_coast(const DriveSearch& s, const Prepare
     if (names[k] == s.drive) driven[k] = found.pulling, coasting[k] = found.coasting;
   }
   // Of one mode where the film has states of its own.
-  if (p.model.film_states() == 0 && p.model.rest()) {
+  if (p.model.film_states() == 0 && p.rest()) {
     constexpr double longest = 3;  // periods
-    const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p));
+    const std::optional<Swing> swing = quickest_swing(p.model, driven, coasting, longest * first_period(p), p.values_before());
     if (!swing) return std::nullopt;
     found.driven_time = swing->driven_time;
     found.coasting_time = swing->releasing_time;
     return found;
   }
-  const std::optional<BangBang> landing = bang_bang(p.model, driven, coasting);
+  const std::optional<BangBang> landing = bang_bang(p.model, driven, coasting, p.values_before());
   if (!landing) return std::nullopt;
   found.driven_time = landing->driven_time;
   found.coasting_time = landing->coasting_time;

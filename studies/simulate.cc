@@ -9,6 +9,8 @@
 
 #include "base/engineering.h"
 #include "studies/closed_state.h"
+#include "studies/open_state.h"
+#include "studies/search_space.h"
 #include "studies/watched.h"
 
 namespace softland {
@@ -160,8 +162,9 @@ class ClosingRuns {
                                      .stop = watch_.stop,
                                      .observer = observer(watch_, what, prepared_.duration)});
     was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
-    set_hold(r.trajectory, model, signals_);
+    set_rest(r.trajectory, model, signals_);
     r.metrics = metrics(r.trajectory, prepared_.scene.metrics);
+    set_open_figures(r.metrics, r.trajectory, model, signals_);
     return r;
   }
 
@@ -284,8 +287,9 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   if (best.metrics.status == Status::no_contact) {
     if (std::string unstable = unstable_rest(prepared.model, runs.signals()); !unstable.empty())
       c.warnings.push_back(std::move(unstable));
+    if (stays_open(prepared.model, runs.signals(), prepared.duration, watch)) c.metrics.status = Status::open;
   }
-  if (!c.trajectory.is_held) {
+  if (!c.trajectory.is_held && c.metrics.status != Status::open) {
     const std::string unstable = warning(closed_state(prepared, runs.signals()));
     c.warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
   }
@@ -296,16 +300,32 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   return c;
 }
 
-void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
-              const std::optional<ClosedEquilibrium>& near) {
+std::optional<ClosedEquilibrium> set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
+                                          const std::optional<ClosedEquilibrium>& near) {
   const std::vector<double> levels = hold_levels(signals);
-  const auto closed = near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels);
+  std::optional<ClosedEquilibrium> closed =
+      near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels);
   const bool stays = keeps_closed(model, closed);
   if (stays) trajectory.hold_force = closed->contact_force;
   const std::optional<Contact>& contact = model.device().contact;
   const bool may_stick =
       contact && (contact->model == ContactModel::adhesive || contact->model == ContactModel::adhesive_repulsive);
   trajectory.is_held = stays || !contact || (may_stick && !closed);
+  return closed;
+}
+
+void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals) {
+  const std::optional<ClosedEquilibrium> closed = set_hold(trajectory, model, signals);
+  if (!has_pulling_electrode(model.device())) return;
+  std::optional<Eigen::VectorXd> q;
+  if (trajectory.touches.empty()) {
+    q = model.open_equilibrium(hold_levels(signals));
+  } else if (closed) {
+    q = closed->q;
+  }
+  if (!q) return;
+  Switch::Workspace work = model.workspace();
+  trajectory.hold_capacitance = model.capacitance(searched_drive(model.device()), q->data(), work);
 }
 
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals) {

@@ -58,9 +58,12 @@ inline constexpr std::string_view not_held =
 
 /// Sets the hold force of the closed equilibrium under the hold levels of these drives, and whether anything holds the switch:
 /// not where it has a contact and no such equilibrium, unless the contact may hold on by adhesion, nor where it is unstable.
-/// `near`: that of a switch and drives little different, from which it is found sooner.
-void set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
-              const std::optional<ClosedEquilibrium>& near = {});
+/// `near`: that of a switch and drives little different, from which it is found sooner. Returns that equilibrium, if there is
+/// one.
+std::optional<ClosedEquilibrium> set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
+                                          const std::optional<ClosedEquilibrium>& near = {});
+/// The same, and the capacitance where the hold levels leave the switch.
+void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals);
 
 /// Peak voltage and peak slew of these drives in the window.
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);
@@ -70,7 +73,8 @@ void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::ve
 /// force to at least least_peak_force()), tolerance and quadrature are tightened until they have, or until that no longer
 /// helps. No run is its own judge, and no error is 0. Asked to stop, the status of the figures is interrupted: they are those of
 /// the last run that was complete, without errors, or of the part of the first one that was run. A switch that is not held (see
-/// set_hold()) has not settled, however quiet it is at the end of the window.
+/// set_hold()) has not settled, however quiet it is at the end of the window. One that has not touched, and was not meant to (see
+/// stays_open()), has the status `open`.
 [[nodiscard]] Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& watch = {});
 
 }  // namespace softland

@@ -19,8 +19,10 @@ struct Flight {
 // Flies from rest under full pull, and from a time on under full release, until the contact point arrives or turns back.
 class PullAndRelease {
  public:
-  PullAndRelease(const Switch& model, std::vector<double> pulling, std::vector<double> releasing, double step, double longest)
+  PullAndRelease(const Switch& model, Eigen::VectorXd rest, std::vector<double> pulling, std::vector<double> releasing,
+                 double step, double longest)
       : model_(model),
+        rest_(std::move(rest)),
         pulling_(std::move(pulling)),
         releasing_(std::move(releasing)),
         step_(step),
@@ -32,7 +34,7 @@ class PullAndRelease {
     const double gap = model_.device().gap.contact;
     Flight flight;
     VectorXd x(2 * n), k1(2 * n), k2 = k1, k3 = k1, k4 = k1;
-    x << *model_.rest(), VectorXd::Zero(n);
+    x << rest_, VectorXd::Zero(n);
     flight.states.push_back(x);
     for (double t = 0; t < longest_;) {
       const bool pulls = t < release_at;
@@ -60,6 +62,7 @@ class PullAndRelease {
   }
 
   const Switch& model_;
+  Eigen::VectorXd rest_;
   std::vector<double> pulling_, releasing_;  // [V]
   double step_, longest_;                    // [s]
   Switch::Workspace work_;
@@ -68,13 +71,14 @@ class PullAndRelease {
 }  // namespace
 
 std::optional<Swing> quickest_swing(const Switch& model, const std::vector<double>& pulling, const std::vector<double>& releasing,
-                                    double longest) {
+                                    double longest, std::span<const double> before) {
   require(pulling.size() == model.drives() && releasing.size() == model.drives(), "a swing needs a value for every drive");
   require(model.film_states() == 0, "the quickest swing is not known where the gas film is compressible");
-  require(model.rest().has_value(), "a switch without an open state has no swing");
+  const std::optional<VectorXd> rest = model.open_equilibrium(before);
+  require(rest.has_value(), "a switch without an open state has no swing");
   constexpr double step_angle = 0.05;  // of the fastest mode in a step
   Swing swing{.step = step_angle / model.angular_frequencies().maxCoeff()};
-  PullAndRelease drives(model, pulling, releasing, swing.step, longest);
+  PullAndRelease drives(model, *rest, pulling, releasing, swing.step, longest);
   const Flight full = drives.fly(longest);
   if (!full.touched) return std::nullopt;
   double low = 0, high = static_cast<double>(full.states.size()) * swing.step;

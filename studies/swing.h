@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "model/switch.h"
@@ -17,9 +18,11 @@ struct Swing {
   std::vector<Eigen::VectorXd> states = {};    ///< modal coordinates and their rates, from rest on
 };
 
-/// Under these values of all drives [V]. Nothing where full pull does not reach the contact within `longest` [s]. Throws
-/// InvalidInput for a switch whose gas film is compressible, or which has no open state.
+/// Under these values of all drives, from rest under those that they have `before` (none: 0) [V]. Nothing where full pull does
+/// not reach the contact within `longest` [s]. Throws InvalidInput for a switch whose gas film is compressible, or which has no
+/// open state.
 [[nodiscard]] std::optional<Swing> quickest_swing(const Switch& model, const std::vector<double>& pulling,
-                                                  const std::vector<double>& releasing, double longest);
+                                                  const std::vector<double>& releasing, double longest,
+                                                  std::span<const double> before = {});
 
 }  // namespace softland

@@ -39,7 +39,7 @@ std::array<std::array<double, 4>, 4> bsplines_of_span(std::size_t j, std::size_t
 
 }  // namespace internal
 
-Signal signal(const BSpline& spline) {
+Signal signal(const BSpline& spline, double before) {
   constexpr std::size_t fewest = 4;
   require_of("levels", spline.levels.size() >= fewest,
              [&] { return fmt::format("levels of a bspline are {}; there must be at least {}", spline.levels.size(), fewest); });
@@ -49,7 +49,7 @@ Signal signal(const BSpline& spline) {
   }
   require_of("duration", spline.duration > 0 && std::isfinite(spline.duration),
              [&] { return fmt::format("duration of a bspline is {} s; it must be finite and > 0", spline.duration); });
-  return Signal(pieces(spline));
+  return Signal(pieces(spline), before);
 }
 
 }  // namespace softland

@@ -72,6 +72,6 @@ template <class P>
   return all;
 }
 /// Throws InvalidParameter.
-[[nodiscard]] Signal signal(const BSpline& spline);
+[[nodiscard]] Signal signal(const BSpline& spline, double before = 0);
 
 }  // namespace softland

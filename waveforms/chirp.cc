@@ -4,7 +4,7 @@
 
 namespace softland {
 
-Signal signal(const Chirp& chirp) {
+Signal signal(const Chirp& chirp, double before) {
   internal::require_dither("a chirp", {.base = chirp.base,
                                        .rise_time = chirp.rise_time,
                                        .amplitude = chirp.amplitude,
@@ -25,8 +25,8 @@ Signal signal(const Chirp& chirp) {
     require_of("decay_time", std::isfinite(chirp.decay_time),
                "a chirp has neither an end nor a decay_time; it must have one of them (a harmonic goes on for ever)");
   }
-  if (chirp.amplitude == 0) return Signal::piecewise_linear({{0, 0}, {chirp.rise_time, chirp.base}});
-  return Signal(pieces(chirp));
+  if (chirp.amplitude == 0) return Signal::piecewise_linear({{0, before}, {chirp.rise_time, chirp.base}}, before);
+  return Signal(pieces(chirp, before), before);
 }
 
 }  // namespace softland

@@ -2,9 +2,10 @@
 //
 //   V(t) = b(t) + amplitude e(t) exp(-s / decay_time) sin(phase + angular_frequency s + sweep s^2 / 2),  s = t - start
 //
-// for t in [start, end], b(t) elsewhere (t >= 0). b rises linearly from 0 to base on [0, rise_time]; the envelope e fades in
-// after start and out before end as that of a harmonic. At its end the frequency is frequency_ratio times that at its start:
-// sweep = (frequency_ratio - 1) angular_frequency / (end - start). A chirp that never ends keeps its frequency, and decays.
+// for t in [start, end], b(t) elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage before t = 0; the
+// envelope e fades in after start and out before end as that of a harmonic. At its end the frequency is frequency_ratio times
+// that at its start: sweep = (frequency_ratio - 1) angular_frequency / (end - start). A chirp that never ends keeps its
+// frequency, and decays.
 #pragma once
 
 #include <array>
@@ -37,7 +38,7 @@ struct FamilyOf<Chirp> {
   static constexpr std::string_view name = "chirp";
   static constexpr auto parameters = std::to_array<Parameter<Chirp>>({
       {"base", Meaning::level, &Chirp::base, false, "what the sine swings about"},
-      {"rise_time", Meaning::time, &Chirp::rise_time, false, "linear rise of the base from 0 V"},
+      {"rise_time", Meaning::time, &Chirp::rise_time, false, "linear rise of the base, from 0 V or `before`"},
       {"amplitude", Meaning::swing, &Chirp::amplitude, true,
        "at the start; or a percentage of the base; for the piezo, of the main hold level"},
       {"angular_frequency", Meaning::angular_frequency, &Chirp::angular_frequency, true, "of the sine at the start"},
@@ -50,9 +51,9 @@ struct FamilyOf<Chirp> {
   });
 };
 
-/// The pieces of a valid chirp.
+/// The pieces of a valid chirp, whose base rises from `before` [V].
 template <class P>
-[[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp) {
+[[nodiscard]] Pieces<P> pieces(const ChirpOf<P>& chirp, const P& before = P(0)) {
   using std::cos, std::exp, std::sin;
   // Base and envelope are those of a harmonic, whose sine becomes a term.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = chirp.base,
@@ -61,7 +62,8 @@ template <class P>
                                        .angular_frequency = chirp.angular_frequency,
                                        .start = chirp.start,
                                        .end = chirp.end,
-                                       .fade = chirp.fade});
+                                       .fade = chirp.fade},
+                         before);
   const bool ends = internal::decided(chirp.end < P(std::numeric_limits<double>::infinity()));
   const P sweep = ends ? (chirp.frequency_ratio - P(1)) * chirp.angular_frequency / (chirp.end - chirp.start) : P(0);
   const P decay = P(1) / chirp.decay_time;
@@ -82,6 +84,6 @@ template <class P>
   return all;
 }
 /// Throws InvalidParameter.
-[[nodiscard]] Signal signal(const Chirp& chirp);
+[[nodiscard]] Signal signal(const Chirp& chirp, double before = 0);
 
 }  // namespace softland

@@ -153,13 +153,13 @@ Signal sampled(const Signal& told, double rate, std::optional<int> bits, const D
   };
   for (double k = 0; k < count; ++k) hold(k / rate, rounded(told.voltage(k / rate)));
   hold(count / rate, rounded(told.hold_level()));
-  return Signal(std::move(pieces));
+  return Signal(std::move(pieces), told.before());
 }
 
 Signal slewed(const Signal& held, double max_slew) {
   const std::vector<SignalPiece>& pieces = held.pieces();
   std::vector<SignalPiece> all;
-  double output = 0;
+  double output = held.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, target = pieces[i].value;
     const double next = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
@@ -175,14 +175,14 @@ Signal slewed(const Signal& held, double max_slew) {
     all.push_back({.begin = std::max(reached, begin), .value = target});
     output = target;
   }
-  return Signal(std::move(all));
+  return Signal(std::move(all), held.before());
 }
 
 Signal filtered(const Signal& input, double time_constant) {
   constexpr double over = 40;  // time constants after which nothing is left
   const std::vector<SignalPiece> pieces = without_sweeps(input.pieces());
   std::vector<SignalPiece> all;
-  double output = 0;
+  double output = input.before();
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double begin = pieces[i].begin, end = i + 1 < pieces.size() ? pieces[i + 1].begin : infinite;
     std::vector<Exponential> parts;
@@ -202,7 +202,7 @@ Signal filtered(const Signal& input, double time_constant) {
     }
     if (std::isfinite(end)) output = all.back().voltage(end);
   }
-  return Signal(std::move(all));
+  return Signal(std::move(all), input.before());
 }
 
 }  // namespace internal

@@ -30,7 +30,8 @@ struct DriverModel {
   [[nodiscard]] bool is_ideal() const { return !sample_rate && !bandwidth && !source_resistance; }
 };
 
-/// The output of the source. One that is told 0 V for ever gives 0 V. A sine that never ends is sampled up to `end` [s], when the
+/// The output of the source. One that is told 0 V at all times gives 0 V; before t = 0 it gives what it
+/// is told. A sine that never ends is sampled up to `end` [s], when the
 /// value that it swings about takes over. Throws InvalidInput when it would take more than 1e7 samples.
 [[nodiscard]] Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
 

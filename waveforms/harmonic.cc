@@ -31,10 +31,10 @@ void require_dither(std::string_view what, const Harmonic& harmonic) {
 
 }  // namespace internal
 
-Signal signal(const Harmonic& harmonic) {
+Signal signal(const Harmonic& harmonic, double before) {
   internal::require_dither("a harmonic", harmonic);
-  if (harmonic.amplitude == 0) return Signal::piecewise_linear({{0, 0}, {harmonic.rise_time, harmonic.base}});
-  return Signal(pieces(harmonic));
+  if (harmonic.amplitude == 0) return Signal::piecewise_linear({{0, before}, {harmonic.rise_time, harmonic.base}}, before);
+  return Signal(pieces(harmonic, before), before);
 }
 
 }  // namespace softland

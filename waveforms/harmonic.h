@@ -1,6 +1,6 @@
 // Harmonic dither on a step:  V(t) = b(t) + amplitude e(t) sin(angular_frequency t + phase)  for t in [start, end], b(t)
-// elsewhere (t >= 0). b rises linearly from 0 to base on [0, rise_time]. The envelope e rises linearly from 0 to 1 on
-// [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard switch.
+// elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage before t = 0. The envelope e rises linearly
+// from 0 to 1 on [start, start + fade] and falls from 1 to 0 on [end - fade, end]; fade = 0 is a hard switch.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct FamilyOf<Harmonic> {
   static constexpr std::string_view name = "harmonic";
   static constexpr auto parameters = std::to_array<Parameter<Harmonic>>({
       {"base", Meaning::level, &Harmonic::base, false, "what the sine swings about"},
-      {"rise_time", Meaning::time, &Harmonic::rise_time, false, "linear rise of the base from 0 V"},
+      {"rise_time", Meaning::time, &Harmonic::rise_time, false, "linear rise of the base, from 0 V or `before`"},
       {"amplitude", Meaning::swing, &Harmonic::amplitude, true,
        "or a percentage of the base; for the piezo, of the main hold level"},
       {"angular_frequency", Meaning::angular_frequency, &Harmonic::angular_frequency, true, "of the sine"},
@@ -65,18 +65,18 @@ template <class P>
 
 }  // namespace internal
 
-/// The pieces of a valid harmonic.
+/// The pieces of a valid harmonic, whose base rises from `before` [V].
 template <class P>
-[[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h) {
+[[nodiscard]] Pieces<P> pieces(const HarmonicOf<P>& h, const P& before = P(0)) {
   const std::vector<internal::Stretch<P>> envelope = internal::envelope(h);
   std::vector<P> begins;
   for (const internal::Stretch<P>& stretch : envelope) begins.push_back(stretch.begin);
   // In volts and by one division: a ramp whose slope is rounded twice ends beside the base, which would count as a jump.
   std::vector<internal::Stretch<P>> straight_line{{.begin = P(0), .value = h.base}};
-  if (!internal::vanishes(h.base) && internal::decided(h.rise_time > 0)) {
+  if (!(internal::vanishes(h.base) && internal::vanishes(before)) && internal::decided(h.rise_time > 0)) {
     const auto same = std::find_if(begins.begin(), begins.end(), [&](const P& t) { return internal::coincide(t, h.rise_time); });
     const P risen = same == begins.end() ? h.rise_time : *same;
-    straight_line = {{.begin = P(0), .value = P(0), .slope = h.base / risen}, {.begin = risen, .value = h.base}};
+    straight_line = {{.begin = P(0), .value = before, .slope = (h.base - before) / risen}, {.begin = risen, .value = h.base}};
     const auto later = [&](const P& begin) { return internal::decided(begin > risen); };
     if (same == begins.end()) begins.insert(std::find_if(begins.begin(), begins.end(), later), risen);
   }
@@ -95,7 +95,7 @@ template <class P>
   return all;
 }
 /// Throws InvalidParameter.
-[[nodiscard]] Signal signal(const Harmonic& harmonic);
+[[nodiscard]] Signal signal(const Harmonic& harmonic, double before = 0);
 
 namespace internal {
 

@@ -36,9 +36,9 @@ void require_levels_and_edges(std::string_view what, const std::vector<double>& 
 
 }  // namespace internal
 
-Signal signal(const Pulse& pulse) {
+Signal signal(const Pulse& pulse, double before) {
   internal::require_levels_and_edges("a pulse", pulse.levels, pulse.times, pulse.edge);
-  return Signal::piecewise_linear(points(pulse));
+  return Signal::piecewise_linear(points(pulse, before), before);
 }
 
 }  // namespace softland

@@ -1,5 +1,5 @@
-// Pulse: n levels, n - 1 switching times, linear edges. The first edge runs from 0 V on [0, edge]; the edge from level k to level
-// k + 1 runs on [t_k, t_k + edge]. The last level holds for ever.
+// Pulse: n levels, n - 1 switching times, linear edges. The first edge runs on [0, edge] from the voltage before t = 0; the
+// edge from level k to level k + 1 runs on [t_k, t_k + edge]. The last level holds for ever.
 #pragma once
 
 #include <array>
@@ -31,10 +31,10 @@ struct FamilyOf<Pulse> {
   });
 };
 
-/// The points [s, V] that straight lines connect, of a valid pulse.
+/// The points [s, V] that straight lines connect, of a valid pulse, which begins at `before` [V].
 template <class P>
-[[nodiscard]] std::vector<std::pair<P, P>> points(const PulseOf<P>& pulse) {
-  std::vector<std::pair<P, P>> all{{P(0), P(0)}};
+[[nodiscard]] std::vector<std::pair<P, P>> points(const PulseOf<P>& pulse, const P& before = P(0)) {
+  std::vector<std::pair<P, P>> all{{P(0), before}};
   P edge_end = pulse.edge;
   for (std::size_t k = 0; k < pulse.times.size(); ++k) {
     const P& time = pulse.times[k];
@@ -46,11 +46,11 @@ template <class P>
   return all;
 }
 template <class P>
-[[nodiscard]] Pieces<P> pieces(const PulseOf<P>& pulse) {
-  return internal::straight_pieces(points(pulse));
+[[nodiscard]] Pieces<P> pieces(const PulseOf<P>& pulse, const P& before = P(0)) {
+  return internal::straight_pieces(points(pulse, before));
 }
 /// Throws InvalidParameter.
-[[nodiscard]] Signal signal(const Pulse& pulse);
+[[nodiscard]] Signal signal(const Pulse& pulse, double before = 0);
 
 namespace internal {
 

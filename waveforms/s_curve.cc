@@ -4,9 +4,9 @@
 
 namespace softland {
 
-Signal signal(const SCurve& curve) {
+Signal signal(const SCurve& curve, double before) {
   internal::require_levels_and_edges("an S-curve", curve.levels, curve.times, curve.edge);
-  return Signal(pieces(curve));
+  return Signal(pieces(curve, before), before);
 }
 
 }  // namespace softland

@@ -1,5 +1,5 @@
 // S-curve: a pulse whose edges are half cosines, which begin and end without a corner: n levels, n - 1 switching times. The first
-// edge runs from 0 V on [0, edge]; the edge from level k to level k + 1 runs on [t_k, t_k + edge]:
+// edge runs on [0, edge] from the voltage before t = 0; the edge from level k to level k + 1 runs on [t_k, t_k + edge]:
 //
 //   V(t) = (V_k + V_(k+1)) / 2 - (V_(k+1) - V_k) / 2 cos(pi (t - t_k) / edge)
 //
@@ -34,12 +34,12 @@ struct FamilyOf<SCurve> {
   });
 };
 
-/// The pieces of a valid S-curve.
+/// The pieces of a valid S-curve, which begins at `before` [V].
 template <class P>
-[[nodiscard]] Pieces<P> pieces(const SCurveOf<P>& curve) {
+[[nodiscard]] Pieces<P> pieces(const SCurveOf<P>& curve, const P& before = P(0)) {
   const bool has_edges = internal::decided(curve.edge > P(0));
   Pieces<P> all;
-  P time = P(0), level = P(0), edge_end = P(0);
+  P time = P(0), level = before, edge_end = P(0);
   for (std::size_t k = 0; k < curve.levels.size(); ++k) {
     if (k > 0) {
       time = curve.times[k - 1];
@@ -59,6 +59,6 @@ template <class P>
   return all;
 }
 /// Throws InvalidParameter.
-[[nodiscard]] Signal signal(const SCurve& curve);
+[[nodiscard]] Signal signal(const SCurve& curve, double before = 0);
 
 }  // namespace softland

@@ -147,7 +147,8 @@ void check_term(const SignalTerm& term, std::size_t piece) {
 
 }  // namespace
 
-Signal::Signal(std::vector<SignalPiece> pieces) : pieces_(std::move(pieces)) {
+Signal::Signal(std::vector<SignalPiece> pieces, double before) : pieces_(std::move(pieces)), before_(before) {
+  require(std::isfinite(before), fmt::format("a signal stands at {} V before t = 0; that must be finite", before));
   require(!pieces_.empty(), "a signal has no pieces; it must have at least one");
   require(pieces_.front().begin == 0,
           fmt::format("the first piece of a signal begins at {} s; it must begin at 0 s", pieces_.front().begin));
@@ -187,9 +188,11 @@ Signal::Signal(std::vector<SignalPiece> pieces) : pieces_(std::move(pieces)) {
   }
 }
 
-Signal Signal::constant(double voltage) { return Signal({SignalPiece{.value = voltage}}); }
+Signal Signal::constant(double voltage, double before) { return Signal({SignalPiece{.value = voltage}}, before); }
 
-Signal Signal::piecewise_linear(const std::vector<std::pair<double, double>>& points) {
+Signal Signal::standing(double voltage) { return constant(voltage, voltage); }
+
+Signal Signal::piecewise_linear(const std::vector<std::pair<double, double>>& points, double before) {
   require(!points.empty(), "a piecewise linear signal has no points; it must have at least one");
   std::size_t count = points.size();
   while (count > 1 && points[count - 2].second == points[count - 1].second) --count;
@@ -200,7 +203,7 @@ Signal Signal::piecewise_linear(const std::vector<std::pair<double, double>>& po
           fmt::format("the time of point {} is {} s; it must be at least the {} s of the point before", i + 1, next_time, time));
     }
   }
-  return Signal(internal::straight_pieces<double>({points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)}));
+  return Signal(internal::straight_pieces<double>({points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)}), before);
 }
 
 std::size_t Signal::piece_at(double time) const {
@@ -209,11 +212,10 @@ std::size_t Signal::piece_at(double time) const {
   return static_cast<std::size_t>(after - pieces_.begin()) - 1;
 }
 
-double Signal::voltage(double time) const { return time < 0 ? 0 : pieces_[piece_at(time)].voltage(time); }
+double Signal::voltage(double time) const { return time < 0 ? before_ : pieces_[piece_at(time)].voltage(time); }
 
 double Signal::left_limit(std::size_t next) const {
-  // Before t = 0 there is a piece at 0 V.
-  const SignalPiece piece = next > 0 ? pieces_[next - 1] : SignalPiece{};
+  const SignalPiece piece = next > 0 ? pieces_[next - 1] : SignalPiece{.value = before_};
   const double end = pieces_[next].begin;
   const double continuous = pieces_[next].voltage(end);
   const double computed = piece.is_straight() ? end_of_straight(piece, end, continuous) : piece.voltage(end);
@@ -225,7 +227,7 @@ double Signal::left_limit(std::size_t next) const {
 }
 
 double Signal::voltage_before(double time) const {
-  if (time < 0) return 0;
+  if (time < 0) return before_;
   const std::size_t piece = piece_at(time);
   return pieces_[piece].begin == time ? left_limit(piece) : pieces_[piece].voltage(time);
 }
@@ -245,13 +247,19 @@ std::vector<double> hold_levels(std::span<const Signal> signals) {
   return levels;
 }
 
+std::vector<double> values_before(std::span<const Signal> signals) {
+  std::vector<double> values;
+  for (const Signal& signal : signals) values.push_back(signal.before());
+  return values;
+}
+
 bool Signal::is_zero() const {
-  return std::all_of(pieces_.begin(), pieces_.end(),
-                     [](const SignalPiece& piece) { return piece.value == 0 && piece.is_level(); });
+  return before_ == 0 && std::all_of(pieces_.begin(), pieces_.end(),
+                                     [](const SignalPiece& piece) { return piece.value == 0 && piece.is_level(); });
 }
 
 Signal::Range Signal::range(double end) const {
-  Range range;
+  Range range{.minimum = before_, .maximum = before_};
   for_each_extreme(pieces_, end, Of::voltage, [&](const SignalPiece& piece, double time) {
     const double voltage = piece.voltage(time);
     range.minimum = std::min(range.minimum, voltage);
@@ -304,7 +312,7 @@ Signal scaled(const Signal& signal, double factor) {
       for (double& coefficient : term.sine) coefficient *= factor;
     }
   }
-  return Signal(std::move(pieces));
+  return Signal(std::move(pieces), factor * signal.before());
 }
 
 }  // namespace softland

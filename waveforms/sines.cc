@@ -4,7 +4,7 @@
 
 namespace softland {
 
-Signal signal(const Sines& sines) {
+Signal signal(const Sines& sines, double before) {
   const auto& [base, rise_time, amplitudes, start, duration] = sines;
   require_of("base", std::isfinite(base), [&] { return fmt::format("base of sines is {} V; it must be finite", base); });
   require_of("rise_time", rise_time >= 0 && std::isfinite(rise_time),
@@ -18,7 +18,7 @@ Signal signal(const Sines& sines) {
              [&] { return fmt::format("start of sines is {} s; it must be finite and >= 0", start); });
   require_of("duration", start + duration > start && std::isfinite(start + duration),
              [&] { return fmt::format("duration of sines is {} s; it must be finite and > 0", duration); });
-  return Signal(pieces(sines));
+  return Signal(pieces(sines, before), before);
 }
 
 }  // namespace softland

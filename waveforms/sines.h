@@ -2,8 +2,8 @@
 //
 //   V(t) = b(t) + sum over k = 1 ... N of amplitudes_k sin(k pi (t - start) / duration)
 //
-// for t in [start, start + duration], b(t) elsewhere (t >= 0). b rises linearly from 0 to base on [0, rise_time]. The highest
-// frequency is N / (2 duration).
+// for t in [start, start + duration], b(t) elsewhere (t >= 0). b rises linearly to base on [0, rise_time], from the voltage
+// before t = 0. The highest frequency is N / (2 duration).
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct FamilyOf<Sines> {
   static constexpr std::string_view name = "sines";
   static constexpr auto parameters = std::to_array<Parameter<Sines>>({
       {"base", Meaning::level, &Sines::base, false, "what the sines swing about"},
-      {"rise_time", Meaning::time, &Sines::rise_time, false, "linear rise of the base from 0 V"},
+      {"rise_time", Meaning::time, &Sines::rise_time, false, "linear rise of the base, from 0 V or `before`"},
       {"amplitudes", Meaning::swing, &Sines::amplitudes, true,
        "of the sines of 1, 2, 3 ... half waves; or percentages of the base; for the piezo, of the main hold level"},
       {"start", Meaning::time, &Sines::start, false, "when the sines begin"},
@@ -40,9 +40,9 @@ struct FamilyOf<Sines> {
   });
 };
 
-/// The pieces of valid sines.
+/// The pieces of valid sines, whose base rises from `before` [V].
 template <class P>
-[[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines) {
+[[nodiscard]] Pieces<P> pieces(const SinesOf<P>& sines, const P& before = P(0)) {
   const P end = sines.start + sines.duration;
   // The base is that of a harmonic.
   Pieces<P> all = pieces(HarmonicOf<P>{.base = sines.base,
@@ -50,7 +50,8 @@ template <class P>
                                        .amplitude = P(1),
                                        .angular_frequency = P(1),
                                        .start = sines.start,
-                                       .end = end});
+                                       .end = end},
+                         before);
   for (SignalPieceOf<P>& piece : all) {
     piece.amplitude = piece.amplitude_slope = piece.angular_frequency = piece.phase = P(0);
     if (internal::decided(piece.begin < sines.start) || !internal::decided(piece.begin < end)) continue;
@@ -67,6 +68,6 @@ template <class P>
   return all;
 }
 /// Throws InvalidParameter.
-[[nodiscard]] Signal signal(const Sines& sines);
+[[nodiscard]] Signal signal(const Sines& sines, double before = 0);
 
 }  // namespace softland

@@ -20,8 +20,9 @@ struct Edge {
 /// Whether nothing but a carrier moves.
 bool is_level(const SignalPiece& piece) { return piece.slope == 0 && piece.amplitude_slope == 0 && piece.terms.empty(); }
 
-std::vector<Edge> edges_of(const std::vector<SignalPiece>& pieces) {
-  const bool begins_at_rest = is_level(pieces[0]) && pieces[0].value == 0 && !pieces[0].oscillates();
+std::vector<Edge> edges_of(const Signal& signal) {
+  const std::vector<SignalPiece>& pieces = signal.pieces();
+  const bool begins_at_rest = is_level(pieces[0]) && pieces[0].value == signal.before() && !pieces[0].oscillates();
   std::vector<Edge> edges;
   for (std::size_t i = begins_at_rest ? 1 : 0; i < pieces.size(); ++i) {
     const bool is_ramp_between_levels =
@@ -71,10 +72,10 @@ SignalPiece moved(const Signal& signal, std::size_t i, double begin, double end,
 
 }  // namespace
 
-std::size_t edge_count(const Signal& signal) { return edges_of(signal.pieces()).size(); }
+std::size_t edge_count(const Signal& signal) { return edges_of(signal).size(); }
 
 double first_edge(const Signal& signal, const SourceErrors& errors) {
-  const std::vector<Edge> edges = edges_of(signal.pieces());
+  const std::vector<Edge> edges = edges_of(signal);
   return edges.empty() ? no_bound : begins(signal.pieces(), edges, errors)[edges.front().first];
 }
 
@@ -84,19 +85,19 @@ Signal with_errors(const Signal& signal, const SourceErrors& errors, double orig
               std::all_of(errors.edges.begin(), errors.edges.end(), is_finite),
           "the errors of a source must be finite");
   const std::vector<SignalPiece>& pieces = signal.pieces();
-  const std::vector<Edge> edges = edges_of(pieces);
+  const std::vector<Edge> edges = edges_of(signal);
   std::vector<double> begin = begins(pieces, edges, errors);
   for (double& time : begin) time = std::max(0.0, time - origin);
   if (edges.empty() || edges.front().first > 0) begin[0] = 0;
 
   std::vector<SignalPiece> all;
-  if (begin[0] > 0) all.push_back({.value = errors.offset});
+  if (begin[0] > 0) all.push_back({.value = signal.before() + errors.offset});
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double end = i + 1 < pieces.size() ? begin[i + 1] : no_bound;
     // Late by much more than it lasts, a piece may have lost its duration to rounding.
     if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
   }
-  return Signal(std::move(all));
+  return Signal(std::move(all), signal.before());
 }
 
 }  // namespace softland

@@ -1,6 +1,6 @@
 // Errors of a voltage source: what comes out where it is told to give the signal f.
 //
-//   V(t) = f(t - delay) + offset for t >= 0, 0 V before, with every edge of f late by a time of its own
+//   V(t) = f(t - delay) + offset for t >= 0, f's own voltage before, with every edge of f late by a time of its own
 //
 // (An error of the gain is scaled(), waveform.h.) An edge is a jump, a ramp between two levels, which moves as a whole, or a
 // corner where ramps or curves meet; a curve between two edges is stretched with them. Of the sine of a harmonic it is where the
@@ -8,8 +8,8 @@
 // edge moves towards a neighbour by at most 0.49 of the time between them, so that edges keep their order and pulses their
 // levels; before the first and after the last there is room without end.
 //
-// A run begins at t = 0 at rest under 0 V. Where a delay or an edge is early by more than there is before it, nothing is cut off:
-// the clock begins at the first edge instead. It is then to be the same clock for all drives of a device.
+// A run begins at t = 0 at rest under that voltage. Where a delay or an edge is early by more than there is before it, nothing is
+// cut off: the clock begins at the first edge instead. It is then to be the same clock for all drives of a device.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ struct SourceErrors {
   std::vector<double> edges = {};  ///< by which each edge is late [s]; those that are missing are in time
 };
 
-/// The number of edges. One at t = 0 counts, unless the signal begins there with a level of 0 V.
+/// The number of edges. One at t = 0 counts, unless the signal goes on there at the voltage it has stood at.
 [[nodiscard]] std::size_t edge_count(const Signal& signal);
 
 /// When the first edge comes [s], which may be before 0; infinity where there is none.

@@ -1,4 +1,4 @@
-// Step: 0 V before t = 0, a linear rise to `level` on [0, rise_time], then constant.
+// Step: a linear rise to `level` on [0, rise_time], from the voltage before t = 0, then constant.
 #pragma once
 
 #include <array>
@@ -20,16 +20,16 @@ struct FamilyOf<Step> {
   static constexpr std::string_view name = "step";
   static constexpr auto parameters = std::to_array<Parameter<Step>>({
       {"level", Meaning::level, &Step::level, true, "held for ever"},
-      {"rise_time", Meaning::time, &Step::rise_time, false, "linear rise from 0 V"},
+      {"rise_time", Meaning::time, &Step::rise_time, false, "linear rise, from 0 V or `before`"},
   });
 };
 
-/// The pieces of a valid step.
+/// The pieces of a valid step, which begins at `before` [V].
 template <class P>
-[[nodiscard]] Pieces<P> pieces(const StepOf<P>& step) {
-  return internal::straight_pieces<P>({{P(0), P(0)}, {step.rise_time, step.level}});
+[[nodiscard]] Pieces<P> pieces(const StepOf<P>& step, const P& before = P(0)) {
+  return internal::straight_pieces<P>({{P(0), before}, {step.rise_time, step.level}});
 }
 /// Throws InvalidParameter.
-[[nodiscard]] Signal signal(const Step& step);
+[[nodiscard]] Signal signal(const Step& step, double before = 0);
 
 }  // namespace softland

@@ -12,7 +12,7 @@
 
 namespace softland {
 
-Signal signal(const Table& table) {
+Signal signal(const Table& table, double before) {
   const std::size_t count = table.time.size();
   require(count == table.voltage.size(),
           fmt::format("a table has {} times and {} voltages; there must be as many of both", count, table.voltage.size()));
@@ -27,7 +27,7 @@ Signal signal(const Table& table) {
       throw InvalidInput(fmt::format("the voltage of row {} of a table is {} V; it must be finite", i + 1, table.voltage[i]));
     }
   }
-  return Signal::piecewise_linear(points(table));
+  return Signal::piecewise_linear(points(table), before);
 }
 
 Table read_table(const std::string& file, const std::string& drive) { return parse_table(read_file(file), file, drive); }

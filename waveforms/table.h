@@ -43,7 +43,7 @@ template <class P>
   return internal::straight_pieces(points(table));
 }
 /// Throws InvalidInput.
-[[nodiscard]] Signal signal(const Table& table);
+[[nodiscard]] Signal signal(const Table& table, double before = 0);
 
 /// Reads column `drive` of a CSV file with a header line: `time_s` and one column per drive [V]. Throws InvalidInput with file,
 /// line and rule.

@@ -36,8 +36,8 @@ void scale(Family& family, double volts, double time) {
 
 }  // namespace
 
-Signal signal(const Waveform& waveform) {
-  return std::visit([](const auto& member) { return signal(member); }, waveform);
+Signal signal(const Waveform& waveform, double before) {
+  return std::visit([&](const auto& member) { return signal(member, before); }, waveform);
 }
 
 std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms) {

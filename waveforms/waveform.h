@@ -22,8 +22,9 @@ namespace softland {
 
 using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines>;
 
-/// Throws InvalidInput naming the parameter, its value and the rule.
-[[nodiscard]] Signal signal(const Waveform& waveform);
+/// The waveform from t = 0 on, and `before` until then [V], where an edge that begins it begins too. Throws InvalidInput naming
+/// the parameter, its value and the rule.
+[[nodiscard]] Signal signal(const Waveform& waveform, double before = 0);
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
 /// The waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
 [[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);

@@ -34,7 +34,8 @@ using internal::scientific;
 // At which factor the dispersion force closes the switch.
 std::string dispersion_words(const Prepared& p, const Watch& watch) {
   const std::size_t k = p.scene.device.electrodes.size();
-  const StaticPullIn statically = static_pull_in(p.model, k);
+  const std::vector<double> bias = bias_of(p.scene, k);
+  const StaticPullIn statically = static_pull_in(p.model, k, bias);
   const auto factor = [](double value) { return plain_number(1 + value, 4); };
   const bool known = std::isfinite(statically.voltage);
   if (!p.model.rest()) {
@@ -45,7 +46,7 @@ std::string dispersion_words(const Prepared& p, const Watch& watch) {
   const std::string rest =
       fmt::format("tip at rest {} down; ", quantity(p.model.contact_deflection(p.model.rest()->data()), "m"));
   if (!known) return rest + "no strength was found at which it closes by itself";
-  const DynamicPullIn dynamically = dynamic_pull_in(p.model, k, statically, watch);
+  const DynamicPullIn dynamically = dynamic_pull_in(p.model, k, statically, bias, watch);
   const std::string step =
       std::isfinite(dynamically.voltage) ? fmt::format(" or a step to {} (dynamic)", factor(dynamically.voltage)) : "";
   return fmt::format("{}closes by itself at {} (static){} of its nominal strength", rest, factor(statically.voltage), step);
@@ -101,9 +102,10 @@ int check_verb(const Common& c) {
       warnings.push_back(said_of(file, "electrode." + name + ".gap", "it pulls away from the contact; its other side is nearer"));
       continue;
     }
+    const std::string bias = bias_words(p, k);
     add("electrode " + p.scene.device.electrodes[k].name,
         (collapsed(found) ? no_open_state : fmt::format("Vsp {}, Vdp {}", volts(v["static_V"]), dynamic_words(v))) +
-            (p.model.has_contact() ? ", release " + volts(v["release_V"]) : ""));
+            (p.model.has_contact() ? ", release " + volts(v["release_V"]) : "") + (bias.empty() ? "" : ", under " + bias));
   }
   if (p.scene.device.dispersion) {
     add("dispersion force", dispersion_words(p, work->watch()));
@@ -139,7 +141,8 @@ int check_verb(const Common& c) {
                         "optimize, release, limit and robustness refuse the scene as it is",
                         name, given_quantity(signal.peak(), "V"), name));
     }
-    add("drive " + name, fmt::format("hold {}, peak {}, {}", given_quantity(signal.hold_level(), "V"),
+    const std::string before = signal.before() == 0 ? "" : fmt::format("{} before t = 0, ", given_quantity(signal.before(), "V"));
+    add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));
   }
   if (!p.model.has_contact()) add("contact", "none: a run ends at first touch");

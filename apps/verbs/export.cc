@@ -66,7 +66,7 @@ int export_verb(const Common& c, const ExportRequest& request) {
     const std::vector<std::string> names = p.drive_names();
     const std::vector<Waveform> waveforms = in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units);
     for (std::size_t k = 0; k < names.size(); ++k) {
-      if (names[k] != dispersion_drive) signals[names[k]] = p.driven(k, signal(waveforms[k]));
+      if (names[k] != dispersion_drive) signals[names[k]] = p.driven(k, p.told(k, waveforms[k]));
     }
   }
   work.reset();

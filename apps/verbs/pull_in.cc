@@ -1,27 +1,133 @@
 // Pull-in voltages of every electrode.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/pull_in_words.h"
 #include "apps/scenes.h"
+#include "apps/values.h"
 #include "apps/verbs/verbs.h"
+#include "base/engineering.h"
 #include "base/require.h"
+#include "config/schema.h"
+#include "config/units.h"
+#include "reports/sweep_report.h"
 #include "studies/choices.h"
+#include "studies/search_space.h"
+#include "studies/sweep.h"
 
 namespace softland::apps {
 namespace {
 
-int pull_in_verb(const Common& c) {
+constexpr double most_bias = 1e6;  // [V]
+
+// Of a voltage on the command line.
+std::string voltage_rule() {
+  return fmt::format("must be {} from {} to {}, such as \"{}\"", describe(dimension::voltage), engineering(-most_bias, "V"),
+                     engineering(most_bias, "V"), example(dimension::voltage));
+}
+
+struct PullInRequest {
+  std::vector<std::string> bias;     ///< NAME=V
+  std::optional<std::string> sweep;  ///< V1:V2:N
+};
+
+// --sweep V1:V2:N
+SweepRange sweep_range(const std::string& text) {
+  constexpr int most_points = 100'000;
+  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--sweep {}: {}", shown(text), rule)); };
+  const std::size_t first = text.find(':'), second = first == std::string::npos ? first : text.find(':', first + 1);
+  if (second == std::string::npos) refuse("not of the form FIRST:LAST:N, such as \"0 V:40 V:81\"");
+  const auto voltage = [&](const std::string& part) {
+    Quantity given;
+    try {
+      given = parse_quantity(part);
+    } catch (const InvalidInput& error) {
+      refuse(error.what());
+    }
+    if (given.dimension != dimension::voltage || !(std::abs(given.value) <= most_bias)) refuse(voltage_rule());
+    return given.value;
+  };
+  const SweepRange range{.first = voltage(text.substr(0, first)),
+                         .last = voltage(text.substr(first + 1, second - first - 1)),
+                         .points = whole_number("--sweep", text.substr(second + 1), 2)};
+  if (range.points > most_points) refuse(fmt::format("there may be {} points each way", most_points));
+  if (range.first == range.last) refuse("begins where it ends");
+  return range;
+}
+
+// --bias NAME=V: takes the place of what the drive stands at in the scene.
+void set_bias(Prepared& p, const std::string& assignment) {
+  const auto refuse = [&](std::string_view rule) { throw InvalidInput(fmt::format("--bias {}: {}", shown(assignment), rule)); };
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos) refuse("not of the form NAME=VOLTAGE, such as \"piezo=-1.5 V\"");
+  const std::vector<std::string> names = p.drive_names();
+  const std::string name = assignment.substr(0, equals);
+  const auto drive = std::find(names.begin(), names.end(), name);
+  if (drive == names.end()) refuse("no such drive" + internal::hint(name, {names.begin(), names.end()}));
+  const bool is_factor = name == dispersion_drive;
+  const Dimension& due = is_factor ? dimension::none : dimension::voltage;
+  Quantity given;
+  try {
+    given = parse_quantity(assignment.substr(equals + 1));
+  } catch (const InvalidInput& error) {
+    refuse(error.what());
+  }
+  if (given.dimension != due || !(is_factor ? given.value >= 0 : std::abs(given.value) <= most_bias)) {
+    refuse(is_factor ? std::string("must be a factor of the dispersion force, 0 or more") : voltage_rule());
+  }
+  p.scene.standing[static_cast<std::size_t>(drive - names.begin())] = is_factor ? given.value - 1 : given.value;
+}
+
+// What pull_in_of() has found of an electrode, in words.
+std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one) {
+  std::string text = fmt::format("electrode {}\n", p.scene.device.electrodes[k].name);
+  if (!pulls_in(p.scene.device, k)) return text + "  on the far side: pulls away from the contact\n";
+  if (const std::string bias = bias_words(p, k); !bias.empty()) text += fmt::format("  under            {}\n", bias);
+  if (one["status"] == to_string(Status::no_contact))
+    return text + "  pulls away from the contact where the switch rests: no pull-in voltage\n";
+  const nlohmann::json& found = one["pull_in"];
+  const bool is_fold = found["static_kind"] == to_string(StaticKind::fold);
+  text += collapsed(one) ? fmt::format("  {}\n", no_open_state)
+                         : fmt::format("  static pull-in   {} ({})\n  pull-in position {}\n  dynamic pull-in  {}\n",
+                                       volts(found["static_V"]),
+                                       is_fold ? "fold of the static branch" : "the contact point reaches the contact first",
+                                       deflection_words(found), dynamic_words(found));
+  if (p.model.has_contact()) text += fmt::format("  release          {}\n", volts(found["release_V"]));
+  return text;
+}
+
+// The sweep of the electrode that closes the switch.
+void write_sweep(ResultFolder& folder, const Prepared& p, const SweepRange& range, const Watch& watch) {
+  require(has_pulling_electrode(p.scene.device), "--sweep: there is no electrode that pulls towards the contact");
+  const std::size_t drive = searched_drive(p.scene.device);
+  const std::vector<double> bias = bias_of(p.scene, drive);
+  const std::vector<SweepPoint> points = static_sweep(p.model, drive, bias, range, watch);
+  std::string of = fmt::format("Electrode {}, swept up and down", p.scene.device.electrodes[drive].name);
+  if (const std::string others = bias_words(p, drive); !others.empty()) of += ", under " + others;
+  folder.write("sweep.csv", sweep_csv(points));
+  folder.write("sweep.svg", sweep_svg(points, of, static_pull_in(p.model, drive, bias), release_voltage(p.model, drive, bias)));
+}
+
+int pull_in_verb(const Common& c, const PullInRequest& request) {
+  const std::optional<SweepRange> range = request.sweep ? std::optional(sweep_range(*request.sweep)) : std::nullopt;
+  require(range.has_value() == !c.out.empty(), "--sweep and --out belong together: the sweep is written into that folder");
   const SceneFile file = load_scene(c);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared prepared = prepare_and_choose(file, false, work->watch());
-  static_cast<void>(claim_places(c, {}));
+  Prepared prepared = prepare_and_choose(file, false, work->watch());
+  for (const std::string& assignment : request.bias) set_bias(prepared, assignment);
+  std::optional<ResultFolder> folder = claim_places(c, {"sweep.csv", "sweep.svg"});
   const auto& electrodes = prepared.scene.device.electrodes;
   require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
   nlohmann::json all = nlohmann::json::object();
@@ -29,41 +135,21 @@ int pull_in_verb(const Common& c) {
   bool failed = false, none = false;
   for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
     nlohmann::json one = pull_in_of(prepared, k, work->watch());
-    const nlohmann::json& p = one["pull_in"];
-    if (!pulls_in(prepared.scene.device, k)) {
-      text += fmt::format("electrode {}\n  on the far side: pulls away from the contact\n", electrodes[k].name);
-      if (electrodes.size() > 1) all[electrodes[k].name] = std::move(one);
-      continue;
+    text += words_of(prepared, k, one);
+    if (pulls_in(prepared.scene.device, k)) {
+      const bool has_none = collapsed(one) || one["status"] == to_string(Status::no_contact);
+      none = none || has_none;
+      failed = failed || (!has_none && one["status"] != to_string(Status::done));
+      if (electrodes.size() == 1) all = one;
     }
-    text += fmt::format("electrode {}\n", electrodes[k].name);
-    if (one["status"] == to_string(Status::no_contact)) {
-      text += "  pulls away from the contact where the switch rests: no pull-in voltage\n";
-      none = true;
-      if (electrodes.size() > 1) {
-        all[electrodes[k].name] = std::move(one);
-      } else {
-        all = std::move(one);
-      }
-      continue;
-    }
-    text += collapsed(one)
-                ? fmt::format("  {}\n", no_open_state)
-                : fmt::format("  static pull-in   {} ({})\n  dynamic pull-in  {}\n", volts(p["static_V"]),
-                              p["static_kind"].get<std::string>() == "fold" ? "fold of the static branch"
-                                                                            : "the contact point reaches the contact first",
-                              dynamic_words(p));
-    if (prepared.model.has_contact()) text += fmt::format("  release          {}\n", volts(p["release_V"]));
-    if (collapsed(one))
-      none = true;
-    else
-      failed = failed || one["status"] != "done";
-    if (electrodes.size() == 1) {
-      all = std::move(one);
-    } else {
-      all[electrodes[k].name] = std::move(one);
-    }
+    if (electrodes.size() > 1) all[electrodes[k].name] = std::move(one);
   }
   const bool interrupted = work->watch().stopped();
+  if (folder && !interrupted) {
+    write_sweep(*folder, prepared, *range, work->watch());
+    text += left_in(folder->destination(false), {"sweep.csv", "sweep.svg"});
+    folder->publish(false);
+  }
   work.reset();
   print_json_or(c, all, text);
   return interrupted ? exit_interrupted : failed ? exit_numerical_failure : none ? exit_no_success : exit_done;
@@ -72,10 +158,20 @@ int pull_in_verb(const Common& c) {
 }  // namespace
 
 void add_pull_in(Verb& verb) {
+  const auto request = std::make_shared<PullInRequest>();
   verb.with_scene();
   verb.with_json();
-  verb.footer("Example:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"");
-  verb.runs(pull_in_verb);
+  verb.repeated("--bias", request->bias, "NAME=VOLTAGE",
+                "what another drive stands at for ever, instead of its hold level where that is in volts");
+  verb.optional("--sweep", request->sweep, "FIRST:LAST:N",
+                "static deflection and capacitance at N voltages from the first to the last and back, for --out: the electrode\n"
+                "that closes the switch, open up to its pull-in voltage, closed on the way back down to the release voltage");
+  verb.with_out("folder for sweep.csv and sweep.svg");
+  verb.footer(
+      "Examples:\n  softland pull-in scenes/mem-gold.toml --set structure.thickness=\"2.1 um\"\n"
+      "  softland pull-in scenes/mem-gold-pzt.toml --bias piezo=\"0.5 V\"\n"
+      "  softland pull-in scenes/mem-gold.toml --sweep \"0 V:20 V:201\" --out swept");
+  verb.runs([request](const Common& common) { return pull_in_verb(common, *request); });
 }
 
 }  // namespace softland::apps

@@ -92,7 +92,7 @@ std::vector<Key> keys_of_pressure() {
           .needed(),
       contact_number<&Contact::damping>(
           "damping", dimension::slowness,
-          "of Hunt and Crossley: restitution about 1 - damping times impact velocity; absent: none"),
+          "of Hunt and Crossley: restitution about 1 over 1 + damping times impact velocity; absent: none"),
   };
 }
 

@@ -52,7 +52,10 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
 /// Waveforms of the drive `entry`, or of all without a section of their own, with levels of these dimensions.
 Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
   std::vector<std::string_view> names;
-  std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed()};
+  std::vector<Key> keys{one_of("family", {}, "shape of the voltage against time").needed(),
+                        number(before_key, level, any,
+                               entry.empty() ? "before t = 0, where a run starts at rest; absent: 0 V"
+                                             : "before t = 0, where a run starts at rest; absent: 1")};
   for_each_family([&]<class Family>(const Family&) {
     names.push_back(FamilyOf<Family>::name);
     std::vector<Key> own;

@@ -16,6 +16,8 @@ class DriveCourse {
       : signals_(signals), pieces_(signals.size(), 0), values_(signals.size(), 0.0) {}
 
   [[nodiscard]] std::size_t size() const { return signals_.size(); }
+  /// Of all drives before t = 0.
+  [[nodiscard]] std::vector<double> before() const { return values_before(signals_); }
   /// Begin and end of every stretch within [0, duration], in order [s].
   [[nodiscard]] std::vector<double> stretches(double duration) const {
     std::vector<double> stops{0, duration};

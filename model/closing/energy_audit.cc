@@ -17,7 +17,11 @@ EnergyAudit::EnergyAudit(const Switch& model, DriveCourse& drives, const Contact
       phase_(phase),
       equations_(equations),
       modes_(static_cast<std::size_t>(model.modes())),
-      rest_energy_(model.potential(start.state.data(), std::vector<double>(drives.size(), 0.0), false, equations.workspace())) {
+      rest_energy_(model.potential(start.state.data(), drives.before(), false, equations.workspace())) {
+  const std::vector<double> before = drives.before();
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    if (before[k] != 0 && holds_charge(k)) rest_energy_ += before[k] * charge(k, before[k], start.state.data());
+  }
   if (!phase.in_contact()) return;
   if (phase.law().active) rest_energy_ += model.contact_stored(start.state.data(), phase.law());
   dissipated_ = -phase.lost(model.contact_deflection(start.state.data()));
@@ -25,8 +29,9 @@ EnergyAudit::EnergyAudit(const Switch& model, DriveCourse& drives, const Contact
 
 void EnergyAudit::enter_stretch(const Knot& here, bool first) {
   if (!first) add_charges(here, +1);
+  const std::vector<double> at_start = first ? drives_.before() : std::vector<double>();
   for (std::size_t k = 0; k < drives_.size(); ++k) {
-    const double before = first ? 0 : drives_.value(k, here.time);
+    const double before = first ? at_start[k] : drives_.value(k, here.time);
     drives_.enter(k, here.time);
     const double after = drives_.value(k, here.time);
     if (before == after) continue;

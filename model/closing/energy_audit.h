@@ -18,8 +18,8 @@ namespace softland {
 
 class EnergyAudit {
  public:
-  /// Keeps references. The switch is at rest at `start`, under drives of 0 or on its contact; there its drives are charged at
-  /// once.
+  /// Keeps references. The switch is at rest at `start`, under what its drives have been before t = 0 or on its contact; there
+  /// they are charged at once.
   EnergyAudit(const Switch& model, DriveCourse& drives, const ContactPhase& phase, ClosingEquations& equations,
               const Knot& start);
 
@@ -55,7 +55,7 @@ class EnergyAudit {
   const ContactPhase& phase_;
   ClosingEquations& equations_;
   std::size_t modes_;
-  double rest_energy_;      // potential at the start [J]
+  double rest_energy_;      // stored at the start [J]
   double source_work_ = 0;  // without the charges that stand on the drives now [J]
   double dissipated_ = 0;   // [J]
   double dissipation_ = 0;  // at the last knot [W]

@@ -18,15 +18,16 @@ constexpr int patience = 50;  // looks
 // Of the tolerance: where the explicit method took a hundred times the steps, its errors were far below the tolerance.
 constexpr double implicit_care = 0.01;
 
-Knot at_rest(const Switch& model, std::span<const double> begins_closed) {
+Knot at_rest(const ClosingParts& parts) {
+  const Switch& model = parts.model;
   const auto n = static_cast<std::size_t>(model.modes());
   Knot knot{.time = 0,
             .state = std::vector<double>(2 * n + model.film_states(), 0.0),
             .rates = std::vector<double>(n + model.film_states(), 0.0)};
-  if (!begins_closed.empty()) {
-    std::copy_n(begins_closed.begin(), n, knot.state.begin());
-  } else if (model.rest()) {
-    std::copy_n(model.rest()->data(), n, knot.state.begin());
+  if (!parts.options.begins_closed.empty()) {
+    std::copy_n(parts.options.begins_closed.begin(), n, knot.state.begin());
+  } else if (parts.rest) {
+    std::copy_n(parts.rest->data(), n, knot.state.begin());
   }
   return knot;
 }
@@ -54,7 +55,7 @@ Stepping::Stepping(ClosingParts& parts)
       fastest_(parts.model.angular_frequencies().maxCoeff()),
       tolerances_(parts.model, parts.options.tolerance),
       motion_(parts.model, parts.options.tolerance),
-      here_(at_rest(parts.model, parts.options.begins_closed)),
+      here_(at_rest(parts)),
       next_(here_) {
   const Integrator asked = parts.options.integrator;
   work_.integrator = asked == Integrator::automatic ? automatic_integrator(parts.model) : asked;

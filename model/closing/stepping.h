@@ -23,6 +23,7 @@ namespace softland {
 struct ClosingParts {
   const Switch& model;
   const ClosingOptions& options;
+  std::optional<Eigen::VectorXd> rest;  ///< open equilibrium under what the drives have been before t = 0, if there is one
   DriveCourse drives;
   ContactPhase phase;
   ClosingEquations equations;
@@ -35,6 +36,7 @@ struct ClosingParts {
                ClosingObserver& closing_observer)
       : model(switch_model),
         options(closing_options),
+        rest(model.open_equilibrium(values_before(signals))),
         drives(signals),
         phase(model),
         equations(model, drives, phase, options.restart_at_contact),
@@ -55,7 +57,7 @@ struct ClosingParts {
 
 class Stepping {
  public:
-  /// At rest under drives of 0, or on the contact. Keeps a reference.
+  /// At rest, or on the contact. Keeps a reference.
   explicit Stepping(ClosingParts& parts);
 
   [[nodiscard]] Knot& here() { return here_; }

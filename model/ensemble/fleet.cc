@@ -186,12 +186,17 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   if (run == nullptr) return ends;
 
   std::optional<LaneLayout> layout;
-  std::vector<std::size_t> places;  // of those that run
+  std::vector<std::size_t> places;     // of those that run
+  std::vector<Eigen::VectorXd> rests;  // from which they start
   for (std::size_t i = 0; i < closings.size(); ++i) {
     if (!why_not_in_lanes(*closings[i].model).empty() || has_terms(closings[i].drives)) continue;
+    const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));
+    if (!rest) continue;
     const LaneLayout own = layout_of(*closings[i].model);
     if (!layout) layout = own;
-    if (*layout == own) places.push_back(i);
+    if (*layout != own) continue;
+    places.push_back(i);
+    rests.push_back(*rest);
   }
   if (places.empty()) return ends;
 
@@ -211,6 +216,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
             .no_end_before = c.no_end_before,
             .no_contact_before = c.no_contact_before,
             .observer = &tellers.back()};
+    std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {
       const std::vector<SignalPiece>& pieces = c.drives[k].pieces();
       lane.pieces[k] = pieces.data();

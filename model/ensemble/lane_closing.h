@@ -58,6 +58,7 @@ class LaneObserver {
 
 struct LaneClosing {
   const LaneSwitch* numbers = nullptr;
+  double start[most_modes] = {};                          // modal coordinates at t = 0
   const SignalPieceOf<double>* pieces[most_drives] = {};  // by drive
   const double* longest_step[most_drives] = {};           // that resolves a piece [s]
   int piece_count[most_drives] = {};

@@ -637,7 +637,8 @@ class Lanes {
       if (i < s.modes && s.omega[i] > fastest) fastest = s.omega[i];
       omega_[i][l] = s.omega[i], inverse_[i][l] = 1 / s.omega[i], square_[i][l] = s.omega[i] * s.omega[i];
       at_contact_[i][l] = s.at_contact[i], piezo_[i][l] = s.piezo[i], friction_[i][l] = s.friction[i];
-      q_[i][l] = v_[i][l] = a_[i][l] = 0;
+      q_[i][l] = closing->start[i];
+      v_[i][l] = a_[i][l] = 0;
     }
     set_laws();
     per_unknown_[l] = 1.0 / (2 * s.modes);
@@ -647,6 +648,7 @@ class Lanes {
     weigh(l);
     rounds_[l] = 0;
     t_[l] = position_[l] = speed_[l] = acceleration_[l] = 0;
+    for (int i = 0; i < modes; ++i) position_[l] = position_[l] + at_contact_[i][l] * q_[i][l];
     moved_[l] = 0;
     until_[l] = closing->no_contact_before;
     last_step_[l] = 0.01 / fastest;

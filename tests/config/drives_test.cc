@@ -10,6 +10,7 @@
 
 #include "base/require.h"
 #include "config/scene.h"
+#include "tests/config/message.h"
 #include "tests/config/small_scene.h"
 
 namespace softland {
@@ -43,6 +44,22 @@ TEST(Drives, StepsRiseAsSteeplyAsTheirDriverPermits) {
   };
   EXPECT_DOUBLE_EQ(rise("[driver.main]\nmax_slew = \"20 V/us\"\nmax_voltage = \"60 V\"\n"), 2.5e-6);
   EXPECT_EQ(rise(""), 0);
+}
+
+TEST(Drives, StandBeforeTheyBegin) {
+  const auto drives = [](const std::string& waveform) { return with_main(waveform).drives(pull_in); };
+  const std::string step = "family = \"step\"\nlevel = \"45 V\"\n";
+  EXPECT_TRUE(drives(step).before.empty());
+  EXPECT_EQ(drives(step + "before = \"-3 V\"\n[driver.main]\nmin_voltage = \"-5 V\"\n").before.at("main"), -3);
+  EXPECT_EQ(drives(step + "before = \"0.5 Vsp\"\n").before.at("main"), 25);
+  const auto said = [](const std::string& from, const std::string& to) { return message(edited(small_scene, from, to)); };
+  EXPECT_EQ(said(main_waveform, step + "before = \"70 V\"\n"),
+            "x.toml:27: [waveform.main]: the voltage reaches 70 V, above the driver's max_voltage of 60 V; without [driver.main] "
+            "the limits are 0 V and 1.5 Vdp");
+  EXPECT_EQ(said(main_waveform, step + "before = \"3 m\"\n"),
+            "x.toml:30: waveform.main.before = \"3 m\": expected a voltage [V], got a length [m]");
+  EXPECT_EQ(said(piezo_waveform, "family = \"step\"\nlevel = \"1 V\"\nbefore = \"1 Vdp\"\n"),
+            "x.toml:33: waveform.piezo.before = \"1 Vdp\": pull-in voltages belong to electrodes; give the piezo volts [V]");
 }
 
 TEST(Drives, StepInVoltsAndInPullInVoltages) {

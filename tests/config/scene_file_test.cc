@@ -164,6 +164,14 @@ TEST(SceneFile, AWaveformThatBreaksItsFamilyIsNotWritten) {
   EXPECT_EQ(file.json(), small_file().json());
 }
 
+TEST(SceneFile, ANewWaveformKeepsWhatItsDriveStandsAtBefore) {
+  SceneFile file = small_file();
+  file.set("waveform.main.before=0.5 Vdp");
+  file.set_waveform("main", Pulse{.levels = {45}});
+  EXPECT_EQ(file.written("waveform.main.before"), "0.5 Vdp");
+  EXPECT_EQ(read_scene(file).drives({{"main", {.static_pull_in = 50, .dynamic_pull_in = 40}}}).before.at("main"), 20);
+}
+
 TEST(SceneFile, ANewWaveformReplacesAllKeysOfTheOldOne) {
   SceneFile file = small_file();
   file.set("waveform.main.level=99 V");

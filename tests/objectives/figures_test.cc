@@ -36,13 +36,16 @@ TEST(Figures, AreTheMembersOfMetricsEachOnce) {
     EXPECT_EQ(&figure_of(figure.member), &figure) << figure.key << ": another row has the same member";
   }
   // Does not compile with another number of members.
-  const auto& [status, t_i, t_p, t_b, n_b, b_h, v_i, force, impact, hold, drive, settled, voltage, slew] = distinct_metrics();
+  const auto& [status, t_i, t_p, t_b, n_b, b_h, t_1, v_i, force, impact, hold, capacitance, drive, settled, deflection, overshoot,
+               settling, voltage, slew] = distinct_metrics();
   EXPECT_EQ(status, Status::not_run);
-  constexpr std::size_t members = 13;
+  constexpr std::size_t members = 18;
   EXPECT_EQ(all_figures.size(), members);
   EXPECT_TRUE(settled);
   EXPECT_EQ(n_b, 17);
-  for (const double number : {t_i, t_p, t_b, b_h, v_i, force, impact, hold, drive, voltage, slew}) EXPECT_TRUE(number > 0);
+  for (const double number :
+       {t_i, t_p, t_b, b_h, t_1, v_i, force, impact, hold, capacitance, drive, deflection, overshoot, settling, voltage, slew})
+    EXPECT_TRUE(number > 0);
 }
 
 TEST(Figures, AreReadFromTheirOwnMember) {
@@ -63,6 +66,9 @@ TEST(Figures, AreNotKnownOfARunThatDidNothing) {
     EXPECT_EQ(std::isnan(values[figure]), !figure.is_yes_or_no()) << figure.key;
   }
   EXPECT_EQ(values[&Metrics::settled], 0) << "open, and nothing else";
+  Metrics meant;
+  meant.status = Status::open;
+  EXPECT_TRUE(std::isnan(FigureValues(meant)[&Metrics::settled])) << "open as its drives ask it to";
   Metrics stopped;
   stopped.initial_contact_time = 1e-6;
   EXPECT_TRUE(std::isnan(FigureValues(stopped)[&Metrics::settled])) << "stopped after the touch";
@@ -100,8 +106,9 @@ TEST(Figures, HaveTheirErrorsFromThoseWhoCanTell) {
     return all;
   };
   EXPECT_EQ(keys([](const Figure& f) { return f.is_told_by_two_runs(); }),
-            "t_i, B_H, v_i, peak force, impact energy, drive energy, ");
-  EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.is_told_by_two_runs(); }), "t_p, t_b, N_B, hold force, ");
+            "t_i, B_H, t_1, v_i, peak force, impact energy, static deflection, overshoot, open settling time, drive energy, ");
+  EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.is_told_by_two_runs(); }),
+            "t_p, t_b, N_B, hold force, capacitance, ");
   EXPECT_EQ(keys([](const Figure& f) { return !f.has_error(); }), "peak voltage, peak slew, settled, ");
 }
 

@@ -51,10 +51,15 @@ TEST(ResultOf, ACertifiedClosingIsReportedLikeItsJson) {
 }
 
 TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
-  const Prepared prepared = prepare(shipped("mem-gold.toml", {"waveform.main.level=3 V"}));
-  const Result made = result_of(prepared, simulate(prepared, true), provenance);
-  EXPECT_EQ(made.status, "no_contact");
-  expect_the_same_reports(made);
+  const auto made = [](const char* change) {
+    const Prepared prepared = prepare(shipped("mem-gold.toml", {change}));
+    return result_of(prepared, simulate(prepared, true), provenance);
+  };
+  const Result open = made("waveform.main.level=3 V"), late = made("simulate.duration=5 us");
+  EXPECT_EQ(open.status, "open");
+  expect_the_same_reports(open);
+  EXPECT_EQ(late.status, "no_contact");
+  expect_the_same_reports(late);
 }
 
 TEST(ResultOf, ASearchIsReportedLikeItsJson) {

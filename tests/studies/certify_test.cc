@@ -12,6 +12,7 @@
 #include "model/constants.h"
 #include "scenes.h"
 #include "studies/choices.h"
+#include "studies/open_state.h"
 #include "tests/support/random_scenes.h"
 
 namespace softland {
@@ -38,13 +39,15 @@ std::pair<int, int> coverage(const Prepared& p, const Closing& c) {
   const ClosingOptions options{.duration = p.duration, .tolerance = std::max(1e-13, 1e-4 * c.tolerance)};
   const Trajectory best_run = simulate_closing(fine, p.signals(), options);
   if (best_run.status != Status::done) return {};
-  const Metrics truth = metrics(best_run, p.scene.metrics);
+  Metrics truth = metrics(best_run, p.scene.metrics);
+  set_open_figures(truth, best_run, fine, p.signals());
   constexpr double rounding = 1e-11;  // relative: closer no two runs can be told apart
   std::pair<int, int> counts;
   const std::vector<std::string_view> ill = ill_conditioned(c);
   for (const Figure& f : all_figures) {
     const double own = f.value(c.metrics), best = f.value(truth);
-    if (!f.has_error() || f.key == "hold_force_N" || !std::isfinite(own) || std::find(ill.begin(), ill.end(), f.key) != ill.end())
+    if (!f.has_error() || f.conditioning == Conditioning::rest || !std::isfinite(own) ||
+        std::find(ill.begin(), ill.end(), f.key) != ill.end())
       continue;
     const bool covered = std::abs(own - best) <= std::max(c.errors[f], rounding * std::abs(best));
     ++(covered ? counts.first : counts.second);

@@ -245,7 +245,7 @@ duration = "1 ms"
                                             "plate.toml");
     const Prepared p = prepare(file);
     const Closing c = simulate(p, false);
-    EXPECT_EQ(c.metrics.status, Status::no_contact);
+    EXPECT_EQ(c.metrics.status, volts > 17.1 ? Status::no_contact : Status::open);
     const auto warned = testing::Contains(HasSubstr("unstable equilibrium"));
     // By hand: two plates pull by eps A V^2 x 2 / g^3 per displacement x, the spring by k: unstable from 17.1 V on.
     if (volts > 17.1) {

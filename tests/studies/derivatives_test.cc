@@ -286,6 +286,16 @@ TEST(Derivatives, OfAContactAlongThePad_optimized) {
                    1);
 }
 
+// Where a run starts moves with the device.
+TEST(Derivatives, FromRestUnderWhatDrivesStandAt_optimized) {
+  expect_agreement({"mem-gold-pzt.toml",
+                    Actuator::electrostatic,
+                    "pulse",
+                    {in_100_us, "waveform.main.before=8 V", R"(waveform.piezo={family="step",level="0 V",before="0.4 V"})"},
+                    with(beam, {"piezo.d31", "piezo.thickness"})},
+                   1);
+}
+
 // The electrode and the clock follow the pull-in voltage and the frequency of each device.
 TEST(Derivatives, OfDevicesInTheirOwnUnits_optimized) {
   expect_agreement({"mem-gold.toml", Actuator::electrostatic, "pulse", {in_100_us}, beam, "Vdp,frequency"}, 1);

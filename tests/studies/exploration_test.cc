@@ -111,7 +111,7 @@ TEST(PullInMemory, TellsScenesOfOneSwitchFromThoseOfAnother) {
   ASSERT_NE(own, of_other);
   PullInMemory memory;
   const auto found = [&](const SceneFile& scene, const Switch& model) {
-    return memory.finder(scene)(model, 0, {}).dynamically.voltage;
+    return memory.finder(scene)(model, 0, {}, {}).dynamically.voltage;
   };
   EXPECT_EQ(found(short_gold(), ours.model), own);
   SceneFile driven = short_gold();
@@ -138,13 +138,14 @@ TEST(Exploration, WithErrorsGivesThoseOfCertify_optimized) {
 
 TEST(Exploration, OfPullInGivesTheVoltages) {
   Exploration e = exploration(request("pull-in", {"gap.contact=1.8 um,2 um"}));
-  ASSERT_EQ(e.figures().size(), 3U);
+  ASSERT_EQ(e.figures().size(), 4U);
   const Prepared p = prepare(short_gold());
   SceneFile other = short_gold();
   other.assign("gap.contact", 1.8e-6);
   EXPECT_EQ(row_of(e, 1).figures[1], p.pull_in.at("main").dynamically.voltage);
   EXPECT_EQ(row_of(e, 0).figures[0], prepare(other).pull_in.at("main").statically.voltage);
   EXPECT_EQ(row_of(e, 1).figures[2], release_voltage(p.model, 0));
+  EXPECT_EQ(row_of(e, 1).figures[3], p.pull_in.at("main").statically.deflection);
 }
 
 TEST(Exploration, OfADispersionForceGivesItsFactors) {

@@ -202,5 +202,21 @@ TEST(Driver, SamplesASineThatNeverEndsUpToTheEnd) {
                        {"takes 1000000000000 samples", "it may take 10000000"});
 }
 
+TEST(Driver, GivesWhatItIsToldBeforeItBegins) {
+  const Signal stands = signal(Step{.level = 20_V}, 20_V), rises = signal(Step{.level = 40_V}, 20_V);
+  const DriverModel sampled{.sample_rate = 1e6}, filtered = of_time_constant(tau), charging{.source_resistance = 1, .load = tau};
+  const DriverModel all{.sample_rate = 1e6, .bits = 12, .bandwidth = filtered.bandwidth, .source_resistance = 1, .load = tau};
+  for (const DriverModel& model : {sampled, filtered, charging, all}) {
+    const Signal still = driven(stands, model, limits, 1), output = driven(rises, model, limits, 1);
+    EXPECT_EQ(output.before(), 20_V);
+    // Twelve bits round by 7 mV.
+    for (const double time : {0.0, 1e-6, 1e-4}) EXPECT_NEAR(still.voltage(time), 20_V, 8e-3);
+    EXPECT_NEAR(output.voltage(1), 40_V, 8e-3);
+  }
+  EXPECT_NEAR(driven(rises, filtered, limits, 1).voltage(tau), 40 - 20 * std::exp(-1), 1e-9);
+  const DriverLimits slow{.min_voltage = -10, .max_voltage = 50, .max_slew = 1e6};
+  EXPECT_NEAR(driven(rises, sampled, slow, 1).voltage(10e-6), 30_V, 1e-9) << "at 1 V/us from where it stood";
+}
+
 }  // namespace
 }  // namespace softland

@@ -180,5 +180,15 @@ TEST(SourceErrors, SurviveDelaysThatSwallowAnEdge) {
   EXPECT_TRUE(std::isfinite(late.pieces()[1].slope));
 }
 
+TEST(SourceErrors, ADelayProlongsWhatTheDriveHasStoodAt) {
+  constexpr double delay = 50e-9, before = 6;
+  const Signal given = signal(throw_and_catch, before), late = with_errors(given, {.offset = 0.5, .delay = delay});
+  EXPECT_EQ(late.before(), before) << "errors act from t = 0 on";
+  EXPECT_EQ(late.voltage(0.9 * delay), before + 0.5);
+  for (const double time : {0.2e-6, 10e-6, 25e-6, 60e-6})
+    EXPECT_NEAR(late.voltage(time + delay), given.voltage(time) + 0.5, 1e-6) << time;
+  EXPECT_EQ(edge_count(signal(Step{.level = before}, before)), 0U);
+}
+
 }  // namespace
 }  // namespace softland::source_errors_test

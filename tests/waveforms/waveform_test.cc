@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/waveforms/expect_invalid.h"
 
 namespace softland {
@@ -71,6 +73,46 @@ TEST(Waveform, ScaledIsTheSameCourseInOtherUnits) {
 
 TEST(Waveform, PassesOnWhatItsFamilyRefuses) {
   test::expect_invalid([] { (void)signal(Waveform(Step{.rise_time = -1})); }, {"rise_time", "-1 s"});
+}
+
+// Rises and first edges begin where the drive has stood, everything else jumps from there.
+TEST(Waveform, BeginsAtWhatItHasStoodAt) {
+  constexpr double before = -7, rounding = 1e-14;
+  const std::vector<Waveform> rising{
+      Step{.level = 3, .rise_time = 1},
+      Harmonic{.base = 1, .rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .start = 1},
+      Harmonic{.rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .start = 1},
+      Harmonic{.base = 1, .rise_time = 0.5, .angular_frequency = 3},
+      Pulse{.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5},
+      SCurve{.levels = {1, -2, 0.5}, .times = {1, 4}, .edge = 0.5},
+      Chirp{.base = 1, .rise_time = 0.5, .amplitude = 2, .angular_frequency = 3, .frequency_ratio = 2, .start = 1, .end = 4},
+      Sines{.base = 1, .rise_time = 0.5, .amplitudes = {0.5, 2}, .start = 1, .duration = 3}};
+  for (const Waveform& waveform : rising) {
+    const Signal from_zero = signal(waveform), s = signal(waveform, before);
+    EXPECT_EQ(s.before(), before) << family(waveform);
+    EXPECT_EQ(s.voltage(-1), before) << family(waveform);
+    EXPECT_NEAR(s.voltage(0), before, -rounding * before) << family(waveform);
+    EXPECT_EQ(s.voltage_before(0), s.voltage(0)) << family(waveform);
+    EXPECT_EQ(s.hold_level(), from_zero.hold_level()) << family(waveform);
+    EXPECT_EQ(s.minimum(0.01), before) << family(waveform);
+    for (const double time : {1.0, 2.3, 5.0}) EXPECT_EQ(s.voltage(time), from_zero.voltage(time)) << family(waveform);
+  }
+  const std::vector<Waveform> jumping{Step{.level = 3}, Table{.time = {0, 1}, .voltage = {1, 2}},
+                                      BSpline{.levels = {1, 2, 0, 1}, .duration = 3}};
+  for (const Waveform& waveform : jumping) {
+    const Signal from_zero = signal(waveform), s = signal(waveform, before);
+    EXPECT_EQ(s.voltage_before(0), before) << family(waveform);
+    EXPECT_TRUE(std::isinf(s.peak_slew())) << family(waveform);
+    EXPECT_EQ(s.pieces(), from_zero.pieces()) << family(waveform);
+  }
+}
+
+TEST(Waveform, ThatGoesOnAsItHasStoodDoesNotJump) {
+  const Signal s = signal(Step{.level = 3}, 3);
+  EXPECT_EQ(s.peak_slew(), 0);
+  EXPECT_EQ(s.minimum(), 3);
+  EXPECT_FALSE(signal(Step{.level = 0}, 3).is_zero());
+  EXPECT_THROW((void)signal(Step{.level = 3}, std::nan("")), InvalidInput);
 }
 
 }  // namespace

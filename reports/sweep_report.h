@@ -1,0 +1,20 @@
+// What `softland pull-in --sweep` leaves: the points as CSV, and a picture of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/sweep.h"
+
+namespace softland {
+
+/// "voltage_V,deflection_m,capacitance_F,branch" and a row to each point, every digit; branch is up or down. Cells of a point
+/// without a state are empty.
+[[nodiscard]] std::string sweep_csv(const std::vector<SweepPoint>& points);
+
+/// Deflection and capacitance against the voltage, up and down, with the pull-in and the release voltage marked where they are
+/// in the sweep; `of` says of what, in words: "Electrode main of ...".
+[[nodiscard]] std::string sweep_svg(const std::vector<SweepPoint>& points, const std::string& of, const StaticPullIn& pull_in,
+                                    double release);
+
+}  // namespace softland

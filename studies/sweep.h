@@ -1,0 +1,40 @@
+// The static course of a switch whose voltage is swept slowly up and down again: open up to the pull-in voltage, closed on the
+// way back down to the release voltage.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "base/watch.h"
+#include "model/pull_in.h"
+#include "model/switch.h"
+
+namespace softland {
+
+enum class SweepState {
+  open,
+  closed,  ///< on the contact
+  none     ///< no stable equilibrium that a scene describes: the beam is pulled onto the electrode, or there is no contact
+};
+
+struct SweepPoint {
+  double voltage = 0;                                             ///< of the swept electrode [V]
+  double deflection = std::numeric_limits<double>::quiet_NaN();   ///< of the contact point, towards the contact [m]
+  double capacitance = std::numeric_limits<double>::quiet_NaN();  ///< of the swept electrode [F]
+  bool is_up = true;                                              ///< on the way from the first voltage to the last
+  SweepState state = SweepState::none;
+};
+
+struct SweepRange {
+  double first = 0, last = 0;  ///< [V]
+  int points = 0;              ///< at least 2, evenly spaced, both ends among them
+};
+
+/// As many points on the way to the last voltage as on the way back, in order; the last of the first is the first of the second.
+/// The switch stays open while it has a stable open equilibrium, and closed while it has a closed one that it does not leave; it
+/// begins open where it can. Of an electrode that pulls towards the contact. Throws InvalidInput for fewer than 2 points and as
+/// static_pull_in() does, Interrupted where `watch` asks to stop.
+[[nodiscard]] std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bias bias, const SweepRange& range,
+                                                   const Watch& watch = {});
+
+}  // namespace softland
