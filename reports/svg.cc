@@ -96,7 +96,7 @@ internal::Picture gap_and_drives(const Result& result) {
 }
 
 std::string svg_gap_chart(const Result& result) {
-  return svg_page(headline(result).whole(), result.title, gap_and_drives(result));
+  return svg_page(internal::headline(result).whole(), result.title, gap_and_drives(result));
 }
 
 }  // namespace softland
