@@ -88,9 +88,11 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 
 void print_bound(const Prepared& prepared) {
   const Switch& device = prepared.model;
-  const auto [begin, end] = std::pair(prepared.scene.device.electrodes[0].begin, prepared.scene.device.electrodes[0].end);
+  const std::vector<Stretch> pads = prepared.scene.device.electrodes[0].pads(prepared.scene.device.structure.length);
   const auto all = static_cast<double>(device.points());
-  const auto driven = static_cast<double>((device.point_positions() > begin && device.point_positions() < end).count());
+  const auto driven = static_cast<double>(std::ranges::count_if(device.point_positions(), [&](double x) {
+    return std::ranges::any_of(pads, [&](const Stretch& pad) { return pad.holds(x); });
+  }));
   const double modes = device.modes();
   // gap and velocity 2, projection 1 to a point and mode; film 4, electrostatic load 6
   const double multiply_adds = 3 * modes * all + 4 * all + 6 * driven;

@@ -207,7 +207,11 @@ json result_json(const Result& r) {
     j["curves"]["best"] = curve_json(r.best.curve);
   }
   if (r.closed_state) j["closed_state"] = closed_state_json(*r.closed_state);
-  if (!r.is_search) j["collapse_time_s"] = json_number(r.best.collapse_time);
+  if (!r.is_search) {
+    j["collapse_time_s"] = json_number(r.best.collapse_time);
+    for (const char* key : {"static_deflection_m", "capacitance_F"})
+      if (j.contains("metrics")) j[key] = j["metrics"][key];
+  }
   if (r.work) j["work"] = work_json(*r.work);
   if (r.certificate) {
     j["certified"] = certified_json(*r.certificate);

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/decompositions.h"
 #include "base/executor.h"
 #include "base/random.h"
 #include "base/require.h"

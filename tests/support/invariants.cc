@@ -155,6 +155,7 @@ void check_figures(const Metrics& m, const std::string& message, bool has_contac
       are(has_contact && !rigid, {{"peak force", m.peak_contact_force}});
       return;
     case Status::no_contact:
+    case Status::open:
       are(true, {{"drive energy", m.drive_energy}});
       are(false, {{"t_i", m.initial_contact_time}, {"v_i", m.impact_velocity}, {"B_H", m.major_bounce_height}});
       return;
