@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,17 @@
 namespace softland::apps {
 
 using nlohmann::json;
+
+namespace {
+
+// From where on the closed switch is pulled through: NaN where it is not, or there is no contact to hold it.
+double pulled_through(const Switch& model, std::size_t k, std::vector<double> volts) {
+  if (!model.has_contact() || !pulls_in(model.device(), k)) return std::numeric_limits<double>::quiet_NaN();
+  volts[k] = release_voltage(model, k, volts);
+  return std::isfinite(volts[k]) ? pull_through_voltage(model, k, volts) : volts[k];
+}
+
+}  // namespace
 
 json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
   const std::vector<double> bias = bias_of(p.scene, k);
@@ -25,7 +37,8 @@ json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
                {"static_kind", to_string(s.kind)},
                {"deflection_m", number(s.deflection)},
                {"dynamic_V", number(d.voltage)},
-               {"release_V", number(release_voltage(p.model, k, bias))}}}};
+               {"release_V", number(release_voltage(p.model, k, bias))},
+               {"pulled_through_V", number(pulled_through(p.model, k, bias))}}}};
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t other = 0; other < names.size(); ++other) {
     if (bias[other] == 0) continue;

@@ -53,15 +53,6 @@ json run_json(const ResultRun& run) {
           {"waveforms", std::move(waveforms)}};
 }
 
-json closed_state_json(const ClosedState& state) {
-  json pulled_through = json::object();
-  for (const auto& [electrode, volts] : state.pulled_through) pulled_through[electrode] = json_number(volts);
-  return {{"exists", state.exists},
-          {"stable", state.stable ? json(*state.stable) : json()},
-          {"smallest_eigenvalue_rad2_s2", json_number(state.smallest_eigenvalue)},
-          {"pulled_through_V", std::move(pulled_through)}};
-}
-
 json curve_json(const ResultCurve& c) {
   json bounces = json::array();
   for (const Rebound& r : c.rebounds) bounces.push_back({r.begin, json_number(r.end), r.height, r.time_of_height});
@@ -181,6 +172,15 @@ void add_search(json& j, const Result& r) {
 }
 
 }  // namespace
+
+json closed_state_json(const ClosedState& state) {
+  json pulled_through = json::object();
+  for (const auto& [electrode, volts] : state.pulled_through) pulled_through[electrode] = json_number(volts);
+  return {{"exists", state.exists},
+          {"stable", state.stable ? json(*state.stable) : json()},
+          {"smallest_eigenvalue_rad2_s2", json_number(state.smallest_eigenvalue)},
+          {"pulled_through_V", std::move(pulled_through)}};
+}
 
 json metrics_json(const Metrics& m) { return with_status(figures_json(FigureValues(m), of_no_drive), to_string(m.status)); }
 

@@ -12,6 +12,8 @@ namespace softland {
 /// What --json gives: a result without what is large (curves, the text of the scene, the log of the search) or said twice.
 [[nodiscard]] nlohmann::json summary_json(nlohmann::json result);
 
+[[nodiscard]] nlohmann::json closed_state_json(const ClosedState& state);
+
 /// Status and figures of a run, but for those of the drives.
 [[nodiscard]] nlohmann::json metrics_json(const Metrics& metrics);
 

@@ -208,6 +208,7 @@ std::string statistics_table(const Robustness& found) {
     for (const DriveRobustness& d : found.drives) row.emplace_back(cell(d), &d == &found.drives.back() ? "own" : "");
   };
   add("Devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
+  if (some_collapse(found)) add("Pulled onto the electrode", [](const DriveRobustness& d) { return yield_text(d.collapsed); });
   add("Without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
   for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
     if (!is_had(found, i)) continue;

@@ -12,7 +12,9 @@
 #include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/other_ways_report.h"
+#include "reports/result_json.h"
 #include "reports/robustness_words.h"
+#include "studies/closed_state.h"
 #include "version.h"
 #include "waveforms/export.h"
 
@@ -136,15 +138,20 @@ json robustness_json(const RobustnessReport& report) {
       if (!o.closed()) ++reasons[o.failure.empty() ? std::string(to_string(o.metrics.status)) : o.failure];
     }
     for (const auto& [why, count] : reasons) failures[why] = count;
-    return json{{"name", d.name},
-                {"calibration", calibration_json(d.known.calibration())},
-                {"classes", classes_json(d.known.classes())},
-                {"waveforms", waveforms_json(nominal, d, found.duration)},
-                {"closing", yield_json(d.closing)},
-                {"bounce_free", yield_json(d.bounce_free)},
-                {"figures", std::move(figures)},
-                {"failures", std::move(failures)},
-                {"worst", std::move(worst)}};
+    const bool has_contact = nominal.model.has_contact();
+    return json{
+        {"name", d.name},
+        {"closed_state",
+         has_contact ? closed_state_json(closed_state(nominal, nominal.driven(nominal.in_drive_order(d.waveforms)))) : json()},
+        {"calibration", calibration_json(d.known.calibration())},
+        {"classes", classes_json(d.known.classes())},
+        {"waveforms", waveforms_json(nominal, d, found.duration)},
+        {"closing", yield_json(d.closing)},
+        {"collapsed_onto_electrode", yield_json(d.collapsed)},
+        {"bounce_free", yield_json(d.bounce_free)},
+        {"figures", std::move(figures)},
+        {"failures", std::move(failures)},
+        {"worst", std::move(worst)}};
   };
   json drives = json::array(), by_knowledge = json::array();
   for (const DriveRobustness& d : found.drives) drives.push_back(drive_json(d));

@@ -101,6 +101,8 @@ std::string figures_text(const Robustness& found) {
     if (first > 0) text += "\n";
     row("", [&](const DriveRobustness& d) { return shown_name(d.name, width - 2); });
     row("devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
+    if (internal::some_collapse(found))
+      row("pulled onto the electrode", [](const DriveRobustness& d) { return yield_text(d.collapsed); });
     row("without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
     for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
       if (!internal::is_had(found, i)) continue;

@@ -65,6 +65,10 @@ bool is_had(const Robustness& found, std::size_t i) {
          !some([](const DriveRobustness& d) { return d.closing.devices > 0; });
 }
 
+bool some_collapse(const Robustness& found) {
+  return std::ranges::any_of(found.drives, [](const DriveRobustness& d) { return d.collapsed.value > 0; });
+}
+
 const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key) {
   return drive.figures[static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data())].quantiles[2];
 }

@@ -26,6 +26,8 @@ namespace softland::internal {
 /// Whether a table has a row of figure i of ensemble_figures(): not where devices close and none has it, as the peak force on a
 /// rigid contact.
 [[nodiscard]] bool is_had(const Robustness& found, std::size_t i);
+/// Whether under some drive there is a device whose beam is pulled onto the electrode.
+[[nodiscard]] bool some_collapse(const Robustness& found);
 /// What a device without a figure counts as.
 inline constexpr std::string_view worst_words =
     "A device without a figure, as it does not close or has not settled, counts as the worst: ∞.";

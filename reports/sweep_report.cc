@@ -63,10 +63,10 @@ std::string sweep_svg(const std::vector<SweepPoint>& points, const std::string& 
     picture.charts.push_back(sweep_chart(column, title, unit, least->voltage, most->voltage));
   if (pull_in.voltage <= most->voltage)
     picture.charts.front().marks.push_back({pull_in.voltage, pull_in.deflection, internal::Role::best, "pull-in"});
-  std::string words = std::isfinite(pull_in.voltage)
-                          ? fmt::format("Pull-in at {}, deflected by {}", quantity(pull_in.voltage, "V", 4),
-                                        quantity(pull_in.deflection, "m", 4))
-                          : std::string("No pull-in voltage");
+  std::string words =
+      std::isfinite(pull_in.voltage)
+          ? fmt::format("Pull-in at {}, deflected by {}", quantity(pull_in.voltage, "V", 4), quantity(pull_in.deflection, "m", 4))
+          : std::string("No pull-in voltage");
   if (std::isfinite(release)) words += fmt::format("; release at {}", quantity(release, "V", 4));
   return svg_page(of, words + ".", picture, 1);
 }

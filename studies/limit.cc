@@ -150,6 +150,7 @@ class LeastTimeSearch {
     (void)come_to_rest(landing->state, [&] {
       const LeastTime way{.waveforms = tables_of(flight_, course_), .course = course_};
       all.push_back(with_catch(flight_, way, {}, plain));
+      options_.watch.tell("landings at rest to begin with", static_cast<double>(all.size()) / rest_rooms.size());
     });
     return all;
   }
@@ -306,13 +307,17 @@ std::vector<std::map<std::string, Waveform>> landings_at_rest(const Prepared& pr
   const double period = 2 * pi / prepared.model.angular_frequencies()[0];
   std::vector<std::map<std::string, Waveform>> found;
   if (prepared.model.modes() > most_modes_followed) return found;
-  for (const double ramp : ramps) {
-    if (watch.stopped()) break;
+  for (std::size_t k = 0; k < ramps.size() && !watch.stopped(); ++k) {
+    const double ramp = ramps[k];
+    const Watch own{.stop = watch.stop, .progress = [&](std::string_view what, double part) {
+                      watch.tell(what, (static_cast<double>(k) + part) / ramps.size());
+                    }};
+    own.tell("landings at rest to begin with", 0);
     Prepared smooth = prepared;
     for (auto& [name, limits] : smooth.drives.limits)
       limits.max_slew = std::min(limits.max_slew, (limits.max_voltage - limits.min_voltage) / (ramp * period));
     try {
-      const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = watch};
+      const LeastTimeOptions options{.actuator = actuator, .impact_velocity = impact_velocity, .watch = own};
       std::ranges::move(LeastTimeSearch(smooth, options).ways_to_rest(plain_step(prepared, actuator)), std::back_inserter(found));
     } catch (const InvalidInput&) {
       return {};  // free_flight.h says of what

@@ -26,6 +26,7 @@ constexpr std::size_t most_sure = 4;           // more, where those did not stan
 constexpr std::size_t most_of_family = 4;      // of each family, where none was confirmed
 constexpr long fewest_for_landings = 1000;     // evaluations, for which landings at rest are worth their seconds
 constexpr double least_for_landings = 60;      // [s], likewise
+constexpr double searching = 0.85;             // of a budget in seconds: the rest is for what verifies the winner
 constexpr double soft_touch = 0.01;            // of the plain step's impact velocity, at which they touch
 constexpr double distinct = 1.01;              // ratio of the costs of two candidates
 constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
@@ -102,7 +103,7 @@ class Search {
     const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
     if (!can_rest || options_.max_evaluations < fewest_for_landings || options_.max_seconds < least_for_landings) return {};
     return softland::landings_at_rest(setting.within_limits(), options_.actuator, soft_touch * setting.scale.step.touch_speed,
-                                      {.stop = options_.stop});
+                                      {.stop = options_.stop, .progress = options_.on_preparation});
   }
 
   OptimizerResult run() {
@@ -184,11 +185,6 @@ class Search {
       for (auto& [cost, waveforms] : own) best.waveforms.push_back(std::move(waveforms));
     }
     return best;
-  }
-
-  /// Since it was made.
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
   // What every family came to.
@@ -314,6 +310,11 @@ class Search {
     if (all_.termination == Termination::no_feasible_point) all_.termination = Termination::evaluation_budget;
   }
 
+  // Since it was made.
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
   const std::vector<SearchSetting>& settings_;
   const OptimizeOptions& options_;
   std::vector<std::string> names_;  // of the families
@@ -373,7 +374,7 @@ class SearchBeyondModes {
   // False where there is no time.
   bool begin(std::string what, long evaluations) {
     own_.max_evaluations = std::max(evaluations, 1L);
-    own_.max_seconds = options_.max_seconds - seconds_();
+    own_.max_seconds = searching * options_.max_seconds - seconds_();
     own_.on_evaluation = [this, what = std::move(what), begun = evaluations_](const Evaluation&, const OptimizeProgress&) {
       ++evaluations_;
       if (options_.on_preparation)
@@ -405,6 +406,8 @@ double OptimizeResult::parameter(std::string_view name) const {
 
 OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   static_cast<void>(optimizer_description(options.optimizer));  // throws for an unknown name
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const std::vector<SearchSetting> settings =
       search_settings(file, options.target, options.actuator, options.family,
                       {.stop = options.stop, .progress = options.on_preparation}, options.conditions);
@@ -412,7 +415,9 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   setting.check_starts(options.starts);
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family);
   const bool is_gentle = begins_gently(gentle, options.starts);
-  Search search(is_gentle ? gentle : settings, options);
+  OptimizeOptions in_time = options;
+  in_time.max_seconds = std::max(searching * options.max_seconds - seconds(), options.max_seconds / 4);
+  Search search(is_gentle ? gentle : settings, in_time);
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;
@@ -422,8 +427,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   result.families = search.families();
   result.family = result.families.front().family;  // where there is no winner
   result.variables = setting.space.variables();
-  SearchBeyondModes beyond(
-      options, [&] { return search.seconds(); }, verified);
+  SearchBeyondModes beyond(options, seconds, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);
   verified.move_to(result);
   result.prefix = prefix_of(options.family, result.family);

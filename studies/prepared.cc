@@ -100,14 +100,16 @@ double periods_of(const Waveform& waveform, double window) {
 }
 
 /// The window of a scene that names none [s]: it shows the closing of steps to the hold levels, which gas may slow down, and what
-/// follows. Steps that do not close the switch in ten times that window are not waited for.
+/// follows. Steps that do not close the switch in ten times that window are not waited for, nor in a thousand times where their
+/// levels leave no open equilibrium: just above pull-in a damped switch creeps.
 double default_window(const Switch& model, const std::vector<Signal>& signals) {
-  constexpr double periods = 6, closings = 4, longest = 10, loose = 1e-4;
+  constexpr double periods = 6, closings = 4, loose = 1e-4;
   constexpr long most_steps = 100'000;
   const double usual = periods * 2 * pi / model.angular_frequencies()[0];
   if (!(usual <= longest_window)) return usual;
   std::vector<Signal> steps;
   for (const Signal& signal : signals) steps.push_back(Signal::constant(signal.hold_level(), signal.before()));
+  const double longest = model.open_equilibrium(hold_levels(steps)) ? 10 : 1000;
   const Trajectory closing = simulate_closing(
       model, steps, {.duration = longest * usual, .tolerance = loose, .after_contact = 0, .max_steps = most_steps});
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);

@@ -56,6 +56,8 @@ void summarise(DriveRobustness& drive) {
   for (const EnsembleFigure& f : ensemble_figures()) drive.figures.push_back(statistics(f, all));
   const auto count = [&](auto&& holds) { return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), holds)); };
   drive.closing = yield_of(count([](const DeviceOutcome& o) { return o.closed(); }), all.size());
+  drive.collapsed =
+      yield_of(count([](const DeviceOutcome& o) { return o.metrics.status == Status::collapsed_onto_electrode; }), all.size());
   drive.bounce_free = yield_of(count(is_bounce_free), all.size());
   drive.worst.resize(all.size());
   std::iota(drive.worst.begin(), drive.worst.end(), std::size_t{0});

@@ -63,7 +63,8 @@ struct DriveRobustness {
   std::vector<DeviceOutcome> outcomes;        ///< by device
   std::vector<FigureStatistics> figures;      ///< as ensemble_figures()
   Yield closing;                              ///< the contact is reached, and the run could be followed
-  Yield bounce_free;                          ///< and it settles without a significant rebound
+  Yield collapsed;                            ///< the beam is pulled onto the electrode
+  Yield bounce_free;                          ///< the contact is reached, and it settles without a significant rebound
   std::vector<std::size_t> worst;             ///< devices, the highest rebound first; failures before all
 };
 

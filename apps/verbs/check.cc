@@ -1,10 +1,12 @@
 // Derived numbers and warnings of a scene.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "apps/exit_status.h"
@@ -16,6 +18,7 @@
 #include "base/printable.h"
 #include "base/shortened.h"
 #include "model/constants.h"
+#include "model/contact/contact_law.h"
 #include "model/pull_in.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
@@ -63,6 +66,20 @@ std::string closed_state_words(const ClosedState& state) {
                  ? fmt::format("; electrode {} pulls the beam through from {} on", electrode, quantity(volts, "V", 4))
                  : fmt::format("; electrode {} pulls the beam through at no voltage tried", electrode);
   return words;
+}
+
+// How many of the summits touch under the hold levels; empty where they are not of one height distribution to a closed form.
+std::string summits_words(const Prepared& p) {
+  const std::optional<Contact>& contact = p.scene.device.contact;
+  if (!contact || contact->model != ContactModel::asperity_uniform) return {};
+  const auto closed = closed_equilibrium(p.model, hold_levels(p.signals()));
+  if (!closed || !std::holds_alternative<UniformAsperityContact>(p.model.contact())) return {};
+  const auto& law = std::get<UniformAsperityContact>(p.model.contact());
+  const double all = internal::summits(*contact, p.scene.device.structure.width);
+  const double touching = all * std::min(1.0, law.interference(closed->contact_force) / law.height);
+  return fmt::format(
+      "{} of {} summits touch under the hold levels{}", plain_number(touching, 2), plain_number(all, 3),
+      touching < 1 ? ": fewer than one, so that the law, a mean over many of them, says little of one device" : "");
 }
 
 // What is to be said of a key, with its place.
@@ -150,6 +167,7 @@ int check_verb(const Common& c) {
   if (p.model.has_contact()) {
     const ClosedState state = closed_state(p, p.signals());
     add("closed state", closed_state_words(state));
+    if (const std::string summits = summits_words(p); !summits.empty()) add("contact", summits);
     Trajectory rest;
     set_hold(rest, p.model, p.signals());
     const std::string unstable = warning(state);

@@ -104,7 +104,12 @@ std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one
                                        volts(found["static_V"]),
                                        is_fold ? "fold of the static branch" : "the contact point reaches the contact first",
                                        deflection_words(found), dynamic_words(found));
-  if (p.model.has_contact()) text += fmt::format("  release          {}\n", volts(found["release_V"]));
+  if (p.model.has_contact()) {
+    text += fmt::format("  release          {}\n", volts(found["release_V"]));
+    if (found["pulled_through_V"].is_number())
+      text += fmt::format("  pulled through   {}: from there on a closed switch goes on to the electrode\n",
+                          volts(found["pulled_through_V"]));
+  }
   return text;
 }
 

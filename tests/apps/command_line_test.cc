@@ -251,7 +251,8 @@ TEST(PullIn, PrintsTheAgreedJson) {
   EXPECT_EQ(o.err, "");
   const json j = json::parse(o.out);
   EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in"}));
-  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V"}));
+  EXPECT_EQ(keys(j["pull_in"]),
+            (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V", "pulled_through_V"}));
   EXPECT_EQ(j["status"], "done");
   EXPECT_LT(j["pull_in"]["dynamic_V"], j["pull_in"]["static_V"]);
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);

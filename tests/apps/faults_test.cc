@@ -200,6 +200,7 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
       std::vector<std::string> more = calls()[verb].quick;
       if (verb != "merge")
         more = more + std::vector<std::string>{option, option == std::string("--out") ? "lost-" + verb : "lost.json"};
+      if (verb == "pull-in" && option == std::string("--out")) more = more + std::vector<std::string>{"--sweep", "0 V:10 V:3"};
       if (verb == "optimize" && option == std::string("--json")) more = more + std::vector<std::string>{"--out", "lost"};
       EXPECT_EQ(limited(words(verb, more)).status, output_lost) << verb << " " << option;
       EXPECT_THAT(read(here->path() / "stderr.txt"), Not(HasSubstr("internal"))) << verb << " " << option;
@@ -465,6 +466,7 @@ TEST_F(Faults, NoNameAndNoTitleBeginsALineOfItsOwn_optimized) {
     std::vector<std::string> more = calls()[verb].quick;
     more.front() = verb == "report" ? name + ".out" : name;
     if (takes(verb, "--out")) more = more + std::vector<std::string>{"--out", name + "." + verb};
+    if (verb == "pull-in") more = more + std::vector<std::string>{"--sweep", "0 V:10 V:3"};
     const Outcome o = here->run(words(verb, more));
     EXPECT_THAT(o.out + o.err, Not(HasSubstr("\nforged"))) << verb;
   }

@@ -267,6 +267,9 @@ TEST_F(Search, PrintsItsResultAsJsonAndNothingElse) {
                                                   "tolerance",
                                                   "waveform",
                                                   "closed_state",
+                                                  "confirmed",
+                                                  "worst",
+                                                  "evaluations_with_more_modes",
                                                   "made_with"}));
   EXPECT_EQ(keys(printed["best"]),
             (std::set<std::string>{"bounds", "collapse_time_s", "cost", "metrics", "parameters", "waveforms"}));

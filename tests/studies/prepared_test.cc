@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "model/closing.h"
+#include "model/constants.h"
 #include "scenes.h"
 
 namespace softland {
@@ -74,6 +75,22 @@ TEST(Prepare, DrivesTheSwitchWithWhatItsSourceGives) {
   EXPECT_NEAR(prepare(file).signals()[0].voltage(tau), 30 * (1 - std::exp(-1.0)), 1e-6);
   EXPECT_EQ(prepare(gold({"waveform.main.level=30 V", "driver.main.max_voltage=90 V"})).signals()[0].pieces(),
             Signal::constant(30).pieces());
+}
+
+// Near pull-in a switch in a thick gas creeps for many periods: the window waits for it, and simulate sees it close.
+TEST(Prepare, WaitsForASlowClosingWhereNoOtherEndIsPossible) {
+  SceneFile plate = without(spring_plate(), "contact");
+  plate.set("gas={model=\"linear\", quality_factor=0.05}");
+  plate.erase("simulate.duration");
+  plate.set("waveform.main.level=1.005 Vsp");
+  const Prepared p = prepare(plate);
+  const Trajectory run = simulate_closing(p.model, p.signals(), {.duration = p.duration, .tolerance = p.tolerance});
+  ASSERT_FALSE(run.touches.empty());
+  const double period = 2 * pi / p.model.angular_frequencies()[0];
+  EXPECT_GT(run.touches.front().begin, 60 * period) << "longer than any step is waited for that need not close";
+  EXPECT_GT(p.duration, 3.9 * run.touches.front().begin);
+  plate.set("waveform.main.level=0.995 Vsp");
+  EXPECT_LT(prepare(plate).duration, 7 * period) << "there it stays open";
 }
 
 TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
