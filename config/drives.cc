@@ -234,7 +234,8 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
 
     const SectionReader driver(file, "driver", drive);
     const std::optional<DriverLimits> limits = read_limits(driver, drive, known);
-    const bool check_limits = limits && (checks == LimitChecks::all || driver.keys_in_pull_in_units().empty());
+    const bool check_limits =
+        limits && (checks == LimitChecks::all || (driver.keys_in_pull_in_units().empty() && driver.is_given("max_voltage")));
     if (check_limits) check_order(driver, *limits);
     if (limits) drives.limits[name] = *limits;
     if (const DriverModel model = read_model(driver, drive); !model.is_ideal()) drives.models[name] = model;

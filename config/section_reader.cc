@@ -301,8 +301,14 @@ toml::table SectionReader::in_si_units() const {
         insert_quantity(key, numbers->front(), insert);
         continue;
       }
-      toml::array array;
-      for (const Quantity& one : *numbers) insert_quantity(key, one, [&](const auto& node) { array.push_back(node); });
+      toml::array array, inner;
+      const bool nested = is_nested(name);
+      for (const Quantity& one : *numbers) {
+        insert_quantity(key, one, [&](const auto& node) { (nested ? inner : array).push_back(node); });
+        if (!nested || inner.size() < key.count) continue;
+        array.push_back(std::move(inner));
+        inner = {};
+      }
       insert(array);
     } else if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
       toml::array array;

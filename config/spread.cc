@@ -108,7 +108,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
   } catch (const InvalidInput& error) {
     file.fail_section(in.path(), error.what());
   }
-  if (parts.front() == "driver") return find_drive_error(file, scene.device, in, parts);
+  if (parts.front() == "driver" && element == 0) return find_drive_error(file, scene.device, in, parts);
   std::vector<std::string_view> candidates;
   const std::string entry_name = parts.size() > 1 ? parts[1] : std::string();
   const Section* section = find_section(parts.front(), entry_name);

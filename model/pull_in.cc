@@ -463,6 +463,18 @@ ClosedEquilibrium closed_at(const Switch& model, const Eigen::VectorXd& q, doubl
           .smallest_eigenvalue = smallest_closed_eigenvalue(model, q, volts)};
 }
 
+// Between which depths f first rises to zero from below: just before a beam is pulled through it does so between two steps, and
+// falls again.
+template <class F>
+std::optional<Steps> first_enough(F&& f, double depth, double step) {
+  auto turn = walk(f, depth, step, [](double value, double here) { return here >= 0 || here < value; });
+  if (!turn || f(turn->next) >= 0) return turn;
+  const auto [at, value] =
+      boost::math::tools::brent_find_minima([&](double x) { return -f(x * step); }, turn->before / step, turn->next / step, 40);
+  if (-value >= 0) return Steps{.before = turn->before, .last = turn->before, .next = at * step};
+  return walk(f, turn->next, step, [](double, double here) { return here >= 0; });
+}
+
 double static_push(const Switch& model, const Eigen::VectorXd& q) {
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(model.modes());
   return model.contact_push(q.data(), still.data(), true);
@@ -488,7 +500,7 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
   // Where the beam presses hardest it must overcome the contact; the equilibrium is where, deeper, the contact takes over.
   const auto hardest = first_minimum(excess, step);
   if (!hardest || !(hardest->value < 0)) return std::nullopt;
-  const auto over = walk(excess, hardest->depth, step, [](double, double here) { return here >= 0; });
+  const std::optional<Steps> over = first_enough(excess, hardest->depth, step);
   if (!over) return std::nullopt;
   const double depth = bracketed_zero(excess, over->last, over->next);
   const auto held = statics.pinned(volts, plane + depth);

@@ -86,7 +86,11 @@ std::string open_clause(const Actor& actor, const FigureValues& figures) {
 
 std::string closing_clause(const Actor& actor, const ResultRun& run, double window) {
   if (run.status == "collapsed_at_rest") return actor.subject + " has no stable rest position: it collapses before it is driven";
-  if (run.status == "collapsed_onto_electrode") return actor.subject + " is pulled through the contact onto the electrode";
+  if (run.status == "collapsed_onto_electrode") {
+    const bool through = !run.figures || touches(*run.figures);
+    return actor.subject + (through ? " is pulled through the contact onto the electrode"
+                                    : " is pulled onto an electrode before it touches its contact");
+  }
   if (run.status == "numerical_failure") return actor.subject + " could not be simulated to the end";
   if (!run.figures) return "there are no figures for " + actor.subject;
   const FigureValues& figures = *run.figures;

@@ -46,7 +46,9 @@ json list_json(const std::vector<LeastTime>& all) {
 
 json landing_json(const LimitLanding& landing) {
   json checks = json::array();
-  for (const ConfirmingRun& c : landing.checks) checks.push_back({{"name", c.name}, {"metrics", metrics_json(c.metrics)}});
+  for (const ConfirmingRun& c : landing.checks) {
+    if (c.varied != Varied::gas) checks.push_back({{"name", c.name}, {"metrics", metrics_json(c.metrics)}});
+  }
   return {{"way", least_json(landing.way)},
           {"at_rest", std::isfinite(landing.way.room)},
           {"catch_delay_s", json_number(landing.catch_delay)},
@@ -101,6 +103,7 @@ std::string words_after(const LimitLanding& landing) {
   std::string words =
       own.major_bounce_height > 0 ? fmt::format("rebounds up to {}", quantity(own.major_bounce_height, "m")) : "no rebound";
   for (const ConfirmingRun& c : landing.checks) {
+    if (c.varied == Varied::gas) continue;
     if (c.metrics.bounce_count > 0 || c.metrics.status != Status::done)
       words += fmt::format(", but with {} up to {}", c.name, quantity(c.metrics.major_bounce_height, "m"));
   }
@@ -183,6 +186,7 @@ std::string limit_text(const Limit& limit) {
   };
   list("touch at or below", limit.over_velocity, [](const LeastTime& l) { return quantity(l.permitted, "m/s"); });
   list("volts up to", limit.over_peak, [](const LeastTime& l) { return quantity(l.peak, "V", 4); });
+  if (limit.touch.status != Status::done && limit.rest.status != Status::done) return text;
   const std::string model = model_of(limit);
   return text + "\n" +
          wrapped("No waveform of these drives touches earlier at that speed" +

@@ -162,6 +162,7 @@ void add_search(json& j, const Result& r) {
   for (const ResultCheck& c : r.checks)
     checks.push_back({{"name", c.name}, {"metrics", with_status(figures_json(*c.figures, of_no_drive), c.status)}});
   j["checks"] = std::move(checks);
+  if (r.checks.empty()) return;
   j["confirmed"] = internal::all_checks_land(r);
   if (const ResultCheck* worst = internal::worst_check(r.checks)) {
     const std::string_view figure = internal::worst_figure(*worst);

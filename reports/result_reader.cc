@@ -334,6 +334,19 @@ Result read_result(const json& result) {
   return r;
 }
 
+// Lengths, percentages of a beam's length, or its tip.
+std::optional<std::array<double, 2>> span_on(double length, const json& span) {
+  if (!span.is_array() || span.size() != 2) return std::nullopt;
+  const auto place = [&](const json& one) {
+    const std::string written = one.is_string() ? one.get<std::string>() : std::string();
+    if (written == "tip") return length;
+    const double value = quantity(one);
+    return written.ends_with('%') ? value * length : value;
+  };
+  const std::array<double, 2> ends{place(span[0]), place(span[1])};
+  return std::isfinite(ends[0]) && std::isfinite(ends[1]) ? std::optional(ends) : std::nullopt;
+}
+
 ResultScene read_result_scene(const json& scene, std::string file) {
   ResultScene s{.structure = text(scene, {"structure", "kind"}),
                 .length = quantity(at(scene, {"structure", "length"})),
@@ -343,12 +356,15 @@ ResultScene read_result_scene(const json& scene, std::string file) {
                 .text = std::move(file),
                 .tree = scene};
   if (s.text.empty() && scene.is_object()) s.text = scene.dump(2, ' ', false, json::error_handler_t::replace);
-  if (at(scene, {"piezo"}).is_object()) s.piezo = ResultScene::Piezo{pair(at(scene, {"piezo", "span"}), quantity)};
+  if (at(scene, {"piezo"}).is_object()) s.piezo = ResultScene::Piezo{span_on(s.length, at(scene, {"piezo", "span"}))};
   for (const auto& [name, electrode] : members(at(scene, {"electrode"}), [](const json& one) { return &one; })) {
-    s.electrodes.push_back({.name = name,
-                            .span = pair(at(*electrode, {"span"}), quantity),
-                            .far_side = text(*electrode, {"side"}) == "far",
-                            .gap = quantity(at(*electrode, {"gap"}))});
+    const json& spans = at(*electrode, {"span"});
+    const bool is_nested = spans.is_array() && !spans.empty() && spans[0].is_array();
+    for (const json& span : is_nested ? spans : json::array({spans}))
+      s.electrodes.push_back({.name = name,
+                              .span = span_on(s.length, span),
+                              .far_side = text(*electrode, {"side"}) == "far",
+                              .gap = quantity(at(*electrode, {"gap"}))});
   }
   s.waveforms = members(at(scene, {"waveform"}), [](const json& one) {
     return ResultScene::Waveform{.family = text(one, {"family"}),

@@ -12,8 +12,8 @@ namespace softland {
 /// without a state are empty.
 [[nodiscard]] std::string sweep_csv(const std::vector<SweepPoint>& points);
 
-/// Deflection and capacitance against the voltage, up and down, with the pull-in and the release voltage marked where they are
-/// in the sweep; `of` says of what, in words: "Electrode main of ...".
+/// Deflection and capacitance against the voltage, up and down, with the pull-in voltage marked where it is in the sweep; `of`
+/// says of what, in words: "Electrode main of ...".
 [[nodiscard]] std::string sweep_svg(const std::vector<SweepPoint>& points, const std::string& of, const StaticPullIn& pull_in,
                                     double release);
 

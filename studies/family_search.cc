@@ -83,6 +83,15 @@ void FamilySearch::begin_at(const std::map<std::string, Waveform>& waveforms) {
   }
 }
 
+void FamilySearch::begin_at_point(const std::vector<double>& own) {
+  problem_.starts.insert(problem_.starts.end() - static_cast<std::ptrdiff_t>(setting_.space.starts().size()), own);
+}
+
+std::vector<double> FamilySearch::own(const Evaluation& e) const {
+  const std::span<const double> x = block_.own(e.x);
+  return {x.begin(), x.end()};
+}
+
 std::vector<double> FamilySearch::point(const std::map<std::string, Waveform>& waveforms) const {
   const auto own = setting_.space.parameters(waveforms);
   return own ? block_.point(*own) : std::vector<double>();

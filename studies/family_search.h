@@ -44,6 +44,10 @@ class FamilySearch {
   /// Begins with these waveforms, or with those of the family that differ least from them, before what it would begin with
   /// by itself. Those that it cannot begin with are passed over.
   void begin_at(const std::map<std::string, Waveform>& waveforms);
+  /// Begins at a point of its own before the others.
+  void begin_at_point(const std::vector<double>& own);
+  /// The family's own parameters of a point of all.
+  [[nodiscard]] std::vector<double> own(const Evaluation& e) const;
   /// See TwoStages::run.
   [[nodiscard]] OptimizerResult run(const OptimizerOptions& share, Costs costs, long more, long first_index);
   /// See TwoStages::best.

@@ -21,12 +21,14 @@
 namespace softland {
 namespace {
 
-constexpr std::size_t most_candidates = 8;     // of the search, verified at the most
-constexpr std::size_t most_sure = 4;           // more, where those did not stand up
-constexpr std::size_t most_of_family = 4;      // of each family, where none was confirmed
-constexpr long fewest_for_landings = 1000;     // evaluations, for which landings at rest are worth their seconds
-constexpr double least_for_landings = 60;      // [s], likewise
-constexpr double searching = 0.85;             // of a budget in seconds: the rest is for what verifies the winner
+constexpr std::size_t most_candidates = 8;  // of the search, verified at the most
+constexpr std::size_t most_sure = 4;        // more, where those did not stand up
+constexpr std::size_t most_of_family = 4;   // of each family, where none was confirmed
+constexpr long fewest_for_landings = 1000;  // evaluations, for which landings at rest are worth their seconds
+constexpr double least_for_landings = 60;   // [s], likewise
+// When, in parts of a budget in seconds, the search ends, that with gentler edges, and that by the worst of beams: the rest is
+// for what verifies the winner.
+constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
 constexpr double soft_touch = 0.01;            // of the plain step's impact velocity, at which they touch
 constexpr double distinct = 1.01;              // ratio of the costs of two candidates
 constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
@@ -92,9 +94,8 @@ class Search {
     }
   }
 
-  void begin_at(const std::map<std::string, Waveform>& waveforms) {
-    for (FamilySearch& family : families_) family.begin_at(waveforms);
-  }
+  // Of a search of one family.
+  void begin_at_point(const std::vector<double>& own) { families_.front().begin_at_point(own); }
 
   // Of a piezo and of several drives, which can bring all modes to rest.
   [[nodiscard]] std::vector<std::map<std::string, Waveform>> landings_at_rest() const {
@@ -108,7 +109,7 @@ class Search {
 
   OptimizerResult run() {
     const bool has_own = options_.target.has_own_cost();
-    const double all_seconds = options_.max_seconds - seconds();
+    const double all_seconds = std::max(options_.max_seconds - seconds(), options_.max_seconds / 4);
     if (families_.size() == 1) {
       go_on(0, options_.max_evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, false);
       return all_;
@@ -165,7 +166,7 @@ class Search {
   // Candidates of one family, the best first.
   struct Promising {
     std::size_t family = 0;
-    std::vector<std::map<std::string, Waveform>> waveforms = {};
+    std::vector<std::vector<double>> points = {};  ///< of the family's own parameters
   };
 
   // Of the family that comes up with the best by another cost.
@@ -173,16 +174,16 @@ class Search {
     Promising best;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < families_.size(); ++k) {
-      std::vector<std::pair<double, std::map<std::string, Waveform>>> own;
+      std::vector<std::pair<double, std::vector<double>>> own;
       for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
-        std::map<std::string, Waveform> waveforms = families_[k].waveforms(e);
-        own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, std::move(waveforms));
+        const std::map<std::string, Waveform> waveforms = families_[k].waveforms(e);
+        own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, families_[k].own(e));
       }
-      std::ranges::stable_sort(own, {}, &std::pair<double, std::map<std::string, Waveform>>::first);
+      std::ranges::stable_sort(own, {}, &std::pair<double, std::vector<double>>::first);
       if (own.empty() || !(own.front().first < least)) continue;
       least = own.front().first;
       best = {.family = k};
-      for (auto& [cost, waveforms] : own) best.waveforms.push_back(std::move(waveforms));
+      for (auto& [cost, point] : own) best.points.push_back(std::move(point));
     }
     return best;
   }
@@ -200,10 +201,17 @@ class Search {
   }
 
  private:
+  // With the modes of the scene alone.
+  [[nodiscard]] double own_cost(std::size_t family, const Evaluation& e) const {
+    SearchSetting alone = settings_[family];
+    alone.richer.clear();
+    return alone.price(alone.given.driven(alone.drives(families_[family].waveforms(e)))).own;
+  }
+
   [[nodiscard]] FoundWaveform found(const Evaluation& e) const {
     const std::size_t k = family_of(e);
     return {.text = families_[k].scene(e),
-            .cost = e.value,
+            .cost = settings_[k].richer.empty() ? e.value : own_cost(k, e),
             .family = names_[k],
             .variables = settings_[k].space.variables(),
             .parameters = families_[k].named(e)};
@@ -347,7 +355,7 @@ class SearchBeyondModes {
   long go_on(const Search& search, const std::vector<SearchSetting>& settings, const std::vector<SearchSetting>& gentle) {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
-    if (!begin("searching on with gentler edges", options_.max_evaluations / 2)) return 0;
+    if (!begin("searching on with gentler edges", options_.max_evaluations / 2, end_of_gentle)) return 0;
     Search other(gentle, own_);
     other.begin();
     (void)other.run();
@@ -358,13 +366,13 @@ class SearchBeyondModes {
   /// After a search with gentle edges, or whose drivers have no others; the evaluations.
   long sift(const Search& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
-    if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst))
+    if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
       return evaluations_;
-    const auto [k, waveforms] = search.promising(by_the_worst_of_modes(settings.front()));
+    const auto [k, points] = search.promising(by_the_worst_of_modes(settings.front()));
     const std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
     own_.family = families_of(options_.family)[k];
     Search other(worst, own_);
-    for (const auto& start : waveforms) other.begin_at(start);
+    for (const std::vector<double>& point : points) other.begin_at_point(point);
     (void)other.run();
     other.verify(verified_);
     return evaluations_;
@@ -372,13 +380,14 @@ class SearchBeyondModes {
 
  private:
   // False where there is no time.
-  bool begin(std::string what, long evaluations) {
+  bool begin(std::string what, long evaluations, double end) {
     own_.max_evaluations = std::max(evaluations, 1L);
-    own_.max_seconds = searching * options_.max_seconds - seconds_();
+    own_.max_seconds = end * options_.max_seconds - seconds_();
     own_.on_evaluation = [this, what = std::move(what), begun = evaluations_](const Evaluation&, const OptimizeProgress&) {
       ++evaluations_;
-      if (options_.on_preparation)
-        options_.on_preparation(what, static_cast<double>(evaluations_ - begun) / static_cast<double>(own_.max_evaluations));
+      if (!options_.on_preparation) return;
+      const double searched = static_cast<double>(evaluations_ - begun) / static_cast<double>(own_.max_evaluations);
+      options_.on_preparation(what, std::max(searched, seconds_() / (end_of_worst * options_.max_seconds)));
     };
     return own_.max_seconds > 0 && (options_.stop == nullptr || !*options_.stop);
   }
@@ -416,7 +425,9 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family);
   const bool is_gentle = begins_gently(gentle, options.starts);
   OptimizeOptions in_time = options;
-  in_time.max_seconds = std::max(searching * options.max_seconds - seconds(), options.max_seconds / 4);
+  const bool may_go_on = !with_more_modes(setting.given.scene.device).empty();
+  in_time.max_seconds =
+      std::max((may_go_on ? end_of_search : end_of_worst) * options.max_seconds - seconds(), options.max_seconds / 4);
   Search search(is_gentle ? gentle : settings, in_time);
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
@@ -429,6 +440,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   result.variables = setting.space.variables();
   SearchBeyondModes beyond(options, seconds, verified);
   result.evaluations_of_modes = is_gentle ? beyond.sift(search, gentle) : beyond.go_on(search, settings, gentle);
+  if (options.stop != nullptr && *options.stop) result.search.termination = Termination::interrupted;
   verified.move_to(result);
   result.prefix = prefix_of(options.family, result.family);
   return result;

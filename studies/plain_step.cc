@@ -8,12 +8,15 @@
 namespace softland {
 namespace {
 
-Step step_of(const Prepared& given, const std::string& drive) {
-  const auto found = given.drives.waveforms.find(drive);
-  const double hold = found == given.drives.waveforms.end() ? 0.0 : signal(found->second).hold_level();
+Step step_to(const Prepared& given, const std::string& drive, double level) {
   const auto limits = given.drives.limits.find(drive);
   const double slew = limits == given.drives.limits.end() ? std::numeric_limits<double>::infinity() : limits->second.max_slew;
-  return {.level = hold, .rise_time = std::abs(hold - given.before(drive)) / slew};
+  return {.level = level, .rise_time = std::abs(level - given.before(drive)) / slew};
+}
+
+Step step_of(const Prepared& given, const std::string& drive) {
+  const auto found = given.drives.waveforms.find(drive);
+  return step_to(given, drive, found == given.drives.waveforms.end() ? 0.0 : signal(found->second).hold_level());
 }
 
 }  // namespace
@@ -23,7 +26,7 @@ std::map<std::string, Waveform> plain_step(const Prepared& prepared, Actuator ac
   if (actuator != Actuator::pzt) {
     const std::string electrode = searched_electrode(prepared.scene.device);
     plain[electrode] = step_of(prepared, electrode);
-    for (const std::string& name : braking_electrodes(prepared)) plain[name] = Step{.level = 0};
+    for (const std::string& name : braking_electrodes(prepared)) plain[name] = step_to(prepared, name, 0);
   }
   if (prepared.model.has_piezo()) {
     const std::string piezo(piezo_drive);
@@ -34,7 +37,7 @@ std::map<std::string, Waveform> plain_step(const Prepared& prepared, Actuator ac
       const auto found = waveforms.find(drive);
       return drive != piezo && found != waveforms.end() && !signal(found->second).is_zero();
     });
-    plain[piezo] = alone ? step_of(prepared, piezo) : Step{.level = 0};
+    plain[piezo] = alone ? step_of(prepared, piezo) : step_to(prepared, piezo, 0);
   }
   return plain;
 }

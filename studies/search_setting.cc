@@ -22,7 +22,7 @@ constexpr double latest_touch = 2.5;  // times the baseline's first touch
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
 constexpr double most_broken = 10;         // a condition, by a part of its limit
-constexpr double hopeless = 0.25;          // of the cost of the plain step: what costs more is not tried with richer beams
+constexpr double hopeless = 0.25;          // by the cost of bounce, about 1 of the plain step: not tried with richer beams
 constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
@@ -125,6 +125,7 @@ SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, W
 Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
   Prepared p = prepare_and_choose(SceneFile::parse(file.text(), name));
   p.scene.warnings = given.scene.warnings;
+  p.scene.standing = given.scene.standing;  // of the file in volts all hold levels would count
   return p;
 }
 
@@ -159,7 +160,7 @@ Prices SearchSetting::price(const std::vector<Signal>& signals) const { return w
 Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
   Prices worst = price_of(closing);
   for (const RicherBeam& beam : richer) {
-    if (!(worst.own < hopeless * baseline_cost)) break;
+    if (!(worst.leading < hopeless)) break;
     const Prices other = price_of(RecordedClosing(*this, closing.signals, beam.model, beam.closed_potential));
     worst.leading = std::max(worst.leading, other.leading);
     worst.own = std::max(worst.own, other.own);
@@ -292,6 +293,9 @@ Prepared SearchSetting::within_limits() const {
 
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                              const Watch& watch, std::vector<Criterion> conditions) {
+  for (const Criterion& one : conditions)
+    require(all_figures[one.figure].conditioning != Conditioning::open,
+            [&] { return fmt::format("--constrain \"{}\": a switch that closes has no such figure", one.text); });
   Prepared given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
   require(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr),

@@ -155,7 +155,7 @@ void add_ramp(DriveSearch& s, const Prepared& p, double t0) {
 }
 
 Waveform step_at(const DriveSearch& s, std::span<const double> x) {
-  return Step{.level = s.hold, .rise_time = std::max(x[0], std::abs(s.hold) / s.limits.max_slew)};
+  return Step{.level = s.hold, .rise_time = std::max(x[0], std::abs(s.hold - s.before) / s.limits.max_slew)};
 }
 
 Waveform pulse_at(const DriveSearch& s, std::span<const double> x) {
@@ -178,7 +178,7 @@ Waveform harmonic_at(const DriveSearch& s, std::span<const double> x) {
 
 // Straight lines through these voltages, each of a duration that may be 0, as slow as the driver asks for.
 Waveform broken_line(const DriveSearch& s, std::span<const double> voltages, std::span<const double> durations) {
-  Table table{.time = {0}, .voltage = {0}};
+  Table table{.time = {0}, .voltage = {s.before}};
   for (std::size_t k = 0; k < voltages.size(); ++k) {
     const double rise = std::abs(voltages[k] - table.voltage.back()) / s.limits.max_slew;
     table.time.push_back(table.time.back() + std::max(durations[k], rise));
@@ -225,13 +225,13 @@ Parameters of_harmonic(const DriveSearch&, const Waveform& waveform) {
 }
 
 // Lines that begin with a jump, as all that are searched without a limit of the slew.
-bool begins_with_jump(const Table& table, std::size_t rows) {
-  return table.time.size() == rows && table.time[1] == 0 && table.voltage[0] == 0;
+bool begins_with_jump(const DriveSearch& s, const Table& table, std::size_t rows) {
+  return table.time.size() == rows && table.time[1] == 0 && table.voltage[0] == s.before;
 }
 
 Parameters of_knots(const DriveSearch& s, const Waveform& waveform) {
   const auto& table = std::get<Table>(waveform);
-  if (!begins_with_jump(table, s.count + 2)) return std::nullopt;
+  if (!begins_with_jump(s, table, s.count + 2)) return std::nullopt;
   std::vector<double> x(table.voltage.begin() + 1, table.voltage.end() - 1), parts;
   for (std::size_t k = 2; k < table.time.size(); ++k) parts.push_back(table.time[k] - table.time[k - 1]);
   const double longest = *std::max_element(parts.begin(), parts.end());
@@ -240,9 +240,9 @@ Parameters of_knots(const DriveSearch& s, const Waveform& waveform) {
   return x;
 }
 
-Parameters of_ramp(const DriveSearch&, const Waveform& waveform) {
+Parameters of_ramp(const DriveSearch& s, const Waveform& waveform) {
   const auto& table = std::get<Table>(waveform);
-  if (!begins_with_jump(table, 4)) return std::nullopt;
+  if (!begins_with_jump(s, table, 4)) return std::nullopt;
   return std::vector<double>{table.voltage[1], table.voltage[2], table.time[2], table.time[3] - table.time[2]};
 }
 

@@ -21,7 +21,7 @@ void add_variables(DriveSearch& s, const char* what, const char* unit, std::size
   for (std::size_t k = 1; k <= count; ++k) s.variables.push_back({fmt::format("{}_{}{}", what, k, unit), lower, upper});
 }
 
-double longest_rise(const DriveSearch& s) { return std::abs(s.hold) / s.limits.max_slew; }
+double longest_rise(const DriveSearch& s) { return std::abs(s.hold - s.before) / s.limits.max_slew; }
 
 /// Pulses and pauses in turn, and the edge: levels, durations and pauses are where a point has them.
 struct Train {
@@ -80,7 +80,7 @@ double first_period(const Prepared& p) { return 2 * pi / p.model.angular_frequen
 Waveform pulse_of(const DriveSearch& s, std::span<const double> levels, std::span<const double> durations, double edge) {
   Pulse pulse{.levels = {levels.begin(), levels.end()}, .times = {}, .edge = edge};
   pulse.levels.push_back(s.hold);
-  double steps = std::abs(levels[0]);
+  double steps = std::abs(levels[0] - s.before);
   for (std::size_t k = 0; k < levels.size(); ++k) steps = std::max(steps, std::abs(pulse.levels[k + 1] - pulse.levels[k]));
   pulse.edge = std::max(edge, steps / s.limits.max_slew);
   double time = 0;
@@ -213,7 +213,7 @@ void add_s_curve(DriveSearch& s, const Prepared& p, double t0) {
 
 Waveform s_curve_at(const DriveSearch& s, std::span<const double> x) {
   // Half a cosine is pi / 2 times as steep in its middle as a straight edge.
-  const double rise = std::max(std::abs(x[0]), std::abs(s.hold - x[0])) * pi / 2 / s.limits.max_slew;
+  const double rise = std::max(std::abs(x[0] - s.before), std::abs(s.hold - x[0])) * pi / 2 / s.limits.max_slew;
   const double edge = std::max(x[2], rise * (1 + 1e-12));
   return SCurve{.levels = {x[0], s.hold}, .times = {edge + x[1]}, .edge = edge};
 }
@@ -332,7 +332,7 @@ void add_bspline(DriveSearch& s, const Prepared& p, double t0) {
 Waveform bspline_at(const DriveSearch& s, std::span<const double> x) {
   // The first level comes at once, unless that is too quick for the driver; twice the hold level at the end leaves no corner.
   BSpline spline{.levels = {}, .duration = x.back()};
-  if (std::isfinite(s.limits.max_slew)) spline.levels.push_back(0);
+  if (std::isfinite(s.limits.max_slew)) spline.levels.push_back(s.before);
   spline.levels.insert(spline.levels.end(), x.begin(), x.end() - 1);
   spline.levels.insert(spline.levels.end(), 2, s.hold);
   // The slope is a spline too, which stays below the largest of its own levels.

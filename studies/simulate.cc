@@ -287,7 +287,12 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   if (best.metrics.status == Status::no_contact) {
     if (std::string unstable = unstable_rest(prepared.model, runs.signals()); !unstable.empty())
       c.warnings.push_back(std::move(unstable));
-    if (stays_open(prepared.model, runs.signals(), prepared.duration, watch)) c.metrics.status = Status::open;
+    const bool stays = stays_open(prepared.model, runs.signals(), prepared.duration, watch);
+    if (watch.stopped()) {
+      say_interrupted(c);
+    } else if (stays) {
+      c.metrics.status = Status::open;
+    }
   }
   if (!c.trajectory.is_held && c.metrics.status != Status::open) {
     const std::string unstable = warning(closed_state(prepared, runs.signals()));

@@ -80,7 +80,10 @@ void Verification::move_to(OptimizeResult& result) {
   const Metrics& m = best_->closing.metrics;
   // Where the plain step does not bounce either, what is left to gain is in the cost.
   const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
-  result.better_than_baseline = own < of_step || (own == of_step && result.goal_met && best_->found.cost < result.baseline_cost);
+  // What has not settled can only be better than a plain step that touches and has not settled either.
+  const bool may_be_better = m.settled || (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
+  result.better_than_baseline =
+      may_be_better && (own < of_step || (own == of_step && result.goal_met && best_->found.cost < result.baseline_cost));
   for (const Criterion& one : conditions_) {
     if (softland::broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
   }

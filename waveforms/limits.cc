@@ -18,7 +18,10 @@ std::string violation(const Signal& signal, const DriverLimits& limits) {
   }
   if (!(minimum >= limits.min_voltage - slack)) {
     return fmt::format("the voltage reaches {}{}, below the driver's min_voltage of {}", engineering(minimum, "V"),
-                       minimum == 0 ? " (where every drive starts)" : "", engineering(limits.min_voltage, "V"));
+                       minimum != signal.before() ? ""
+                       : minimum == 0             ? " (where every drive starts)"
+                                                  : " (where it stands before)",
+                       engineering(limits.min_voltage, "V"));
   }
   if (std::isinf(limits.max_slew)) return {};
   const double slew = signal.peak_slew();

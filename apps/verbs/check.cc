@@ -41,7 +41,7 @@ std::string dispersion_words(const Prepared& p, const Watch& watch) {
   const StaticPullIn statically = static_pull_in(p.model, k, bias);
   const auto factor = [](double value) { return plain_number(1 + value, 4); };
   const bool known = std::isfinite(statically.voltage);
-  if (!p.model.rest()) {
+  if (!p.model.rest() || statically.status == Status::collapsed_at_rest) {
     return "no open state: " +
            (known ? fmt::format("closes by itself from {} of its nominal strength on", factor(statically.voltage))
                   : std::string("closes by itself"));

@@ -30,6 +30,7 @@
 #include "reports/made_with.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
+#include "reports/robustness_words.h"
 #include "reports/seeds_report.h"
 #include "reports/text.h"
 #include "studies/limit.h"
@@ -58,19 +59,20 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
     const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
       const EnsembleFigure& figure = ensemble_figure(key);
       const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(&figure - ensemble_figures().data())].quantiles[2];
-      return std::isfinite(q.value) ? quantity(q.value, figure.unit) : std::string("no bound (more than 5 % do not close)");
+      return quantity(q.value, figure.unit);
     };
     const auto words = [&](const DriveRobustness& drive) {
-      return fmt::format("rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
+      if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));
+      return fmt::format("95 % have rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
                          at_95_percent(drive, "largest_impact_velocity_m_s"));
     };
     const DriveRobustness &step = found.drives[0], &own = found.drives[1];
     return "\n" +
-           wrapped(fmt::format(
-               "On {} devices that differ as [spread] says, with the same volts: {} land without a rebound, and 95 % have "
-               "{} (plain step: {}, {}). More: softland robustness {}",
-               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
-               shell_word((place / "best.toml").string()))) +
+           wrapped(fmt::format("On {} devices that differ as [spread] says, with the same volts: {} land without a rebound, and "
+                               "{} (plain step: {}, {}).{} "
+                               "More: softland robustness {}",
+                               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
+                               internal::outside_words(found), shell_word((place / "best.toml").string()))) +
            "\n";
   } catch (const Interrupted&) {
     return {};
@@ -198,9 +200,6 @@ int run_nominal(const Asked& asked) {
     for (const std::string& broken : result.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
   const bool judged = result.best_scene && !interrupted && c.json != "-";
-  if (!c.quiet) {
-    for (const std::string& broken : result.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
-  }
   print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
   return status_of(result);
 }

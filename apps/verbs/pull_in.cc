@@ -76,6 +76,7 @@ void set_bias(Prepared& p, const std::string& assignment) {
   const std::string name = assignment.substr(0, equals);
   const auto drive = std::find(names.begin(), names.end(), name);
   if (drive == names.end()) refuse("no such drive" + internal::hint(name, {names.begin(), names.end()}));
+  if (names.size() == 1) refuse("the scene has no other drive: a bias is what the others stand at");
   const bool is_factor = name == dispersion_drive;
   const Dimension& due = is_factor ? dimension::none : dimension::voltage;
   Quantity given;

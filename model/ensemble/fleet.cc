@@ -168,7 +168,9 @@ std::string why_not_in_lanes(const Switch& model) {
     if (e.fringing != device.electrodes.front().fringing) return "electrodes of different fringing";
     if (!lane_fringing(e.fringing)) return "fringing by bao-2001";
   }
-  if (electrode_conflict(device.structure, device.electrodes)) return "electrodes that overlap";
+  const bool is_plate = device.structure.kind == StructureKind::plate;  // whose electrodes lie over the same points
+  if ((is_plate && device.electrodes.size() > 1) || electrode_conflict(device.structure, device.electrodes))
+    return "electrodes that overlap";
   return {};
 }
 

@@ -95,6 +95,11 @@ TEST(Plan, OfAPlaceVariesAsItIsWritten) {
   PlanRequest of_pads = request({"electrode.main.span[2]=50 %:100 %:2"});
   of_pads.scene.set(R"(electrode.main.span=[["20 um", "60 um"], ["80 um", "tip"]])");
   EXPECT_THROW((void)Plan(of_pads), InvalidInput);
+  PlanRequest beside = request({"gap.contact=1.9 um:2 um:2"});
+  beside.scene.set(R"(electrode.main.span=[["20 um", "60 um"], ["80 um", "tip"]])");
+  const Electrode pads = scene_at(Plan(beside), 0).device.electrodes[0];
+  EXPECT_EQ(pads.begin, Place(20e-6));
+  EXPECT_EQ(pads.further, (std::vector<Span>{{Place(80e-6), Place::share(1)}}));
 }
 
 TEST(Plan, OfAFactorMultipliesTheScenesOwnNumbers) {

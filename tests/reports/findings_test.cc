@@ -89,6 +89,10 @@ TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
 TEST(Headline, SaysWhyThereIsNoClosing) {
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
             "The switch has no stable rest position: it collapses before it is driven.");
+  EXPECT_EQ(sentence({{"kind", "simulate"},
+                      {"status", "collapsed_onto_electrode"},
+                      {"metrics", {{"initial_contact_time_s", nullptr}, {"settled", false}}}}),
+            "The switch is pulled onto an electrode before it touches its contact.");
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_onto_electrode"}}),
             "The switch is pulled through the contact onto the electrode.");
   EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "numerical_failure"}}), "The switch could not be simulated to the end.");

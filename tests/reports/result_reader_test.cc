@@ -23,6 +23,26 @@ TEST(ParseResult, ReadsWhatTheVerbsWrite) {
   EXPECT_EQ(parse_result(result.dump(), "x.json"), result);
 }
 
+// As scenes may write them: by a percentage of the length, up to the tip, and of several pads.
+TEST(ReadResult, KnowsWherePadsLie) {
+  nlohmann::json result = internal::sample_simulate_result(11);
+  nlohmann::json& scene = result["scene"];
+  scene["structure"]["length"] = "250 um";
+  using nlohmann::json;
+  scene["electrode"] = {{"main", {{"span", json::array({json::array({"60 um", "40 %"}), json::array({"150 um", "tip"})})}}}};
+  scene["piezo"] = {{"span", json::array({"2 %", "tip"})}};
+  const ResultScene read = read_result(result).scene;
+  ASSERT_EQ(read.electrodes.size(), 2U);
+  const auto expect = [](const ResultScene::Span& span, double begin, double end) {
+    ASSERT_TRUE(span);
+    EXPECT_DOUBLE_EQ((*span)[0], begin);
+    EXPECT_DOUBLE_EQ((*span)[1], end);
+  };
+  expect(read.electrodes[0].span, 60e-6, 100e-6);
+  expect(read.electrodes[1].span, 150e-6, 250e-6);
+  expect(read.piezo->span, 5e-6, 250e-6);
+}
+
 TEST(ParseResult, RefusesWhatIsNoResult) {
   for (const char* content : {"", "nonsense", "{}", "[]", R"({"kind": 3})", R"({"kind": "effects"})", R"({"kind": "simulate")",
                               "{\"kind\": \"simulate\", \"title\": \"\xff\"}", R"({"kind": "simulate", "seed": 1e999})"}) {

@@ -5,12 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "model/closing.h"
+#include "model/constants.h"
+#include "model/pull_in.h"
 #include "studies/ensemble.h"
 #include "studies/simulate.h"
 #include "tests/studies/scenes.h"
@@ -65,6 +69,25 @@ double pulled_through() {
 }
 
 std::string level(double volts) { return fmt::format("waveform.main.level={:.9g} V", volts); }
+
+// Of a plate in closed form, and up to there it is held: k d + K (d - c) = eps A V^2 / (2 (g - d)^2) has its fold where the left
+// side times (g - d)^2 is most.
+TEST(ClosedState, OfAPlateEndsAtItsFold) {
+  const double k = 42, contact = 312.4, gap = 3.8e-6, plane = 2.6e-6, area = 1e-8;
+  double most = 0;
+  for (int i = 0; i <= 4'000'000; ++i) {
+    const double d = plane + (gap - plane) * i / 4e6;
+    most = std::max(most, (gap - d) * (gap - d) * (k * d + contact * (d - plane)));
+  }
+  const double fold = std::sqrt(2 * most / (vacuum_permittivity * area));
+  const SceneFile file = spring_plate({"contact.stiffness=312.4 N/m", "driver.main.max_voltage=200 V"});
+  const Prepared p = prepare(file);
+  const double found = pull_through_voltage(p.model, 0, std::array{0.9 * fold});
+  EXPECT_NEAR(found, fold, 1e-5 * fold);
+  for (const double share : {0.99, 0.999, 0.9999})
+    EXPECT_TRUE(keeps_closed(p.model, closed_equilibrium(p.model, std::array{share * fold}))) << share;
+  EXPECT_FALSE(closed_equilibrium(p.model, std::array{1.0001 * fold}));
+}
 
 TEST(ClosedState, SmallestEigenvalueIsThatOfDifferences) {
   for (const SceneFile& file :

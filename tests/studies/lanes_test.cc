@@ -168,6 +168,19 @@ TEST(Lanes, LeaveTheRestToOneAtATime) {
   for (const Vectors vectors : vectors_here()) EXPECT_EQ(digits(pressed.close(signals, vectors, 1e-5)), digits(one_by_one));
 }
 
+// All electrodes of a plate lie over the same points.
+TEST(Lanes, AreNotForAPlateOfSeveralElectrodes) {
+  const std::string contact =
+      "contact={model=\"asperity-uniform\", pad_length=\"10 um\", asperity_radius=\"100 nm\", asperity_density=\"1e12 1/m^2\", "
+      "asperity_height=\"100 nm\", effective_modulus=\"48 GPa\"}";
+  const SceneFile one = spring_plate({contact, "structure.width=100 um"});
+  EXPECT_EQ(why_not_in_lanes(prepare(one).model), "");
+  SceneFile two = one;
+  for (const char* change : {"electrode.main.area=5e-9 m^2", "electrode.other.area=4e-9 m^2", "electrode.other.fringing=none"})
+    two.set(change);
+  EXPECT_NE(why_not_in_lanes(prepare(two).model), "");
+}
+
 TEST(Lanes, AreChosenByTheProcessorOrTheUser) {
   ASSERT_EQ(unsetenv("SOFTLAND_VECTORS"), 0);
   EXPECT_EQ(vectors_in_use(), vectors_here().empty() ? Vectors::none : vectors_here().back());

@@ -64,6 +64,20 @@ TEST(GentleEdges, AreThoseOfEveryWaveformOfEveryFamily) {
   EXPECT_TRUE(steeper) << "there is something to be gentle about";
 }
 
+// Also of drives that stand at a voltage before: what a search may try begins there.
+TEST(GentleEdges, BeginWhereADriveStandsBefore) {
+  const SceneFile file =
+      gold_pzt({"waveform.main.before=3 V", "waveform.piezo={family=\"step\", level=\"0 V\", before=\"0.4 V\"}"});
+  const std::vector<SearchSetting> steep = search_settings(file, Target::bounce, Actuator::both, families_with_slew, {});
+  const std::vector<SearchSetting> gentle = with_gentle_edges(steep, Actuator::both, families_with_slew);
+  ASSERT_EQ(gentle.size(), steep.size());
+  for (std::size_t k = 0; k < gentle.size(); ++k) {
+    for (std::uint64_t n = 0; n < 20; ++n)
+      EXPECT_TRUE(gentle[k].is_allowed(gentle[k].space.waveforms(somewhere(gentle[k].space, n))))
+          << families_of(families_with_slew)[k];
+  }
+}
+
 TEST(GentleEdges, AreNotForPlatesNorForDriversThatHaveTheirOwn) {
   const auto gentle_of = [](const SceneFile& file, Actuator actuator) {
     return with_gentle_edges(search_settings(file, Target::bounce, actuator, "pulse", {}), actuator, "pulse");
