@@ -1,6 +1,7 @@
 #include "apps/search_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +68,17 @@ std::string families_in_words(const std::string& families) {
   return words;
 }
 
+// The drives of "knots.main.level_1_V" or "main.level_1_V", each once.
+std::vector<std::string> shaped_in(const std::vector<std::string>& variables) {
+  std::vector<std::string> drives;
+  for (const std::string& name : variables) {
+    const std::size_t end = name.rfind('.'), begin = end == 0 ? 0 : name.rfind('.', end - 1) + 1;
+    std::string drive = name.substr(begin, end - begin);
+    if (std::ranges::find(drives, drive) == drives.end()) drives.push_back(std::move(drive));
+  }
+  return drives;
+}
+
 }  // namespace
 
 PlannedSearch planned_or_known(const Common& c, const OptimizeRequest& request, std::optional<KnownSearch>& known) {
@@ -126,7 +138,9 @@ void SearchRun::begin(const std::vector<std::string>& variables) {
   if (places_ == nullptr) places_ = &own_.emplace(common_, search_, known_, variables);
   search_.options.memory = &places_->evaluations();
   log_.emplace(places_->folder(), variables);
-  if (own_ && !common_.quiet) say(search_words(common_, search_) + fmt::format("; results go to {}", common_.out));
+  if (own_ && !common_.quiet)
+    say(search_words(common_, search_) +
+        fmt::format("; it shapes {}; results go to {}", fmt::join(shaped_in(variables), " and "), common_.out));
 }
 
 void SearchRun::close() {

@@ -51,7 +51,8 @@ std::string derivative_cell(const Derivatives& derivatives, const DriveRobustnes
 }
 
 std::string deviation_cell(const FigureDerivatives& figure, double deviation) {
-  return figure.is_known() ? quantity(deviation, ensemble_figure(figure.key).unit) : "—";
+  const bool none = std::ranges::none_of(figure.by_variable, [](double slope) { return std::isfinite(slope); });
+  return figure.is_known() && !none ? quantity(deviation, ensemble_figure(figure.key).unit) : "—";
 }
 
 // What a derivative says, and what it does not.

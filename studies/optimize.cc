@@ -58,9 +58,11 @@ std::vector<Evaluation> improvements_of(std::vector<Evaluation> log) {
 // One search: its families, and what is told of it while it runs.
 class Search {
  public:
-  Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options)
+  /// `options` may change until on_start has been called; `max_seconds` [s] instead of theirs.
+  Search(const std::vector<SearchSetting>& settings, const OptimizeOptions& options, double max_seconds)
       : settings_(settings),
         options_(options),
+        max_seconds_(max_seconds),
         names_(families_of(options.family)),
         progress_{.baseline_cost = settings.front().baseline_cost} {
     const std::vector<std::string> variables = searched_names(settings, options.family);
@@ -102,14 +104,14 @@ class Search {
     const SearchSetting& setting = settings_.front();
     const std::vector<DriveSearch>& shaped = setting.space.drives();
     const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
-    if (!can_rest || options_.max_evaluations < fewest_for_landings || options_.max_seconds < least_for_landings) return {};
+    if (!can_rest || options_.max_evaluations < fewest_for_landings || max_seconds_ < least_for_landings) return {};
     return softland::landings_at_rest(setting.within_limits(), options_.actuator, soft_touch * setting.scale.step.touch_speed,
                                       {.stop = options_.stop, .progress = options_.on_preparation});
   }
 
   OptimizerResult run() {
     const bool has_own = options_.target.has_own_cost();
-    const double all_seconds = std::max(options_.max_seconds - seconds(), options_.max_seconds / 4);
+    const double all_seconds = std::max(max_seconds_ - seconds(), max_seconds_ / 4);
     if (families_.size() == 1) {
       go_on(0, options_.max_evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, false);
       return all_;
@@ -122,7 +124,7 @@ class Search {
       return all_;
     // Then the own cost, from the best points of every family, with what gradients have counted as well.
     const long rest = options_.max_evaluations - all_.evaluations;
-    if (rest > 0) run_families(rest, options_.max_seconds - seconds(), Costs::own);
+    if (rest > 0) run_families(rest, max_seconds_ - seconds(), Costs::own);
     return all_;
   }
 
@@ -325,6 +327,7 @@ class Search {
 
   const std::vector<SearchSetting>& settings_;
   const OptimizeOptions& options_;
+  double max_seconds_;
   std::vector<std::string> names_;  // of the families
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::deque<FamilySearch> families_;
@@ -356,7 +359,7 @@ class SearchBeyondModes {
     if (!verified_.belongs_to_modes()) return 0;
     if (gentle.empty()) return sift(search, settings);
     if (!begin("searching on with gentler edges", options_.max_evaluations / 2, end_of_gentle)) return 0;
-    Search other(gentle, own_);
+    Search other(gentle, own_, own_.max_seconds);
     other.begin();
     (void)other.run();
     other.verify(verified_);
@@ -371,7 +374,7 @@ class SearchBeyondModes {
     const auto [k, points] = search.promising(by_the_worst_of_modes(settings.front()));
     const std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
     own_.family = families_of(options_.family)[k];
-    Search other(worst, own_);
+    Search other(worst, own_, own_.max_seconds);
     for (const std::vector<double>& point : points) other.begin_at_point(point);
     (void)other.run();
     other.verify(verified_);
@@ -424,11 +427,10 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   setting.check_starts(options.starts);
   const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family);
   const bool is_gentle = begins_gently(gentle, options.starts);
-  OptimizeOptions in_time = options;
   const bool may_go_on = !with_more_modes(setting.given.scene.device).empty();
-  in_time.max_seconds =
+  const double max_seconds =
       std::max((may_go_on ? end_of_search : end_of_worst) * options.max_seconds - seconds(), options.max_seconds / 4);
-  Search search(is_gentle ? gentle : settings, in_time);
+  Search search(is_gentle ? gentle : settings, options, max_seconds);
   search.begin();
   OptimizeResult result{.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline};
   result.baseline_cost = setting.baseline_cost;

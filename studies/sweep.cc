@@ -19,6 +19,8 @@ class SlowSwitch {
 
   SweepPoint follow(double voltage, bool is_up) {
     values_[drive_] = voltage;
+    // Nothing says how a beam comes off an electrode that it has been pulled onto.
+    if (state_ == SweepState::none) return {.voltage = voltage, .is_up = is_up};
     std::optional<Eigen::VectorXd> q;
     const bool was_closed = state_ == SweepState::closed;
     for (const SweepState next :
@@ -65,8 +67,9 @@ std::vector<SweepPoint> static_sweep(const Switch& model, std::size_t drive, Bia
     const double share = static_cast<double>(k) / last;
     points.push_back(slow.follow((1 - share) * range.first + share * range.last, is_up));
   };
-  for (int k = 0; k <= last; ++k) pass(k, true);
-  for (int k = last; k >= 0; --k) pass(k, false);
+  const bool is_up = range.last > range.first;
+  for (int k = 0; k <= last; ++k) pass(k, is_up);
+  for (int k = last; k >= 0; --k) pass(k, !is_up);
   return points;
 }
 

@@ -101,7 +101,7 @@ TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
   const json j = json::parse(o.out);
   EXPECT_EQ(keys(j), (std::set<std::string>{"status", "metrics", "errors", "natural_frequencies_rad_s", "pull_in", "work",
                                             "warnings", "scene", "version", "command", "kind", "title", "tolerance", "made_with",
-                                            "closed_state", "collapse_time_s"}));
+                                            "closed_state", "collapse_time_s", "static_deflection_m", "capacitance_F"}));
   const std::set<std::string> figures{"initial_contact_time_s",
                                       "permanent_contact_time_s",
                                       "bounce_time_s",

@@ -118,7 +118,8 @@ TEST(StaticPullIn, DoesNotDependOnTheScale) {
   // The same beam a thousand times smaller in every length pulls in at the same beta and at the same fraction of its gap.
   Device small = test::device({.modes = converged_modes});
   Structure& s = small.structure;
-  for (double* length : {&s.length, &s.width, &s.thickness, &small.gap.electrode, &small.gap.contact, &small.electrodes[0].end.value}) {
+  for (double* length :
+       {&s.length, &s.width, &s.thickness, &small.gap.electrode, &small.gap.contact, &small.electrodes[0].end.value}) {
     *length /= 1000;
   }
   const StaticPullIn found = static_pull_in(Switch(small), 0);

@@ -72,7 +72,10 @@ TEST(StaticSweep, HasNoStateWhereASceneDescribesNone) {
   const auto points = static_sweep(model, 0, {}, {.first = 0, .last = 120, .points = 13});
   EXPECT_EQ(points[12].state, SweepState::none);
   EXPECT_TRUE(std::isnan(points[12].deflection));
-  EXPECT_EQ(points.back().state, SweepState::open) << "back at 0 V it is open again";
+  EXPECT_EQ(points.back().state, SweepState::none) << "how it comes off is not described";
+  const auto falling = static_sweep(model, 0, {}, {.first = 50, .last = 0, .points = 6});
+  EXPECT_FALSE(falling.front().is_up);
+  EXPECT_TRUE(falling.back().is_up);
   EXPECT_THROW((void)static_sweep(model, 0, {}, {.first = 0, .last = 1, .points = 1}), InvalidInput);
 }
 
