@@ -37,7 +37,9 @@ std::string wanted(const Key& key) {
   }
   std::vector<std::string> examples;
   for (const Dimension& dimension : key.dimensions) examples.push_back(toml_string(key.example_of(dimension)));
-  if (key.type == KeyType::quantities) return fmt::format("a list such as [{0}, {0}]", examples.front());
+  if (key.type == KeyType::quantities)
+    return fmt::format("a list such as [{}, {}]", examples.front(),
+                       key.words.empty() ? examples.front() : toml_string(key.words.front()));
   for (const std::string_view word : key.words) examples.push_back(toml_string(word));
   return fmt::format("{} such as {}", noun(key.dimensions.front()), fmt::join(examples, " or "));
 }

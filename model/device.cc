@@ -235,8 +235,10 @@ std::optional<ElectrodeConflict> electrode_conflict(const Structure& s, const st
         return ElectrodeConflict{
             here[i].electrode,
             plate ? fmt::format("the electrodes of the {} side must not have more area together than the plate", side_name)
-                  : fmt::format("must not overlap electrode.{}, which ends at {} on the {} side too", other,
-                                engineering(taken, "m"), side_name)};
+            : here[i].electrode == here[i - 1].electrode
+                ? fmt::format("its pads must not overlap: one of them ends at {}", engineering(taken, "m"))
+                : fmt::format("must not overlap electrode.{}, which ends at {} on the {} side too", other,
+                              engineering(taken, "m"), side_name)};
       }
       taken = plate ? taken + pad.end - pad.begin : pad.end;
     }

@@ -102,11 +102,14 @@ std::string words_after(const LimitLanding& landing) {
   const Metrics& own = landing.closing.metrics;
   std::string words =
       own.major_bounce_height > 0 ? fmt::format("rebounds up to {}", quantity(own.major_bounce_height, "m")) : "no rebound";
+  std::string others;
   for (const ConfirmingRun& c : landing.checks) {
     if (c.varied == Varied::gas) continue;
     if (c.metrics.bounce_count > 0 || c.metrics.status != Status::done)
-      words += fmt::format(", but with {} up to {}", c.name, quantity(c.metrics.major_bounce_height, "m"));
+      others += fmt::format("{} {} up to {}", others.empty() ? ", but with" : ",", c.name,
+                            quantity(c.metrics.major_bounce_height, "m"));
   }
+  words += others;
   return words;
 }
 

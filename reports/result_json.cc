@@ -169,7 +169,7 @@ void add_search(json& j, const Result& r) {
     const json figures = figures_json(*worst->figures, of_no_drive);
     j["worst"] = {{"name", worst->name}, {"figure", figure}, {"value", figures[std::string(figure)]}};
   }
-  if (r.evaluations_of_modes) j["evaluations_with_more_modes"] = json_number(*r.evaluations_of_modes);
+  if (r.evaluations_of_modes) j["evaluations_with_more_modes"] = std::llround(*r.evaluations_of_modes);
 }
 
 }  // namespace

@@ -161,7 +161,8 @@ TEST(Scene, RefusesSpansThatMakeNoSense) {
   using testing::HasSubstr;
   EXPECT_THAT(reason(R"(["60 um", "101 %"])"), HasSubstr("must end on the beam"));
   EXPECT_THAT(reason(R"(["tip", "240 um"])"), HasSubstr("the end must lie beyond the begin"));
-  EXPECT_THAT(reason(R"([["60 um", "100 um"], ["90 um", "240 um"]])"), HasSubstr("must not overlap electrode.main"));
+  EXPECT_THAT(reason(R"([["60 um", "100 um"], ["90 um", "240 um"]])"),
+              HasSubstr("its pads must not overlap: one of them ends at 100 um"));
   EXPECT_THAT(reason(R"([["60 um", "100 um"], ["110 um"]])"), HasSubstr("value 2: needs 2 values, got 1"));
   EXPECT_THAT(reason(R"([["60 um", "100 um"], "110 um"])"), HasSubstr("value 2: a list of lists holds nothing else"));
   EXPECT_THAT(reason(R"([["60 um", "root"]])"), HasSubstr("value 1: value 2: "));
