@@ -93,6 +93,18 @@ TEST(Program, CalledOptimizeIsThatVerb) {
             "weighted sum such as \"0.7 bounce + 0.3 energy\"\n");
 }
 
+TEST(Robustness, RefusesAResultThatBeginsElsewhere) {
+  const Workplace here;
+  const Outcome o = here.run({"robustness", "gold.toml", "early.toml", "--samples", "4"});
+  EXPECT_EQ(o.status, 2);
+  const std::string gold = shipped("mem-gold.toml");
+  write(here.path() / "early.toml", edited(gold, "level = \"1.25 Vdp\"", "level = \"17 V\"\nbefore = \"3 V\""));
+  const Outcome refused = here.run({"robustness", "gold.toml", "early.toml", "--samples", "4"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err,
+              HasSubstr("early.toml: the drive 'main' stands at 3 V before its waveform, and at 0 V in the scene"));
+}
+
 TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--json", "-"});
