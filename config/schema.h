@@ -21,6 +21,9 @@ namespace softland::internal {
 
 class SectionReader;
 
+/// What may stand for the end of the beam where a place is due.
+inline constexpr std::string_view tip = "tip";
+
 enum class KeyType { text, texts, flag, integer, choice, quantity, quantities };
 
 /// An interval in SI units; an end that is open is not part of it.

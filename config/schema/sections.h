@@ -17,7 +17,6 @@ namespace softland::internal {
 inline constexpr Range any{};
 inline constexpr Range positive{.least = 0, .least_open = true};
 inline constexpr Range not_negative{.least = 0};
-inline constexpr std::string_view tip = "tip";  // the end of the beam
 inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
 inline constexpr Range below_one{.least = 0, .most = 1, .most_open = true};
 

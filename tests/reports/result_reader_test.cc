@@ -25,7 +25,7 @@ TEST(ParseResult, ReadsWhatTheVerbsWrite) {
 
 // As scenes may write them: by a percentage of the length, up to the tip, and of several pads.
 TEST(ReadResult, KnowsWherePadsLie) {
-  nlohmann::json result = internal::sample_simulate_result(11);
+  nlohmann::json result = test::sample_simulate_result(11);
   nlohmann::json& scene = result["scene"];
   scene["structure"]["length"] = "250 um";
   using nlohmann::json;
