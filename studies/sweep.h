@@ -14,7 +14,7 @@ namespace softland {
 enum class SweepState {
   open,
   closed,  ///< on the contact
-  none     ///< no stable equilibrium that a scene describes: the beam is pulled onto the electrode, or there is no contact; so from then on
+  none     ///< no stable equilibrium that a scene describes: the beam is pulled onto the electrode, or there is no contact
 };
 
 struct SweepPoint {

@@ -101,8 +101,7 @@ TEST(Robustness, RefusesAResultThatBeginsElsewhere) {
   write(here.path() / "early.toml", edited(gold, "level = \"1.25 Vdp\"", "level = \"17 V\"\nbefore = \"3 V\""));
   const Outcome refused = here.run({"robustness", "gold.toml", "early.toml", "--samples", "4"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err,
-              HasSubstr("early.toml: the drive 'main' stands at 3 V before its waveform, and at 0 V in the scene"));
+  EXPECT_THAT(refused.err, HasSubstr("early.toml: the drive 'main' stands at 3 V before its waveform, and at 0 V in the scene"));
 }
 
 TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
