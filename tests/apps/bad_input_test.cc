@@ -273,7 +273,7 @@ TEST_F(BadInput, CostsNoEarlierResult) {
   for (const char* name : earlier_files) EXPECT_EQ(read(here->path() / "earlier" / name), "of an earlier search") << name;
 }
 
-TEST_F(BadInput, PlacesToWriteTo) {
+TEST_F(BadInput, PlacesToWriteTo_optimized) {
   expect_refused({
       {{"simulate", "gold.toml", "--out", "/proc/x"}, "--out /proc/x: the folder cannot be created: No such file or directory"},
       {{"optimize", "gold.toml", "--quiet", "--out", "/proc/x"},

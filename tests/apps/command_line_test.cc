@@ -269,7 +269,7 @@ TEST(PullIn, PrintsTheAgreedJson) {
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
 }
 
-TEST(PullIn, SaysAtWhichBiasItsVoltagesAre) {
+TEST(PullIn, SaysAtWhichBiasItsVoltagesAre_optimized) {
   const Workplace here;
   const std::vector<std::string> own{"pull-in", "pzt.toml", "--set", R"(waveform.piezo={family="step",level="0.3 V"})"};
   const Outcome held = here.run(own), given = here.run({"pull-in", "pzt.toml", "--bias", "piezo=0.3 V"});
