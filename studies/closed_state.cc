@@ -12,6 +12,7 @@ ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& si
   ClosedState state;
   if (const auto closed = closed_equilibrium(model, levels)) {
     state.exists = true;
+    state.contact_force = closed->contact_force;
     state.smallest_eigenvalue = closed->smallest_eigenvalue;
     if (judges_stability(model)) state.stable = closed->smallest_eigenvalue > 0;
   }

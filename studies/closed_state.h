@@ -15,6 +15,7 @@ namespace softland {
 struct ClosedState {
   bool exists = false;         ///< an equilibrium with a contact force above zero
   std::optional<bool> stable;  ///< not set: the modes that are kept cannot tell, or there is no such equilibrium
+  double contact_force = std::numeric_limits<double>::quiet_NaN();        ///< there [N]
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();  ///< ClosedEquilibrium::smallest_eigenvalue [rad^2/s^2]
   /// By electrode that pulls towards the contact: voltage from which on the closed switch is pulled through [V]; NaN where there
   /// is none within ten times its hold level.

@@ -31,6 +31,7 @@ constexpr double least_for_landings = 60;   // [s], likewise
 constexpr double end_of_search = 0.6, end_of_gentle = 0.75, end_of_worst = 0.85;
 constexpr double soft_touch = 0.01;            // of the plain step's impact velocity, at which they touch
 constexpr double distinct = 1.01;              // ratio of the costs of two candidates
+constexpr std::size_t families_sifted = 2;     // by the worst of beams
 constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
 constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
 
@@ -168,26 +169,26 @@ class Search {
   // Candidates of one family, the best first.
   struct Promising {
     std::size_t family = 0;
+    double least = std::numeric_limits<double>::infinity();
     std::vector<std::vector<double>> points = {};  ///< of the family's own parameters
   };
 
-  // Of the family that comes up with the best by another cost.
-  [[nodiscard]] Promising promising(const SearchSetting& other) const {
-    Promising best;
-    double least = std::numeric_limits<double>::infinity();
+  // By another cost, of every family that has any; that of the best first.
+  [[nodiscard]] std::vector<Promising> promising(const SearchSetting& other) const {
+    std::vector<Promising> all;
     for (std::size_t k = 0; k < families_.size(); ++k) {
       std::vector<std::pair<double, std::vector<double>>> own;
       for (const Evaluation& e : candidates(improvements_of(families_[k].log()))) {
         const std::map<std::string, Waveform> waveforms = families_[k].waveforms(e);
         own.emplace_back(other.price(other.given.driven(other.drives(waveforms))).own, families_[k].own(e));
       }
+      if (own.empty()) continue;
       std::ranges::stable_sort(own, {}, &std::pair<double, std::vector<double>>::first);
-      if (own.empty() || !(own.front().first < least)) continue;
-      least = own.front().first;
-      best = {.family = k};
-      for (auto& [cost, point] : own) best.points.push_back(std::move(point));
+      all.push_back({.family = k, .least = own.front().first});
+      for (auto& [cost, point] : own) all.back().points.push_back(std::move(point));
     }
-    return best;
+    std::ranges::stable_sort(all, {}, &Promising::least);
+    return all;
   }
 
   // What every family came to.
@@ -369,15 +370,18 @@ class SearchBeyondModes {
   /// After a search with gentle edges, or whose drivers have no others; the evaluations.
   long sift(const Search& search, const std::vector<SearchSetting>& settings) {
     if (!verified_.belongs_to_modes() && !verified_.confirmed()) return evaluations_;
-    if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
-      return evaluations_;
-    const auto [k, points] = search.promising(by_the_worst_of_modes(settings.front()));
-    const std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
-    own_.family = families_of(options_.family)[k];
-    Search other(worst, own_, own_.max_seconds);
-    for (const std::vector<double>& point : points) other.begin_at_point(point);
-    (void)other.run();
-    other.verify(verified_);
+    const std::vector<Search::Promising> all = search.promising(by_the_worst_of_modes(settings.front()));
+    for (std::size_t n = 0; n < std::min(families_sifted, all.size()); ++n) {
+      const auto& [k, least, points] = all[n];
+      if (!begin("searching on by the worst of more modes", options_.max_evaluations / evaluations_of_the_worst, end_of_worst))
+        break;
+      const std::vector<SearchSetting> worst{by_the_worst_of_modes(settings[k])};
+      own_.family = families_of(options_.family)[k];
+      Search other(worst, own_, own_.max_seconds);
+      for (const std::vector<double>& point : points) other.begin_at_point(point);
+      (void)other.run();
+      other.verify(verified_);
+    }
     return evaluations_;
   }
 

@@ -22,7 +22,10 @@ constexpr double latest_touch = 2.5;  // times the baseline's first touch
 constexpr double driven_touch = 1.5, braked_touch = 2.0;
 constexpr double search_tolerance = 1e-6;  // of the integrator: costs good to about 1e-4
 constexpr double most_broken = 10;         // a condition, by a part of its limit
-constexpr double hopeless = 0.25;          // by the cost of bounce, about 1 of the plain step: not tried with richer beams
+// By this the worst of beams counts the touch speed beside the cost of bounce, in which a soft touch is next to nothing: what
+// modes differ in first.
+constexpr double weight_of_speed = 0.04;
+constexpr double hopeless = 0.25;  // by the cost of bounce, about 1 of the plain step: not tried with richer beams
 constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
@@ -159,9 +162,17 @@ Prices SearchSetting::price(const std::vector<Signal>& signals) const { return w
 
 Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
   Prices worst = price_of(closing);
+  if (richer.empty()) return worst;
+  const auto with_speed = [this](Prices prices, const RecordedClosing& run) {
+    if (target.has_own_cost()) return prices;
+    prices.own = prices.leading += weight_of_speed * run.figures.touch_speed / scale.step.touch_speed;
+    return prices;
+  };
+  worst = with_speed(worst, closing);
   for (const RicherBeam& beam : richer) {
     if (!(worst.leading < hopeless)) break;
-    const Prices other = price_of(RecordedClosing(*this, closing.signals, beam.model, beam.closed_potential));
+    const RecordedClosing run(*this, closing.signals, beam.model, beam.closed_potential);
+    const Prices other = with_speed(price_of(run), run);
     worst.leading = std::max(worst.leading, other.leading);
     worst.own = std::max(worst.own, other.own);
     worst.lands = worst.lands && other.lands;

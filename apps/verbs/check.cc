@@ -69,14 +69,13 @@ std::string closed_state_words(const ClosedState& state) {
 }
 
 // How many of the summits touch under the hold levels; empty where they are not of one height distribution to a closed form.
-std::string summits_words(const Prepared& p) {
+std::string summits_words(const Prepared& p, const ClosedState& state) {
   const std::optional<Contact>& contact = p.scene.device.contact;
   if (!contact || contact->model != ContactModel::asperity_uniform) return {};
-  const auto closed = closed_equilibrium(p.model, hold_levels(p.signals()));
-  if (!closed || !std::holds_alternative<UniformAsperityContact>(p.model.contact())) return {};
+  if (!state.exists || !std::holds_alternative<UniformAsperityContact>(p.model.contact())) return {};
   const auto& law = std::get<UniformAsperityContact>(p.model.contact());
   const double all = internal::summits(*contact, p.scene.device.structure.width);
-  const double touching = all * std::min(1.0, law.interference(closed->contact_force) / law.height);
+  const double touching = all * std::min(1.0, law.interference(state.contact_force) / law.height);
   return fmt::format(
       "{} of {} summits touch under the hold levels{}", plain_number(touching, 2), plain_number(all, 3),
       touching < 1 ? ": fewer than one, so that the law, a mean over many of them, says little of one device" : "");
@@ -167,7 +166,7 @@ int check_verb(const Common& c) {
   if (p.model.has_contact()) {
     const ClosedState state = closed_state(p, p.signals());
     add("closed state", closed_state_words(state));
-    if (const std::string summits = summits_words(p); !summits.empty()) add("contact", summits);
+    if (const std::string summits = summits_words(p, state); !summits.empty()) add("contact", summits);
     Trajectory rest;
     set_hold(rest, p.model, p.signals());
     const std::string unstable = warning(state);

@@ -42,11 +42,13 @@ LaneLayout layout_of(const Switch& model) {
                     .piezo = model.has_piezo(),
                     .film = model.gas().has_value()};
   if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
+  std::vector<std::pair<Stretch, int>> pads;  // with the electrode of each
+  for (const Electrode& e : device.electrodes) {
+    for (const Stretch& pad : e.pads(device.structure.length)) pads.emplace_back(pad, to_int(&e - device.electrodes.data()));
+  }
   const auto over = [&](double x) {
-    const auto found = std::ranges::find_if(device.electrodes, [&](const Electrode& e) {
-      return std::ranges::any_of(e.pads(device.structure.length), [&](const Stretch& pad) { return pad.holds(x); });
-    });
-    return found == device.electrodes.end() ? -1 : to_int(found - device.electrodes.begin());
+    const auto found = std::ranges::find_if(pads, [&](const auto& one) { return one.first.holds(x); });
+    return found == pads.end() ? -1 : found->second;
   };
   for (int p = 0; p < layout.points; ++p) {
     const int electrode = over(model.point_positions()[p]);

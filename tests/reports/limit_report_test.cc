@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/studies/scenes.h"
 #include "xml.h"
 
 namespace softland {
@@ -16,32 +17,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 const Limit& of_a_plate() {
-  static const Limit found = limit(SceneFile::parse(R"(
-title = "A plate"
-[structure]
-kind = "plate"
-area = "1e-8 m^2"
-mass = "2.4e-9 kg"
-stiffness = "42 N/m"
-[gap]
-electrode = "3.8 um"
-contact = "2.6 um"
-[electrode.main]
-fringing = "none"
-[contact]
-model = "linear"
-stiffness = "1e5 N/m"
-[waveform.main]
-family = "step"
-level = "100 V"
-[driver.main]
-min_voltage = "0 V"
-max_voltage = "120 V"
-[simulate]
-duration = "300 us"
-)",
-                                                    "plate.toml"),
-                                   {.curves = false});
+  static const Limit found = limit(spring_plate(), {.curves = false});
   return found;
 }
 
