@@ -25,6 +25,9 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kind = "search";
+constexpr const char* raced_families_key = "raced_waveform";  // as it was given
+
+constexpr long share_of_drawing = 5;  // of a budget one part is for the drawing
 
 // What `parse` gives; its complaints name the option.
 template <class Parse>
@@ -71,10 +74,15 @@ std::string word_of(const json& known, const char* key, const std::string& other
   return known.is_object() && found != known.end() && found->is_string() ? found->get<std::string>() : otherwise;
 }
 
+constexpr const char *by_race = "auto", *nominal_alone = "none";
+
+// Whether devices are searched by a measure of the user's.
+bool is_by_measure(const OptimizeRequest& r) { return r.robust != by_race && r.robust != nominal_alone; }
+
 // The families that do best where none is given. Devices that differ want one that is slow and free, or, where each is driven in
 // its own units, a quick one that holds fast.
 std::string waveform_of(const OptimizeRequest& r, const SceneFile& scene) {
-  if (!r.robust.empty()) return r.calibration.empty() || r.calibration == "none" ? "knots" : "catch";
+  if (is_by_measure(r)) return r.calibration.empty() || r.calibration == "none" ? "knots" : "catch";
   const Named<Actuator>* actuator = find_named(actuators, r.actuator);
   return actuator == nullptr ? std::string() : std::string(default_families(shaped_drives(scene, actuator->value)));
 }
@@ -87,7 +95,8 @@ OptimizeRequest with_known(OptimizeRequest r, const json& known, const SceneFile
   fill(r.target, "target", "bounce");
   fill(r.actuator, "actuator", "electrostatic");
   fill(r.optimizer, "optimizer", "auto");
-  fill(r.robust, "robust", "");
+  // A plan that says nothing of devices is of the nominal one.
+  fill(r.robust, "robust", known.is_object() || r.seeds ? nominal_alone : by_race);
   fill(r.calibration, "calibrate", "");
   fill(r.waveform, "waveform", waveform_of(r, scene));
   if (!known.is_object()) return r;
@@ -112,12 +121,46 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request, co
                           .stop = c.stop};
   options.jobs = job_count(request.jobs);
   options.seed = seed_of(request.seed, options.seed);
+  const bool is_nominal = !is_by_measure(request);
   options.max_evaluations =
-      request.robust.empty() ? default_budget(options.target, shaped_drives(scene, options.actuator)) : default_closings;
-  if (request.robust.empty() && !request.budget) options.more_evaluations = options.max_evaluations / 2;
-  if (request.robust.empty()) options.conditions = read_conditions(request, figure_names());
+      is_nominal ? default_budget(options.target, shaped_drives(scene, options.actuator)) : default_closings;
+  if (is_nominal && !request.budget) options.more_evaluations = options.max_evaluations / 2;
+  if (request.robust == nominal_alone) options.conditions = read_conditions(request, figure_names());
   if (request.budget) read_budget(*request.budget, options);
   return options;
+}
+
+// Conditions that name figures of both are for the drawing and for the devices.
+void read_shared_conditions(const OptimizeRequest& request, std::vector<Criterion>& drawing, std::vector<Criterion>& devices) {
+  for (const std::string& text : request.conditions) {
+    read("--constrain", [&] {
+      devices.push_back(parse_criterion(text, conditioned_figures()));
+      return true;
+    });
+    try {
+      drawing.push_back(parse_criterion(text, figure_names()));
+    } catch (const InvalidInput&) {
+      continue;  // a figure of devices alone
+    }
+  }
+}
+
+// The budget is that of everything together: a fifth of it at most is for the drawing.
+ForDevicesOptions read_race_options(const OptimizeRequest& request, OptimizeOptions& options) {
+  ForDevicesOptions race;
+  read_shared_conditions(request, options.conditions, race.conditions);
+  race.verdict = sample_count(request.samples, race.verdict, 100, most_searched);
+  if (!request.budget) return race;
+  if (std::isfinite(options.max_seconds)) {
+    constexpr double usual_seconds = 60, most_lengths = 10;
+    race.closings = static_cast<long>(static_cast<double>(race_closings) *
+                                      std::clamp(options.max_seconds / usual_seconds, 0.25, most_lengths));
+    return race;
+  }
+  const long all = options.max_evaluations;
+  options.max_evaluations = std::max(1L, all / share_of_drawing);
+  race.closings = all - options.max_evaluations;
+  return race;
 }
 
 RobustOptions read_robust_options(const OptimizeRequest& request) {
@@ -137,6 +180,8 @@ std::uint64_t seed_count(const OptimizeRequest& request, const OptimizeOptions& 
   require(count <= most_seeds, [&] { return fmt::format("--seeds {}: must be at most {}", count, most_seeds); });
   require(count - 1 <= std::numeric_limits<std::uint64_t>::max() - options.seed,
           [&] { return fmt::format("--seeds {}: from --seed {} on there are not so many", count, options.seed); });
+  require(count == 1 || request.robust != by_race,
+          "--seeds: is for searches on the nominal device, or over devices by one measure such as --robust cvar:0.9");
   require(count == 1 || !std::isfinite(options.max_seconds), [&] {
     return fmt::format(
         "--budget {}: searches from several seeds are compared at equal effort, so their budget is a number of evaluations",
@@ -199,10 +244,11 @@ json plan_of(const PlannedSearch& search, const OptimizeRequest& request, const 
             {"seed", std::to_string(search.options.seed)},
             {"seeds", std::to_string(search.seeds)}};
   if (!request.conditions.empty()) plan["constrain"] = request.conditions;
-  if (!search.robust) return plan;
+  if (request.robust == nominal_alone) return plan;
   plan["robust"] = request.robust;
   plan["calibrate"] = request.calibration;
-  plan["samples"] = std::to_string(search.robust->samples);
+  if (search.for_devices) plan[raced_families_key] = search.for_devices->families;
+  plan["samples"] = std::to_string(search.robust ? search.robust->samples : search.for_devices->verdict);
   return plan;
 }
 
@@ -236,18 +282,24 @@ PlannedSearch planned(const Common& c, const OptimizeRequest& given, const json&
   const json as_given = given_scene(c, known);
   SceneFile scene = c.scene.empty() ? scene_of(as_given) : load_scene(c);
   const OptimizeRequest request = with_known(given, known, scene);
-  const bool is_robust = !request.robust.empty();
+  const bool is_robust = request.robust != nominal_alone;
   for (const bool of_devices : {!request.calibration.empty(), request.samples.has_value()})
     require(is_robust || !of_devices,
-            "--calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9");
+            "--calibrate and --samples are for a search over devices: they say nothing with --robust none");
   OptimizeOptions options = read_options(c, request, scene);
   std::optional<RobustOptions> robust;
-  if (is_robust) robust = read_robust_options(request);
+  if (is_by_measure(request)) robust = read_robust_options(request);
+  std::optional<ForDevicesOptions> for_devices;
+  if (request.robust == by_race) {
+    for_devices = read_race_options(request, options);
+    for_devices->families = given.waveform.empty() ? word_of(known, raced_families_key, "") : given.waveform;
+  }
   const std::uint64_t seeds = seed_count(request, options);
   if (is_robust) set_calibration(scene, request.calibration);
   PlannedSearch search{.scene = std::move(scene),
                        .options = std::move(options),
                        .robust = std::move(robust),
+                       .for_devices = std::move(for_devices),
                        .conditions = request.conditions,
                        .starts = starting_scenes(request, known),
                        .seeds = seeds,

@@ -10,6 +10,7 @@
 
 #include "apps/options.h"
 #include "config/scene.h"
+#include "studies/for_devices.h"
 #include "studies/optimize.h"
 #include "studies/robust_optimize.h"
 
@@ -18,7 +19,7 @@ namespace softland::apps {
 /// The words of the options; what was not given is empty.
 struct OptimizeRequest {
   std::string target, actuator, waveform, optimizer;
-  std::string robust;                   ///< the measure of a robust search; empty: the nominal device alone
+  std::string robust;                   ///< "auto", "none", or the measure of a search over devices; empty: auto, of one seed
   std::vector<std::string> conditions;  ///< of the winner, or of a robust search
   std::string calibration;              ///< what is measured on every device; empty: what the scene says
   std::optional<std::string> samples;   ///< devices of a robust search
@@ -44,7 +45,8 @@ struct StartingScene {
 struct PlannedSearch {
   SceneFile scene;
   OptimizeOptions options;  ///< with the first of the seeds
-  std::optional<RobustOptions> robust;
+  std::optional<RobustOptions> robust;          ///< of a search over devices by one measure
+  std::optional<ForDevicesOptions> for_devices;  ///< of one that races measures and families
   std::vector<std::string> conditions;  ///< in the words of the options
   std::vector<StartingScene> starts;
   std::uint64_t seeds = 1;

@@ -30,7 +30,8 @@ json plan_in(const fs::path& store) {
 std::int64_t most_evaluations(const PlannedSearch& search) {
   constexpr std::int64_t most = std::int64_t{1} << 24, scouting = 4096;
   const std::int64_t budget = std::min<std::int64_t>(search.options.max_evaluations + search.options.more_evaluations, most);
-  const std::int64_t each = search.robust ? budget / 8 + scouting : budget;
+  const std::int64_t of_race = search.for_devices ? std::min<std::int64_t>(2 * search.for_devices->closings / 8, most) : 0;
+  const std::int64_t each = search.robust ? budget / 8 + scouting : budget + of_race;
   const auto seeds = static_cast<std::int64_t>(search.seeds);
   return each > most / seeds ? most : each * seeds;
 }
@@ -38,7 +39,8 @@ std::int64_t most_evaluations(const PlannedSearch& search) {
 std::vector<std::string> files_of(const PlannedSearch& search) {
   std::vector<std::string> files{"best.toml",      "best.csv",        "report.html",    "gap.svg", "result.json",
                                  "trajectory.csv", "evaluations.csv", evaluations_file, seeds_file};
-  if (search.robust) files.insert(files.end(), robustness_files.begin(), robustness_files.end());
+  if (search.robust || search.for_devices) files.insert(files.end(), robustness_files.begin(), robustness_files.end());
+  if (search.for_devices) files.insert(files.end(), for_devices_files.begin(), for_devices_files.end());
   return files;
 }
 
@@ -137,7 +139,9 @@ void SearchRun::begin(const std::vector<std::string>& variables) {
   preparation_.emplace(common_.quiet, common_.stop);
   if (places_ == nullptr) places_ = &own_.emplace(common_, search_, known_, variables);
   search_.options.memory = &places_->evaluations();
-  log_.emplace(places_->folder(), variables);
+  std::vector<std::string> of_log = variables;  // that of the race is in the store alone
+  std::erase_if(of_log, [](const std::string& name) { return name.starts_with(raced_prefix); });
+  log_.emplace(places_->folder(), of_log);
   if (own_ && !common_.quiet)
     say(search_words(common_, search_) +
         fmt::format("; it shapes {}; results go to {}", fmt::join(shaped_in(variables), " and "), common_.out));
@@ -158,7 +162,9 @@ std::vector<std::string> SearchRun::commands() const {
 std::string search_words(const Common& c, const PlannedSearch& search) {
   const OptimizeOptions& o = search.options;
   const std::string devices =
-      search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text) : std::string();
+      search.robust        ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text)
+      : search.for_devices ? std::string(", then one for devices that differ")
+                           : std::string();
   return fmt::format("{}: searching a {} waveform, actuator {}, target {}{}", c.scene.empty() ? c.out : c.scene,
                      families_in_words(o.family), name_of(actuators, o.actuator), o.target.text(), devices);
 }

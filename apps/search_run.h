@@ -1,6 +1,7 @@
 // One search on its way: the folder it fills, the store of its evaluations, its progress and its log.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +19,9 @@ namespace softland::apps {
 
 /// In the folder of searches from several seeds.
 inline constexpr const char* seeds_file = "seeds.sqlite";
+
+/// What a search for devices leaves besides.
+inline constexpr std::array for_devices_files{"drawing.toml", "drawing.csv", "calibrated.toml", "calibrated.csv"};
 
 /// The search that is gone on with.
 struct KnownSearch {

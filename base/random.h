@@ -32,6 +32,7 @@ enum class Stream : std::uint64_t {
   plan = 15,         ///< the points of an exploration
   offspring = 16,    ///< which members of a population are parents, and how their child differs from them
   hop = 17,          ///< how far a local search begins from the best point
+  race = 18,         ///< the searches of a race over devices
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

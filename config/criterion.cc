@@ -122,11 +122,13 @@ RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure
     std::string_view factor = after("mean+");
     factor.remove_suffix(std::string_view("sigma").size());
     measure.risk = {.kind = RiskKind::mean_sigma, .parameter = number_after(factor, "the factor of sigma", 0, infinite, true)};
+  } else if (text == "yield") {
+    measure.yield = parse_criterion("bounce_count == 0", figures);
   } else if (text.starts_with("yield:")) {
     measure.yield = parse_criterion(after("yield:"), figures);
   } else {
     throw InvalidInput(
-        fmt::format("'{}' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst and "
+        fmt::format("'{}' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst, yield and "
                     "yield:\"bounce_count == 0\"",
                     text));
   }

@@ -10,6 +10,7 @@
 #include "base/printable.h"
 #include "reports/chart.h"
 #include "reports/course.h"
+#include "reports/devices_report.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
 #include "reports/findings.h"
@@ -324,7 +325,7 @@ std::string html_report(const Result& result) {
                .headline_rest = line.rest,
                .doubt = checks_agree(result) ? "" : checks_caption(result),
                .keys = key_numbers(result),
-               .body = drawn_switch(result) + charts(drawn) + figures_table(result) + checks_table(result) +
+               .body = (result.devices ? devices_section(*result.devices) : std::string()) + drawn_switch(result) + charts(drawn) + figures_table(result) + checks_table(result) +
                        seeds_section(result.seeds) + list_of(result.warnings, "Warnings", "warnings") + parameters_table(result) +
                        facts(result) + reproduce(result) + scene(result),
                .style = chart_style(),

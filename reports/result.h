@@ -118,6 +118,42 @@ struct ResultRobust {
   std::vector<Condition> conditions;
 };
 
+/// Of a search for devices, what its waveforms do on fresh ones.
+struct ResultDevices {
+  struct Row {
+    std::string name;                                                     ///< "plain step", "for the drawing", "Vdp to 1 %"
+    double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< of what is measured, relative; NaN: it is not
+    bool searched_for_it = true;
+    double bounce_free = Metrics::unset, open = Metrics::unset, collapsed = Metrics::unset;  ///< shares of the devices
+    std::map<std::string, double> at_95;  ///< 95 % quantiles, by key of ensemble_figures(); infinite where more do not close
+  };
+  struct FrontPoint {
+    double first_touch = Metrics::unset, impact_speed = Metrics::unset, bounce_free = Metrics::unset;
+    std::string candidate;  ///< "bspline:6 by cvar:0.9"
+  };
+  struct Racer {
+    std::string measure, waveform;
+    double closings = Metrics::unset, cost = Metrics::unset, bounce_free = Metrics::unset;
+  };
+  bool spread_assumed = false;
+  std::string spread;  ///< in words
+  double count = Metrics::unset, seed = Metrics::unset, closings = Metrics::unset;
+  std::string measure, waveform;  ///< of the winner; empty where the plain step wins
+  bool better_than_plain_step = false;
+  std::vector<std::string> worse_in;  ///< figures of the best candidate, where the plain step wins
+  std::vector<Row> rows;
+  std::vector<FrontPoint> front;
+  std::vector<Racer> race;
+  std::vector<ResultRobust::Condition> conditions;
+  FigureValues drawing;  ///< of the drawing's waveform on the nominal device
+  std::string drawing_status;
+  bool drawing_goal_met = false;
+  std::string next_command;
+
+  /// Null where there is none of that name.
+  [[nodiscard]] const Row* row(std::string_view name) const;
+};
+
 /// The least time in which any waveform of the same drives and limits touches no faster than the winner.
 struct ResultLimit {
   double least_time = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
@@ -159,6 +195,7 @@ struct Result {
   std::optional<double> evaluations_of_modes;  ///< see OptimizeResult
   ResultSearch search;
   std::optional<ResultRobust> robust;
+  std::optional<ResultDevices> devices;
   std::optional<ResultSeeds> seeds;
   std::optional<ResultLimit> limit;
   std::map<std::string, double> parameters;             ///< of the winner, by drive.name

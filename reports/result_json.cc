@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "reports/devices_report.h"
 #include "reports/findings.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
@@ -149,6 +150,11 @@ void add_search(json& j, const Result& r) {
   if (!r.search.evaluations.empty()) j["search"]["evaluations"] = counted_json(r.search.evaluations);
   j["reproduce"] = r.reproduce;
   if (r.robust) j["robust"] = robust_json(*r.robust);
+  if (r.devices) {
+    j["devices"] = internal::devices_json(*r.devices);
+    j["drawing"] = {{"metrics", with_status(figures_json(r.devices->drawing, every), r.devices->drawing_status)},
+                    {"goal_met", r.devices->drawing_goal_met}};
+  }
   if (r.seeds) j["seeds"] = seeds_json(*r.seeds);
   if (r.limit) {
     j["limit"] = {{"least_time_s", json_number(r.limit->least_time)},

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "integrators/quintic.h"
+#include "reports/devices_report.h"
 #include "reports/made_with.h"
 #include "reports/result_reader.h"
 #include "studies/omissions.h"
@@ -176,6 +177,16 @@ Result result_of(const RobustResult& found, const OptimizeOptions& options, cons
   if (found.yield) r.robust->yield = condition(robust.aim.measure.yield->text, *found.yield, true);
   for (const FulfilledCondition& c : found.conditions)
     r.robust->conditions.push_back(condition(c.condition.text, c.share, c.holds));
+  return r;
+}
+
+Result result_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
+                 const Provenance& provenance) {
+  Result r = result_of(found.best, options, provenance);
+  if (!found.rows.empty()) r.devices = devices_of(found, options, std::move(next_command));
+  if (found.plain_step_wins) r.waveform = "step";
+  if (found.interrupted) r.status = "interrupted";
+  r.search.value_name = "cost, on the nominal device";
   return r;
 }
 

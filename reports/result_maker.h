@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "reports/result.h"
+#include "studies/for_devices.h"
 #include "studies/robust_optimize.h"
 #include "studies/simulate.h"
 
@@ -27,6 +28,10 @@ struct Provenance {
 
 /// The result of a robust search.
 [[nodiscard]] Result result_of(const RobustResult& found, const OptimizeOptions& options, const RobustOptions& robust,
+                               const Provenance& provenance);
+
+/// The result of a search for devices: of the waveform that wins.
+[[nodiscard]] Result result_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command,
                                const Provenance& provenance);
 
 }  // namespace softland

@@ -208,6 +208,56 @@ std::optional<ResultRobust> robust(const json& found) {
   return all;
 }
 
+// A number that is null in JSON where it is infinite.
+double or_infinite(const json& value) {
+  return value.is_null() ? std::numeric_limits<double>::infinity() : number(value);
+}
+
+ResultDevices::Row devices_row(const json& one) {
+  return {.name = text(one, {"name"}),
+          .pull_in_error = number(one, {"knowledge", "Vdp"}),
+          .frequency_error = number(one, {"knowledge", "frequency"}),
+          .searched_for_it = truth(one, {"searched_for_it"}).value_or(true),
+          .bounce_free = number(one, {"bounce_free"}),
+          .open = number(one, {"does_not_close"}),
+          .collapsed = number(one, {"collapsed_onto_electrode"}),
+          .at_95 = members(at(one, {"quantile_95"}), or_infinite)};
+}
+
+std::optional<ResultDevices> devices(const json& result) {
+  const json& found = at(result, {"devices"});
+  if (!found.is_object()) return std::nullopt;
+  ResultDevices d{.spread_assumed = truth(found, {"spread_assumed"}).value_or(false),
+                  .spread = text(found, {"spread"}),
+                  .count = number(found, {"count"}),
+                  .seed = number(found, {"seed"}),
+                  .closings = number(found, {"closings"}),
+                  .measure = text(found, {"chosen", "measure"}),
+                  .waveform = text(found, {"chosen", "waveform"}),
+                  .better_than_plain_step = truth(found, {"better_than_plain_step"}).value_or(false),
+                  .worse_in = texts(at(found, {"worse_in"})),
+                  .rows = each(at(found, {"rows"}), devices_row),
+                  .conditions = each(at(found, {"conditions"}), condition),
+                  .drawing = figures(at(result, {"drawing", "metrics"})),
+                  .drawing_status = text(result, {"drawing", "metrics", "status"}),
+                  .drawing_goal_met = truth(result, {"drawing", "goal_met"}).value_or(false),
+                  .next_command = text(found, {"next_command"})};
+  d.front = each(at(found, {"front"}), [](const json& one) {
+    return ResultDevices::FrontPoint{.first_touch = number(one, {"initial_contact_time_s"}),
+                                     .impact_speed = number(one, {"largest_impact_velocity_m_s"}),
+                                     .bounce_free = number(one, {"bounce_free"}),
+                                     .candidate = text(one, {"candidate"})};
+  });
+  d.race = each(at(found, {"race"}), [](const json& one) {
+    return ResultDevices::Racer{.measure = text(one, {"measure"}),
+                                .waveform = text(one, {"waveform"}),
+                                .closings = number(one, {"closings"}),
+                                .cost = number(one, {"cost"}),
+                                .bounce_free = number(one, {"bounce_free"})};
+  });
+  return d;
+}
+
 ResultSeeds::Search search_of_seed(const json& one) {
   const json& seed = at(one, {"seed"});
   return {.seed = seed.is_number_unsigned() ? seed.get<std::uint64_t>() : 0,
@@ -301,6 +351,7 @@ Result read_result(const json& result) {
                       .best_so_far = points(at(result, {"search", "best_so_far"})),
                       .evaluations = points(at(result, {"search", "evaluations"}))},
            .robust = robust(at(result, {"robust"})),
+           .devices = devices(result),
            .seeds = seeds(at(result, {"seeds"})),
            .limit = limit(at(result, {"limit"})),
            .pull_in = pull_in(at(result, {"pull_in"})),

@@ -7,6 +7,7 @@
 
 #include "base/printable.h"
 #include "reports/course.h"
+#include "reports/devices_report.h"
 #include "reports/figure_text.h"
 #include "reports/findings.h"
 #include "reports/seeds_report.h"
@@ -47,6 +48,10 @@ std::string wrapped(std::string_view paragraph, std::size_t columns) {
 
 std::string text_report(const Result& result) {
   std::string out = wrapped(internal::headline(result).whole()) + "\n\n";
+  if (result.devices) {
+    out += internal::devices_text(*result.devices) + "\n";
+    out += result.devices->better_than_plain_step ? "best.toml on the drawing:\n" : "The plain step on the drawing:\n";
+  }
   const ResultRun &best = result.best, &baseline = result.baseline;
   const auto aligned = [](const std::string& value) { return internal::right_aligned(value, 16); };
   out += result.is_search ? fmt::format("{:<36}{:>16}{:>16}   {}\n", "", "plain step", "found", "change")

@@ -6,28 +6,6 @@
 #include <utility>
 
 namespace softland {
-namespace {
-
-// The memory of a search in all its families, as one of these asks it.
-class MemoryOfFamily final : public EvaluationMemory {
- public:
-  MemoryOfFamily(EvaluationMemory& all, const ParameterBlock& block) : all_(all), block_(block) {}
-
-  std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override { return all_.recall(among_all(key)); }
-  void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override { all_.note(among_all(key), values); }
-
- private:
-  [[nodiscard]] EvaluationKey among_all(EvaluationKey key) const {
-    key.x = block_.point(key.x);
-    return key;
-  }
-
-  EvaluationMemory& all_;
-  const ParameterBlock& block_;
-};
-
-}  // namespace
-
 bool ParameterBlock::holds(std::span<const double> point) const { return !std::isnan(point[begin_]); }
 
 std::vector<double> ParameterBlock::point(std::span<const double> own) const {

@@ -34,6 +34,24 @@ class ParameterBlock {
   std::size_t begin_, size_, all_;
 };
 
+/// The memory of a search in all its families, as one of these asks it.
+class MemoryOfFamily final : public EvaluationMemory {
+ public:
+  MemoryOfFamily(EvaluationMemory& all, const ParameterBlock& block) : all_(all), block_(block) {}
+
+  std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override { return all_.recall(among_all(key)); }
+  void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override { all_.note(among_all(key), values); }
+
+ private:
+  [[nodiscard]] EvaluationKey among_all(EvaluationKey key) const {
+    key.x = block_.point(key.x);
+    return key;
+  }
+
+  EvaluationMemory& all_;
+  const ParameterBlock& block_;
+};
+
 /// Evaluations, points and keys of memory are told in the parameters of all families.
 class FamilySearch {
  public:

@@ -35,6 +35,9 @@ constexpr std::size_t families_sifted = 2;     // by the worst of beams
 constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
 constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
 
+// Of what is kept of the candidates: see Search::tried.
+constexpr std::size_t kept_best = 100, kept_of_ladder = 150, kept_of_family = 15;
+
 // The best of a search's improvements first, each distinctly worse than the one before: neighbours would fail for the same
 // reason.
 std::vector<Evaluation> candidates(const std::vector<Evaluation>& improvements) {
@@ -189,6 +192,27 @@ class Search {
     }
     std::ranges::stable_sort(all, {}, &Promising::least);
     return all;
+  }
+
+  // The best of all candidates that touch, a ladder of those that cost more, and the best of every family.
+  [[nodiscard]] std::vector<TriedWaveform> tried() const {
+    std::vector<Evaluation> all;
+    for (const FamilySearch& family : families_) {
+      for (Evaluation& e : family.log()) {
+        if (e.value < never_touched) all.push_back(std::move(e));
+      }
+    }
+    std::ranges::stable_sort(all, {}, &Evaluation::value);
+    std::vector<TriedWaveform> kept;
+    std::vector<std::size_t> of_family(families_.size(), 0);
+    const std::size_t rung = std::max<std::size_t>(1, all.size() / kept_of_ladder);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::size_t k = family_of(all[i]);
+      if (i >= kept_best && i % rung != 0 && of_family[k] >= kept_of_family) continue;
+      ++of_family[k];
+      kept.push_back({.family = names_[k], .cost = all[i].value, .waveforms = families_[k].waveforms(all[i])});
+    }
+    return kept;
   }
 
   // What every family came to.
@@ -442,6 +466,7 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   Verification verified(setting, options);
   search.verify(verified);
   result.families = search.families();
+  if (options.keep_tried) result.tried = search.tried();
   result.family = result.families.front().family;  // where there is no winner
   result.variables = setting.space.variables();
   SearchBeyondModes beyond(options, seconds, verified);

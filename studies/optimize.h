@@ -56,6 +56,8 @@ struct OptimizeOptions {
   /// Landings that other searches have found: candidates, and first points of this one, as near as a family comes to them. They
   /// must be of the drives that are searched.
   std::vector<StartingWaveforms> starts = {};
+  /// Keep some of the candidates that touch: the best, and those of ever higher cost, of every family.
+  bool keep_tried = false;
   /// What is known of candidates already, and learns of those that are simulated; may be null.
   EvaluationMemory* memory = nullptr;
   /// Set from outside (Ctrl-C): ends the search. The runs that verify and confirm what it found by then are run to their end.
@@ -83,6 +85,13 @@ struct SearchedFamilyResult {
   double cost = std::numeric_limits<double>::quiet_NaN();  ///< the least; NaN where nothing was feasible
 };
 
+/// A candidate that was tried on the nominal device.
+struct TriedWaveform {
+  std::string family;
+  double cost = 0;
+  std::map<std::string, Waveform> waveforms;  ///< of the searched drives [V]
+};
+
 struct OptimizeResult {
   Prepared scene;  ///< as given
   Prepared baseline_scene;
@@ -106,6 +115,7 @@ struct OptimizeResult {
   /// A goal that is met is a success, whatever the plain step does.
   [[nodiscard]] bool is_success() const { return best && (goal_met || better_than_baseline); }
   std::vector<std::string> broken_conditions = {};  ///< by the winner
+  std::vector<TriedWaveform> tried = {};            ///< see OptimizeOptions::keep_tried
 
   /// The winner's value of one of searched_names(); NaN where its family has no such parameter, or there is no winner.
   [[nodiscard]] double parameter(std::string_view name) const;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/executor.h"
+#include "base/random.h"
 #include "model/constants.h"
 #include "sampling/risk.h"
 #include "sampling/statistics.h"
@@ -22,6 +23,17 @@ double over(double value, double of_step) { return of_step > 0 ? value / of_step
 
 double value_of(const DeviceOutcome& outcome, const Criterion& condition) {
   return ensemble_figures()[condition.figure].value(outcome);
+}
+
+// Candidates are ranked by closings of this accuracy at best; the verdict has that of the scene.
+constexpr double ranking_accuracy = 1e-4;
+
+Prepared for_ranking(const Prepared& given) {
+  Prepared coarse = given;
+  coarse.quadrature.points_per_length = std::min(
+      given.quadrature.points_per_length, quadrature_for(ranking_accuracy, given.scene.device.structure.modes).points_per_length);
+  coarse.model = Switch(coarse.scene.device, coarse.quadrature);
+  return coarse;
 }
 
 }  // namespace
@@ -56,6 +68,13 @@ BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::
   run_tasks((ensemble.size() + together - 1) / together, jobs, task, watch.stop);
   watch.throw_if_stopped();
   return built;
+}
+
+BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count, std::uint64_t seed,
+                          std::uint64_t which, int jobs, const Watch& watch) {
+  const std::uint64_t own = random_bits(seed, Stream::fresh, which);
+  const Prepared nominal = for_ranking(setting.given);
+  return build_all(Ensemble(nominal, count, own), known, own, jobs, watch);
 }
 
 RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, BuiltEnsemble ensemble, Vectors vectors)
@@ -152,22 +171,22 @@ double RobustCost::score(const DeviceOutcome& outcome) const {
   return std::isnan(score) ? worst_score : score;
 }
 
-double RobustCost::value(std::span<const DeviceOutcome> outcomes) const {
+double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const {
   std::vector<double> scores, times, of_devices;
   for (const DeviceOutcome& o : outcomes) {
     scores.push_back(std::min(score(o), worst_score));
     times.push_back(o.closed() ? over(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
   }
   double value = 0;
-  if (aim_.measure.yield) {
+  if (aim.measure.yield) {
     const auto good =
-        std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, *aim_.measure.yield); });
+        std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, *aim.measure.yield); });
     value = 1 - static_cast<double>(good) / static_cast<double>(outcomes.size()) + weight_of_scores * sample_mean(scores);
   } else {
-    value = risk(scores, aim_.measure.risk);
+    value = risk(scores, aim.measure.risk);
   }
   value += weight_of_time * sample_quantile(times, 0.5);
-  for (const Criterion& condition : aim_.conditions) {
+  for (const Criterion& condition : aim.conditions) {
     of_devices.clear();
     for (const DeviceOutcome& o : outcomes)
       of_devices.push_back(std::min(condition.violation(value_of(o, condition)), most_violation));

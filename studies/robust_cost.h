@@ -17,6 +17,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,11 @@ struct BuiltEnsemble {
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs,
                                       const Watch& watch = {});
 
+/// Devices of this search alone, built for candidates that are ranked: closings of an accuracy of 1e-4 at best. Which ones they
+/// are depends on `seed` and `which`. Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count,
+                                        std::uint64_t seed, std::uint64_t which, int jobs, const Watch& watch);
+
 class RobustCost {
  public:
   /// Keeps references to `setting` and `aim`. Lanes measure no drive energy: where it is asked for, devices close one by one.
@@ -55,7 +61,9 @@ class RobustCost {
   /// The closings of devices [first, last) under their own drives; `waveforms` are those of the nominal device, one per drive.
   [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                                  int jobs) const;
-  [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const;
+  [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
+  /// By another aim.
+  [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
 
   /// s_k of a device that does not close.
   static constexpr double not_closed = 3;

@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <deque>
 #include <mutex>
 #include <utility>
 
@@ -14,15 +13,12 @@
 #include "base/random.h"
 #include "base/require.h"
 #include "optimizers/sobol.h"
-#include "sampling/statistics.h"
+#include "studies/device_chain.h"
 #include "studies/plain_step.h"
 
 namespace softland {
 namespace {
 
-constexpr std::array<std::size_t, 2> race{8, 32};  // devices at which a candidate may be given up
-constexpr std::size_t remembered = 14;             // candidates that the next one is compared with
-constexpr std::size_t fewest_remembered = 5;
 constexpr int nominal_searches = 2;
 constexpr std::size_t winners_taken = 4;  // of each
 constexpr double scouting_time = 0.05;    // of a budget of time, for each search on the nominal device
@@ -87,11 +83,12 @@ std::uint64_t fresh_seed(std::uint64_t seed, std::uint64_t which) { return rando
 class RobustSearch {
  public:
   /// `step_cost` of the plain step, for the progress.
-  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const OptimizeOptions& options,
+  RobustSearch(const SearchSetting& setting, const RobustCost& cost, const RobustAim& aim, const OptimizeOptions& options,
                const std::function<double()>& clock, double step_cost)
       : setting_(setting),
         cost_(cost),
         options_(options),
+        staged_(setting, cost, aim, options.memory, options.seed),
         scouting_(scouting(options.max_evaluations)),
         variables_(setting.space.variables()),
         clock_(clock),
@@ -147,39 +144,6 @@ class RobustSearch {
   [[nodiscard]] bool out_of_time() const { return elapsed() > options_.max_seconds; }
   [[nodiscard]] bool over() const { return interrupted() || out_of_time(); }
 
-  // The cost on the first `devices`, or on as many as it takes to see that it is more than `hopeless`. Adds to `used` the
-  // closings that this took.
-  double evaluate(const Point& x, std::size_t devices, double hopeless, int jobs, long& used) const {
-    const std::map<std::string, Waveform> searched = setting_.space.waveforms(x);
-    if (!setting_.is_allowed(searched)) return std::numeric_limits<double>::infinity();
-    const EvaluationKey key{.x = x, .devices = devices, .seed = options_.seed, .hopeless = hopeless};
-    if (options_.memory != nullptr) {
-      if (const auto known = options_.memory->recall(key)) {
-        used += known->closings;
-        return known->cost;
-      }
-    }
-    const EvaluationValues found = tried(setting_.drives(searched), devices, hopeless, jobs);
-    if (options_.memory != nullptr) options_.memory->note(key, found);
-    used += found.closings;
-    return found.cost;
-  }
-
-  [[nodiscard]] EvaluationValues tried(const std::vector<Waveform>& drives, std::size_t devices, double hopeless,
-                                       int jobs) const {
-    std::vector<DeviceOutcome> outcomes;
-    EvaluationValues found{.closings = 0};
-    for (const std::size_t stage : {race[0], race[1], devices}) {
-      if (stage > devices || stage <= outcomes.size()) continue;
-      const std::vector<DeviceOutcome> more = cost_.close(drives, outcomes.size(), stage, jobs);
-      found.closings += static_cast<long>(more.size());
-      outcomes.insert(outcomes.end(), more.begin(), more.end());
-      found.cost = cost_.value(outcomes);
-      if (found.cost > hopeless) break;
-    }
-    return found;
-  }
-
   // Notes an evaluation on all devices; `index` orders them whatever the threads.
   void note(long index, const Point& x, double value) {
     const std::scoped_lock lock(mutex_);
@@ -231,19 +195,19 @@ class RobustSearch {
       for (std::size_t i = 0; i < u.size(); ++i) u[i] = variables_[i].lower + u[i] * (variables_[i].upper - variables_[i].lower);
       add(u);
     }
-    for (const std::size_t devices : {std::min(race[0], cost_.devices()), std::min(race[1], cost_.devices()), cost_.devices()}) {
-      std::vector<long> used(all.size(), 0);
+    for (const std::size_t devices : {std::min(stages[0], cost_.devices()), std::min(stages[1], cost_.devices()), cost_.devices()}) {
       const std::size_t begun = run_tasks(
           all.size(), options_.jobs,
           [&](std::size_t i) {
-            all[i].value = evaluate(all[i].x, devices, std::numeric_limits<double>::infinity(), 1, used[i]);
-            closings_ += used[i];
+            const StagedCost::Tried tried = staged_.tried(all[i].x, devices);
+            all[i].value = tried.cost;
+            closings_ += tried.closings;
             devices == cost_.devices() ? note(static_cast<long>(i), all[i].x, all[i].value) : tell();
           },
           options_.stop);
       all.resize(begun);
       std::erase_if(all, [](const Candidate& c) { return !std::isfinite(c.value); });
-      const std::size_t kept = std::min(scouting_.raced, devices == race[0] ? all.size() : 2 * heats[0].searches);
+      const std::size_t kept = std::min(scouting_.raced, devices == stages[0] ? all.size() : 2 * heats[0].searches);
       all = best_apart(std::move(all), kept, variables_);
     }
     next_index_ = static_cast<long>(all.size());
@@ -270,46 +234,32 @@ class RobustSearch {
 
   Candidate search_one(const Candidate& start, const Heat& heat, long share, int jobs, long index, std::uint64_t number) {
     const std::size_t devices = std::min(heat.devices, cost_.devices());
-    Candidate best = start;
-    long used = 0;
-    if (devices < cost_.devices()) best.value = std::numeric_limits<double>::infinity();  // on fewer devices it is another
-    std::deque<double> recent;
-    std::atomic<bool> enough = false;
-    const auto median = [&] {
-      return recent.size() < fewest_remembered ? std::numeric_limits<double>::infinity()
-                                               : sample_quantile(std::vector<double>(recent.begin(), recent.end()), 0.5);
-    };
-    const auto objective = [&](std::span<const double> given) {
-      const Point x(given.begin(), given.end());
-      const long before = used;
-      const double hopeless = median();
-      const double value = evaluate(x, devices, hopeless, jobs, used);
-      closings_ += used - before;
-      if (std::isfinite(value)) recent.push_back(value);
-      if (recent.size() > remembered) recent.pop_front();
-      if (value < best.value) best = {.x = x, .value = value};
+    const auto told = [&](const Point& x, double value, long closings) {
+      closings_ += closings;
       devices == cost_.devices() ? note(index++, x, value) : tell();
-      if (used >= share || interrupted() || elapsed() > heat_end_) enough = true;
-      return value;
+      return interrupted() || elapsed() > heat_end_;
     };
-    static_cast<void>(minimize({.variables = variables_, .objective = objective, .starts = {start.x}},
-                               {.optimizer = "cma-es",
-                                .max_evaluations = share,
-                                .seed = fresh_seed(options_.seed, number),
-                                .step = heat.step,
-                                .stop = &enough}));
-    if (devices < cost_.devices()) {
-      const long before = used;
-      best.value = evaluate(best.x, cost_.devices(), std::numeric_limits<double>::infinity(), jobs, used);
-      closings_ += used - before;
-      note(index++, best.x, best.value);
-    }
+    const ChainEnd end = search_chain(staged_, variables_,
+                                      {.start = start.x,
+                                       .devices = devices,
+                                       .closings = share,
+                                       .step = heat.step,
+                                       .seed = fresh_seed(options_.seed, number),
+                                       .jobs = jobs},
+                                      told);
+    if (devices == cost_.devices()) return end.cost < start.value ? Candidate{.x = end.x, .value = end.cost} : start;
+    Candidate best{.x = end.x.empty() ? start.x : end.x};  // on fewer devices the cost is another
+    const StagedCost::Tried tried = staged_.tried(best.x, cost_.devices(), std::numeric_limits<double>::infinity(), jobs);
+    best.value = tried.cost;
+    closings_ += tried.closings;
+    note(index++, best.x, best.value);
     return best;
   }
 
   const SearchSetting& setting_;
   const RobustCost& cost_;
   const OptimizeOptions& options_;
+  StagedCost staged_;
   Scouting scouting_;
   std::vector<Variable> variables_;
   std::function<double()> clock_;
@@ -323,29 +273,6 @@ class RobustSearch {
   std::map<long, Evaluation> log_;
   OptimizeProgress progress_;
 };
-
-}  // namespace
-
-namespace {
-
-// Candidates are ranked by closings of this accuracy at best; the verdict has that of the scene.
-constexpr double ranking_accuracy = 1e-4;
-
-Prepared for_ranking(const Prepared& given) {
-  Prepared coarse = given;
-  coarse.quadrature.points_per_length = std::min(
-      given.quadrature.points_per_length, quadrature_for(ranking_accuracy, given.scene.device.structure.modes).points_per_length);
-  coarse.model = Switch(coarse.scene.device, coarse.quadrature);
-  return coarse;
-}
-
-// The devices of a search, of the comparison of what it finds, of nothing else: which ones they are depends on the seed.
-BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, const OptimizeOptions& options,
-                          std::uint64_t count, std::uint64_t which, const Watch& watch) {
-  const std::uint64_t seed = fresh_seed(options.seed, which);
-  const Prepared nominal = for_ranking(setting.given);
-  return build_all(Ensemble(nominal, count, seed), known, seed, options.jobs, watch);
-}
 
 // The best of the candidates on devices that none of them was made for.
 Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setting, const RobustCost& others, int jobs) {
@@ -410,7 +337,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
   setting.check_starts(options.starts);
   const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
-  const RobustCost cost(setting, robust.aim, own_devices(setting, known, options, robust.samples, 0, watch));
+  const RobustCost cost(setting, robust.aim, own_devices(setting, known, robust.samples, options.seed, 0, options.jobs, watch));
   RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline}};
   OptimizeResult& out = result.found;
   out.family = options.family;
@@ -420,7 +347,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   if (options.on_start) options.on_start(names);
   out.baseline_cost = cost.value(cost.close(setting.drives({}), 0, cost.devices(), options.jobs));
 
-  RobustSearch search(setting, cost, options, robust.clock, out.baseline_cost);
+  RobustSearch search(setting, cost, robust.aim, options, robust.clock, out.baseline_cost);
   std::vector<Candidate> candidates = search.run();
   result.closings = search.closings();
   out.search.evaluations = search.evaluations();
@@ -433,7 +360,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   try {
     if (out.search.termination != Termination::interrupted)
       winner = compared(std::move(candidates), setting,
-                        RobustCost(setting, robust.aim, own_devices(setting, known, options, selection_devices, 1, watch)),
+                        RobustCost(setting, robust.aim, own_devices(setting, known, selection_devices, options.seed, 1, options.jobs, watch)),
                         options.jobs);
   } catch (const Interrupted&) {
     out.search.termination = Termination::interrupted;

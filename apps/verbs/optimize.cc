@@ -42,42 +42,7 @@ namespace softland::apps {
 namespace {
 
 namespace fs = std::filesystem;
-using internal::percent;
-using internal::quantity;
 using nlohmann::json;
-
-// How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
-// asked to stop.
-std::string on_devices(const Common& c, const Prepared& winner, int jobs, const fs::path& place) {
-  if (winner.scene.spread.empty()) return {};
-  constexpr std::uint64_t devices = 200;
-  try {
-    const WatchedWork work(c.quiet, c.stop);
-    const Robustness found = robustness(winner, {{.name = "found", .waveforms = winner.drives.waveforms}},
-                                        {.samples = devices, .jobs = jobs}, work.watch());
-    if (found.interrupted || found.drives.size() < 2) return {};
-    const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
-      const EnsembleFigure& figure = ensemble_figure(key);
-      const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(&figure - ensemble_figures().data())].quantiles[2];
-      return quantity(q.value, figure.unit);
-    };
-    const auto words = [&](const DriveRobustness& drive) {
-      if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));
-      return fmt::format("95 % have rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
-                         at_95_percent(drive, "largest_impact_velocity_m_s"));
-    };
-    const DriveRobustness &step = found.drives[0], &own = found.drives[1];
-    return "\n" +
-           wrapped(fmt::format("On {} devices that differ as [spread] says, with the same volts: {} land without a rebound, and "
-                               "{} (plain step: {}, {}).{} "
-                               "More: softland robustness {}",
-                               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
-                               internal::outside_words(found), shell_word((place / "best.toml").string()))) +
-           "\n";
-  } catch (const Interrupted&) {
-    return {};
-  }
-}
 
 // Writes what a search has found, and names the files it leaves.
 std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& result, Result& found, const fs::path& place) {
@@ -199,12 +164,56 @@ int run_nominal(const Asked& asked) {
   if (!c.quiet) {
     for (const std::string& broken : result.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
-  const bool judged = result.best_scene && !interrupted && c.json != "-";
-  print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
+  print_result(c, found, left_in(place, left));
   return status_of(result);
 }
 
-int run_search(const Asked& asked) { return asked.search.robust ? run_robust(asked) : run_nominal(asked); }
+void write_scene(ResultFolder& folder, const std::string& name, const Prepared& scene, std::vector<std::string>& left) {
+  folder.write(name + ".toml", scene.scene.file.text());
+  folder.write(name + ".csv", csv(named_signals(scene), scene.duration));
+  left.push_back(name + ".toml");
+  left.push_back(name + ".csv");
+}
+
+// How a device that was measured gets its waveform; empty where there is none for it.
+std::string next_command(const ForDevicesResult& result, const fs::path& place) {
+  if (!result.calibrated) return {};
+  return fmt::format("softland export {} --device-vdp \"{}\"", shell_word((place / "calibrated.toml").string()),
+                     internal::given_quantity(result.pull_in, "V", 4));
+}
+
+int run_for_devices(const Asked& asked) {
+  const Common& c = asked.c;
+  OptimizeOptions& options = asked.search.options;
+  SearchRun run(c, asked.search, asked.known, asked.places);
+  ForDevicesResult result = optimize_for_devices(asked.search.scene, options, *asked.search.for_devices);
+  if (result.interrupted) result.best.search.termination = Termination::interrupted;
+  run.close();
+
+  const fs::path place = run.folder().destination(result.interrupted);
+  Result found = result_of(result, options, next_command(result, place), {.command = c.command});
+  found.limit = limit_of(asked, result.best);
+  std::vector<std::string> left = write_found(run, result.best, found, place);
+  if (result.drawing.best_scene) write_scene(run.folder(), "drawing", *result.drawing.best_scene, left);
+  if (result.calibrated)
+    write_scene(run.folder(), "calibrated", read_back(*result.calibrated, "calibrated.toml", result.drawing.scene), left);
+  if (!result.rows.empty()) {
+    const RobustnessReport report{.nominal = result.varied,
+                                  .found = result.verdict,
+                                  .options = {.samples = asked.search.for_devices->verdict, .seed = options.seed, .jobs = options.jobs},
+                                  .command = c.command};
+    write_robustness(run.folder(), report);
+    left.insert(left.end(), robustness_files.begin(), robustness_files.end());
+  }
+  run.folder().publish(result.interrupted);
+  print_result(c, found, left_in(place, left));
+  const int status = status_of(result.best);
+  return result.plain_step_wins && status == exit_done ? exit_no_success : status;
+}
+
+int run_search(const Asked& asked) {
+  return asked.search.robust ? run_robust(asked) : asked.search.for_devices ? run_for_devices(asked) : run_nominal(asked);
+}
 
 // What there is of searches from several seeds that were asked to stop: --resume goes on with it.
 int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, const ResultSeeds& seeds) {
@@ -291,25 +300,28 @@ void add_optimize(Verb& verb) {
               "drives that the search may shape: " + first_is_default(listed(actuators)));
   verb.option(
       "--waveform", request->waveform, "NAME",
-      "family to search: step, pulse, catch (default with --robust and --calibrate), harmonic, ramp, staircase, knots (default "
-      "with --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines; with a number of levels, knots, "
+      "family to search: step, pulse, catch (default with a measure of --robust and --calibrate), harmonic, ramp, staircase, knots "
+      "(default with a measure of --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines; with a number of levels, knots, "
       "pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, each begun where those before it ended, "
       "of which the best goes on: " +
           fmt::format("{} (default), {} (for both, and electrodes on both sides), {} (for pzt)",
                       default_families(Shaped::electrode), default_families(Shaped::several), default_families(Shaped::piezo)));
   verb.option("--robust", request->robust, "MEASURE",
-              "search for devices that differ as [spread] says, and minimise over them: cvar:0.9 (the mean of the worst tenth), "
-              "quantile:0.95, mean+2sigma, worst or yield:\"bounce_count == 0\"");
+              "devices that differ as [spread] says: auto (default, but for --seeds; where the scene has no [spread] one is "
+              "assumed) searches for the drawing, then races measures and families over devices; none searches for the drawing "
+              "alone; one measure alone: yield (as many devices as possible without a rebound), yield:\"bounce_count == 0\", "
+              "cvar:0.9 (the mean of the worst tenth), quantile:0.95, mean+2sigma, worst");
   verb.repeated(
       "--constrain", request->conditions, "CONDITION",
-      "condition that the winner, or with --robust 95 % of the devices, has to fulfil: \"permanent_contact_time < 60 us\"; "
+      "condition that the winner on the drawing, and 95 % of the devices, have to fulfil: \"permanent_contact_time < 60 us\"; "
       "may be repeated");
   verb.option(
       "--calibrate", request->calibration, "LIST",
       "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
       "errors, \"Vdp:1 %,frequency:0.5 %\"; \"Vdp,frequency in 8 classes\": sorted by it, one waveform for each class; none: "
       "not even what [calibration] says");
-  verb.with_samples(request->samples, "devices that a robust search looks at (default: 128)");
+  verb.with_samples(request->samples,
+                    "devices that a search by one measure looks at (default: 128), or fresh ones of the verdict (default: 2000)");
   verb.option("--optimizer", request->optimizer, "NAME", "auto (default), or another of the names below");
   verb.repeated("--start", request->starts, "FILE",
                 "begin with the waveform of this scene or result (of softland limit, say), which must be of the searched drives; "
@@ -317,9 +329,10 @@ void add_optimize(Verb& verb) {
                 "found, and without --robust the search never ends worse; may be repeated");
   verb.optional("--budget", request->budget, "N|TIME",
                 fmt::format("evaluations, or time (\"90 s\"); default: {} for an electrode, {} for several drives, {} for a "
-                            "piezo, half as much again for {}; with --robust closings of devices, {}",
+                            "piezo, half as much again for {}; and {} closings of devices; with --robust auto all closings together, "
+                            "with a measure closings of devices, {}",
                             default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
-                            default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), default_closings));
+                            default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), race_closings, default_closings));
   verb.with_seed(request->seed, "same result, whatever --jobs is");
   verb.optional("--seeds", request->seeds, "N",
                 "search from N seeds, --seed and those after it, as one study: the best is reported, and how the others spread");

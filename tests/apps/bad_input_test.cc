@@ -98,7 +98,7 @@ TEST_F(BadInput, Options) {
        "The following argument was not expected: --certify (see softland optimize --help)"},
       {{"optimize", "--resume", "--out", "folder"}, "--resume: folder holds no search to go on with"},
       {{"optimize", "gold.toml", "--robust", "wrost"},
-       "--robust wrost: 'wrost' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst and yield:\"bounce_count == "
+       "--robust wrost: 'wrost' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst, yield and yield:\"bounce_count == "
        "0\""},
       {{"optimize", "gold.toml", "--robust", "cvar:2"}, "--robust cvar:2: the level of cvar must be at least 0 and less than 1"},
       {{"optimize", "gold.toml", "--robust", "worst", "--constrain", "t_i < 3 V"},

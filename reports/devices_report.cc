@@ -1,0 +1,275 @@
+#include "reports/devices_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "reports/course.h"
+#include "reports/escape.h"
+#include "reports/figure_text.h"
+#include "reports/json_number.h"
+#include "reports/page.h"
+#include "reports/quantity.h"
+#include "reports/result_json.h"
+#include "reports/robustness_words.h"
+#include "reports/text.h"
+
+namespace softland {
+
+const ResultDevices::Row* ResultDevices::row(std::string_view name) const {
+  const auto found = std::ranges::find(rows, name, &Row::name);
+  return found == rows.end() ? nullptr : &*found;
+}
+
+namespace {
+
+using namespace internal;
+using nlohmann::json;
+
+constexpr double half = 0.5;
+
+// What the table shows of 95 % of the devices.
+struct Column {
+  std::string_view key, heading, short_heading;
+};
+constexpr std::array columns{Column{"largest_impact_velocity_m_s", "impact speed", "impact"},
+                             Column{"major_bounce_height_m", "highest rebound", "rebound"},
+                             Column{"initial_contact_time_s", "first contact", "contact"},
+                             Column{"peak_contact_force_N", "peak force", "force"}};
+
+ResultDevices::Row row_of(const DevicesRow& row, const DriveRobustness& drive) {
+  ResultDevices::Row r{.name = row.name,
+                       .pull_in_error = row.knowledge.pull_in_error.value_or(Metrics::unset),
+                       .frequency_error = row.knowledge.frequency_error.value_or(Metrics::unset),
+                       .searched_for_it = row.searched_for_it,
+                       .bounce_free = drive.bounce_free.value,
+                       .open = 1 - drive.closing.value - drive.collapsed.value,
+                       .collapsed = drive.collapsed.value,
+                       .at_95 = {}};
+  for (std::size_t i = 0; i < drive.figures.size(); ++i)
+    r.at_95[std::string(ensemble_figures()[i].key)] = drive.figures[i].quantiles[2].value;
+  return r;
+}
+
+std::string speed_of(const ResultDevices::Row& row) {
+  const auto found = row.at_95.find(std::string(columns[0].key));
+  return found == row.at_95.end() || !std::isfinite(found->second) ? std::string("∞") : quantity(found->second, "m/s");
+}
+
+std::string figure_name(std::string_view key) {
+  std::string name(ensemble_figure(key).name);
+  if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+  return name;
+}
+
+// "impact speed 95 %"
+std::vector<std::string> cells(const ResultDevices::Row& row) {
+  std::vector<std::string> all{percent(row.bounce_free)};
+  for (const Column& c : columns) {
+    const auto found = row.at_95.find(std::string(c.key));
+    const double value = found == row.at_95.end() ? Metrics::unset : found->second;
+    all.push_back(std::isinf(value)               ? "∞"
+                  : std::isnan(value)             ? "—"
+                  : c.key == "major_bounce_height_m" && value == 0 ? "none"
+                                                  : quantity(value, ensemble_figure(c.key).unit));
+  }
+  all.push_back(percent(std::max(0.0, row.open)));
+  all.push_back(percent(row.collapsed));
+  return all;
+}
+
+std::string front_words(const ResultDevices::FrontPoint& p) {
+  return fmt::format("{}: touch within {} at up to {}, {} without a rebound", p.candidate, quantity(p.first_touch, "s"),
+                     quantity(p.impact_speed, "m/s"), percent(p.bounce_free));
+}
+
+}  // namespace
+
+ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command) {
+  ResultDevices d{.spread_assumed = found.spread_assumed,
+                  .spread = {},
+                  .count = static_cast<double>(found.verdict.devices),
+                  .seed = static_cast<double>(options.seed),
+                  .closings = static_cast<double>(found.closings),
+                  .measure = found.chosen ? found.chosen->measure : "",
+                  .waveform = found.chosen ? found.chosen->family : "",
+                  .better_than_plain_step = !found.plain_step_wins,
+                  .worse_in = {},
+                  .drawing = found.drawing.best ? FigureValues(found.drawing.best->metrics) : FigureValues(),
+                  .drawing_status = found.drawing.best ? std::string(to_string(found.drawing.best->metrics.status)) : "",
+                  .drawing_goal_met = found.drawing.goal_met,
+                  .next_command = std::move(next_command)};
+  d.spread = spread_words(found.varied.scene.spread);
+  for (const std::string_view key : found.worse_in) d.worse_in.emplace_back(key);
+  for (const DevicesRow& row : found.rows) d.rows.push_back(row_of(row, found.verdict.drives[row.drive]));
+  for (const FrontPoint& p : found.front)
+    d.front.push_back({.first_touch = p.first_touch,
+                       .impact_speed = p.impact_speed,
+                       .bounce_free = p.bounce_free,
+                       .candidate = fmt::format("{} by {}", p.waveform, p.measure)});
+  for (const ChosenFrom& one : found.candidates)
+    d.race.push_back({.measure = one.measure,
+                      .waveform = one.family,
+                      .closings = static_cast<double>(one.closings),
+                      .cost = one.tail,
+                      .bounce_free = one.bounce_free});
+  for (const FulfilledCondition& c : found.conditions)
+    d.conditions.push_back({.text = c.condition.text,
+                            .share = c.share.value,
+                            .low = c.share.interval.low,
+                            .high = c.share.interval.high,
+                            .holds = c.holds});
+  return d;
+}
+
+json internal::devices_json(const ResultDevices& d) {
+  json rows = json::array(), front = json::array(), race = json::array(), conditions = json::array();
+  for (const ResultDevices::Row& r : d.rows) {
+    json figures = json::object();
+    for (const auto& [key, value] : r.at_95) figures[key] = json_number(value);
+    rows.push_back({{"name", r.name},
+                    {"knowledge", {{"Vdp", json_number(r.pull_in_error)}, {"frequency", json_number(r.frequency_error)}}},
+                    {"searched_for_it", r.searched_for_it},
+                    {"bounce_free", json_number(r.bounce_free)},
+                    {"does_not_close", json_number(r.open)},
+                    {"collapsed_onto_electrode", json_number(r.collapsed)},
+                    {"quantile_95", std::move(figures)}});
+  }
+  for (const ResultDevices::FrontPoint& p : d.front)
+    front.push_back({{"initial_contact_time_s", json_number(p.first_touch)},
+                     {"largest_impact_velocity_m_s", json_number(p.impact_speed)},
+                     {"bounce_free", json_number(p.bounce_free)},
+                     {"candidate", p.candidate}});
+  for (const ResultDevices::Racer& r : d.race)
+    race.push_back({{"measure", r.measure},
+                    {"waveform", r.waveform},
+                    {"closings", json_number(r.closings)},
+                    {"cost", json_number(r.cost)},
+                    {"bounce_free", json_number(r.bounce_free)}});
+  for (const ResultRobust::Condition& c : d.conditions)
+    conditions.push_back({{"condition", c.text},
+                          {"share", json_number(c.share)},
+                          {"interval", {json_number(c.low), json_number(c.high)}},
+                          {"holds", c.holds}});
+  return {{"spread_assumed", d.spread_assumed},
+          {"spread", d.spread},
+          {"count", json_number(d.count)},
+          {"seed", json_number(d.seed)},
+          {"closings", json_number(d.closings)},
+          {"chosen", {{"measure", d.measure}, {"waveform", d.waveform}}},
+          {"better_than_plain_step", d.better_than_plain_step},
+          {"worse_in", d.worse_in},
+          {"rows", std::move(rows)},
+          {"front", std::move(front)},
+          {"race", std::move(race)},
+          {"conditions", std::move(conditions)},
+          {"next_command", d.next_command}};
+}
+
+std::string internal::drawing_words(const ResultDevices& d) {
+  const double closed = d.drawing[&Metrics::permanent_contact_time], height = d.drawing[&Metrics::major_bounce_height];
+  if (d.drawing_goal_met && std::isfinite(closed))
+    return fmt::format("The waveform for the drawing closes it without a rebound at {}: drawing.toml. ", quantity(closed, "s"));
+  if (!std::isfinite(height)) return "No waveform was found that closes the drawing for good: drawing.toml. ";
+  return fmt::format("The waveform for the drawing leaves rebounds of up to {}: drawing.toml. ", quantity(height, "m"));
+}
+
+std::string internal::devices_headline(const Result& result) {
+  const ResultDevices& d = *result.devices;
+  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices"), *measured = d.row("Vdp to 1 %");
+  if (step == nullptr || own == nullptr) return {};
+  const std::string assumed = d.spread_assumed ? " (assumed, the scene has no [spread]: " + d.spread + ")" : "";
+  if (!d.better_than_plain_step) {
+    std::string figures;
+    for (const std::string& key : d.worse_in) figures += (figures.empty() ? "" : " and ") + figure_name(key);
+    return fmt::format("On devices that differ{}, no waveform that was found is as good as the plain step: the best has a larger {}. "
+                       "best.toml is the plain step.",
+                       assumed, figures);
+  }
+  const std::string lands =
+      own->bounce_free >= half
+          ? fmt::format("{} land without a rebound (plain step {}), and 95 % touch", percent(own->bounce_free),
+                        percent(step->bounce_free))
+          : std::string("95 % touch");
+  std::string words = fmt::format("Of {:.0f} devices that differ{}, {} at no more than {} instead of {}: best.toml.", d.count,
+                                  assumed, lands, speed_of(*own), speed_of(*step));
+  if (measured != nullptr && !d.next_command.empty()) {
+    const bool both_land = measured->bounce_free >= half;
+    words += both_land ? fmt::format(" With Vdp measured to 1 % on each, {} land without a rebound: calibrated.toml.",
+                                     percent(measured->bounce_free))
+                       : fmt::format(" With Vdp measured to 1 % on each, 95 % touch at no more than {}: calibrated.toml.",
+                                     speed_of(*measured));
+  }
+  return words;
+}
+
+std::string internal::devices_text(const ResultDevices& d) {
+  if (d.rows.empty()) return {};
+  constexpr std::size_t label = 26, width = 12;
+  std::string out = left_aligned(fmt::format("On {:.0f} devices, 95 % below", d.count), label);
+  std::vector<std::string> heads{"no rebound"};
+  for (const Column& c : columns) heads.emplace_back(c.short_heading);
+  heads.insert(heads.end(), {"stay open", "pulled in"});
+  for (const std::string& head : heads) out += right_aligned(head, width);
+  out += "\n";
+  for (const ResultDevices::Row& row : d.rows) {
+    out += left_aligned(row.name, label);
+    for (const std::string& cell : cells(row)) out += right_aligned(cell, width);
+    out += "\n";
+  }
+  if (!d.measure.empty())
+    out += "\n" + wrapped(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.", d.waveform,
+                                      d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread)) +
+           "\n";
+  if (d.front.size() > 1) {
+    out += "\nSooner or softer, of 95 % of the devices:\n";
+    for (const ResultDevices::FrontPoint& p : d.front) out += "  " + front_words(p) + "\n";
+  }
+  for (const ResultRobust::Condition& c : d.conditions)
+    out += "\n" +
+           wrapped(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
+                               percent(c.share))) +
+           "\n";
+  if (!d.next_command.empty())
+    out += "\n" + wrapped(fmt::format("For a device whose Vdp was measured: {}", d.next_command)) + "\n";
+  return out;
+}
+
+std::string internal::devices_section(const ResultDevices& d) {
+  if (d.rows.empty()) return {};
+  TableRow head{"Waveform", "Without a rebound"};
+  for (const Column& c : columns) head.emplace_back(capitalised(std::string(c.heading)));
+  head.insert(head.end(), {"Stay open", "Pulled onto the electrode"});
+  std::vector<TableRow> rows;
+  for (const ResultDevices::Row& row : d.rows) {
+    const std::string name = std::isnan(row.pull_in_error) ? row.name : "with " + row.name;
+    TableRow& cell = rows.emplace_back(TableRow{escaped(capitalised(name))});
+    const bool is_own = row.name == "for the devices";
+    for (const std::string& one : cells(row)) {
+      if (is_own) {
+        cell.emplace_back(escaped(one), "own");
+      } else {
+        cell.emplace_back(escaped(one));
+      }
+    }
+  }
+  std::string body = fmt::format("<p>{:.0f} fresh devices: {}.{} Figures are those that 95 % of the devices stay below.</p>\n", d.count,
+                                 escaped(d.spread), d.spread_assumed ? " The scene has no [spread]: this one is assumed." : "");
+  body += table_html(head, rows);
+  if (d.front.size() > 1) {
+    body += "<p>Sooner or softer: what 95 % of the devices reach with the other candidates.</p>\n<ul>\n";
+    for (const ResultDevices::FrontPoint& p : d.front) body += "<li>" + escaped(front_words(p)) + "</li>\n";
+    body += "</ul>\n";
+  }
+  if (!d.next_command.empty())
+    body += fmt::format("<p>For a device whose Vdp was measured: <code>{}</code></p>\n", escaped(d.next_command));
+  body += "<p>More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by figure.</p>\n";
+  return section("devices", "On devices that differ", body);
+}
+
+}  // namespace softland

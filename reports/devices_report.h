@@ -1,0 +1,30 @@
+// What a search for devices came to: the first words, the table that stands before all others, and the front of closing time
+// against impact speed; as text, as HTML and as JSON both ways.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "reports/result.h"
+#include "studies/for_devices.h"
+
+namespace softland {
+
+/// `next_command`: how a measured device gets its waveform; empty where it cannot.
+[[nodiscard]] ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command);
+
+namespace internal {
+
+[[nodiscard]] nlohmann::json devices_json(const ResultDevices& devices);
+
+/// What the waveform for the drawing does there, with a blank at the end.
+[[nodiscard]] std::string drawing_words(const ResultDevices& devices);
+/// What the waveforms for devices do there, in one or two sentences.
+[[nodiscard]] std::string devices_headline(const Result& result);
+/// The table for a terminal, and the front.
+[[nodiscard]] std::string devices_text(const ResultDevices& devices);
+/// The same for a page.
+[[nodiscard]] std::string devices_section(const ResultDevices& devices);
+
+}  // namespace internal
+}  // namespace softland

@@ -1,0 +1,525 @@
+#include "studies/for_devices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "base/executor.h"
+#include "config/assumed_spread.h"
+#include "sampling/statistics.h"
+#include "studies/family_search.h"
+#include "studies/modes_of_search.h"
+#include "studies/plain_step.h"
+#include "studies/worse_than_step.h"
+
+namespace softland {
+namespace {
+
+constexpr std::uint64_t devices_of_choice = 512;
+constexpr std::size_t scouted_on = 16, ranked_on = 64;  // devices: candidates of the nominal search
+constexpr std::size_t kept_of_scouted = 24;             // by either measure
+constexpr std::size_t most_of_ranked = 2;               // by either measure
+constexpr std::size_t most_of_race = 3;                 // by either measure
+constexpr std::size_t most_judged = 3;                  // winners, until one is not worse than the plain step
+constexpr std::size_t most_of_front = 6;
+constexpr double lands_half = 0.5;
+constexpr double most_times = 5, most_times_of_landings = 7;  // the plain step's closing time, of 95 %
+constexpr double margin = 0.98;                               // of the step's figures, in the choice
+constexpr double more_open = 0.005;                           // of the devices
+constexpr double ranked_by_share = 0.25;                      // of the devices land without a rebound
+constexpr std::uint64_t measured_devices = 128;               // of a search in measured units
+constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
+constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
+constexpr double end_of_drawing = 0.35, end_of_race = 0.75;  // of a budget of time
+
+constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing", *for_the_devices = "for the devices";
+
+double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) {
+  std::vector<double> values;
+  for (const DeviceOutcome& o : outcomes) values.push_back(ensemble_figure(key).value(o));
+  return sample_quantile(values, 0.95);
+}
+
+double share_of(const std::vector<DeviceOutcome>& outcomes, bool (*holds)(const DeviceOutcome&)) {
+  return static_cast<double>(std::ranges::count_if(outcomes, holds)) / static_cast<double>(outcomes.size());
+}
+bool closes(const DeviceOutcome& o) { return o.closed(); }
+
+// What the choice asks of a candidate beside its rank.
+struct Bounds {
+  std::array<double, judged_figures.size()> figures;  // 95 % quantiles of the plain step
+  double first_touch, open;                             // likewise, and its share of devices that do not close
+
+  explicit Bounds(const std::vector<DeviceOutcome>& step)
+      : first_touch(quantile_95(step, "initial_contact_time_s")), open(1 - share_of(step, closes)) {
+    for (std::size_t i = 0; i < figures.size(); ++i) figures[i] = quantile_95(step, judged_figures[i]);
+  }
+  [[nodiscard]] bool keeps(const std::vector<DeviceOutcome>& own, double significant) const {
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+      const double value = quantile_95(own, judged_figures[i]);
+      if (judged_figures[i] == "major_bounce_height_m" && value <= significant) continue;
+      if (value > margin * figures[i]) return false;
+    }
+    if (1 - share_of(own, closes) > open + more_open) return false;
+    const double times = share_of(own, is_bounce_free) >= lands_half ? most_times_of_landings : most_times;
+    return !std::isfinite(first_touch) || quantile_95(own, "initial_contact_time_s") <= times * first_touch;
+  }
+};
+
+// A memory of the nominal search, whose parameters are the first of all.
+class MemoryOfFirst final : public EvaluationMemory {
+ public:
+  MemoryOfFirst(EvaluationMemory& all, std::size_t size) : all_(all), size_(size) {}
+  std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override { return all_.recall(among_all(key)); }
+  void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override { all_.note(among_all(key), values); }
+
+ private:
+  [[nodiscard]] EvaluationKey among_all(EvaluationKey key) const {
+    key.x.resize(size_, std::numeric_limits<double>::quiet_NaN());
+    return key;
+  }
+  EvaluationMemory& all_;
+  std::size_t size_;
+};
+
+// The settings of the families that the scene has room for, and their names joined by +.
+std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneFile& file, const OptimizeOptions& options,
+                                                                    const std::string& wanted, const Watch& watch) {
+  const bool chosen = !wanted.empty();
+  const std::vector<std::string> names = families_of(chosen ? wanted : std::string(raced_families));
+  if (chosen) return {search_settings(file, options.target, options.actuator, wanted, watch), wanted};
+  std::vector<SearchSetting> settings{search_setting(file, options.target, options.actuator, names.front(), watch)};
+  std::string kept = names.front();
+  for (std::size_t k = 1; k < names.size(); ++k) {
+    try {
+      SearchSpace space(settings.front().given, options.actuator, names[k], settings.front().scale.step.first_touch);
+      settings.push_back(settings.front());
+      settings.back().space = std::move(space);
+      kept += "+" + names[k];
+    } catch (const InvalidInput&) {
+      continue;
+    }
+  }
+  return {std::move(settings), kept};
+}
+
+class DevicesStudy {
+ public:
+  DevicesStudy(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices)
+      : file_(file), options_(options), devices_(devices), watch_{.stop = options.stop, .progress = options.on_preparation} {
+    SceneFile varied = file;
+    spread_assumed_ = assume_spread(varied);
+    auto [settings, families] = settings_of_race(varied, options, devices.families, watch_);
+    const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, families);
+    settings_ = begins_gently(gentle, options.starts) ? gentle : std::move(settings);
+    names_ = families_of(families);
+    known_ = known_units(first().given, std::array{first().given.scene.calibration}, options.jobs, watch_).front();
+    raced_names_ = searched_names(settings_, families);
+  }
+
+  ForDevicesResult run() {
+    drawing_options_ = options_of_drawing();
+    OptimizeResult drawing = optimize(file_, drawing_options_);
+    result_.emplace(ForDevicesResult{.varied = first().given, .drawing = drawing, .best = std::move(drawing), .spread_assumed = spread_assumed_});
+    if (!result_->drawing.best_scene || stopped()) return interrupted_here();
+    try {
+      search_devices();
+      judge();
+    } catch (const Interrupted&) {
+      return interrupted_here();
+    }
+    result_->interrupted = stopped();
+    return *std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] const SearchSetting& first() const { return settings_.front(); }
+  [[nodiscard]] bool stopped() const { return options_.stop != nullptr && *options_.stop; }
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+  void tell(std::string_view what, double part) const {
+    if (options_.on_preparation) options_.on_preparation(what, part);
+  }
+  ForDevicesResult interrupted_here() {
+    result_->interrupted = stopped();
+    return *std::move(result_);
+  }
+
+  // The nominal search keeps what devices may do better with, and tells of its parameters among those of all searches.
+  OptimizeOptions options_of_drawing() {
+    OptimizeOptions own = options_;
+    own.keep_tried = true;
+    if (std::isfinite(own.max_seconds)) own.max_seconds = end_of_drawing * own.max_seconds - seconds();
+    own.max_seconds = std::max(own.max_seconds, 1e-3);
+    own.on_start = [this](const std::vector<std::string>& names) {
+      std::vector<std::string> all = names;
+      for (const std::string& name : raced_names_) all.push_back(std::string(raced_prefix) + name);
+      first_ = names.size();
+      if (options_.on_start) options_.on_start(all);
+      if (options_.memory == nullptr) return;  // which may be there from now on only
+      memory_of_drawing_.emplace(*options_.memory, all.size());
+      drawing_options_.memory = &*memory_of_drawing_;
+    };
+    return own;
+  }
+
+  void search_devices() {
+    tell("building devices", 0);
+    cost_.emplace(first(), tail_aim_, own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
+    const std::vector<DeviceOutcome> step = closed(*cost_, {}, cost_->devices());
+    make_aims(quantile_95(step, "initial_contact_time_s"));
+    std::vector<ChosenFrom> pool = ranked_again();
+    tell("searching for the devices", 0);
+    RaceResult raced = race(settings_, *cost_, aims_, {result_drawing_waveforms()}, race_options());
+    result_->closings += raced.closings;
+    watch_.throw_if_stopped();
+    for (const bool by_share : {false, true}) {
+      std::ranges::stable_sort(raced.racers, {}, [&](const Racer& r) { return by_share ? r.share : r.tail; });
+      for (std::size_t i = 0; i < std::min(most_of_race, raced.racers.size()); ++i) add(pool, candidate_of(raced.racers[i]));
+    }
+    choose(std::move(pool));
+  }
+
+  [[nodiscard]] std::map<std::string, Waveform> result_drawing_waveforms() const {
+    return first().space.searched(result_->drawing.best_scene->drives.waveforms);
+  }
+
+  void make_aims(double step_time) {
+    const std::vector<FigureName> figures = conditioned_figures();
+    tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = devices_.conditions};
+    aims_ = {.tail = tail_aim_,
+             .share = {.measure = parse_robust_measure("yield", figures), .conditions = devices_.conditions}};
+    if (!std::isfinite(step_time)) return;
+    const auto bound = [&](double times) {
+      return parse_criterion(fmt::format("initial_contact_time < {:.17g} s", times * step_time), figures);
+    };
+    aims_.tail.conditions.push_back(bound(most_times));
+    aims_.share.conditions.push_back(bound(most_times_of_landings));
+  }
+
+  RaceOptions race_options() {
+    return {.closings = devices_.closings,
+            .seed = options_.seed,
+            .jobs = options_.jobs,
+            .stop = options_.stop,
+            .memory = options_.memory,
+            .first = first_,
+            .all = first_ + raced_names_.size(),
+            .out_of_time = [this] { return seconds() > end_of_race * options_.max_seconds; },
+            .progress = [this](double part) { tell("searching for the devices", part); }};
+  }
+
+  std::vector<DeviceOutcome> closed(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms,
+                                    std::size_t devices) {
+    result_->closings += static_cast<long>(devices);
+    return cost.close(first().drives(waveforms), 0, devices, options_.jobs);
+  }
+
+  // Of what the nominal search has tried the best on devices.
+  std::vector<ChosenFrom> ranked_again() {
+    std::vector<ChosenFrom> all;
+    for (TriedWaveform& one : result_->drawing.tried)
+      all.push_back({.measure = "drawing", .family = one.family, .waveforms = std::move(one.waveforms), .parameters = {}, .variables = {}});
+    result_->drawing.tried.clear();
+    all = best_on(std::move(all), scouted_on, kept_of_scouted);
+    all = best_on(std::move(all), ranked_on, most_of_ranked);
+    ChosenFrom drawing{.measure = "drawing",
+                       .family = result_->drawing.family,
+                       .waveforms = result_drawing_waveforms(),
+                       .parameters = result_->drawing.parameters,
+                       .variables = result_->drawing.variables};
+    all.insert(all.begin(), std::move(drawing));
+    return all;
+  }
+
+  // The best `kept` by either measure.
+  std::vector<ChosenFrom> best_on(std::vector<ChosenFrom> all, std::size_t devices, std::size_t kept) {
+    struct Ranked {
+      double tail, share;
+      std::size_t number;
+    };
+    std::vector<Ranked> ranked(all.size());
+    run_tasks(
+        all.size(), options_.jobs,
+        [&](std::size_t i) {
+          const std::vector<DeviceOutcome> outcomes = cost_->close(first().drives(all[i].waveforms), 0, devices, 1);
+          ranked[i] = {cost_->value(outcomes, aims_.tail), cost_->value(outcomes, aims_.share), i};
+        },
+        options_.stop);
+    watch_.throw_if_stopped();
+    result_->closings += static_cast<long>(all.size() * devices);
+    std::vector<ChosenFrom> best;
+    std::vector<bool> taken(all.size(), false);
+    for (const bool by_share : {false, true}) {
+      std::ranges::stable_sort(ranked, {}, [&](const Ranked& r) { return by_share ? r.share : r.tail; });
+      for (std::size_t i = 0; i < std::min(kept, ranked.size()); ++i) {
+        if (taken[ranked[i].number]) continue;
+        taken[ranked[i].number] = true;
+        best.push_back(all[ranked[i].number]);
+      }
+    }
+    return best;
+  }
+
+  [[nodiscard]] ChosenFrom candidate_of(const Racer& racer) const {
+    ChosenFrom c{.measure = racer.measure,
+                 .family = names_[racer.family],
+                 .waveforms = racer.waveforms,
+                 .parameters = {},
+                 .variables = settings_[racer.family].space.variables(),
+                 .closings = racer.closings};
+    for (std::size_t i = 0; i < racer.x.size(); ++i) c.parameters[c.variables[i].name] = racer.x[i];
+    return c;
+  }
+
+  static void add(std::vector<ChosenFrom>& pool, ChosenFrom one) {
+    const bool there = std::ranges::any_of(pool, [&](const ChosenFrom& other) {
+      return other.family == one.family && other.parameters == one.parameters && !one.parameters.empty();
+    });
+    if (!there) pool.push_back(std::move(one));
+  }
+
+  // Of the candidates those that are good enough, the best first, then the others.
+  void choose(std::vector<ChosenFrom> pool) {
+    tell("choosing on other devices", 0);
+    const RobustCost others(first(), tail_aim_,
+                            own_devices(first(), *known_, devices_of_choice, options_.seed, which_chosen, options_.jobs, watch_));
+    const Bounds bounds(closed(others, {}, others.devices()));
+    struct Placed {
+      ChosenFrom candidate;
+      bool keeps, lands_half;
+      double rank;
+    };
+    std::vector<Placed> placed;
+    for (ChosenFrom& one : pool) {
+      watch_.throw_if_stopped();
+      const std::vector<DeviceOutcome> outcomes = closed(others, one.waveforms, others.devices());
+      one.bounce_free = share_of(outcomes, is_bounce_free);
+      one.tail = others.value(outcomes, aims_.tail);
+      one.first_touch = quantile_95(outcomes, "initial_contact_time_s");
+      one.impact_speed = quantile_95(outcomes, "largest_impact_velocity_m_s");
+      const bool lands = one.bounce_free >= lands_half;
+      placed.push_back({one, bounds.keeps(outcomes, first().given.scene.metrics.significant_rebound), lands,
+                        lands ? -one.bounce_free : one.tail});
+    }
+    std::ranges::stable_sort(placed, [](const Placed& a, const Placed& b) {
+      if (a.keeps != b.keeps) return a.keeps;
+      if (a.lands_half != b.lands_half) return a.lands_half;
+      return a.rank < b.rank;
+    });
+    eligible_ = static_cast<std::size_t>(std::ranges::count_if(placed, &Placed::keeps));
+    for (Placed& one : placed) result_->candidates.push_back(std::move(one.candidate));
+  }
+
+  // Calibrated drives, and what each of their rows is about.
+  struct Measured {
+    std::vector<NamedDrive> drives = {};
+    std::vector<DevicesRow> rows = {};
+  };
+
+  void judge() {
+    Measured measured;
+    if (known_->calibration().is_empty()) measured = searched_in_units(result_->candidates.front());
+    std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = all_drives(result_drawing_waveforms())}};
+    drives.insert(drives.end(), measured.drives.begin(), measured.drives.end());
+    drives.push_back(of_candidate(0));
+    tell("verdict on fresh devices", 0);
+    const Robustness found = robustness(first().given, drives, verdict_options(), watch_);
+    result_->interrupted = found.interrupted;
+    result_->verdict = found;
+    add_row({.name = plain_step_row}, plain_step(first().given, options_.actuator));
+    add_row({.name = for_the_drawing}, drives.front().waveforms);
+    add_row({.name = for_the_devices, .knowledge = known_->calibration()}, drives.back().waveforms);
+    for (const DevicesRow& row : measured.rows) add_row(row, {});
+    decide();
+    front();
+  }
+
+  [[nodiscard]] RobustnessOptions verdict_options() const {
+    return {.samples = devices_.verdict, .seed = options_.seed, .jobs = options_.jobs, .vectors = vectors_for(options_.target)};
+  }
+  // The searched drives of a candidate, and the others as in the plain step.
+  [[nodiscard]] std::map<std::string, Waveform> all_drives(std::map<std::string, Waveform> searched) const {
+    const Prepared& step = result_->drawing.baseline_scene;
+    searched.insert(step.drives.waveforms.begin(), step.drives.waveforms.end());
+    return searched;
+  }
+  [[nodiscard]] NamedDrive of_candidate(std::size_t n) const {
+    return {.name = for_the_devices,
+            .waveforms = all_drives(result_->candidates[n].waveforms),
+            .calibration = known_->calibration()};
+  }
+
+  // The row of a drive that is judged, by its name or as one that is driven alike.
+  void add_row(DevicesRow row, const std::map<std::string, Waveform>& waveforms) {
+    const std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    auto found = std::ranges::find(drives, row.name, &DriveRobustness::name);
+    if (found == drives.end()) {
+      const Prepared& given = first().given;
+      const std::vector<Signal> own = given.told(given.in_drive_order(all_drives(waveforms)));
+      found = std::ranges::find_if(drives, [&](const DriveRobustness& other) {
+        return same_drives(own, given.told(given.in_drive_order(other.waveforms)));
+      });
+    }
+    if (found == drives.end()) return;
+    row.drive = static_cast<std::size_t>(found - drives.begin());
+    result_->rows.push_back(std::move(row));
+  }
+
+  [[nodiscard]] DevicesRow& row_of_devices() {
+    return *std::ranges::find(result_->rows, std::string_view(for_the_devices), &DevicesRow::name);
+  }
+
+  // The first candidate that is not worse than the plain step wins; where there is none, the step does.
+  void decide() {
+    const double significant = first().given.scene.metrics.significant_rebound;
+    const auto worse = [&] {
+      const std::vector<DriveRobustness>& drives = result_->verdict.drives;
+      return softland::worse_in(drives[row_of_devices().drive].outcomes, drives.front().outcomes, significant, options_.seed);
+    };
+    std::size_t n = 0;
+    for (result_->worse_in = worse(); !result_->worse_in.empty() && n + 1 < std::min(eligible_, most_judged) && !stopped();
+         result_->worse_in = worse()) {
+      Robustness next = robustness(first().given, {of_candidate(++n)}, verdict_options(), watch_);
+      result_->interrupted = next.interrupted;
+      result_->verdict.drives.push_back(std::move(next.drives.back()));
+      row_of_devices().drive = result_->verdict.drives.size() - 1;
+    }
+    result_->plain_step_wins = !result_->worse_in.empty();
+    if (result_->plain_step_wins) {
+      row_of_devices().drive = 0;
+      win(plain_step(first().given, options_.actuator));
+    } else {
+      result_->chosen = result_->candidates[n];
+      win(result_->candidates[n].waveforms);
+      result_->best.family = result_->candidates[n].family;
+      result_->best.prefix.clear();
+      result_->best.parameters = result_->candidates[n].parameters;
+      result_->best.variables = result_->candidates[n].variables;
+    }
+    for (const Criterion& condition : devices_.conditions) {
+      const std::vector<DeviceOutcome>& outcomes = result_->verdict.drives[row_of_devices().drive].outcomes;
+      const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
+      const Yield share = yield_of(static_cast<std::size_t>(good), outcomes.size());
+      result_->conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
+    }
+  }
+
+  // On the nominal device.
+  void win(const std::map<std::string, Waveform>& waveforms) {
+    OptimizeResult& best = result_->best;
+    const OptimizeResult& drawing = result_->drawing;
+    best.best_scene =
+        read_back(with_waveforms(drawing.baseline_scene, first().space.searched(waveforms)), "best.toml", drawing.scene);
+    best.best = simulate(*best.best_scene, true, watch_);
+    best.checks = confirm(*best.best_scene);
+    const Metrics& m = best.best->metrics;
+    best.goal_met = goal_met(options_.target, m, drawing.baseline.metrics);
+    best.confirmed = best.goal_met && std::ranges::all_of(best.checks, [](const ConfirmingRun& run) {
+                       return run.varied == Varied::gas || (run.metrics.settled && run.metrics.bounce_count == 0);
+                     });
+    best.better_than_baseline = !result_->plain_step_wins;
+    best.best_cost = cost_->value(result_->verdict.drives[row_of_devices().drive].outcomes, aims_.tail);
+    best.baseline_cost = cost_->value(result_->verdict.drives.front().outcomes, aims_.tail);
+  }
+
+  // Searches in units that are measured on every device: none where there is nothing to measure.
+  Measured searched_in_units(const ChosenFrom& winner) {
+    Measured all;
+    const Calibration coarse{.pull_in_error = coarse_error};
+    const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
+    const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
+    const auto add = [&](const std::map<std::string, Waveform>& waveforms, const Calibration& knowledge, std::string name,
+                         bool searched_for_it) {
+      all.drives.push_back({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge});
+      all.rows.push_back({.name = std::move(name), .knowledge = knowledge, .searched_for_it = searched_for_it});
+    };
+    const auto of_coarse = searched_in(winner, coarse, "searching for devices whose Vdp is measured");
+    if (!of_coarse) return {};
+    add(*of_coarse, coarse, "Vdp to 1 %", true);
+    result_->calibrated = with_waveforms(result_->drawing.baseline_scene, first().space.searched(*of_coarse));
+    result_->pull_in = DeviceMeter(first().given, true).pull_in();
+    result_->calibrated->set(fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
+    add(*of_coarse, both, "Vdp and period to 1 %", false);
+    if (const auto of_fine = searched_in(winner, fine, "searching for devices that are measured to 0.2 %"))
+      add(*of_fine, fine, "Vdp and period to 0.2 %", true);
+    return all;
+  }
+
+  std::optional<std::map<std::string, Waveform>> searched_in(const ChosenFrom& winner, const Calibration& calibration,
+                                                             std::string_view words) {
+    const auto family = std::ranges::find(names_, winner.family);
+    const std::size_t k = family == names_.end() ? 0 : static_cast<std::size_t>(family - names_.begin());
+    std::optional<KnownUnits> known;
+    try {
+      known = known_units(first().given, std::array{calibration}, options_.jobs, watch_).front();
+    } catch (const InvalidInput&) {
+      return std::nullopt;  // no electrode that pulls in
+    }
+    const RobustCost cost(first(), aims_.tail,
+                          own_devices(first(), *known, measured_devices, options_.seed, which_measured, options_.jobs, watch_));
+    RaceOptions own = race_options();
+    own.memory = nullptr;  // whose keys do not tell units
+    own.progress = [this, words](double part) { tell(words, part); };
+    const RaceResult found = race_alone(settings_[k], k, cost, aims_, winner.bounce_free >= ranked_by_share,
+                                        {winner.waveforms, result_drawing_waveforms()}, own);
+    result_->closings += found.closings;
+    watch_.throw_if_stopped();
+    return found.racers.empty() ? std::nullopt : std::optional(found.racers.front().waveforms);
+  }
+
+  // The candidates of which none closes sooner and more softly, on the devices of the verdict.
+  void front() {
+    std::vector<const ChosenFrom*> kept;
+    for (const ChosenFrom& one : result_->candidates) {
+      const bool beaten = std::ranges::any_of(result_->candidates, [&](const ChosenFrom& other) {
+        return other.first_touch <= one.first_touch && other.impact_speed <= one.impact_speed &&
+               (other.first_touch < one.first_touch || other.impact_speed < one.impact_speed);
+      });
+      if (!beaten && std::isfinite(one.first_touch) && kept.size() < most_of_front) kept.push_back(&one);
+    }
+    const RobustCost fresh(
+        first(), aims_.tail,
+        build_all(Ensemble(first().given, devices_.verdict, options_.seed), *known_, options_.seed, options_.jobs, watch_));
+    for (const ChosenFrom* one : kept) {
+      watch_.throw_if_stopped();
+      const std::vector<DeviceOutcome> outcomes = closed(fresh, one->waveforms, fresh.devices());
+      result_->front.push_back({.first_touch = quantile_95(outcomes, "initial_contact_time_s"),
+                               .impact_speed = quantile_95(outcomes, "largest_impact_velocity_m_s"),
+                               .bounce_free = share_of(outcomes, is_bounce_free),
+                               .measure = one->measure,
+                               .waveform = one->family});
+    }
+    std::ranges::stable_sort(result_->front, {}, &FrontPoint::first_touch);
+  }
+
+  const SceneFile& file_;
+  const OptimizeOptions& options_;
+  const ForDevicesOptions& devices_;
+  Watch watch_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::vector<SearchSetting> settings_;
+  std::vector<std::string> names_, raced_names_;
+  std::optional<KnownUnits> known_;
+  OptimizeOptions drawing_options_;
+  std::optional<MemoryOfFirst> memory_of_drawing_;
+  std::size_t first_ = 0;
+  RobustAim tail_aim_;
+  RaceAims aims_;
+  std::optional<RobustCost> cost_;
+  std::size_t eligible_ = 0;
+  bool spread_assumed_ = false;
+  std::optional<ForDevicesResult> result_;  // once there is a drawing
+};
+
+}  // namespace
+
+ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices) {
+  return DevicesStudy(file, options, devices).run();
+}
+
+}  // namespace softland

@@ -1,0 +1,94 @@
+// The search for a waveform that devices can use: that for the drawing first, then a race over devices, and a verdict on devices
+// that no stage has seen.
+//
+//   1  the search on the nominal device (optimize.h): the drawing's waveform
+//   2  its candidates ranked again on 16 devices, the best of them on 64
+//   3  a race over families and measures (race.h)
+//   4  choice on 512 other devices, beside the plain step
+//   5  one more search in units that are measured on every device, and one for ten times the precision
+//   6  verdict on 2000 fresh devices over the whole window: plain step, drawing, winner, measured units
+//
+// What wins: of the candidates that are not worse than the plain step, that close in at most five times its 95 % time (seven where
+// half the devices land) and leave no more devices open than it does (and half a percent), the one with most devices that land
+// without a rebound, where that is at least half of them; else that of the least tail of the cost. Where the verdict finds the
+// winner worse than the plain step the next one is judged; where all are, the plain step wins.
+//
+// The stages are counted in closings, so that the result is a function of scene, options and seed.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "studies/optimize.h"
+#include "studies/race.h"
+#include "studies/robust_optimize.h"
+
+namespace softland {
+
+/// What names of parameters of the race begin with, among those of all searches.
+inline constexpr std::string_view raced_prefix = "devices.";
+
+struct ForDevicesOptions {
+  std::vector<Criterion> conditions = {};  ///< on figures of conditioned_figures(), that 95 % of the devices have to fulfil
+  std::uint64_t verdict = 2000;            ///< fresh devices
+  /// Families of the race; empty: raced_families, as far as the scene has room for them.
+  std::string families = {};
+  long closings = race_closings;  ///< of the race
+};
+
+/// A row of the first table: drives of one kind on the fresh devices.
+struct DevicesRow {
+  std::string name;             ///< "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
+  Calibration knowledge = {};   ///< what is measured on every device
+  bool searched_for_it = true;  ///< else the waveform was made for another knowledge
+  std::size_t drive = 0;        ///< its number in ForDevicesResult::verdict
+};
+
+/// A candidate on the fresh devices.
+struct FrontPoint {
+  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles [s], [m/s]
+  double bounce_free = Metrics::unset;                                 ///< share of the devices
+  std::string measure, waveform;                                       ///< how it was searched
+};
+
+/// A candidate of the choice.
+struct ChosenFrom {
+  std::string measure, family;  ///< "cvar:0.9", "knots:6"; measure "drawing" for what the nominal search tried
+  std::map<std::string, Waveform> waveforms;
+  std::map<std::string, double> parameters;  ///< by drive.name; empty for what the nominal search tried
+  std::vector<Variable> variables;
+  long closings = 0;
+  double bounce_free = 0, tail = 0;                                    ///< on the devices of the choice
+  double first_touch = Metrics::unset, impact_speed = Metrics::unset;  ///< 95 % quantiles there [s], [m/s]
+};
+
+struct ForDevicesResult {
+  Prepared varied;  ///< the scene with the spread that was looked at
+  OptimizeResult drawing;
+  /// On the nominal device: the waveform that wins; best_scene is none where the search was interrupted before the choice.
+  OptimizeResult best;
+  bool plain_step_wins = false;
+  bool spread_assumed = false;              ///< the scene says nothing of how devices differ
+  std::optional<ChosenFrom> chosen;         ///< none where the plain step wins
+  std::vector<ChosenFrom> candidates = {};  ///< the best first
+  Robustness verdict;
+  std::vector<DevicesRow> rows = {};
+  std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
+  std::vector<FrontPoint> front = {};            ///< by first touch
+  std::optional<SceneFile> calibrated = {};      ///< in units measured to 1 %, with its [calibration]
+  double pull_in = Metrics::unset;               ///< Vdp of the nominal device, where there is a calibrated waveform [V]
+  std::vector<FulfilledCondition> conditions{};  ///< of the winner
+  long closings = 0;                             ///< of devices, in all searches
+  bool interrupted = false;
+};
+
+/// Options of the nominal search as optimize(), whose max_seconds is that of everything. Throws as
+/// optimize() does. on_start hears of the parameters of all searches, those of the race with raced_prefix.
+[[nodiscard]] ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options,
+                                                    const ForDevicesOptions& devices);
+
+}  // namespace softland

@@ -1,0 +1,26 @@
+// Whether a drive does worse on devices than the plain step.
+//
+// Of the largest impact speed, the highest rebound and the peak force: worse where the 95 % quantile is above that of the step on
+// the same devices, and the 95 % interval of the difference, by a bootstrap over devices, does not hold 0. Rebounds that are not
+// significant are equal. A device that does not close has the worst of every figure.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "studies/robustness.h"
+
+namespace softland {
+
+/// Keys of ensemble_figures() that are compared.
+inline constexpr std::array judged_figures{std::string_view("largest_impact_velocity_m_s"),
+                                             std::string_view("major_bounce_height_m"),
+                                             std::string_view("peak_contact_force_N")};
+
+/// The figures in which the drive is worse, of outcomes by device; `significant`: height of a rebound from which on it counts [m].
+[[nodiscard]] std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive,
+                                                     const std::vector<DeviceOutcome>& step, double significant,
+                                                     std::uint64_t seed);
+
+}  // namespace softland
