@@ -15,6 +15,7 @@ namespace {
 
 using fleet::LaneClosing;
 using fleet::LaneLayout;
+using fleet::LanePiece;
 using fleet::LaneSwitch;
 using fleet::Segment;
 
@@ -90,6 +91,35 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   }
   for (Eigen::Index p = 0; p < model.points(); ++p) s.weight[p] = model.point_weights()[p];
   return s;
+}
+
+bool is_cubic(const SignalTerm& term) { return term.decay == 0 && !term.turns(); }
+
+/// Whether drives are straight lines, steady sines and cubic polynomials.
+bool go_in_lanes(std::span<const Signal> drives) {
+  return std::ranges::all_of(drives, [](const Signal& drive) {
+    return std::ranges::all_of(drive.pieces(), [](const SignalPiece& p) { return std::ranges::all_of(p.terms, is_cubic); });
+  });
+}
+
+std::vector<LanePiece> pieces_of(const Signal& drive) {
+  std::vector<LanePiece> all;
+  all.reserve(drive.pieces().size());
+  for (const SignalPiece& p : drive.pieces()) {
+    LanePiece& piece = all.emplace_back(LanePiece{.begin = p.begin,
+                                                  .value = p.value,
+                                                  .slope = p.slope,
+                                                  .amplitude = p.amplitude,
+                                                  .amplitude_slope = p.amplitude_slope,
+                                                  .angular_frequency = p.angular_frequency,
+                                                  .phase = p.phase,
+                                                  .longest_step = drive.resolving_step(p.begin)});
+    for (const SignalTerm& term : p.terms) {
+      piece.value += term.cosine[0], piece.slope += term.cosine[1];
+      piece.square += term.cosine[2], piece.cube += term.cosine[3];
+    }
+  }
+  return all;
 }
 
 /// Passes on what a lane tells, with force and energy of the contact's law.
@@ -176,14 +206,6 @@ std::string why_not_in_lanes(const Switch& model) {
   return {};
 }
 
-/// Whether a drive is more than straight lines and sines.
-bool has_terms(std::span<const Signal> drives) {
-  return std::any_of(drives.begin(), drives.end(), [](const Signal& drive) {
-    return std::any_of(drive.pieces().begin(), drive.pieces().end(),
-                       [](const SignalPiece& piece) { return !piece.terms.empty(); });
-  });
-}
-
 std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, double tolerance, Vectors vectors) {
   std::vector<FleetEnd> ends(closings.size());
   const fleet::LaneRunner run = runner(vectors);
@@ -193,7 +215,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   std::vector<std::size_t> places;     // of those that run
   std::vector<Eigen::VectorXd> rests;  // from which they start
   for (std::size_t i = 0; i < closings.size(); ++i) {
-    if (!why_not_in_lanes(*closings[i].model).empty() || has_terms(closings[i].drives)) continue;
+    if (!why_not_in_lanes(*closings[i].model).empty() || !go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));
     if (!rest) continue;
     const LaneLayout own = layout_of(*closings[i].model);
@@ -207,8 +229,8 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   std::vector<LaneSwitch> switches;
   std::vector<Teller> tellers;
   std::vector<LaneClosing> followed(places.size());
-  std::vector<std::vector<double>> longest;  // steps, piece by piece
-  switches.reserve(places.size()), tellers.reserve(places.size()), longest.reserve(places.size() * fleet::most_drives);
+  std::vector<std::vector<LanePiece>> pieces;  // drive by drive
+  switches.reserve(places.size()), tellers.reserve(places.size()), pieces.reserve(places.size() * fleet::most_drives);
   for (std::size_t n = 0; n < places.size(); ++n) {
     const FleetClosing& c = closings[places[n]];
     switches.push_back(numbers_of(*c.model, tolerance));
@@ -222,12 +244,9 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
             .observer = &tellers.back()};
     std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {
-      const std::vector<SignalPiece>& pieces = c.drives[k].pieces();
-      lane.pieces[k] = pieces.data();
-      lane.piece_count[k] = to_int(pieces.size());
-      std::vector<double>& steps = longest.emplace_back();
-      for (const SignalPiece& piece : pieces) steps.push_back(c.drives[k].resolving_step(piece.begin));
-      lane.longest_step[k] = steps.data();
+      const std::vector<LanePiece>& own = pieces.emplace_back(pieces_of(c.drives[k]));
+      lane.pieces[k] = own.data();
+      lane.piece_count[k] = to_int(own.size());
     }
   }
   run(*layout, followed.data(), followed.size());

@@ -4,8 +4,6 @@
 
 #include <cstddef>
 
-#include "waveforms/pieces.h"
-
 namespace softland::fleet {
 
 inline constexpr int most_modes = 4, most_points = 48, most_drives = 6, most_segments = 2 * most_drives + 1;
@@ -56,11 +54,19 @@ class LaneObserver {
   LaneObserver& operator=(const LaneObserver&) = default;
 };
 
+/// A piece of a drive, as waveforms/pieces.h has it; its terms are one cubic polynomial:
+///   value + slope s + square s^2 + cube s^3 + [amplitude + amplitude_slope s] sin(angular_frequency t + phase),  s = t - begin
+struct LanePiece {
+  double begin = 0;                                                             // [s]
+  double value = 0, slope = 0, square = 0, cube = 0;                            // [V], [V/s], [V/s^2], [V/s^3]
+  double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;  // [V], [V/s], [rad/s], [rad]
+  double longest_step = 0;                                                      // that resolves it [s]
+};
+
 struct LaneClosing {
   const LaneSwitch* numbers = nullptr;
-  double start[most_modes] = {};                          // modal coordinates at t = 0
-  const SignalPieceOf<double>* pieces[most_drives] = {};  // by drive
-  const double* longest_step[most_drives] = {};           // that resolves a piece [s]
+  double start[most_modes] = {};              // modal coordinates at t = 0
+  const LanePiece* pieces[most_drives] = {};  // by drive
   int piece_count[most_drives] = {};
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
   LaneObserver* observer = nullptr;

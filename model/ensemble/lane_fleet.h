@@ -67,6 +67,10 @@ class Lanes {
   void set_drives(V time) {
     for (int k = 0; k < layout_.electrodes + (layout_.piezo ? 1 : 0); ++k) {
       volts_[k] = value_[k] + slope_[k] * (time - begin_[k]);
+      if (bends_[k]) {
+        const V s = time - begin_[k];
+        volts_[k] += s * s * (bend_[k] + s * twist_[k]);
+      }
       if (!swings_[k]) continue;
       for (std::size_t l = 0; l < width; ++l) {
         if (amplitude_[k][l] == 0 && amplitude_slope_[k][l] == 0) continue;
@@ -566,13 +570,14 @@ class Lanes {
     lane.longest = infinite;
     for (int k = 0; k < layout_.electrodes + (layout_.piezo ? 1 : 0); ++k) {
       while (lane.piece[k] + 1 < c.piece_count[k] && c.pieces[k][lane.piece[k] + 1].begin <= t) ++lane.piece[k];
-      const SignalPieceOf<double>& piece = c.pieces[k][lane.piece[k]];
+      const LanePiece& piece = c.pieces[k][lane.piece[k]];
       begin_[k][l] = piece.begin, value_[k][l] = piece.value, slope_[k][l] = piece.slope;
+      bend_[k][l] = piece.square, twist_[k][l] = piece.cube;
       amplitude_[k][l] = piece.amplitude, amplitude_slope_[k][l] = piece.amplitude_slope;
       frequency_[k][l] = piece.angular_frequency, phase_[k][l] = piece.phase;
       if (piece.amplitude != 0 || piece.amplitude_slope != 0) swings_[k] = true;
-      const double longest = c.longest_step[k][lane.piece[k]];
-      if (longest < lane.longest) lane.longest = longest;
+      if (piece.square != 0 || piece.cube != 0) bends_[k] = true;
+      if (piece.longest_step < lane.longest) lane.longest = piece.longest_step;
       if (lane.piece[k] + 1 < c.piece_count[k]) {
         const double next = c.pieces[k][lane.piece[k] + 1].begin;
         if (next < lane.stop) lane.stop = next;
@@ -685,8 +690,9 @@ class Lanes {
   Contact contact_;
   // Of the drives.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
+  V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
   V amplitude_[most_drives], amplitude_slope_[most_drives], frequency_[most_drives], phase_[most_drives];
-  bool swings_[most_drives] = {};  // in any lane, ever
+  bool swings_[most_drives] = {}, bends_[most_drives] = {};  // in any lane, ever
   // Of the motion.
   V q_[modes], v_[modes], a_[modes], trial_q_[modes], trial_v_[modes], trial_a_[modes];
   V slope_q_[7][modes], slope_v_[7][modes];

@@ -38,6 +38,18 @@ struct Fleet {
       closings.push_back({.device = &device, .signals = &signals, .run = {.duration = nominal.duration, .tolerance = tolerance}});
     return close_devices(closings, nominal.scene.metrics, vectors);
   }
+
+  /// How many closings lanes follow to their end.
+  [[nodiscard]] std::size_t followed(const std::vector<Signal>& signals, Vectors vectors, double tolerance) const {
+    struct : LandingObserver {
+      void touch(const Touch&) override {}
+      void rebound(double, double, double) override {}
+    } nobody;
+    std::vector<FleetClosing> closings;
+    for (const SampledDevice& device : devices)
+      closings.push_back({.model = &*device.model, .drives = signals, .duration = nominal.duration, .observer = &nobody});
+    return static_cast<std::size_t>(std::ranges::count_if(close_in_lanes(closings, tolerance, vectors), &FleetEnd::followed));
+  }
 };
 
 // Every digit of what is made of an outcome.
@@ -93,6 +105,8 @@ struct Case {
 std::vector<Case> cases() {
   const std::string pulse =
       "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"17 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
+  const std::string spline =
+      "waveform.main={family=\"bspline\", levels=[\"24 V\", \"8 V\", \"2 V\", \"23 V\", \"12 V\", \"17 V\"], duration=\"60 us\"}";
   std::vector<Case> all;
   all.push_back({"step", gold_at_17_volts()});
   all.push_back({"pulse", gold_at_17_volts({pulse})});
@@ -104,6 +118,7 @@ std::vector<Case> cases() {
   all.push_back(
       {"dither", gold_at_17_volts({"waveform.main={family=\"harmonic\", base=\"17 V\", amplitude=\"3 V\", frequency=\"90 kHz\", "
                                    "start=\"5 us\", end=\"70 us\", fade=\"3 us\"}"})});
+  all.push_back({"spline", gold_at_17_volts({spline})});
   all.push_back({"two pads", gold_at_17_volts({"electrode.main.span=[[\"60 um\", \"140 um\"], [\"160 um\", \"98 %\"]]"})});
   all.push_back({"piezo", gold_pzt({"simulate.duration=60 us"})});  // later it is chaotic
   return all;
@@ -116,7 +131,10 @@ TEST(Lanes, CloseAsOneAtATimeDoes) {
     ASSERT_EQ(why_not_in_lanes(fleet.nominal.model), "");
     const std::vector<Signal> signals = fleet.nominal.signals();
     const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-6);
-    for (const Vectors vectors : vectors_here()) expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one);
+    for (const Vectors vectors : vectors_here()) {
+      EXPECT_EQ(fleet.followed(signals, vectors, 1e-6), fleet.devices.size());
+      expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one);
+    }
   }
 }
 
@@ -143,6 +161,28 @@ TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
       EXPECT_EQ(all[0], all[1]) << "AVX2 and AVX-512";
     }
 #endif
+  }
+}
+
+// Sines and cubics are worked out in all lanes once one has them.
+TEST(Lanes, GiveTheSameBitsBesideOtherDrives) {
+  const std::vector<Case> all = cases();
+  const Fleet fleet(gold_at_17_volts(), 9);
+  std::vector<std::vector<Signal>> drives;
+  for (const Case& one : all)
+    if (one.name == "step" || one.name == "dither" || one.name == "spline") drives.push_back(prepare(one.file).signals());
+  ASSERT_EQ(drives.size(), 3U);
+  std::vector<DeviceClosing> mixed;
+  for (std::size_t k = 0; k < fleet.devices.size(); ++k)
+    mixed.push_back({.device = &fleet.devices[k],
+                     .signals = &drives[k % drives.size()],
+                     .run = {.duration = fleet.nominal.duration, .tolerance = 1e-5}});
+  for (const Vectors vectors : vectors_here()) {
+    const std::vector<std::string> together = digits(close_devices(mixed, fleet.nominal.scene.metrics, vectors));
+    for (std::size_t k = 0; k < drives.size(); ++k) {
+      const std::vector<std::string> alike = digits(fleet.close(drives[k], vectors, 1e-5));
+      for (std::size_t n = k; n < mixed.size(); n += drives.size()) EXPECT_EQ(together[n], alike[n]) << k << " " << n;
+    }
   }
 }
 
