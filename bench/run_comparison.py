@@ -57,7 +57,7 @@ def searches(others=True):
 def search(program, case, optimizer, family, seed):
     scene, actuator, changes = CASES[case]
     with tempfile.TemporaryDirectory() as out:
-        command = [program, "optimize", SCENES / scene, "--actuator", actuator, "--optimizer", optimizer, "--seed", str(seed), "--jobs", "1",
+        command = [program, "optimize", SCENES / scene, "--robust", "none", "--actuator", actuator, "--optimizer", optimizer, "--seed", str(seed), "--jobs", "1",
                    "--quiet", "--json", "-", "--out", out]
         if family:
             command += ["--waveform", family]

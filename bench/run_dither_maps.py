@@ -136,7 +136,7 @@ def searched(program, stores, d, level, contact):
     """The result of a search for a pulse, and nine runs around it in volts and times."""
     out = stores / f"{d.name}-{level}-{contact}-search"
     if not (out / "result.json").exists():
-        run(program, "optimize", d.scene, *setting([f"waveform.main.level={level} Vdp", *CONTACTS[contact]]),
+        run(program, "optimize", d.scene, "--robust", "none", *setting([f"waveform.main.level={level} Vdp", *CONTACTS[contact]]),
             "--actuator", d.actuator, "--out", out, "--jobs", 1, "--quiet")
     result = json.loads((out / "result.json").read_text(encoding="utf-8"))
     pulse = tomllib.loads((out / "best.toml").read_text(encoding="utf-8"))["waveform"][d.key]

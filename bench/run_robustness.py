@@ -54,7 +54,7 @@ do not settle in the window.
             found = []
             for seed in SEEDS:
                 out = f"{folder}/seed-{seed}"
-                run(program, "optimize", SCENES / scene, "--actuator", actuator, "--seed", str(seed), "--out", out)
+                run(program, "optimize", SCENES / scene, "--robust", "none", "--actuator", actuator, "--seed", str(seed), "--out", out)
                 if pathlib.Path(out, "best.toml").exists():
                     found.append(out)
             judged = json.loads(run(program, "robustness", SCENES / scene, *found, "--samples", str(DEVICES), "--json", "-"))

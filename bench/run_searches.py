@@ -31,7 +31,7 @@ VARIANTS = [("", []), ("structure.length=290 um", ["length=290e-6"]), ("structur
 def search(program, scene, actuator, seed, variant):
     """The result of one search, its wall time [s] and the peer's figures of the exported waveform."""
     with tempfile.TemporaryDirectory() as out:
-        command = [program, "optimize", SCENES / scene, "--target", "bounce", "--actuator", actuator, "--waveform", "pulse", "--seed",
+        command = [program, "optimize", SCENES / scene, "--robust", "none", "--target", "bounce", "--actuator", actuator, "--waveform", "pulse", "--seed",
                    str(seed), "--quiet", "--json", "-", "--out", out]
         if variant[0]:
             command += ["--set", variant[0]]

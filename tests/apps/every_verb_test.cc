@@ -198,7 +198,8 @@ TEST_P(EveryVerb, Judges_long) {
 TEST_P(EveryVerb, Searches_long) {
   for (const char* actuator : {"electrostatic", "pzt", "both"}) {
     const std::vector<std::string> words = scene().quickly(
-        {"optimize", scene().name, "--quiet", "--budget", "2", "--jobs", "1", "--actuator", actuator, "--out", actuator});
+        {"optimize", scene().name, "--quiet", "--robust", "none", "--budget", "2", "--jobs", "1", "--actuator", actuator, "--out",
+         actuator});
     const bool has_electrode = scene().has("\\[electrode"), has_piezo = scene().has("\\[piezo\\]");
     if (!scene().has("\\[contact\\]")) {
       refused(words, "optimize needs a [contact] section");
@@ -271,7 +272,7 @@ TEST(EveryKind, OfNewSceneIsSimulatedSearchedAndJudged_slow) {
   for (const std::string& kind : kinds_of_new(here)) {
     write(here.path() / "my.toml", here.run({"new", kind}).out);
     for (std::vector<std::string> words : {std::vector<std::string>{"simulate", "my.toml", "--out", "closing"},
-                                           {"optimize", "my.toml", "--budget", "60", "--out", "found"},
+                                           {"optimize", "my.toml", "--robust", "none", "--budget", "60", "--out", "found"},
                                            {"robustness", "my.toml", "--samples", "20", "--out", "devices"}}) {
       for (const char* quick : {"--quiet", "--set", "simulate.accuracy=1e-4"}) words.emplace_back(quick);
       const Outcome run = here.run(words);

@@ -56,8 +56,8 @@ std::map<std::string, Call> calls() {
       {"effects", {gold + in_volts + short_window, gold + in_volts + many + long_window + json_file}},
       {"accuracy", {gold + std::vector<std::string>{"--set", "waveform.main.level=3 V"}, gold + in_volts + json_file}},
       {"optimize",
-       {gold + in_volts + std::vector<std::string>{"--budget", "6", "--set", "simulate.duration=150 us"},
-        gold + in_volts + json_file + std::vector<std::string>{"--budget", "1000000"}}},
+       {gold + in_volts + std::vector<std::string>{"--robust", "none", "--budget", "6", "--set", "simulate.duration=150 us"},
+        gold + in_volts + json_file + std::vector<std::string>{"--robust", "none", "--budget", "1000000"}}},
       {"limit",
        {gold + in_volts + std::vector<std::string>{"--set", "structure.modes=1", "--no-curves"},
         gold + in_volts + json_file + std::vector<std::string>{"--set", "structure.modes=12"}}},
@@ -511,7 +511,8 @@ TEST_F(Faults, WhatAKilledSearchLeftMayBeRefinedInPlace) {
   const std::string before = read(place.path() / "out/unfinished/best.toml");
   const Outcome o = place.run(
       words("optimize", std::vector<std::string>{"out/unfinished/best.toml"} + in_volts +
-                            std::vector<std::string>{"--budget", "6", "--set", "simulate.duration=150 us", "--out", "out"}));
+                            std::vector<std::string>{"--robust", "none", "--budget", "6", "--set", "simulate.duration=150 us",
+                                                     "--out", "out"}));
   EXPECT_NE(o.status, bad_input) << o.err;
   EXPECT_EQ(read(place.path() / "out/unfinished/best.toml"), before) << "the scene that it read";
 }
@@ -519,7 +520,7 @@ TEST_F(Faults, WhatAKilledSearchLeftMayBeRefinedInPlace) {
 TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost_optimized) {
   const Workplace place;
   const pid_t child = place.start(words("optimize", std::vector<std::string>{"gold.toml"} + in_volts +
-                                                        std::vector<std::string>{"--budget", "2 s", "--out", "out"}));
+                                                        std::vector<std::string>{"--robust", "none", "--budget", "2 s", "--out", "out"}));
   for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(20ms);
   fs::rename(place.path() / "out", place.path() / "gone");  // at once, whatever is being written in it
   // Somebody else works there now.

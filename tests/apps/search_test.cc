@@ -22,6 +22,8 @@ const std::vector<std::string> quick_search{"gold.toml", "--quiet", "--set", "si
 std::vector<std::string> words(const std::string& verb, std::vector<std::string> more) {
   std::vector<std::string> all{verb};
   all.insert(all.end(), quick_search.begin(), quick_search.end());
+  if (verb == "optimize" && std::find(more.begin(), more.end(), "--robust") == more.end())
+    all.insert(all.end(), {"--robust", "none"});
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -139,8 +141,8 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs_optimized) {
 
 TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_slow) {
   const auto tells = [&](std::vector<std::string> more, const std::string& scene = "two-electrodes.toml") {
-    more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--waveform",
-                               "pulse", "--json", "told.json", "--out", "told"});
+    more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--robust", "none",
+                               "--waveform", "pulse", "--json", "told.json", "--out", "told"});
     const Outcome o = here->run(more);
     EXPECT_TRUE(o.status == 0 || o.status == 4) << o.err;
     return json::parse(read(here->path() / "told.json")).contains("limit");
@@ -161,7 +163,7 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_slow) {
 TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked_optimized) {
   const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
   const Outcome o =
-      here->run({"optimize", scene, "--quiet", "--budget", "200", "--limit", "--json", "limit.json", "--out", "near"});
+      here->run({"optimize", scene, "--quiet", "--robust", "none", "--budget", "200", "--limit", "--json", "limit.json", "--out", "near"});
   const json found = json::parse(read(here->path() / "limit.json"));
   const double least = found.at("limit").at("least_time_s"), own = found["metrics"]["initial_contact_time_s"];
   EXPECT_EQ(found["limit"]["impact_velocity_m_s"], found["metrics"]["impact_velocity_m_s"]);
@@ -181,7 +183,8 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked_optimized) {
 TEST_F(Search, TakesAFamilyThatSuitsTheDrivesWhereNoneIsNamed_slow) {
   const auto family = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--budget", "200", "--json", "-", "--out", "families"});
-    std::vector<std::string> words{"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/mem-gold-pzt.toml").string(), "--quiet"};
+    std::vector<std::string> words{"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/mem-gold-pzt.toml").string(), "--quiet",
+                                   "--robust", "none"};
     for (const char* quick : {"structure.modes=2", "simulate.duration=100 us", "simulate.accuracy=1e-3"})
       words.insert(words.end(), {"--set", quick});
     words.insert(words.end(), more.begin(), more.end());
@@ -289,7 +292,7 @@ TEST_F(Search, EndsWithFourWhenNoWaveformCanCloseAndLeavesNothingOfAnEarlierSear
   const std::set<std::string> every{"best.toml", "best.csv", "report.html", "result.json", "evaluations.csv", "trajectory.csv"};
   fs::create_directory(here->path() / "open");
   for (const std::string& name : every) write(here->path() / "open" / name, "of an earlier search");
-  const Outcome o = here->run({"optimize", "gold.toml", "--quiet", "--budget", "20", "--out", "open", "--set",
+  const Outcome o = here->run({"optimize", "gold.toml", "--quiet", "--robust", "none", "--budget", "20", "--out", "open", "--set",
                                "waveform.main.level=5 V", "--set", "driver.main.max_voltage=6 V"});
   EXPECT_EQ(o.status, 4) << o.err;
   EXPECT_EQ(result(*here, "open")["status"], "no_contact");

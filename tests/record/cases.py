@@ -118,7 +118,7 @@ def scene_cases(name, text):
     yield Case(f"{name}.calibrate", [step("calibrate", "--samples", "16", "--jobs", "1")])
     for actuator in actuators:
         yield Case(f"{name}.optimize-{actuator}", [
-            step("optimize", "--budget", "200", "--jobs", "1", "--actuator", actuator, "--json", "optimize.json", "--out", "out", *fast),
+            step("optimize", "--robust", "none", "--budget", "200", "--jobs", "1", "--actuator", actuator, "--json", "optimize.json", "--out", "out", *fast),
             *[Step(words, needs="out/best.toml") for words in (
                 ["simulate", "out/best.toml", "--quiet"], ["export", "out"], ["report", "out"],
                 ["optimize", "--resume", "--out", "out", "--budget", "240", "--jobs", "1", "--quiet"])]], weight=2)
@@ -190,7 +190,8 @@ def choice_cases(program, scenes):
     where = str(program.scenes / "mem-gold.toml")
 
     def optimize(*words, scene=gold, out="out", budget="100"):
-        return Step(["optimize", scene, "--budget", budget, "--jobs", "1", "--out", out, *fast, *words])
+        nominal = [] if "--robust" in words else ["--robust", "none"]
+        return Step(["optimize", scene, *nominal, "--budget", budget, "--jobs", "1", "--out", out, *fast, *words])
 
     for target in [*program.choices("optimize", where, "--target", "?"), "0.7 bounce + 0.3 energy"]:
         yield Case(f"target.{target.replace(' ', '')}", [optimize("--target", target)])
@@ -206,10 +207,10 @@ def choice_cases(program, scenes):
         optimize("--start", "out/best.toml", "--waveform", "pulse", "--seed", "7", out="again"),
         optimize("--start", "out", "--start", "again", "--quiet", "--json", "-", out="third")], weight=2)
     yield Case("search.limit", [optimize("--limit", "--json", "limit.json"),
-                                Step(["optimize", plate, "--budget", "1000", "--jobs", "1", "--out", "plate", "--set", "simulate.accuracy=1e-3"])], weight=4)
+                                Step(["optimize", plate, "--robust", "none", "--budget", "1000", "--jobs", "1", "--out", "plate", "--set", "simulate.accuracy=1e-3"])], weight=4)
     yield Case("search.jobs", [Step([word if word != "1" else "3" for word in optimize("--json", "optimize.json").words])],
                leave_out="evaluations.sqlite")  # which numbers its rows as they come
-    yield Case("search.default-scene", [Step(["optimize", "--budget", "12", "--jobs", "1", "--out", "out", *fast])])
+    yield Case("search.default-scene", [Step(["optimize", "--robust", "none", "--budget", "12", "--jobs", "1", "--out", "out", *fast])])
     yield Case("search.seeds", [optimize("--seeds", "3", "--json", "seeds.json"), Step(["table", "out/seeds.sqlite"]),
                                 Step(["status", "out/seeds.sqlite", "out/evaluations.sqlite"]),
                                 Step(["optimize", "--resume", "--out", "out", "--budget", "140", "--jobs", "1"])], weight=3)
