@@ -1,4 +1,4 @@
-// How the program ends: the numbers that README.md and --help list.
+// How the program ends: the numbers that docs/commands.md and --help list.
 #pragma once
 
 namespace softland::apps {

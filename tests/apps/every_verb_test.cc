@@ -266,7 +266,7 @@ TEST(EveryKind, OfNewSceneIsCheckedAndSaysHowDevicesDiffer_optimized) {
   }
 }
 
-// What a user starts from goes through all that README.md tells to do next.
+// What a user starts from goes through all that docs/own-switch.md tells to do next.
 TEST(EveryKind, OfNewSceneIsSimulatedSearchedAndJudged_slow) {
   const Workplace here;
   for (const std::string& kind : kinds_of_new(here)) {

@@ -48,12 +48,12 @@ TEST(Failure, OfTheProgramItselfAsksToBeReportedWithItsVersion) {
   EXPECT_EQ(failure(3).status, exit_internal_error);
 }
 
-TEST(ExitStatus, IsListedInReadmeAndHelp) {
+TEST(ExitStatus, IsListedInDocumentsAndHelp) {
   const Workplace here;
-  const std::string readme = read(fs::path(SOFTLAND_SOURCE_DIR) / "README.md"), help = here.run({"--help"}).out;
+  const std::string page = read(fs::path(SOFTLAND_SOURCE_DIR) / "docs/commands.md"), help = here.run({"--help"}).out;
   for (const int status : {exit_done, exit_bad_input, exit_numerical_failure, exit_no_success, exit_internal_error,
                            exit_system_error, exit_output_lost, exit_interrupted}) {
-    EXPECT_THAT(readme, HasSubstr("\n| " + std::to_string(status) + " | "));
+    EXPECT_THAT(page, HasSubstr("\n| " + std::to_string(status) + " | "));
     EXPECT_THAT(help.substr(help.find("Exit status: ")), testing::ContainsRegex("[ \n]" + std::to_string(status) + " [a-z]"));
   }
 }

@@ -15,7 +15,7 @@ prefix=$work/moved
 mv "$work/first" "$prefix"
 found() { [ -n "$(find "$prefix" -path "$prefix/$1")" ] || fail "not installed: $1"; }
 for file in share/softland/scenes/mem-gold.toml share/man/man1/softland.1 share/bash-completion/completions/softland \
-  'share/doc/*/LICENSE' 'share/doc/*/LICENSE.uPlot' 'share/doc/*/CHANGELOG.md' 'share/doc/*/scene.md'; do
+  'share/doc/*/LICENSE' 'share/doc/*/LICENSE.uPlot' 'share/doc/*/CHANGELOG.md' 'share/doc/*/CITATION.cff' 'share/doc/*/docs/scene.md'; do
   found "$file"
 done
 

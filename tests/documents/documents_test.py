@@ -1,0 +1,302 @@
+"""documents_test.py CASE PROGRAM: what the documents say holds.
+
+Cases: first_page, scenes, commands, statuses, results, headlines, links, citation. Prints every finding; exit status 1 when there is one.
+"""
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FIRST_PAGE_BYTES = 8192  # one screen, with its code
+CELL_CHARACTERS = 140  # one line of a wide window
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def read(path):
+    return (ROOT / path).read_text(encoding="utf-8")
+
+
+def documents():
+    at_the_top = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+    return at_the_top + sorted(ROOT.glob("docs/*.md")) + sorted(ROOT.glob("results/*.md"))
+
+
+def blocks(text, language):
+    return [body for name, body in FENCE.findall(text) if name == language]
+
+
+def run(program, *arguments, cwd=None):
+    return subprocess.run([program, *arguments], cwd=cwd, capture_output=True, text=True, check=False)
+
+
+# The first page: its size, its tables, the two commands that a newcomer types, and no sentence that it says twice or that another page says too.
+
+
+def sentences(text):
+    text = FENCE.sub("", text)
+    for paragraph in re.split(r"\n\s*\n|\n(?=[-|#]|\d\. )", text):
+        for sentence in re.split(r"(?<=[.:])\s+", " ".join(paragraph.split())):
+            if len(sentence) >= 50:
+                yield sentence.lstrip("- ")
+
+
+def first_page(_):
+    text = read("README.md")
+    size = len(text.encode("utf-8"))
+    if size > FIRST_PAGE_BYTES:
+        yield f"README.md has {size} bytes, more than {FIRST_PAGE_BYTES}"
+    if blocks(text, "sh")[0] != "./softland optimize --target bounce --actuator pzt\n./softland test\n":
+        yield "README.md does not begin with the two commands"
+    for line in text.splitlines():
+        for cell in line.strip("|").split("|") if line.startswith("|") else []:
+            if len(cell.strip()) > CELL_CHARACTERS:
+                yield f"README.md: a cell is longer than a line: {cell.strip()}"
+    said = {}
+    for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "results/README.md", *sorted(ROOT.glob("docs/*.md"))):
+        prose = path.read_text(encoding="utf-8").split("\n## Verbs\n")[0]  # what follows is made from --help
+        for sentence in sentences(prose):
+            if sentence in said and "README.md" in (said[sentence].name, path.name):
+                yield f"{path.relative_to(ROOT)} and {said[sentence].relative_to(ROOT)} both say: {sentence}"
+            said.setdefault(sentence, path)
+
+
+# Scenes that stand in a document are taken by the program, and that of the first page is short, has a spread and is not warned of.
+
+
+def scenes(program):
+    found = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("README.md", "docs/own-switch.md"):
+            for scene in blocks(read(name), "toml"):
+                found += 1
+                (Path(folder) / "my.toml").write_text(scene, encoding="utf-8")
+                said = run(program, "check", "my.toml", cwd=folder)
+                if said.returncode != 0:
+                    yield f"{name}: its scene is refused: {said.stderr}"
+                if name == "README.md":
+                    if len(scene.splitlines()) > 10 or "[spread]" not in scene:
+                        yield "README.md: the scene has more than ten lines, or no [spread]"
+                    if "warning" in said.stdout + said.stderr:
+                        yield f"README.md: its scene is warned of: {said.stdout}{said.stderr}"
+    if found != 2:
+        yield f"{found} scenes in README.md and docs/own-switch.md instead of one each"
+
+
+# Verbs and options that documents tell people to type exist, and docs/commands.md is what the program says of itself.
+
+
+def options_by_verb(program):
+    def section(name, *words):
+        return run(program, *words, "--help").stdout.split(f"\n{name}:\n")[1].split("\n\n")[0]
+
+    verbs = re.findall(r"^  ([a-z][a-z-]*) ", section("Verbs"), re.MULTILINE)
+    return {verb: set(re.findall(r"^  (?:-\w,)?(--[a-z][a-z-]*)", section("Options", verb), re.MULTILINE)) for verb in verbs}
+
+
+def typed(text):
+    """Verb, options and line of every command in blocks and in the text."""
+    code = blocks(text, "sh") + blocks(text, "") + re.findall(r"`([^`\n]+)`", FENCE.sub("", text))
+    for line in "\n".join(code).replace("\\\n", " ").splitlines():
+        line = re.sub(r"\s#\s.*", "", line)
+        for command in re.split(r"&& |\| ", line):
+            words = re.match(r"\s*(?:\./)?softland ([a-z][a-z-]*)\b(.*)", command)
+            if words:
+                yield words.group(1), re.findall(r"(?<!\S)--[a-z][a-z-]*", words.group(2)), line.strip()
+
+
+def commands(program):
+    options = options_by_verb(program)
+    count = 0
+    for path in documents():
+        for verb, given, line in typed(path.read_text(encoding="utf-8")):
+            count += 1
+            if verb == "test" or path.name == "CHANGELOG.md":
+                continue
+            unknown = [option for option in given if option not in options.get(verb, ())]
+            if verb not in options or unknown:
+                yield f"{path.relative_to(ROOT)}: no {verb} {' '.join(unknown)} is there: {line}"
+    if count < 50:
+        yield f"only {count} commands are found in the documents"
+
+    page = "docs/commands.md"
+    made = run("sh", "cmake/commands_page.sh", program, page, cwd=ROOT)
+    if made.returncode != 0 or made.stdout != read(page):
+        again = f"sh cmake/commands_page.sh PROGRAM {page} > new && mv new {page}"
+        yield f"{page} is not what the program says of itself; make it again: {again}\n{made.stderr}"
+    for verb in options:
+        if f"\n### {verb}\n" not in made.stdout:
+            yield f"{page} has no section of {verb}"
+
+
+def statuses(program):
+    listed = set(re.findall(r"^\| (\d+) \|", read("docs/commands.md"), re.MULTILINE))
+    ends = set(re.findall(r"inline constexpr int exit_\w+ = (\d+);", read("apps/exit_status.h")))
+    launcher = set(re.findall(r"\bfail (\d+) ", read("softland")))
+    helped = set(re.findall(r"(?<![\w:])(\d+) [a-z]", run(program, "--help").stdout.split("Exit status: ")[1]))
+    if len(ends) < 8 or not launcher:
+        yield "the exit statuses are not found in apps/exit_status.h and softland"
+    for status in sorted((ends | launcher) ^ listed, key=int):
+        yield f"exit status {status} is not both in the program or launcher and in docs/commands.md"
+    for status in sorted(ends ^ helped, key=int):
+        yield f"exit status {status} is not both in apps/exit_status.h and in --help"
+
+
+# results/README.md has one line for every file beside it.
+
+
+def results(_):
+    lines = read("results/README.md").splitlines()
+    for path in sorted((ROOT / "results").iterdir()):
+        naming = [line for line in lines if f"({path.name})" in line]
+        if path.name != "README.md" and len(naming) != 1:
+            yield f"results/README.md has {len(naming)} lines on {path.name} instead of one"
+    for line in lines:
+        if line.startswith(" "):
+            yield f"results/README.md: more than one line for a file: {line}"
+
+
+# The numbers of the first page are those of the tables they come from.
+
+
+def table(path, heading, after=""):
+    """Rows, as dictionaries of text, of the first table of the file whose header begins with `heading`, behind the text `after`."""
+    text = read(path)
+    lines = text[text.index(after) :].splitlines()
+    begin = next(k for k, line in enumerate(lines) if line.startswith(f"| {heading} |"))
+    cells = [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines[begin:]]
+    end = next((k for k, line in enumerate(lines[begin:]) if not line.startswith("|")), None)
+    return [list(row) for row in cells[2:end]]
+
+
+def percent(text):
+    return float(re.match(r"([+-]?[\d.]+) %", text).group(1))
+
+
+def value(text, unit):
+    number = re.match(rf"([\d.]+) {unit}\b", text)
+    return float(number.group(1))
+
+
+def of_measured_actuators():
+    path = "results/measured-actuators.md"
+    voltages = [percent(row[3]) for heading in ("overlap [um]", "spring width [um]") for row in table(path, heading)]
+    times = []
+    for after in ("## Closing times, overlap 76.5 um", "## Closing times, overlap 15.3 um"):
+        times += [percent(row[4]) for row in table(path, "voltage [V]", after) if float(row[1]) >= 1.5]
+    return min(voltages), max(voltages), 1.5, min(times), max(times)
+
+
+def of_searches():
+    path = "results/searches.md"
+    rows = table(path, "scene", "## Electrostatic pulse") + table(path, "scene", "## PZT pulse")
+    free = sum(row[8] == "0" and row[13] == "0" for row in rows)
+    return free, len(rows), sum(row[11] == "0, 0" for row in rows)
+
+
+def of_accuracy():
+    rows = table("results/accuracy.md", "accuracy")
+    asked, within = sum(int(row[2]) for row in rows), sum(int(row[3]) for row in rows)
+    return asked, 100 * within / asked
+
+
+def of_speed():
+    rows = table("results/reference-closing-speed.md", "program")
+    closing = {row[0]: row for row in rows}
+    softland = next(row for name, row in closing.items() if name.startswith("softland"))
+    return float(softland[7]), min(float(row[8].split()[0]) for name, row in closing.items() if name.startswith("SciPy"))
+
+
+def of_devices():
+    """What a drawing's waveforms land at most; of one for the devices: landings, speed, step's speed, time, step's time; landings when known."""
+    drawing = table("results/robustness.md", "drive", "## mem-gold.toml, electrostatic")
+    step, winners = drawing[0], drawing[1:]
+    searched = {row[0]: row for row in table("results/robust-search.md", "search")}
+    blind, known = searched["gold, nothing known, below 220 us"], searched["gold, Vdp and period known"]
+    behind = lambda cell: cell.split(" / ")[1]  # noqa: E731: the 95 % quantile of "median / 95 %"
+    speeds = value(blind[1], "mm/s"), value(behind(step[4]), "mm/s")
+    times = value(blind[3], "us"), value(behind(step[3]), "us")
+    return max(percent(row[2]) for row in winners), percent(blind[4]), *speeds, *times, percent(known[4])
+
+
+NUMBER = r"(\d+(?:\.\d+)?)"
+HEADLINES = {
+    f"pull-in voltages are {NUMBER} to {NUMBER} % high and closing times from {NUMBER} times pull-in on {NUMBER} to {NUMBER} % long": of_measured_actuators,
+    f"SciPy runs {NUMBER} of {NUMBER} searched waveforms without a rebound; with two more modes {NUMBER} stay so": of_searches,
+    f"Of {NUMBER} figures on random scenes {NUMBER} % are within": of_accuracy,
+    f"One closing takes {NUMBER} ms, {NUMBER} times less than SciPy": of_speed,
+    f"land at most {NUMBER} % of the gold cantilevers .*? lands {NUMBER} %, but 95 % of them touch at {NUMBER} instead of {NUMBER} mm/s, "
+    f"after {NUMBER} instead of {NUMBER} µs; .*? one lands {NUMBER} %": of_devices,
+}
+
+
+def headlines(_):
+    text = " ".join(read("README.md").split())
+    for pattern, measured in HEADLINES.items():
+        said = re.search(pattern, text)
+        if not said:
+            yield f"README.md no longer says: {pattern}"
+            continue
+        for number, true in zip(said.groups(), measured(), strict=True):
+            digits = len(number.partition(".")[2])
+            if number != f"{true:.{digits}f}":
+                yield f"README.md: {number} should be {true:.{digits + 1}f} in: {said.group(0)}"
+
+
+# What a link in a document leads to is there: files, and headings as GitHub names them.
+
+
+def anchors(text):
+    found = set(re.findall(r'<a name="([^"]+)">', text))
+    for heading in re.findall(r"^#+ (.*)$", FENCE.sub("", text), re.MULTILINE):
+        slug = re.sub(r"[^\w\- ]", "", heading.lower().strip()).replace(" ", "-")
+        known = [other for other in found if other == slug or re.fullmatch(re.escape(slug) + r"-\d+", other)]
+        found.add(f"{slug}-{len(known)}" if known else slug)
+    return found
+
+
+def links(_):
+    count = 0
+    for path in documents():
+        text = FENCE.sub("", path.read_text(encoding="utf-8"))
+        for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`\n]*`", "", text)):
+            if target.startswith("https://"):
+                continue
+            count += 1
+            name, _, anchor = target.partition("#")
+            to = (path.parent / name).resolve() if name else path
+            if not to.exists():
+                yield f"{path.relative_to(ROOT)}: nothing is at {target}"
+            elif anchor and anchor not in anchors(to.read_text(encoding="utf-8")):
+                yield f"{path.relative_to(ROOT)}: no heading is at {target}"
+    if count < 100:
+        yield f"only {count} links are found in the documents"
+
+
+# What is cited is this version, under its licence.
+
+
+def citation(program):
+    cited = dict(re.findall(r"^([a-z-]+): (\S.*)$", read("CITATION.cff"), re.MULTILINE))
+    version = run(program, "--version").stdout.split()[-1]
+    if cited.get("version") != version:
+        yield f"CITATION.cff: version {cited.get('version')}, of the program {version}"
+    if cited.get("license") != "BSD-3-Clause" or not read("LICENSE").startswith("BSD 3-Clause"):
+        yield f"CITATION.cff: the licence {cited.get('license')} is not that of LICENSE"
+    for key in ("cff-version", "message", "title"):
+        if key not in cited:
+            yield f"CITATION.cff has no {key}"
+
+
+def main():
+    case, program = sys.argv[1:]
+    cases = (first_page, scenes, commands, statuses, results, headlines, links, citation)
+    findings = list({function.__name__: function for function in cases}[case](program))
+    for finding in findings:
+        print(finding)
+    sys.exit(1 if findings else 0)
+
+
+main()
