@@ -1,0 +1,103 @@
+// The search for devices, with short stages.
+#include "studies/for_devices.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "tests/studies/scenes.h"
+
+namespace softland {
+namespace {
+
+SceneFile quick_gold(std::initializer_list<std::string_view> changes = {}) {
+  SceneFile file = gold({"simulate.duration=200 us", "structure.modes=2", "simulate.accuracy=1e-3", "waveform.main.level=18 V",
+                         "driver.main.max_voltage=25 V"});
+  for (const std::string_view change : changes) file.set(change);
+  return file;
+}
+
+ForDevicesResult searched(const SceneFile& file, long closings, std::uint64_t seed = 1, int jobs = 2) {
+  return optimize_for_devices(file, {.family = "pulse", .max_evaluations = 300, .seed = seed, .jobs = jobs},
+                              {.verdict = 200, .families = "catch+pulse", .closings = closings});
+}
+
+double cost_of(const ForDevicesResult& found, std::string_view row) {
+  const auto at = std::ranges::find(found.rows, row, &DevicesRow::name);
+  EXPECT_NE(at, found.rows.end()) << row;
+  const EnsembleFigure& speed = ensemble_figure("largest_impact_velocity_m_s");
+  const auto i = static_cast<std::size_t>(&speed - ensemble_figures().data());
+  return found.verdict.drives.at(at->drive).figures.at(i).quantiles[2].value;
+}
+
+TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
+  const ForDevicesResult found = searched(quick_gold(), race_closings / 4);
+  ASSERT_TRUE(found.best.best_scene);
+  EXPECT_FALSE(found.plain_step_wins);
+  EXPECT_LT(cost_of(found, "for the devices"), 0.7 * cost_of(found, "plain step"));
+  EXPECT_LE(cost_of(found, "for the devices"), cost_of(found, "for the drawing"));
+  EXPECT_LT(cost_of(found, "Vdp to 1 %"), cost_of(found, "for the devices"));
+  // best.toml simulates to the figures that are told.
+  const Closing again = simulate(prepare_and_choose(SceneFile::parse(found.best.best_scene->scene.file.text(), "best.toml")), true);
+  EXPECT_EQ(again.metrics.initial_contact_time, found.best.best->metrics.initial_contact_time);
+  EXPECT_FALSE(found.spread_assumed);
+  EXPECT_TRUE(found.best.best_scene->scene.file.written("spread"));
+  // The front is one.
+  for (std::size_t i = 1; i < found.front.size(); ++i) EXPECT_GE(found.front[i].first_touch, found.front[i - 1].first_touch);
+  ASSERT_TRUE(found.calibrated);
+  EXPECT_EQ(found.calibrated->written("calibration.Vdp.error"), "1 %");
+}
+
+TEST(ForDevices, HasTheSameBitsWithAnyJobs_optimized) {
+  const ForDevicesResult one = searched(quick_gold(), race_closings / 4, 2, 1), two = searched(quick_gold(), race_closings / 4, 2, 2);
+  EXPECT_EQ(one.best.best_scene->scene.file.text(), two.best.best_scene->scene.file.text());
+  EXPECT_EQ(one.calibrated->text(), two.calibrated->text());
+  EXPECT_EQ(one.closings, two.closings);
+}
+
+TEST(ForDevices, RanksTheDrawingsCandidatesAgainWhereThereIsNoRace_optimized) {
+  const ForDevicesResult found = searched(quick_gold(), 100);
+  ASSERT_TRUE(found.chosen);
+  EXPECT_EQ(found.chosen->measure, "drawing");
+  EXPECT_LE(cost_of(found, "for the devices"), 1.02 * cost_of(found, "plain step"));
+}
+
+TEST(ForDevices, AssumesASpreadWhereTheSceneHasNone_optimized) {
+  SceneFile file = quick_gold();
+  file.erase("spread");
+  const ForDevicesResult found = searched(file, 100);
+  EXPECT_TRUE(found.spread_assumed);
+  EXPECT_EQ(found.varied.scene.spread.variables.size(), 3U);
+  EXPECT_FALSE(found.best.best_scene->scene.file.written("spread")) << "the scene stays what it was";
+}
+
+TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
+  // A driver that cannot brake: whatever it does beside the step hits harder.
+  const ForDevicesResult found = optimize_for_devices(
+      quick_gold({"driver.main.min_voltage=17.9 V"}), {.family = "pulse", .max_evaluations = 100, .jobs = 2},
+      {.verdict = 200, .families = "pulse", .closings = 100});
+  ASSERT_TRUE(found.best.best_scene);
+  EXPECT_LE(cost_of(found, "for the devices"), 1.01 * cost_of(found, "plain step"));
+  EXPECT_EQ(found.plain_step_wins, !found.worse_in.empty());
+}
+
+TEST(ForDevices, KeepsTheDrawingWhenItIsAskedToStop_optimized) {
+  std::atomic<bool> stop = false;
+  const ForDevicesResult found =
+      optimize_for_devices(quick_gold(),
+                           {.family = "pulse",
+                            .max_evaluations = 100'000,
+                            .stop = &stop,
+                            .on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { stop = e.index > 50; }},
+                           {});
+  EXPECT_TRUE(found.interrupted);
+  EXPECT_TRUE(found.rows.empty());
+  EXPECT_TRUE(found.best.best_scene);
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,121 @@
+// The race over devices, on a beam of two modes and few devices.
+#include "studies/race.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/studies/scenes.h"
+
+namespace softland {
+namespace {
+
+class Race : public testing::Test {
+ protected:
+  Race()
+      : settings_(search_settings(gold({"simulate.duration=150 us", "structure.modes=2", "waveform.main.level=18 V",
+                                        "driver.main.max_voltage=25 V"}),
+                                  Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
+        cost_(settings_.front(), aims_.tail, own_devices(settings_.front(), KnownUnits(), 32, 5, 0, 1, {})) {}
+
+  RaceResult run(RaceOptions options) {
+    options.closings = race_closings / 4;
+    options.first = 1;
+    options.all = 1 + settings_[0].space.variables().size() + settings_[1].space.variables().size();
+    return race(settings_, cost_, aims_, {}, options);
+  }
+  [[nodiscard]] double cost_of(const Racer& racer) const {
+    const SearchSetting& setting = settings_[racer.family];
+    return cost_.value(cost_.close(setting.drives(racer.waveforms), 0, 32, 1), aims_.tail);
+  }
+
+  RaceAims aims_{.tail = {.measure = parse_robust_measure("cvar:0.9", conditioned_figures()), .conditions = {}},
+                 .share = {.measure = parse_robust_measure("yield", conditioned_figures()), .conditions = {}}};
+  std::vector<SearchSetting> settings_;
+  RobustCost cost_;
+};
+
+// What a memory was told, by the text of its key.
+class Remembered final : public EvaluationMemory {
+ public:
+  std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override {
+    const std::scoped_lock lock(mutex_);
+    const auto found = known_.find(text(key));
+    if (found == known_.end()) return std::nullopt;
+    ++recalled;
+    return found->second;
+  }
+  void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override {
+    const std::scoped_lock lock(mutex_);
+    size = key.x.size();
+    ++noted;
+    known_.emplace(text(key), values);
+  }
+  std::size_t recalled = 0, noted = 0, size = 0;
+
+ private:
+  static std::string text(const EvaluationKey& key) {
+    std::string all = std::to_string(key.devices) + " " + std::to_string(key.seed) + " " + std::to_string(key.hopeless);
+    for (const double x : key.x) all.append(reinterpret_cast<const char*>(&x), sizeof x);
+    return all;
+  }
+  std::mutex mutex_;
+  std::map<std::string, EvaluationValues> known_;
+};
+
+TEST_F(Race, EndsWithTheSameBitsWhateverTheJobsAndTheMemory_optimized) {
+  const RaceResult one = run({.seed = 3});
+  ASSERT_FALSE(one.racers.empty());
+  Remembered memory;
+  const RaceResult two = run({.seed = 3, .jobs = 2, .memory = &memory});
+  EXPECT_GT(memory.noted, 100U);
+  EXPECT_EQ(memory.size, 1 + settings_[0].space.variables().size() + settings_[1].space.variables().size());
+  const std::size_t noted = memory.noted;
+  const RaceResult again = run({.seed = 3, .jobs = 2, .memory = &memory});
+  EXPECT_EQ(memory.noted, noted) << "all is known";
+  for (const RaceResult* other : {&two, &again}) {
+    ASSERT_EQ(other->racers.size(), one.racers.size());
+    EXPECT_EQ(other->closings, one.closings);
+    for (std::size_t i = 0; i < one.racers.size(); ++i) {
+      EXPECT_EQ(other->racers[i].x, one.racers[i].x) << i;
+      EXPECT_EQ(other->racers[i].measure, one.racers[i].measure) << i;
+    }
+  }
+  EXPECT_NE(run({.seed = 4}).racers.front().x, one.racers.front().x);
+}
+
+TEST_F(Race, EndsBetterThanItBegins_optimized) {
+  const RaceResult found = run({.seed = 1, .jobs = 2});
+  double least = std::numeric_limits<double>::infinity(), of_starts = least;
+  for (const Racer& racer : found.racers) least = std::min(least, cost_of(racer));
+  for (const SearchSetting& setting : settings_) {
+    for (const std::vector<double>& x : setting.space.starts())
+      of_starts = std::min(of_starts, cost_.value(cost_.close(setting.drives(setting.space.waveforms(x)), 0, 32, 1), aims_.tail));
+  }
+  EXPECT_LT(least, 0.8 * of_starts);
+  EXPECT_LT(least, 0.8 * cost_.value(cost_.close(settings_[0].drives({}), 0, 32, 1), aims_.tail)) << "than the plain step";
+  EXPECT_NEAR(static_cast<double>(found.closings), race_closings / 4.0, race_closings / 8.0) << "two families of five";
+}
+
+TEST_F(Race, EndsWhenItIsAskedTo) {
+  std::atomic<bool> stop = true;
+  EXPECT_TRUE(run({.stop = &stop}).racers.empty());
+  EXPECT_TRUE(run({.out_of_time = [] { return true; }}).racers.empty());
+}
+
+TEST_F(Race, OfTooFewClosingsIsNone) {
+  const RaceResult none = race(settings_, cost_, aims_, {}, {.closings = 1000});
+  EXPECT_TRUE(none.racers.empty());
+  EXPECT_EQ(none.closings, 0);
+}
+
+}  // namespace
+}  // namespace softland
