@@ -66,15 +66,38 @@ template <class S>
   return S(1) / sqrt(sqrt(h));
 }
 
-/// For lanes number by number, for other scalars (complex numbers in tests) the library's.
+/// The same for every number of a lane.
+template <LaneOfNumbers S>
+[[nodiscard, gnu::always_inline]] inline S power(const S& x, double y) {
+  constexpr double ln2 = 0.69314718055994530942;
+  static constexpr double shift = 6755399441055744.0;
+  constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
+  const S m = one_by_one(x, [](double number) {
+    const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
+    return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
+  });
+  const S e = one_by_one(x, [](double number) {
+    const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
+    const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
+  });
+  const S f = (m - 1.0) / (m + 1.0), s = f * f;
+  S series = 1.0 / 21;
+  for (int k = 19; k >= 1; k -= 2) series = series * s + 1.0 / k;
+  const S z = y * (e + (2 / ln2) * f * series);
+  const S shifted = z + shift;
+  const S n = shifted - shift, r = (z - n) * ln2;
+  S sum = 1;
+  for (int k = 13; k >= 1; --k) sum = 1.0 + sum * (r * (1.0 / k));
+  return sum * one_by_one(shifted,
+                          [](double number) { return std::bit_cast<double>((std::bit_cast<std::int64_t>(number) << 52) + one); });
+}
+
+/// For other scalars (complex numbers in tests) the library's.
 template <class S>
 [[nodiscard]] S power(const S& x, double y) {
-  if constexpr (LaneOfNumbers<S>) {
-    return one_by_one(x, [y](double one) { return power(one, y); });
-  } else {
-    using std::pow;
-    return pow(x, y);
-  }
+  using std::pow;
+  return pow(x, y);
 }
 
 }  // namespace softland

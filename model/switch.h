@@ -80,6 +80,7 @@ class Switch {
   /// Null unless the contact is rigid.
   [[nodiscard]] const RigidContact* rigid_contact() const { return contact_ ? std::get_if<RigidContact>(&*contact_) : nullptr; }
   [[nodiscard]] const std::optional<GasLaw>& gas() const { return gas_; }
+  [[nodiscard]] const std::optional<MidPlaneStretching>& stretching() const { return stretching_; }
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   [[nodiscard]] const Eigen::ArrayXd& point_positions() const { return positions_; }  ///< [m]
   [[nodiscard]] const Eigen::ArrayXd& point_weights() const { return weights_; }      ///< of the quadrature [m]

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 
 #include "base/require.h"
 #include "model/closing/tolerances.h"
 #include "model/ensemble/lane_closing.h"
+#include "model/forces/casimir.h"
+#include "model/forces/dispersion.h"
 
 namespace softland {
 namespace {
@@ -35,39 +38,184 @@ std::optional<fleet::LaneFringing> lane_fringing(Fringing fringing) {
   return std::nullopt;
 }
 
-/// Points up to each end of an electrode, by the electrode that they lie over.
-LaneLayout layout_of(const Switch& model) {
+std::optional<fleet::LaneFilm> lane_film(const std::optional<Gas>& gas) {
+  if (!gas) return fleet::LaneFilm::none;
+  switch (gas->model) {
+    case GasModel::strip:
+      return fleet::LaneFilm::strip;
+    case GasModel::strip_slit:
+      return fleet::LaneFilm::strip_slit;
+    case GasModel::veijola:
+      return fleet::LaneFilm::veijola;
+    case GasModel::gallis_torczynski:
+      return fleet::LaneFilm::gallis_torczynski;
+    case GasModel::near_contact:
+      return fleet::LaneFilm::near_contact;
+    case GasModel::guo_alexeenko:
+      return fleet::LaneFilm::guo_alexeenko;
+    case GasModel::linear:
+      return fleet::LaneFilm::linear;
+    case GasModel::reynolds:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::optional<fleet::LaneDispersion> lane_dispersion(const std::optional<Dispersion>& force) {
+  if (!force) return fleet::LaneDispersion::none;
+  if (force->model == DispersionModel::van_der_waals) return fleet::LaneDispersion::van_der_waals;
+  if (force->conductor == Conductor::gold) return std::nullopt;
+  return force->model == DispersionModel::casimir ? fleet::LaneDispersion::casimir : fleet::LaneDispersion::smaller;
+}
+
+/// A contact law in lanes: the elastic one, and its damping [s/m].
+struct ElasticContact {
+  fleet::LaneContact law = fleet::LaneContact::linear;
+  double strength = 0, height = 0;  // linear: its stiffness [N/m]
+  double damping = 0;
+};
+std::optional<ElasticContact> lane_contact(const Switch& model) {
+  if (!model.has_contact() || model.has_pad_contact()) return std::nullopt;
+  using Lane = fleet::LaneContact;
+  const ContactLaw& law = model.contact();
+  const auto rough = [](const UniformAsperityContact& c, double damping) {
+    return ElasticContact{.law = Lane::asperity_uniform, .strength = c.strength, .height = c.height, .damping = damping};
+  };
+  if (const auto* c = std::get_if<UniformAsperityContact>(&law)) return rough(*c, 0);
+  if (const auto* c = std::get_if<HuntCrossley<UniformAsperityContact>>(&law)) return rough(c->elastic, c->damping);
+  if (const auto* c = std::get_if<LinearContact>(&law)) return ElasticContact{.strength = c->stiffness};
+  if (const auto* c = std::get_if<HuntCrossley<LinearContact>>(&law))
+    return ElasticContact{.strength = c->elastic.stiffness, .damping = c->damping};
+  return std::nullopt;
+}
+
+bool stretches(const Structure& s) { return s.kind == StructureKind::clamped_clamped && s.stretching; }
+
+/// Whether the laws are those of fleet::UsualLaws.
+bool is_usual(const Switch& model) {
   const Device& device = model.device();
-  LaneLayout layout{.points = to_int(model.points()),
-                    .electrodes = to_int(device.electrodes.size()),
-                    .piezo = model.has_piezo(),
-                    .film = model.gas().has_value()};
-  if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
-  std::vector<std::pair<Stretch, int>> pads;  // with the electrode of each
+  const std::vector<Electrode>& all = device.electrodes;
+  const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
+  const bool is_plate = device.structure.kind == StructureKind::plate;  // whose electrodes lie over the same points
+  const bool film = !device.gas || (device.gas->model == GasModel::strip && std::isnan(device.gas->far_gap));
+  return model.modes() <= fleet::usual_modes && !device.dispersion && !stretches(device.structure) && film &&
+         std::holds_alternative<UniformAsperityContact>(model.contact()) && std::ranges::all_of(all, alike) &&
+         !(is_plate && all.size() > 1) && !electrode_conflict(device.structure, all);
+}
+
+/// The pads, each with the electrode that it is of.
+std::vector<std::pair<Stretch, int>> pads_of(const Device& device) {
+  std::vector<std::pair<Stretch, int>> pads;
   for (const Electrode& e : device.electrodes) {
     for (const Stretch& pad : e.pads(device.structure.length)) pads.emplace_back(pad, to_int(&e - device.electrodes.data()));
   }
+  return pads;
+}
+
+/// Points up to each end of an electrode, by the electrode that they lie over.
+std::vector<Segment> segments_between(const Switch& model) {
+  const std::vector<std::pair<Stretch, int>> pads = pads_of(model.device());
   const auto over = [&](double x) {
     const auto found = std::ranges::find_if(pads, [&](const auto& one) { return one.first.holds(x); });
     return found == pads.end() ? -1 : found->second;
   };
-  for (int p = 0; p < layout.points; ++p) {
+  std::vector<Segment> segments;
+  for (int p = 0; p < to_int(model.points()); ++p) {
     const int electrode = over(model.point_positions()[p]);
-    if (p == 0 || layout.segment[layout.segments - 1].electrode != electrode)
-      layout.segment[layout.segments++] = {.begin = p, .electrode = electrode};
-    layout.segment[layout.segments - 1].end = p + 1;
+    if (p == 0 || segments.back().electrode != electrode) segments.push_back({.begin = p, .electrode = electrode});
+    segments.back().end = p + 1;
   }
+  return segments;
+}
+
+/// The faces of every pad that has points.
+std::vector<Segment> faces_of(const Switch& model) {
+  const Eigen::ArrayXd& x = model.point_positions();
+  const auto first_at = [&](double place) { return to_int(std::lower_bound(x.begin(), x.end(), place) - x.begin()); };
+  std::vector<Segment> faces;
+  for (const auto& [pad, electrode] : pads_of(model.device())) {
+    const Electrode& e = model.device().electrodes[static_cast<std::size_t>(electrode)];
+    Segment face{.begin = first_at(pad.begin),
+                 .end = first_at(pad.end),
+                 .electrode = electrode,
+                 .fringing = lane_fringing(e.fringing).value_or(fleet::LaneFringing::none)};
+    if (face.begin == face.end) continue;
+    if (e.side != Side::far) faces.push_back(face);
+    face.far = true;
+    if (e.side != Side::near) faces.push_back(face);
+  }
+  return faces;
+}
+
+LaneLayout layout_of(const Switch& model) {
+  const Device& device = model.device();
+  const ElasticContact contact = *lane_contact(model);
+  LaneLayout layout{.usual = is_usual(model),
+                    .modes = model.modes(),
+                    .points = to_int(model.points()),
+                    .electrodes = to_int(device.electrodes.size()),
+                    .drives = to_int(model.drives()),
+                    .piezo = model.has_piezo(),
+                    .stretching = stretches(device.structure),
+                    .film = *lane_film(device.gas),
+                    .far_film = device.gas && !std::isnan(device.gas->far_gap),
+                    .dispersion = *lane_dispersion(device.dispersion),
+                    .contact = contact.law,
+                    .damped_contact = contact.damping > 0};
+  if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
+  const std::vector<Segment> segments = layout.usual ? segments_between(model) : faces_of(model);
+  layout.segments = to_int(segments.size());
+  std::ranges::copy(segments, layout.segment);
   return layout;
 }
 
 // Interference at which the contact has stored this little, far below the height of its asperities [m].
-double depth_of_energy(const UniformAsperityContact& law, double energy) {
+double depth_of_energy(const ElasticContact& contact, double energy) {
+  if (contact.law == fleet::LaneContact::linear) return std::sqrt(2 * energy / contact.strength);
+  const UniformAsperityContact law{.strength = contact.strength, .height = contact.height};
   return law.height * std::pow(energy / law.energy(law.height), 2.0 / 7);
+}
+
+/// Numbers of what is on the far side.
+void set_far_side(LaneSwitch& s, const Device& device) {
+  s.most_gap = std::numeric_limits<double>::infinity();
+  const auto set = [&](double gap, double& both, double& floor) {
+    both = device.gap.electrode + gap, floor = gap / 100;
+    s.most_gap = std::min(s.most_gap, both - floor);
+  };
+  for (std::size_t k = 0; k < device.electrodes.size(); ++k) {
+    if (const Electrode& e = device.electrodes[k]; e.side != Side::near) set(e.gap, s.electrode_gaps[k], s.electrode_floor[k]);
+  }
+  if (device.gas && !std::isnan(device.gas->far_gap)) set(device.gas->far_gap, s.film_gaps, s.film_floor);
+}
+
+void set_film(LaneSwitch& s, const GasLaw& law) {
+  std::visit(
+      [&](const auto& film) {
+        if constexpr (requires { film.viscosity; }) s.viscosity = film.viscosity;
+        if constexpr (requires { film.mean_free_path; }) s.mean_free_path = film.mean_free_path;
+        if constexpr (requires { film.slit_height; }) s.slit_height = film.slit_height, s.slit_length = film.slit_length;
+        if constexpr (requires { film.damping; }) s.damping = film.damping;
+      },
+      law);
+}
+
+void set_dispersion(LaneSwitch& s, const Dispersion& force) {
+  s.hamaker_constant = force.hamaker_constant, s.equilibrium_distance = force.equilibrium_distance;
+  if (force.model != DispersionModel::automatic) return;
+  const VanDerWaals near{.hamaker_constant = force.hamaker_constant, .equilibrium_distance = force.equilibrium_distance};
+  s.crossover = SmallerOfBoth<IdealCasimir>{IdealCasimir{}, near}.crossover;
+}
+
+void set_stretching(LaneSwitch& s, const MidPlaneStretching& stretching) {
+  s.tension = stretching.stiffness;
+  for (std::size_t i = 0; i < stretching.modes; ++i)
+    for (std::size_t j = 0; j < stretching.modes; ++j) s.slopes[i][j] = stretching.slopes[i * stretching.modes + j];
 }
 
 LaneSwitch numbers_of(const Switch& model, double tolerance) {
   const Device& device = model.device();
-  const auto& contact = std::get<UniformAsperityContact>(model.contact());
+  const ElasticContact contact = *lane_contact(model);
   LaneSwitch s{.modes = model.modes(),
                .open = device.gap.electrode,
                .plane = device.gap.contact,
@@ -76,8 +224,12 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
                .thickness = device.structure.thickness,
                .strength = contact.strength,
                .height = contact.height,
+               .contact_damping = contact.damping,
                .negligible_depth = depth_of_energy(contact, tolerance * model.bending_energy())};
-  if (model.gas()) s.viscosity = std::get<StripSqueezeFilm>(*model.gas()).viscosity;
+  if (model.gas()) set_film(s, *model.gas());
+  if (device.dispersion) set_dispersion(s, *device.dispersion);
+  if (model.stretching()) set_stretching(s, *model.stretching());
+  set_far_side(s, device);
   std::fill_n(s.omega, fleet::most_modes, model.angular_frequencies()[0]);
   const Tolerances tolerances(model, tolerance);
   for (int i = 0; i < s.modes; ++i) {
@@ -125,19 +277,18 @@ std::vector<LanePiece> pieces_of(const Signal& drive) {
 /// Passes on what a lane tells, with force and energy of the contact's law.
 class Teller final : public fleet::LaneObserver {
  public:
-  explicit Teller(const FleetClosing& closing)
-      : law_(&std::get<UniformAsperityContact>(closing.model->contact())), observer_(closing.observer) {}
-  void touch(double begin, double end, double speed, double depth) override {
+  explicit Teller(const FleetClosing& closing) : law_(&closing.model->contact()), observer_(closing.observer) {}
+  void touch(double begin, double end, double speed, double depth, double force) override {
     observer_->touch({.begin = begin,
                       .end = end,
                       .impact_velocity = speed,
-                      .peak_force = law_->force(depth),
-                      .peak_energy = law_->energy(depth)});
+                      .peak_force = std::max(contact_force(*law_, depth), force),
+                      .peak_energy = contact_energy(*law_, depth)});
   }
   void rebound(double begin, double end, double height) override { observer_->rebound(begin, end, height); }
 
  private:
-  const UniformAsperityContact* law_;
+  const ContactLaw* law_;
   LandingObserver* observer_;
 };
 
@@ -188,21 +339,12 @@ std::string why_not_in_lanes(const Switch& model) {
   if (model.modes() > fleet::most_modes) return fmt::format("more than {} modes", fleet::most_modes);
   if (model.points() > fleet::most_points) return fmt::format("more than {} quadrature points", fleet::most_points);
   if (model.drives() > fleet::most_drives) return fmt::format("more than {} drives", fleet::most_drives);
-  if (device.dispersion) return "a dispersion force";
-  if (device.structure.kind == StructureKind::clamped_clamped && device.structure.stretching) return "mid-plane stretching";
-  if (!model.has_contact() || model.has_pad_contact() || !std::holds_alternative<UniformAsperityContact>(model.contact()))
-    return "a contact other than undamped asperity-uniform at the contact point";
-  if (model.gas() &&
-      (model.film_states() > 0 || !std::isnan(device.gas->far_gap) || !std::holds_alternative<StripSqueezeFilm>(*model.gas())))
-    return "a gas film other than strip on the near side";
-  for (const Electrode& e : device.electrodes) {
-    if (e.side != Side::near) return "an electrode on the far side";
-    if (e.fringing != device.electrodes.front().fringing) return "electrodes of different fringing";
-    if (!lane_fringing(e.fringing)) return "fringing by bao-2001";
-  }
-  const bool is_plate = device.structure.kind == StructureKind::plate;  // whose electrodes lie over the same points
-  if ((is_plate && device.electrodes.size() > 1) || electrode_conflict(device.structure, device.electrodes))
-    return "electrodes that overlap";
+  if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
+  if (!lane_contact(model)) return "a contact other than linear or asperity-uniform at the contact point";
+  if (!lane_film(device.gas)) return "a compressible gas film";
+  if (!std::ranges::all_of(device.electrodes, [](const Electrode& e) { return lane_fringing(e.fringing).has_value(); }))
+    return "fringing by bao-2001";
+  if (faces_of(model).size() > fleet::most_segments) return fmt::format("more than {} faces of electrodes", fleet::most_segments);
   return {};
 }
 

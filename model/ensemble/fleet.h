@@ -8,8 +8,8 @@
 // round at a step of no length, which gives it the accelerations it goes on with. So no lane waits for another, and what happens
 // in one does not depend on the company it keeps: outcomes are the same bits whatever the order and the number of lanes.
 //
-// Not every law is written for lanes, energies are not audited, and a lane that gets into trouble gives up: all of these are for
-// simulate_closing(), one at a time.
+// Some laws are not written for lanes (why_not_in_lanes()), energies are not audited, and a lane that gets into trouble gives up:
+// all of these are for simulate_closing(), one at a time.
 #pragma once
 
 #include <array>

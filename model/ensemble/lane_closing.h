@@ -6,22 +6,34 @@
 
 namespace softland::fleet {
 
-inline constexpr int most_modes = 4, most_points = 48, most_drives = 6, most_segments = 2 * most_drives + 1;
+inline constexpr int most_modes = 8, most_points = 48, most_drives = 6, most_segments = most_points;
+inline constexpr int usual_modes = 4;  ///< of the laws of UsualLaws
 
 enum class LaneFringing { none, linear, meijs_fokkema };
+enum class LaneFilm { none, strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, linear };
+enum class LaneDispersion { none, van_der_waals, casimir, smaller };
+enum class LaneContact { asperity_uniform, linear };
 
 /// Quadrature points from `begin` up to `end` that lie over the same electrode.
 struct Segment {
   int begin = 0, end = 0;
   int electrode = -1;  ///< -1: over none
+  LaneFringing fringing = LaneFringing::none;
+  bool far = false;  ///< on the far side
   [[nodiscard]] bool operator==(const Segment&) const = default;
 };
 
 /// What the lanes of a run have in common.
 struct LaneLayout {
-  int points = 0, segments = 0, electrodes = 0;
-  bool piezo = false, film = false;
-  LaneFringing fringing = LaneFringing::none;
+  bool usual = true;  ///< for UsualLaws: segments follow one another; else they are pads, which may lie over the same points
+  int modes = 0, points = 0, segments = 0, electrodes = 0, drives = 0;
+  bool piezo = false, stretching = false;
+  LaneFringing fringing = LaneFringing::none;  ///< of all electrodes; usual laws only
+  LaneFilm film = LaneFilm::none;
+  bool far_film = false;
+  LaneDispersion dispersion = LaneDispersion::none;
+  LaneContact contact = LaneContact::asperity_uniform;
+  bool damped_contact = false;
   Segment segment[most_segments];
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
@@ -36,15 +48,24 @@ struct LaneSwitch {
   double flying[most_modes] = {}, touching[most_modes] = {};             // absolute tolerances of coordinates
   double speed[most_modes] = {};                                         // and of velocities
   double width = 0, thickness = 0, viscosity = 0;                        // [m], [m], [Pa s]
-  double strength = 0, height = 0;                                       // of the contact law
+  double mean_free_path = 0, slit_height = 0, slit_length = 0;           // [m]
+  double damping = 0;                                                    // of the film `linear` [N s/m^2]
+  double electrode_gaps[most_drives] = {}, film_gaps = 0;                // of both sides together, where there is a far one [m]
+  double electrode_floor[most_drives] = {}, film_floor = 0;              // of the far one [m]
+  double most_gap = 0;                                                   // [m]
+  double hamaker_constant = 0, equilibrium_distance = 0, crossover = 0;  // [J], [m], [m]
+  double tension = 0;                                                    // of mid-plane stretching [N/m]
+  double slopes[most_modes][most_modes] = {};                            // and its matrix [1/(kg m)]
+  double strength = 0, height = 0;                                       // of the contact law; linear: its stiffness [N/m]
+  double contact_damping = 0;                                            // [s/m]
   double negligible_depth = 0;                                           // [m]
 };
 
 /// Where a lane tells what it sees.
 class LaneObserver {
  public:
-  /// [s], [s], [m/s], [m]
-  virtual void touch(double begin, double end, double speed, double depth) = 0;
+  /// [s], [s], [m/s], [m]; the largest force [N] of a damped contact
+  virtual void touch(double begin, double end, double speed, double depth, double force) = 0;
   virtual void rebound(double begin, double end, double height) = 0;
 
  protected:

@@ -13,36 +13,28 @@
 #include <cstring>
 #include <experimental/simd>
 #include <limits>
-#include <type_traits>
 
 #include "integrators/dormand_prince.h"
-#include "model/contact/asperity_uniform.h"
 #include "model/ensemble/lane_closing.h"
-#include "model/forces/electrostatic.h"
-#include "model/gas/strip.h"
+#include "model/ensemble/lane_laws.h"
 
 namespace softland::fleet {
 
-template <class V, template <class> class FringingOf, bool has_film>
+template <class V, class Laws>
 class Lanes {
   using M = typename V::mask_type;
   static constexpr std::size_t width = V::size();
-  static constexpr int modes = most_modes;
+  static constexpr int capacity = Laws::capacity;
   static constexpr int pieces = 3;  // of a step of two radians of the fastest mode: as StepMotion at tolerances from 1e-5 on
   static constexpr double most_rounds = 100'000;
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   static constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-  using Force = ElectrostaticForce<FringingOf<V>>;
-  using Film = StripSqueezeFilmOf<V>;
-  using Contact = UniformAsperityContactOf<V>;
   using Pair = DormandPrince;
-  /// The field's law is written in powers of h^(-1/4), which a film beside it need not find again.
-  static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
 
  public:
   Lanes(const LaneLayout& layout, LaneClosing* closings, std::size_t count)
-      : layout_(layout), closings_(closings), count_(count) {}
+      : layout_(layout), modes(Laws::modes(layout)), laws_(layout_), closings_(closings), count_(count) {}
 
   void run() {
     for (std::size_t l = 0; l < width; ++l) fill(l);
@@ -60,12 +52,13 @@ class Lanes {
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
+    double hardest = 0;                     // force of a damped contact since then [N]
   };
 
   // --- the equations -----------------------------------------------------------------------------------------------------------
 
   void set_drives(V time) {
-    for (int k = 0; k < layout_.electrodes + (layout_.piezo ? 1 : 0); ++k) {
+    for (int k = 0; k < layout_.drives; ++k) {
       volts_[k] = value_[k] + slope_[k] * (time - begin_[k]);
       if (bends_[k]) {
         const V s = time - begin_[k];
@@ -82,60 +75,20 @@ class Lanes {
 
   // Modal accelerations; `least`: the smallest gap.
   [[gnu::always_inline]] void rates(const V* __restrict q, const V* __restrict v, V* __restrict a, V& least) {
-    V sum[modes];
+    V sum[capacity];
     for (int i = 0; i < modes; ++i) sum[i] = -(square_[i] * q[i]) - friction_[i] * v[i];
     if (layout_.piezo) {
-      for (int i = 0; i < modes; ++i) sum[i] += volts_[layout_.electrodes] * piezo_[i];
+      for (int i = 0; i < modes; ++i) sum[i] += volts_[layout_.drives - 1] * piezo_[i];
     }
-    V smallest = open_;
-    const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
-      gap = open_ - shape_[p][0] * q[0];
-      velocity = shape_[p][0] * v[0];
-      for (int i = 1; i < modes; ++i) gap -= shape_[p][i] * q[i], velocity += shape_[p][i] * v[i];
-      smallest = min(smallest, gap);
-      gap = max(gap, floor_);
-    };
-    const auto project = [&](int p, V load) __attribute__((always_inline)) {
-      load *= weight_[p];
-      for (int i = 0; i < modes; ++i) sum[i] += load * shape_[p][i];
-    };
-    const Film film = film_;
-    const Force force = force_;
-    for (int s = 0; s < layout_.segments; ++s) {
-      const Segment segment = layout_.segment[s];
-      if (segment.electrode < 0) {
-        if constexpr (has_film) {
-          for (int p = segment.begin; p < segment.end; ++p) {
-            V gap, velocity;
-            field(p, gap, velocity);
-            project(p, film.load(gap, velocity));
-          }
-        } else {
-          for (int p = segment.begin; p < segment.end; ++p) {
-            V gap, velocity;
-            field(p, gap, velocity);
-          }
-        }
-        continue;
-      }
-      const V drive = volts_[segment.electrode] * volts_[segment.electrode];
-      for (int p = segment.begin; p < segment.end; ++p) {
-        V gap, velocity;
-        field(p, gap, velocity);
-        V load = drive * force.load(gap, velocity);
-        if constexpr (has_film && has_root) {
-          load += film.load_by_root(inverse_fourth_root(gap), velocity);
-        } else if constexpr (has_film) {
-          load += film.load(gap, velocity);
-        }
-        project(p, load);
-      }
-    }
-    least = smallest;
+    laws_.add(q, v, volts_, sum, least);
     if (any_of(touching_)) {
       V d = -plane_;
       for (int i = 0; i < modes; ++i) d += at_contact_[i] * q[i];
-      V push = contact_.force(d);
+      V push = laws_.push(d, [&] {
+        V rate = 0;
+        for (int i = 0; i < modes; ++i) rate += at_contact_[i] * v[i];
+        return rate;
+      });
       where(!touching_, push) = V(0);
       for (int i = 0; i < modes; ++i) sum[i] -= push * at_contact_[i];
     }
@@ -197,7 +150,7 @@ class Lanes {
   void round() {
     const V wanted = min(h_, max_step_);
     const V h = min(wanted, limit_);
-    Turn node[5][modes];
+    Turn node[5][capacity];
     for (int i = 0; i < modes; ++i) {
       const V phase = h * omega_[i];
       node[0][i] = turn(Pair::nodes[1] * phase);
@@ -391,8 +344,8 @@ class Lanes {
     control(error);
     rounds_ += V(1);
     // Most lanes just go on; what is more than that is done lane by lane.
-    const M plain =
-        error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= floor_ && rounds_ < V(most_rounds);
+    const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
+                    rounds_ < V(most_rounds);
     M taken = plain;
     if (!all_of(plain)) {
       for (std::size_t l = 0; l < width; ++l)
@@ -403,6 +356,9 @@ class Lanes {
       where(taken, q_[i]) = trial_q_[i];
       where(taken, v_[i]) = trial_v_[i];
       where(taken, a_[i]) = trial_a_[i];
+    }
+    if constexpr (Laws::has_damped_contact) {
+      if (layout_.damped_contact && any_of(taken && touching_)) press(taken, h);
     }
     where(taken, position_) = knot_p_[pieces];
     where(taken, speed_) = knot_s_[pieces];
@@ -419,6 +375,26 @@ class Lanes {
     if (all_of(plain)) return;
     for (std::size_t l = 0; l < width; ++l)
       if (taken[l] && !plain[l]) go_on(l, h[l]);
+  }
+
+  // The largest force of a damped contact in the step: at the top of the parabola through both ends and the middle, as
+  // model/closing/touch_record.h.
+  void press(const M& taken, V h) {
+    static_assert(pieces % 2 == 1);
+    constexpr int half = pieces / 2;
+    V depth = 0, speed = 0;
+    for (std::size_t l = 0; l < width; ++l) {
+      const Curve c = curve(half, l, h[l]);
+      depth[l] = c.position(0.5), speed[l] = c.speed(0.5);
+    }
+    speed *= static_cast<double>(pieces) / max(h, V(std::numeric_limits<double>::min()));
+    const auto push = [&](V position, V rate) { return laws_.push(position - plane_, [&] { return rate; }); };
+    const V begin = push(position_, speed_), middle = push(depth, speed), end = push(knot_p_[pieces], knot_s_[pieces]);
+    const V bend = 2.0 * middle - begin - end, rise = end - begin;
+    V most_push = max(max(begin, middle), end);
+    where(abs(rise) < 2.0 * bend, most_push) = middle + rise * rise / (8.0 * bend);
+    for (std::size_t l = 0; l < width; ++l)
+      if (taken[l] && touching_[l] && most_push[l] > lane_[l].hardest) lane_[l].hardest = most_push[l];
   }
 
   // Whether a lane takes its step; where not, what it tries next.
@@ -489,7 +465,7 @@ class Lanes {
   // After a step that was taken and is more than that.
   void go_on(std::size_t l, double h) {
     Lane& lane = lane_[l];
-    if (smallest_[l] < floor_[l]) {
+    if (smallest_[l] < laws_.floor()[l]) {
       give_up(l);
       return;
     }
@@ -529,10 +505,10 @@ class Lanes {
       lane.begin = t;
       lane.speed = speed < 0 ? -speed : speed;
     } else {
-      lane.closing->observer->touch(lane.begin, t, lane.speed, lane.extreme);
+      lane.closing->observer->touch(lane.begin, t, lane.speed, lane.extreme, lane.hardest);
       lane.left = t;
     }
-    lane.extreme = 0;
+    lane.extreme = lane.hardest = 0;
     lane.touching = !lane.touching;
     to_event_[l] = special_[l] = false;
     touching_[l] = lane.touching;
@@ -568,7 +544,7 @@ class Lanes {
     const double t = t_[l];
     lane.stop = c.duration;
     lane.longest = infinite;
-    for (int k = 0; k < layout_.electrodes + (layout_.piezo ? 1 : 0); ++k) {
+    for (int k = 0; k < layout_.drives; ++k) {
       while (lane.piece[k] + 1 < c.piece_count[k] && c.pieces[k][lane.piece[k] + 1].begin <= t) ++lane.piece[k];
       const LanePiece& piece = c.pieces[k][lane.piece[k]];
       begin_[k][l] = piece.begin, value_[k][l] = piece.value, slope_[k][l] = piece.slope;
@@ -604,7 +580,7 @@ class Lanes {
     if (far > lane.extreme) lane.extreme = far;
     if (followed && lane.touched) {
       if (lane.touching) {
-        lane.closing->observer->touch(lane.begin, nothing, lane.speed, lane.extreme);
+        lane.closing->observer->touch(lane.begin, nothing, lane.speed, lane.extreme, lane.hardest);
       } else {
         tell_rebound(lane, nothing);
       }
@@ -630,13 +606,8 @@ class Lanes {
     lane = Lane{};
     lane.closing = closing;
     if (!idle) ++busy_;
-    for (int p = 0; p < layout_.points; ++p) {
-      weight_[p][l] = s.weight[p];
-      for (int i = 0; i < modes; ++i) shape_[p][i][l] = s.shape[p][i];
-    }
-    open_[l] = s.open, plane_[l] = s.plane, floor_[l] = s.floor;
-    lane_width_[l] = s.width, thickness_[l] = s.thickness, viscosity_[l] = s.viscosity;
-    strength_[l] = s.strength, height_[l] = s.height;
+    laws_.take(s, l);
+    plane_[l] = s.plane;
     double fastest = 0;
     for (int i = 0; i < modes; ++i) {
       if (i < s.modes && s.omega[i] > fastest) fastest = s.omega[i];
@@ -645,7 +616,6 @@ class Lanes {
       q_[i][l] = closing->start[i];
       v_[i][l] = a_[i][l] = 0;
     }
-    set_laws();
     per_unknown_[l] = 1.0 / (2 * s.modes);
     fastest_[l] = fastest;
     most_turn_[l] = 2 / fastest;
@@ -661,41 +631,28 @@ class Lanes {
     if (idle) lane.closing = nullptr;  // and stays special
   }
 
-  // The parameters of the laws follow those of the switches.
-  void set_laws() {
-    if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
-      force_ = Force{{.width = lane_width_, .thickness = thickness_}};
-    } else {
-      force_ = Force{{.width = lane_width_}};
-    }
-    film_ = Film{.viscosity = viscosity_, .width = lane_width_};
-    contact_ = Contact{.strength = strength_, .height = height_};
-  }
-
   [[gnu::always_inline]] static double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
 
   const LaneLayout layout_;
+  [[no_unique_address]] const typename Laws::Modes modes;  // a constant where the laws know it
+  Laws laws_;
   LaneClosing* closings_;
   std::size_t count_, next_ = 0;
   int busy_ = 0;
   Lane lane_[width];
 
   // Of the switches.
-  V shape_[most_points][modes], weight_[most_points];
-  V omega_[modes], inverse_[modes], square_[modes], at_contact_[modes], piezo_[modes], friction_[modes];
-  V q_weight_[modes], v_weight_[modes], per_unknown_, fastest_, most_turn_;
-  V open_, plane_, floor_, lane_width_, thickness_, viscosity_, strength_, height_;
-  Force force_;
-  Film film_;
-  Contact contact_;
+  V omega_[capacity], inverse_[capacity], square_[capacity], at_contact_[capacity], piezo_[capacity], friction_[capacity];
+  V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
+  V plane_;
   // Of the drives.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
   V amplitude_[most_drives], amplitude_slope_[most_drives], frequency_[most_drives], phase_[most_drives];
   bool swings_[most_drives] = {}, bends_[most_drives] = {};  // in any lane, ever
   // Of the motion.
-  V q_[modes], v_[modes], a_[modes], trial_q_[modes], trial_v_[modes], trial_a_[modes];
-  V slope_q_[7][modes], slope_v_[7][modes];
+  V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
+  V slope_q_[7][capacity], slope_v_[7][capacity];
   V t_, h_, max_step_, limit_, target_, position_, speed_, acceleration_, smallest_;
   V knot_p_[pieces + 1], knot_s_[pieces + 1], knot_c_[pieces + 1];
   M touching_{false}, touched_{false}, suspect_{false}, turns_{false};
@@ -711,15 +668,16 @@ class Lanes {
 
 template <class V, template <class> class FringingOf>
 void run_with(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
-  if (layout.film) {
-    Lanes<V, FringingOf, true>(layout, closings, count).run();
+  if (layout.film == LaneFilm::strip) {
+    Lanes<V, UsualLaws<V, FringingOf, true>>(layout, closings, count).run();
   } else {
-    Lanes<V, FringingOf, false>(layout, closings, count).run();
+    Lanes<V, UsualLaws<V, FringingOf, false>>(layout, closings, count).run();
   }
 }
 
 template <class V>
 void run_in(const LaneLayout& layout, LaneClosing* closings, std::size_t count) {
+  if (!layout.usual) return Lanes<V, AnyLaws<V>>(layout, closings, count).run();
   switch (layout.fringing) {
     case LaneFringing::none:
       return run_with<V, NoFringingOf>(layout, closings, count);

@@ -1,0 +1,325 @@
+// The laws of a closing over lanes: what they make of coordinates and velocities, in two ways.
+//
+// UsualLaws: up to four modes, electrodes on the near side that do not overlap, a strip film or none, an undamped contact of
+// asperities. Everything is chosen when this is compiled, each point is gone through once and stays in registers.
+// AnyLaws: more modes and other laws, chosen by the layout. Points are gone through law by law.
+//
+// Everything here depends on the type of the lanes: see lane_fleet.h.
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+
+#include "model/contact/asperity_uniform.h"
+#include "model/contact/hunt_crossley.h"
+#include "model/contact/linear.h"
+#include "model/ensemble/lane_closing.h"
+#include "model/forces/casimir.h"
+#include "model/forces/dispersion.h"
+#include "model/forces/electrostatic.h"
+#include "model/forces/van_der_waals.h"
+#include "model/gas/gallis_torczynski.h"
+#include "model/gas/guo_alexeenko.h"
+#include "model/gas/linear_damper.h"
+#include "model/gas/near_contact.h"
+#include "model/gas/strip.h"
+#include "model/gas/strip_slit.h"
+#include "model/gas/veijola.h"
+
+namespace softland::fleet {
+
+template <class V, template <class> class FringingOf, bool has_film>
+class UsualLaws {
+  using Force = ElectrostaticForce<FringingOf<V>>;
+  using Film = StripSqueezeFilmOf<V>;
+  using Contact = UniformAsperityContactOf<V>;
+  /// The field's law is written in powers of h^(-1/4), which a film beside it need not find again.
+  static constexpr bool has_root = requires(const FringingOf<V>& law, V h) { law.factor_over_square(h); };
+
+ public:
+  using Modes = std::integral_constant<int, usual_modes>;
+  static Modes modes(const LaneLayout&) { return {}; }
+  static constexpr int capacity = usual_modes;
+  static constexpr bool has_damped_contact = false;
+
+  explicit UsualLaws(const LaneLayout& layout) : layout_(layout) {}
+
+  /// Lane `l` is of this switch from here on.
+  void take(const LaneSwitch& s, std::size_t l) {
+    for (int p = 0; p < layout_.points; ++p) {
+      weight_[p][l] = s.weight[p];
+      for (int i = 0; i < capacity; ++i) shape_[p][i][l] = s.shape[p][i];
+    }
+    open_[l] = s.open, floor_[l] = s.floor;
+    width_[l] = s.width, thickness_[l] = s.thickness, viscosity_[l] = s.viscosity;
+    strength_[l] = s.strength, height_[l] = s.height;
+    if constexpr (std::is_same_v<FringingOf<V>, MeijsFokkemaFringingOf<V>>) {
+      force_ = Force{{.width = width_, .thickness = thickness_}};
+    } else {
+      force_ = Force{{.width = width_}};
+    }
+    film_ = Film{.viscosity = viscosity_, .width = width_};
+    contact_ = Contact{.strength = strength_, .height = height_};
+  }
+
+  [[nodiscard]] const V& floor() const { return floor_; }
+
+  /// Adds the modal forces of fields and film; `least`: the smallest gap.
+  [[gnu::always_inline]] void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
+    V smallest = open_;
+    const auto field = [&](int p, V& gap, V& velocity) __attribute__((always_inline)) {
+      gap = open_ - shape_[p][0] * q[0];
+      velocity = shape_[p][0] * v[0];
+      for (int i = 1; i < capacity; ++i) gap -= shape_[p][i] * q[i], velocity += shape_[p][i] * v[i];
+      smallest = min(smallest, gap);
+      gap = max(gap, floor_);
+    };
+    const auto project = [&](int p, V load) __attribute__((always_inline)) {
+      load *= weight_[p];
+      for (int i = 0; i < capacity; ++i) sum[i] += load * shape_[p][i];
+    };
+    const Film film = film_;
+    const Force force = force_;
+    for (int s = 0; s < layout_.segments; ++s) {
+      const Segment segment = layout_.segment[s];
+      if (segment.electrode < 0) {
+        if constexpr (has_film) {
+          for (int p = segment.begin; p < segment.end; ++p) {
+            V gap, velocity;
+            field(p, gap, velocity);
+            project(p, film.load(gap, velocity));
+          }
+        } else {
+          for (int p = segment.begin; p < segment.end; ++p) {
+            V gap, velocity;
+            field(p, gap, velocity);
+          }
+        }
+        continue;
+      }
+      const V drive = volts[segment.electrode] * volts[segment.electrode];
+      for (int p = segment.begin; p < segment.end; ++p) {
+        V gap, velocity;
+        field(p, gap, velocity);
+        V load = drive * force.load(gap, velocity);
+        if constexpr (has_film && has_root) {
+          load += film.load_by_root(inverse_fourth_root(gap), velocity);
+        } else if constexpr (has_film) {
+          load += film.load(gap, velocity);
+        }
+        project(p, load);
+      }
+    }
+    least = smallest;
+  }
+
+  /// Force of the contact [N]
+  template <class Rate>
+  [[gnu::always_inline]] V push(V depth, Rate&&) const {
+    return contact_.force(depth);
+  }
+
+ private:
+  const LaneLayout& layout_;
+  V shape_[most_points][capacity], weight_[most_points];
+  V open_, floor_, width_, thickness_, viscosity_, strength_, height_;
+  Force force_;
+  Film film_;
+  Contact contact_;
+};
+
+template <class V>
+class AnyLaws {
+ public:
+  using Modes = int;
+  static Modes modes(const LaneLayout& layout) { return layout.modes; }
+  static constexpr int capacity = most_modes;
+  static constexpr bool has_damped_contact = true;  // where the layout says so
+
+  explicit AnyLaws(const LaneLayout& layout) : layout_(layout), modes_(layout.modes) {}
+
+  void take(const LaneSwitch& s, std::size_t l) {
+    for (int p = 0; p < layout_.points; ++p) {
+      weight_[p][l] = s.weight[p];
+      for (int i = 0; i < modes_; ++i) shape_[p * modes_ + i][l] = s.shape[p][i];
+    }
+    open_[l] = s.open, floor_[l] = s.floor, most_gap_[l] = s.most_gap;
+    width_[l] = s.width, thickness_[l] = s.thickness;
+    viscosity_[l] = s.viscosity, mean_free_path_[l] = s.mean_free_path;
+    slit_height_[l] = s.slit_height, slit_length_[l] = s.slit_length, damping_[l] = s.damping;
+    for (int k = 0; k < layout_.electrodes; ++k)
+      electrode_gaps_[k][l] = s.electrode_gaps[k], electrode_floor_[k][l] = s.electrode_floor[k];
+    film_gaps_[l] = s.film_gaps, film_floor_[l] = s.film_floor;
+    hamaker_[l] = s.hamaker_constant, distance_[l] = s.equilibrium_distance, crossover_[l] = s.crossover;
+    tension_[l] = s.tension;
+    for (int i = 0; i < modes_; ++i)
+      for (int j = 0; j < modes_; ++j) slopes_[i * modes_ + j][l] = s.slopes[i][j];
+    strength_[l] = s.strength, height_[l] = s.height, contact_damping_[l] = s.contact_damping;
+  }
+
+  [[nodiscard]] const V& floor() const { return floor_; }
+
+  void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
+    find_field(q, v, least);
+    if (layout_.film != LaneFilm::none) {
+      add_film(gap_);
+      if (layout_.far_film) {
+        look_far(0, layout_.points, film_gaps_, film_floor_);
+        add_film(far_gap_);
+      }
+    }
+    for (int s = 0; s < layout_.segments; ++s) add_electrode(layout_.segment[s], volts);
+    if (layout_.dispersion != LaneDispersion::none) add_dispersion(V(1) + volts[layout_.electrodes]);
+    project(sum);
+    if (layout_.stretching) stretch(q, sum);
+  }
+
+  template <class Rate>
+  V push(V depth, Rate&& rate) const {
+    if (layout_.contact == LaneContact::linear) return push_of(LinearContactOf<V>{.stiffness = strength_}, depth, rate);
+    return push_of(UniformAsperityContactOf<V>{.strength = strength_, .height = height_}, depth, rate);
+  }
+
+ private:
+  template <class Law, class Rate>
+  V push_of(const Law& law, V depth, Rate&& rate) const {
+    if (!layout_.damped_contact) return law.force(depth);
+    return HuntCrossley<Law, V>{.elastic = law, .damping = contact_damping_}.force(depth, rate());
+  }
+
+  // Calls f.operator()<n>() with the number of modes, so that what belongs to them stays in registers.
+  template <int n = 1, class F>
+  [[gnu::always_inline]] void with_modes(F&& f) const {
+    if constexpr (n < capacity) {
+      if (modes_ != n) return with_modes<n + 1>(f);
+    }
+    f.template operator()<n>();
+  }
+
+  void find_field(const V* __restrict q, const V* __restrict v, V& least) {
+    with_modes([&]<int n>() { this->template find_field_of<n>(q, v, least); });
+  }
+  template <int n>
+  void find_field_of(const V* __restrict q, const V* __restrict v, V& least) {
+    V at[n], rate[n];
+    for (int i = 0; i < n; ++i) at[i] = q[i], rate[i] = v[i];
+    const V open = open_, floor = floor_;
+    V smallest = open, largest = open;
+    for (int p = 0; p < layout_.points; ++p) {
+      const V* shape = shape_ + p * n;
+      V gap = open - shape[0] * at[0], velocity = shape[0] * rate[0];
+      for (int i = 1; i < n; ++i) gap -= shape[i] * at[i], velocity += shape[i] * rate[i];
+      smallest = min(smallest, gap), largest = max(largest, gap);
+      gap_[p] = max(gap, floor), velocity_[p] = velocity, load_[p] = 0;
+    }
+    least = min(smallest, floor + (most_gap_ - largest));  // below the floor where the far side is near
+  }
+
+  void look_far(int begin, int end, const V& both, const V& floor) {
+    for (int p = begin; p < end; ++p) far_gap_[p] = max(both - gap_[p], floor);
+  }
+
+  template <class Law>
+  void add_law(Law law, const V* gap, int begin, int end, V drive) {
+    for (int p = begin; p < end; ++p) load_[p] += drive * law.load(gap[p], velocity_[p]);
+  }
+
+  // A film on the far side takes the same of the velocity, which it sees from there, and pulls the other way.
+  void add_film(const V* gap) {
+    const auto with = [&](auto law) { add_law(law, gap, 0, layout_.points, V(1)); };
+    switch (layout_.film) {
+      case LaneFilm::none:
+        return;
+      case LaneFilm::strip:
+        return with(StripSqueezeFilmOf<V>{.viscosity = viscosity_, .width = width_});
+      case LaneFilm::strip_slit:
+        return with(StripOverSlitOf<V>{
+            .viscosity = viscosity_, .width = width_, .slit_height = slit_height_, .slit_length = slit_length_});
+      case LaneFilm::veijola:
+        return with(VeijolaFilmOf<V>{.viscosity = viscosity_, .mean_free_path = mean_free_path_, .width = width_});
+      case LaneFilm::gallis_torczynski:
+        return with(GallisTorczynskiFilmOf<V>{.viscosity = viscosity_, .mean_free_path = mean_free_path_, .width = width_});
+      case LaneFilm::near_contact:
+        return with(NearContactFilmOf<V>{.viscosity = viscosity_, .mean_free_path = mean_free_path_, .width = width_});
+      case LaneFilm::guo_alexeenko:
+        return with(GuoAlexeenkoFilmOf<V>{.mean_free_path = mean_free_path_, .width = width_, .thickness = thickness_});
+      case LaneFilm::linear:
+        return with(LinearDamperOf<V>{.damping = damping_});
+    }
+  }
+
+  void add_electrode(const Segment& pad, const V* volts) {
+    V drive = volts[pad.electrode] * volts[pad.electrode];
+    const V* gap = gap_;
+    if (pad.far) {
+      look_far(pad.begin, pad.end, electrode_gaps_[pad.electrode], electrode_floor_[pad.electrode]);
+      drive = -drive, gap = far_gap_;
+    }
+    const auto with = [&](auto law) { add_law(ElectrostaticForce<decltype(law)>{law}, gap, pad.begin, pad.end, drive); };
+    switch (pad.fringing) {
+      case LaneFringing::none:
+        return with(NoFringingOf<V>{.width = width_});
+      case LaneFringing::linear:
+        return with(LinearFringingOf<V>{.width = width_});
+      case LaneFringing::meijs_fokkema:
+        return with(MeijsFokkemaFringingOf<V>{.width = width_, .thickness = thickness_});
+    }
+  }
+
+  void add_dispersion(V factor) {
+    const VanDerWaalsOf<V> near{.hamaker_constant = hamaker_, .equilibrium_distance = distance_};
+    const auto with = [&](auto law) {
+      add_law(DispersionForce<decltype(law), V>{.law = law, .width = width_}, gap_, 0, layout_.points, factor);
+    };
+    switch (layout_.dispersion) {
+      case LaneDispersion::none:
+        return;
+      case LaneDispersion::van_der_waals:
+        return with(near);
+      case LaneDispersion::casimir:
+        return with(IdealCasimir{});
+      case LaneDispersion::smaller:
+        return with(SmallerOfBoth<IdealCasimir, V>{.casimir = {}, .van_der_waals = near, .crossover = crossover_});
+    }
+  }
+
+  void project(V* sum) const {
+    with_modes([&]<int n>() { this->template project_of<n>(sum); });
+  }
+  template <int n>
+  void project_of(V* sum) const {
+    V part[n];
+    for (int i = 0; i < n; ++i) part[i] = 0;
+    for (int p = 0; p < layout_.points; ++p) {
+      const V load = load_[p] * weight_[p];
+      const V* shape = shape_ + p * n;
+      for (int i = 0; i < n; ++i) part[i] += load * shape[i];
+    }
+    for (int i = 0; i < n; ++i) sum[i] += part[i];
+  }
+
+  // As model/stretching.h has it.
+  void stretch(const V* q, V* sum) const {
+    V pull[capacity], strain = 0;
+    for (int i = 0; i < modes_; ++i) {
+      pull[i] = 0;
+      for (int j = 0; j < modes_; ++j) pull[i] += slopes_[i * modes_ + j] * q[j];
+      strain += q[i] * pull[i];
+    }
+    const V force = tension_ * strain;
+    for (int i = 0; i < modes_; ++i) sum[i] -= force * pull[i];
+  }
+
+  const LaneLayout& layout_;
+  const int modes_;
+  V shape_[most_points * capacity], weight_[most_points];
+  V gap_[most_points], far_gap_[most_points], velocity_[most_points], load_[most_points];
+  V open_, floor_, most_gap_, width_, thickness_;
+  V viscosity_, mean_free_path_, slit_height_, slit_length_, damping_;
+  V electrode_gaps_[most_drives], electrode_floor_[most_drives], film_gaps_, film_floor_;
+  V hamaker_, distance_, crossover_;
+  V tension_, slopes_[capacity * capacity];
+  V strength_, height_, contact_damping_;
+};
+
+}  // namespace softland::fleet
