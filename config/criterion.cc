@@ -92,6 +92,19 @@ Criterion parse_criterion(std::string_view text, std::span<const FigureName> fig
     return fmt::format("'{}' is no figure of merit{}", name,
                        internal::hint(name, std::vector<std::string_view>(names.begin(), names.end())));
   });
+  constexpr std::string_view step_unit = "step";
+  if (value.ends_with(step_unit)) {
+    const std::string_view number = unquoted(value.substr(0, value.size() - step_unit.size()));
+    Quantity times;
+    try {
+      times = parse_quantity(number);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{} in '{}'", error.what(), all));
+    }
+    require(times.dimension == dimension::none && times.value > 0,
+            [&] { return fmt::format("'{}' in '{}' must be a number above 0 of the plain step's figure", number, all); });
+    return {.figure = k, .comparison = sign->comparison, .limit = times.value, .text = std::string(all), .of_step = true};
+  }
   Quantity limit;
   try {
     limit = parse_quantity(value);
@@ -103,6 +116,15 @@ Criterion parse_criterion(std::string_view text, std::span<const FigureName> fig
   require(limit.value != 0 || figures[k].unit.empty(),
           [&] { return fmt::format("the limit of {} in '{}' must not be 0: give what is small enough", names[k], all); });
   return {.figure = k, .comparison = sign->comparison, .limit = limit.value, .text = std::string(all)};
+}
+
+Criterion beside_step(Criterion criterion, double of_step) {
+  if (!criterion.of_step) return criterion;
+  require(std::isfinite(of_step) && of_step != 0,
+          [&] { return fmt::format("'{}': the plain step has no such figure", criterion.text); });
+  criterion.limit *= of_step;
+  criterion.of_step = false;
+  return criterion;
 }
 
 RobustMeasure parse_robust_measure(std::string_view text, std::span<const FigureName> figures) {

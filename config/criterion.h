@@ -25,8 +25,9 @@ enum class Comparison { below, at_most, equal, at_least, above };
 struct Criterion {
   std::size_t figure = 0;  ///< its number in the list it was read with
   Comparison comparison = Comparison::below;
-  double limit = 0;  ///< [SI unit of the figure]
-  std::string text;  ///< as it was given
+  double limit = 0;      ///< [SI unit of the figure, or that figure of the plain step]
+  std::string text;      ///< as it was given
+  bool of_step = false;  ///< the limit counts in the plain step's figure: see beside_step()
 
   /// By which part of the limit (by how much, where that is 0) the figure breaks the condition; 0 or less where it holds,
   /// infinity for a value that is not finite: that of a switch that failed.
@@ -34,8 +35,12 @@ struct Criterion {
   [[nodiscard]] bool holds(double value) const;
 };
 
-/// Throws InvalidInput with the broken rule.
+/// "t_p < 60 us", or beside the plain step: "t_i < 3 step". Throws InvalidInput with the broken rule.
 [[nodiscard]] Criterion parse_criterion(std::string_view text, std::span<const FigureName> figures);
+
+/// Of a condition beside the plain step the same with a limit of its own, where the step has this figure. Throws InvalidInput
+/// where the step has none, or 0.
+[[nodiscard]] Criterion beside_step(Criterion criterion, double of_step);
 
 /// What a search minimises over the devices of a spread.
 struct RobustMeasure {

@@ -42,7 +42,8 @@ constexpr std::array columns{Column{"largest_impact_velocity_m_s", "impact speed
                              Column{"initial_contact_time_s", "first contact", "contact"},
                              Column{"peak_contact_force_N", "peak force", "force"}};
 
-ResultDevices::Row row_of(const DevicesRow& row, const DriveRobustness& drive) {
+ResultDevices::Row row_of(const DevicesRow& row) {
+  const DriveRobustness& drive = row.judged;
   ResultDevices::Row r{.name = row.name,
                        .pull_in_error = row.knowledge.pull_in_error.value_or(Metrics::unset),
                        .frequency_error = row.knowledge.frequency_error.value_or(Metrics::unset),
@@ -106,7 +107,7 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
                   .next_command = std::move(next_command)};
   d.spread = spread_words(found.varied.scene.spread);
   for (const std::string_view key : found.worse_in) d.worse_in.emplace_back(key);
-  for (const DevicesRow& row : found.rows) d.rows.push_back(row_of(row, found.verdict.drives[row.drive]));
+  for (const DevicesRow& row : found.rows) d.rows.push_back(row_of(row));
   for (const FrontPoint& p : found.front)
     d.front.push_back({.first_touch = p.first_touch,
                        .impact_speed = p.impact_speed,

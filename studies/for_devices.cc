@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/executor.h"
@@ -57,7 +58,8 @@ struct Bounds {
       : first_touch(quantile_95(step, "initial_contact_time_s")), open(1 - share_of(step, closes)) {
     for (std::size_t i = 0; i < figures.size(); ++i) figures[i] = quantile_95(step, judged_figures[i]);
   }
-  [[nodiscard]] bool keeps(const std::vector<DeviceOutcome>& own, double significant) const {
+  /// `in_time`: whether it has to close in a usual time.
+  [[nodiscard]] bool keeps(const std::vector<DeviceOutcome>& own, double significant, bool in_time) const {
     for (std::size_t i = 0; i < figures.size(); ++i) {
       const double value = quantile_95(own, judged_figures[i]);
       if (judged_figures[i] == "major_bounce_height_m" && value <= significant) continue;
@@ -65,7 +67,7 @@ struct Bounds {
     }
     if (1 - share_of(own, closes) > open + more_open) return false;
     const double times = share_of(own, is_bounce_free) >= lands_half ? most_times_of_landings : most_times;
-    return !std::isfinite(first_touch) || quantile_95(own, "initial_contact_time_s") <= times * first_touch;
+    return !in_time || !std::isfinite(first_touch) || quantile_95(own, "initial_contact_time_s") <= times * first_touch;
   }
 };
 
@@ -171,7 +173,7 @@ class DevicesStudy {
     tell("building devices", 0);
     cost_.emplace(first(), tail_aim_, own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
     const std::vector<DeviceOutcome> step = closed(*cost_, {}, cost_->devices());
-    make_aims(quantile_95(step, "initial_contact_time_s"));
+    make_aims(step);
     std::vector<ChosenFrom> pool = ranked_again();
     tell("searching for the devices", 0);
     RaceResult raced = race(settings_, *cost_, aims_, {result_drawing_waveforms()}, race_options());
@@ -188,17 +190,33 @@ class DevicesStudy {
     return first().space.searched(result_->drawing.best_scene->drives.waveforms);
   }
 
-  void make_aims(double step_time) {
+  void make_aims(const std::vector<DeviceOutcome>& step) {
+    conditions_ = beside_step(devices_.conditions, step);
+    const double step_time = quantile_95(step, "initial_contact_time_s");
     const std::vector<FigureName> figures = conditioned_figures();
-    tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = devices_.conditions};
+    tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
     aims_ = {.tail = tail_aim_,
-             .share = {.measure = parse_robust_measure("yield", figures), .conditions = devices_.conditions}};
-    if (!std::isfinite(step_time)) return;
+             .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_}};
+    if (!std::isfinite(step_time) || says_when_to_close()) return;
     const auto bound = [&](double times) {
       return parse_criterion(fmt::format("initial_contact_time < {:.17g} s", times * step_time), figures);
     };
     aims_.tail.conditions.push_back(bound(most_times));
     aims_.share.conditions.push_back(bound(most_times_of_landings));
+  }
+
+  // A condition of the user's takes the place of the usual bound.
+  [[nodiscard]] bool says_when_to_close() const {
+    return std::ranges::any_of(conditions_, [](const Criterion& one) {
+      return ensemble_figures()[one.figure].key == "initial_contact_time_s";
+    });
+  }
+  [[nodiscard]] bool keeps_conditions(const std::vector<DeviceOutcome>& outcomes) const {
+    return std::ranges::all_of(conditions_, [&](const Criterion& one) { return share_that(one, outcomes) >= constrained_share; });
+  }
+  static double share_that(const Criterion& condition, const std::vector<DeviceOutcome>& outcomes) {
+    const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
+    return static_cast<double>(good) / static_cast<double>(outcomes.size());
   }
 
   RaceOptions race_options() {
@@ -303,7 +321,8 @@ class DevicesStudy {
       one.first_touch = quantile_95(outcomes, "initial_contact_time_s");
       one.impact_speed = quantile_95(outcomes, "largest_impact_velocity_m_s");
       const bool lands = one.bounce_free >= lands_half;
-      placed.push_back({one, bounds.keeps(outcomes, first().given.scene.metrics.significant_rebound), lands,
+      const double significant = first().given.scene.metrics.significant_rebound;
+      placed.push_back({one, bounds.keeps(outcomes, significant, !says_when_to_close()) && keeps_conditions(outcomes), lands,
                         lands ? -one.bounce_free : one.tail});
     }
     std::ranges::stable_sort(placed, [](const Placed& a, const Placed& b) {
@@ -315,27 +334,19 @@ class DevicesStudy {
     for (Placed& one : placed) result_->candidates.push_back(std::move(one.candidate));
   }
 
-  // Calibrated drives, and what each of their rows is about.
-  struct Measured {
-    std::vector<NamedDrive> drives = {};
-    std::vector<DevicesRow> rows = {};
-  };
-
   void judge() {
-    Measured measured;
+    const std::vector<NamedDrive> drives{
+        {.name = for_the_drawing, .waveforms = all_drives(result_drawing_waveforms())}, of_candidate(0)};
+    std::vector<DevicesRow> measured;
     if (known_->calibration().is_empty()) measured = searched_in_units(result_->candidates.front());
-    std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = all_drives(result_drawing_waveforms())}};
-    drives.insert(drives.end(), measured.drives.begin(), measured.drives.end());
-    drives.push_back(of_candidate(0));
     tell("verdict on fresh devices", 0);
-    const Robustness found = robustness(first().given, drives, verdict_options(), watch_);
-    result_->interrupted = found.interrupted;
-    result_->verdict = found;
-    add_row({.name = plain_step_row}, plain_step(first().given, options_.actuator));
-    add_row({.name = for_the_drawing}, drives.front().waveforms);
-    add_row({.name = for_the_devices, .knowledge = known_->calibration()}, drives.back().waveforms);
-    for (const DevicesRow& row : measured.rows) add_row(row, {});
+    result_->verdict = robustness(first().given, drives, verdict_options(), watch_);
+    result_->interrupted = result_->verdict.interrupted;
+    add_row(plain_step_row, plain_step(first().given, options_.actuator));
+    add_row(for_the_drawing, drives.front().waveforms);
+    add_row(for_the_devices, drives.back().waveforms);
     decide();
+    std::ranges::move(measured, std::back_inserter(result_->rows));
     front();
   }
 
@@ -355,9 +366,9 @@ class DevicesStudy {
   }
 
   // The row of a drive that is judged, by its name or as one that is driven alike.
-  void add_row(DevicesRow row, const std::map<std::string, Waveform>& waveforms) {
+  void add_row(const char* name, const std::map<std::string, Waveform>& waveforms) {
     const std::vector<DriveRobustness>& drives = result_->verdict.drives;
-    auto found = std::ranges::find(drives, row.name, &DriveRobustness::name);
+    auto found = std::ranges::find(drives, std::string_view(name), &DriveRobustness::name);
     if (found == drives.end()) {
       const Prepared& given = first().given;
       const std::vector<Signal> own = given.told(given.in_drive_order(all_drives(waveforms)));
@@ -365,9 +376,7 @@ class DevicesStudy {
         return same_drives(own, given.told(given.in_drive_order(other.waveforms)));
       });
     }
-    if (found == drives.end()) return;
-    row.drive = static_cast<std::size_t>(found - drives.begin());
-    result_->rows.push_back(std::move(row));
+    if (found != drives.end()) result_->rows.push_back({.name = name, .knowledge = found->known.calibration(), .judged = *found});
   }
 
   [[nodiscard]] DevicesRow& row_of_devices() {
@@ -377,21 +386,23 @@ class DevicesStudy {
   // The first candidate that is not worse than the plain step wins; where there is none, the step does.
   void decide() {
     const double significant = first().given.scene.metrics.significant_rebound;
+    std::vector<DriveRobustness>& drives = result_->verdict.drives;
+    const DriveRobustness step = drives.front();
     const auto worse = [&] {
-      const std::vector<DriveRobustness>& drives = result_->verdict.drives;
-      return softland::worse_in(drives[row_of_devices().drive].outcomes, drives.front().outcomes, significant, options_.seed);
+      return softland::worse_in(row_of_devices().judged.outcomes, step.outcomes, significant, options_.seed);
     };
     std::size_t n = 0;
     for (result_->worse_in = worse(); !result_->worse_in.empty() && n + 1 < std::min(eligible_, most_judged) && !stopped();
          result_->worse_in = worse()) {
       Robustness next = robustness(first().given, {of_candidate(++n)}, verdict_options(), watch_);
       result_->interrupted = next.interrupted;
-      result_->verdict.drives.push_back(std::move(next.drives.back()));
-      row_of_devices().drive = result_->verdict.drives.size() - 1;
+      row_of_devices().judged = next.drives.back();
+      if (drives.back().name == for_the_devices) drives.pop_back();
+      drives.push_back(std::move(next.drives.back()));
     }
     result_->plain_step_wins = !result_->worse_in.empty();
     if (result_->plain_step_wins) {
-      row_of_devices().drive = 0;
+      row_of_devices().judged = step;
       win(plain_step(first().given, options_.actuator));
     } else {
       result_->chosen = result_->candidates[n];
@@ -401,8 +412,8 @@ class DevicesStudy {
       result_->best.parameters = result_->candidates[n].parameters;
       result_->best.variables = result_->candidates[n].variables;
     }
-    for (const Criterion& condition : devices_.conditions) {
-      const std::vector<DeviceOutcome>& outcomes = result_->verdict.drives[row_of_devices().drive].outcomes;
+    for (const Criterion& condition : conditions_) {
+      const std::vector<DeviceOutcome>& outcomes = row_of_devices().judged.outcomes;
       const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
       const Yield share = yield_of(static_cast<std::size_t>(good), outcomes.size());
       result_->conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
@@ -423,31 +434,41 @@ class DevicesStudy {
                        return run.varied == Varied::gas || (run.metrics.settled && run.metrics.bounce_count == 0);
                      });
     best.better_than_baseline = !result_->plain_step_wins;
-    best.best_cost = cost_->value(result_->verdict.drives[row_of_devices().drive].outcomes, aims_.tail);
+    best.best_cost = cost_->value(row_of_devices().judged.outcomes, aims_.tail);
     best.baseline_cost = cost_->value(result_->verdict.drives.front().outcomes, aims_.tail);
   }
 
   // Searches in units that are measured on every device: none where there is nothing to measure.
-  Measured searched_in_units(const ChosenFrom& winner) {
-    Measured all;
+  std::vector<DevicesRow> searched_in_units(const ChosenFrom& winner) {
     const Calibration coarse{.pull_in_error = coarse_error};
     const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
     const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
-    const auto add = [&](const std::map<std::string, Waveform>& waveforms, const Calibration& knowledge, std::string name,
-                         bool searched_for_it) {
-      all.drives.push_back({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge});
-      all.rows.push_back({.name = std::move(name), .knowledge = knowledge, .searched_for_it = searched_for_it});
-    };
     const auto of_coarse = searched_in(winner, coarse, "searching for devices whose Vdp is measured");
     if (!of_coarse) return {};
-    add(*of_coarse, coarse, "Vdp to 1 %", true);
     result_->calibrated = with_waveforms(result_->drawing.baseline_scene, first().space.searched(*of_coarse));
     result_->pull_in = DeviceMeter(first().given, true).pull_in();
     result_->calibrated->set(fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
-    add(*of_coarse, both, "Vdp and period to 1 %", false);
+    std::vector<DevicesRow> rows{row_of_measured("Vdp to 1 %", *of_coarse, coarse, true),
+                                 row_of_measured("Vdp and period to 1 %", *of_coarse, both, false)};
     if (const auto of_fine = searched_in(winner, fine, "searching for devices that are measured to 0.2 %"))
-      add(*of_fine, fine, "Vdp and period to 0.2 %", true);
-    return all;
+      rows.push_back(row_of_measured("Vdp and period to 0.2 %", *of_fine, fine, true));
+    return rows;
+  }
+
+  // On the devices of the verdict.
+  DevicesRow row_of_measured(const char* name, const std::map<std::string, Waveform>& waveforms, const Calibration& knowledge,
+                             bool searched_for_it) {
+    const KnownUnits known = known_units(first().given, std::array{knowledge}, options_.jobs, watch_).front();
+    const RobustCost fresh(
+        first(), aims_.tail,
+        build_all(Ensemble(first().given, devices_.verdict, options_.seed), known, options_.seed, options_.jobs, watch_));
+    std::vector<DeviceOutcome> outcomes = closed(fresh, waveforms, fresh.devices());
+    watch_.throw_if_stopped();
+    return {.name = name,
+            .knowledge = knowledge,
+            .searched_for_it = searched_for_it,
+            .judged = internal::summarised({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge}, known,
+                                           std::move(outcomes))};
   }
 
   std::optional<std::map<std::string, Waveform>> searched_in(const ChosenFrom& winner, const Calibration& calibration,
@@ -508,6 +529,7 @@ class DevicesStudy {
   OptimizeOptions drawing_options_;
   std::optional<MemoryOfFirst> memory_of_drawing_;
   std::size_t first_ = 0;
+  std::vector<Criterion> conditions_;  // with limits of their own
   RobustAim tail_aim_;
   RaceAims aims_;
   std::optional<RobustCost> cost_;

@@ -38,6 +38,16 @@ Prepared for_ranking(const Prepared& given) {
 
 }  // namespace
 
+std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<const DeviceOutcome> of_step) {
+  for (Criterion& one : conditions) {
+    if (!one.of_step) continue;
+    std::vector<double> values;
+    for (const DeviceOutcome& o : of_step) values.push_back(value_of(o, one));
+    one = beside_step(std::move(one), sample_quantile(values, constrained_share));
+  }
+  return conditions;
+}
+
 std::vector<FigureName> conditioned_figures() {
   std::vector<FigureName> all;
   for (const EnsembleFigure& f : ensemble_figures()) all.push_back({.key = f.key, .symbol = f.symbol, .unit = f.unit});

@@ -27,6 +27,10 @@
 
 namespace softland {
 
+/// Conditions beside the plain step with limits of their own: what 95 % of the devices stay below under it. Throws InvalidInput
+/// where the step has no such figure.
+[[nodiscard]] std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<const DeviceOutcome> of_step);
+
 /// The share of devices that has to fulfil a condition.
 inline constexpr double constrained_share = 0.95;
 

@@ -331,12 +331,13 @@ void require_one_family(const OptimizeOptions& options) {
 
 }  // namespace
 
-RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& robust) {
+RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& asked) {
   require_one_family(options);
   const Watch watch{.stop = options.stop, .progress = options.on_preparation};
   const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
   setting.check_starts(options.starts);
   const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
+  RobustOptions robust = asked;
   const RobustCost cost(setting, robust.aim, own_devices(setting, known, robust.samples, options.seed, 0, options.jobs, watch));
   RobustResult result{.found = {.scene = setting.given, .baseline_scene = setting.baseline_scene, .baseline = setting.baseline}};
   OptimizeResult& out = result.found;
@@ -345,7 +346,9 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   std::vector<std::string> names;
   for (const Variable& v : out.variables) names.push_back(v.name);
   if (options.on_start) options.on_start(names);
-  out.baseline_cost = cost.value(cost.close(setting.drives({}), 0, cost.devices(), options.jobs));
+  const std::vector<DeviceOutcome> of_step = cost.close(setting.drives({}), 0, cost.devices(), options.jobs);
+  robust.aim.conditions = beside_step(std::move(robust.aim.conditions), of_step);
+  out.baseline_cost = cost.value(of_step);
 
   RobustSearch search(setting, cost, robust.aim, options, robust.clock, out.baseline_cost);
   std::vector<Candidate> candidates = search.run();

@@ -196,12 +196,8 @@ Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& dr
   result.interrupted = watch.stopped();
   if (result.devices == 0) watch.throw_if_stopped();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    DriveRobustness drive{.name = std::move(all[i].name),
-                          .waveforms = std::move(all[i].waveforms),
-                          .known = known[i],
-                          .outcomes = std::move(outcomes[i])};
-    summarise(drive);
-    (i < shown ? result.drives : result.by_knowledge).push_back(std::move(drive));
+    (i < shown ? result.drives : result.by_knowledge)
+        .push_back(internal::summarised(std::move(all[i]), known[i], std::move(outcomes[i])));
   }
   return result;
 }
@@ -262,6 +258,15 @@ SceneFile scene_of_device(const Prepared& nominal, const DriveRobustness& drive,
 }
 
 namespace internal {
+
+DriveRobustness summarised(NamedDrive drive, KnownUnits known, std::vector<DeviceOutcome> outcomes) {
+  DriveRobustness all{.name = std::move(drive.name),
+                      .waveforms = std::move(drive.waveforms),
+                      .known = std::move(known),
+                      .outcomes = std::move(outcomes)};
+  summarise(all);
+  return all;
+}
 
 EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
   return {.duration = nominal.duration,

@@ -139,6 +139,8 @@ struct NamedDrive {
 
 namespace internal {
 
+/// The statistics of these outcomes, by device.
+[[nodiscard]] DriveRobustness summarised(NamedDrive drive, KnownUnits known, std::vector<DeviceOutcome> outcomes);
 /// Shared by what looks closer at a drive of a Robustness.
 [[nodiscard]] EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options);
 /// The drive, where measurements have no errors.

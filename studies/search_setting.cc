@@ -315,6 +315,12 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   Closing baseline = simulate(baseline_scene, true, watch);
   watch.throw_if_stopped();
 
+  std::vector<Criterion> beside;
+  for (Criterion& one : conditions) {
+    const double of_step = all_figures[one.figure].value(baseline.metrics);
+    beside.push_back(beside_step(std::move(one), of_step));
+  }
+
   const double period = 2 * pi / given.model.angular_frequencies()[0];
   CostScale scale{.step = {},
                   .score_window = std::max(period, 3 * given.model.in_contact_period()),
@@ -337,7 +343,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   SearchSpace space(given, actuator, family, scale.step.first_touch);
   std::map<std::string, DriverLimits> limits = given.drives.limits;
   return {.target = target,
-          .conditions = std::move(conditions),
+          .conditions = std::move(beside),
           .given = std::move(given),
           .baseline_scene = std::move(baseline_scene),
           .baseline = std::move(baseline),

@@ -31,7 +31,7 @@ Verification::Verification(const SearchSetting& setting, const OptimizeOptions& 
       given_(setting.given),
       baseline_(setting.baseline.metrics),
       target_(options.target),
-      conditions_(options.conditions),
+      conditions_(setting.conditions),
       watch_{.progress = options.on_preparation} {}
 
 bool Verification::Verified::better_than(const Verified& other) const {

@@ -21,6 +21,7 @@
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
+#include "config/assumed_spread.h"
 #include "config/units.h"
 #include "reports/measurement_report.h"
 #include "studies/measurements.h"
@@ -90,12 +91,15 @@ int calibrate_verb(const Common& c, const CalibrateRequest& request) {
   options.seed = seed_of(request.seed, options.seed);
   if (!request.errors.empty()) read_errors(request.errors, options);
   if (!request.steps.empty()) options.steps = read_steps(request.steps);
-  const SceneFile file = load_scene_or_result(c);
+  SceneFile file = load_scene_or_result(c);
+  const bool spread_assumed = assume_spread(file);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   static_cast<void>(claim_places(c, {}));
   const MeasurementStudy study = study_measurements(file, options, work->watch());
   work.reset();
-  print_json_or(c, measurements_json(study, options, c.command), measurements_text(study, options));
+  nlohmann::json j = measurements_json(study, options, c.command);
+  j["spread_assumed"] = spread_assumed;
+  print_json_or(c, j, (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + measurements_text(study, options));
   return study.interrupted ? exit_interrupted : exit_done;
 }
 

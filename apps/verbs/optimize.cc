@@ -26,6 +26,7 @@
 #include "apps/stores.h"
 #include "apps/streams.h"
 #include "apps/verbs/verbs.h"
+#include "config/assumed_spread.h"
 #include "optimizers/problem.h"
 #include "reports/made_with.h"
 #include "reports/quantity.h"
@@ -118,6 +119,7 @@ int run_robust(const Asked& asked) {
   OptimizeOptions& options = asked.search.options;
   const RobustOptions& robust = *asked.search.robust;
   SearchRun run(c, asked.search, asked.known, asked.places);
+  if (assume_spread(asked.search.scene) && !c.quiet) say(std::string(assumed_words));
   RobustResult result = robust_optimize(asked.search.scene, options, robust);
   std::optional<RobustnessReport> report;
   if (result.verdict) {

@@ -19,6 +19,7 @@
 #include "apps/verbs/verbs.h"
 #include "base/engineering.h"
 #include "base/require.h"
+#include "config/assumed_spread.h"
 #include "reports/robustness_report.h"
 #include "studies/choices.h"
 #include "studies/other_ways.h"
@@ -53,6 +54,7 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   options.points = point_set(request.points);
 
   SceneFile file = load_scene_or_result(c);
+  const bool spread_assumed = assume_spread(file);
   set_calibration(file, request.calibration);
   options.worth_of_measuring = true;
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
@@ -73,8 +75,9 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   const Robustness found = robustness(nominal, drives, options, work->watch());
   RobustnessReport report{.nominal = nominal, .found = found, .options = options, .command = c.command};
   add_details(report, request.other_ways, work->watch());
-  const nlohmann::json j = robustness_json(report);
-  std::string text = robustness_text(report);
+  nlohmann::json j = robustness_json(report);
+  j["spread_assumed"] = spread_assumed;
+  std::string text = (spread_assumed ? std::string(assumed_words) + "\n" : std::string()) + robustness_text(report);
   work.reset();
   if (folder) {
     write_robustness(*folder, report);

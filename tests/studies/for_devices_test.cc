@@ -31,7 +31,7 @@ double cost_of(const ForDevicesResult& found, std::string_view row) {
   EXPECT_NE(at, found.rows.end()) << row;
   const EnsembleFigure& speed = ensemble_figure("largest_impact_velocity_m_s");
   const auto i = static_cast<std::size_t>(&speed - ensemble_figures().data());
-  return found.verdict.drives.at(at->drive).figures.at(i).quantiles[2].value;
+  return at->judged.figures.at(i).quantiles[2].value;
 }
 
 TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
