@@ -188,7 +188,7 @@ std::string internal::devices_headline(const Result& result) {
   if (!d.better_than_plain_step) {
     std::string figures;
     for (const std::string& key : d.worse_in) figures += (figures.empty() ? "" : " and ") + figure_name(key);
-    return fmt::format("On devices that differ{}, no waveform that was found is as good as the plain step: the best has a larger {}. "
+    return fmt::format("On devices that differ{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
                        "best.toml is the plain step.",
                        assumed, figures);
   }

@@ -1,0 +1,107 @@
+// What is said of a search for devices, on figures that are made up.
+#include "reports/devices_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "reports/findings.h"
+#include "reports/html.h"
+#include "reports/result_json.h"
+#include "reports/result_reader.h"
+#include "reports/text.h"
+#include "sample_result.h"
+
+namespace softland {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Result search_alone() { return read_result(test::sample_optimize_result(100)); }
+
+ResultDevices::Row row(const std::string& name, double bounce_free, double speed, double height) {
+  return {.name = name,
+          .bounce_free = bounce_free,
+          .open = 0.001,
+          .collapsed = 0,
+          .at_95 = {{"largest_impact_velocity_m_s", speed},
+                    {"major_bounce_height_m", height},
+                    {"initial_contact_time_s", 40e-6},
+                    {"peak_contact_force_N", std::numeric_limits<double>::infinity()}}};
+}
+
+Result sample() {
+  Result r = search_alone();
+  ResultDevices d{.spread = "gaps ± 2 %", .count = 2000, .seed = 7, .closings = 150'000, .measure = "cvar:0.9", .waveform = "catch",
+                  .better_than_plain_step = true};
+  d.rows = {row("plain step", 0, 0.107, 732e-9), row("for the drawing", 0.02, 0.08, 150e-9), row("for the devices", 0.01, 0.033, 90e-9)};
+  ResultDevices::Row measured = row("Vdp to 1 %", 0.1, 0.0166, 50e-9);
+  measured.pull_in_error = 0.01;
+  d.rows.push_back(measured);
+  d.front = {{.first_touch = 50e-6, .impact_speed = 0.05, .bounce_free = 0, .candidate = "knots:6 by yield"},
+             {.first_touch = 90e-6, .impact_speed = 0.033, .bounce_free = 0.01, .candidate = "catch by cvar:0.9"}};
+  d.race = {{.measure = "cvar:0.9", .waveform = "catch", .closings = 18'000, .cost = 0.3, .bounce_free = 0.01}};
+  d.conditions = {{.text = "t_i < 3 step", .share = 0.97, .low = 0.96, .high = 0.98, .holds = true}};
+  d.drawing[&Metrics::permanent_contact_time] = 33.4e-6;
+  d.drawing[&Metrics::major_bounce_height] = 0;
+  d.drawing_status = "done";
+  d.drawing_goal_met = true;
+  d.next_command = "softland export out/calibrated.toml --device-vdp \"14.2 V\"";
+  r.devices = d;
+  return r;
+}
+
+TEST(DevicesReport, SaysFirstWhatDevicesDo) {
+  const std::string words = internal::headline(sample()).whole();
+  EXPECT_THAT(words, HasSubstr("for the drawing closes it without a rebound at 33.4\u00a0µs: drawing.toml. Of 2000 devices that differ, 95 % "
+                               "touch at no more than 33.0\u00a0mm/s instead of 107\u00a0mm/s: best.toml. With Vdp measured to 1 % on each, 95 % "
+                               "touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
+  const std::string text = text_report(sample());
+  EXPECT_EQ(text.find("The waveform for the drawing"), 0U);
+  for (const char* part : {"plain step", "for the drawing", "for the devices", "Vdp to 1 %", "107\u00a0mm/s", "732\u00a0nm", "∞",
+                           "catch by cvar:0.9: touch within 90.0\u00a0µs", "The condition t_i < 3 step holds: 97.0\u00a0% of the devices"})
+    EXPECT_THAT(text, HasSubstr(part));
+}
+
+TEST(DevicesReport, SaysHowManyLandWhereHalfOfThemDo) {
+  Result r = sample();
+  r.devices->rows[2].bounce_free = 0.77;
+  EXPECT_THAT(internal::headline(r).whole(), HasSubstr("77.0\u00a0% land without a rebound (plain step 0.0\u00a0%), and 95 % touch"));
+}
+
+TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
+  Result r = sample();
+  r.devices->better_than_plain_step = false;
+  r.devices->worse_in = {"largest_impact_velocity_m_s"};
+  r.devices->spread_assumed = true;
+  const std::string words = internal::headline(r).whole();
+  EXPECT_THAT(words, HasSubstr("(assumed, the scene has no [spread]: gaps ± 2 %), no waveform that was found is as good as the plain step"));
+  EXPECT_THAT(words, HasSubstr("the best is worse in its largest impact speed. best.toml is the plain step."));
+}
+
+TEST(DevicesReport, ComesBackFromJsonAsItWas) {
+  const nlohmann::json written = result_json(sample());
+  const Result read = read_result(written);
+  ASSERT_TRUE(read.devices);
+  EXPECT_EQ(internal::devices_json(*read.devices), written.at("devices"));
+  EXPECT_EQ(read.devices->drawing_goal_met, true);
+  EXPECT_EQ(internal::headline(read).whole(), internal::headline(sample()).whole());
+  EXPECT_TRUE(written.at("drawing").at("goal_met"));
+  EXPECT_TRUE(written["devices"]["rows"][0]["quantile_95"]["peak_contact_force_N"].is_null()) << "infinite";
+  EXPECT_FALSE(read_result(result_json(search_alone())).devices);
+}
+
+TEST(DevicesReport, StandsFirstOnThePage) {
+  const std::string page = html_report(sample());
+  const std::size_t table = page.find("id=\"devices\""), figures = page.find("id=\"figures\"");
+  ASSERT_NE(table, std::string::npos);
+  EXPECT_LT(table, figures);
+  EXPECT_THAT(page, HasSubstr("<td class=\"own\">33.0\u00a0mm/s</td>"));
+  EXPECT_THAT(html_report(search_alone()), Not(HasSubstr("id=\"devices\"")));
+}
+
+}  // namespace
+}  // namespace softland
