@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
-#include <memory>
 
 #include "base/require.h"
 #include "model/closing/tolerances.h"
 #include "model/ensemble/lane_closing.h"
+#include "model/ensemble/lane_drives.h"
 #include "model/forces/casimir.h"
 #include "model/forces/dispersion.h"
 
@@ -245,35 +245,6 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
-bool is_cubic(const SignalTerm& term) { return term.decay == 0 && !term.turns(); }
-
-/// Whether drives are straight lines, steady sines and cubic polynomials.
-bool go_in_lanes(std::span<const Signal> drives) {
-  return std::ranges::all_of(drives, [](const Signal& drive) {
-    return std::ranges::all_of(drive.pieces(), [](const SignalPiece& p) { return std::ranges::all_of(p.terms, is_cubic); });
-  });
-}
-
-std::vector<LanePiece> pieces_of(const Signal& drive) {
-  std::vector<LanePiece> all;
-  all.reserve(drive.pieces().size());
-  for (const SignalPiece& p : drive.pieces()) {
-    LanePiece& piece = all.emplace_back(LanePiece{.begin = p.begin,
-                                                  .value = p.value,
-                                                  .slope = p.slope,
-                                                  .amplitude = p.amplitude,
-                                                  .amplitude_slope = p.amplitude_slope,
-                                                  .angular_frequency = p.angular_frequency,
-                                                  .phase = p.phase,
-                                                  .longest_step = drive.resolving_step(p.begin)});
-    for (const SignalTerm& term : p.terms) {
-      piece.value += term.cosine[0], piece.slope += term.cosine[1];
-      piece.square += term.cosine[2], piece.cube += term.cosine[3];
-    }
-  }
-  return all;
-}
-
 /// Passes on what a lane tells, with force and energy of the contact's law.
 class Teller final : public fleet::LaneObserver {
  public:
@@ -357,7 +328,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   std::vector<std::size_t> places;     // of those that run
   std::vector<Eigen::VectorXd> rests;  // from which they start
   for (std::size_t i = 0; i < closings.size(); ++i) {
-    if (!why_not_in_lanes(*closings[i].model).empty() || !go_in_lanes(closings[i].drives)) continue;
+    if (!why_not_in_lanes(*closings[i].model).empty() || !fleet::go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));
     if (!rest) continue;
     const LaneLayout own = layout_of(*closings[i].model);
@@ -371,8 +342,8 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   std::vector<LaneSwitch> switches;
   std::vector<Teller> tellers;
   std::vector<LaneClosing> followed(places.size());
-  std::vector<std::vector<LanePiece>> pieces;  // drive by drive
-  switches.reserve(places.size()), tellers.reserve(places.size()), pieces.reserve(places.size() * fleet::most_drives);
+  fleet::LaneDrives drives;
+  switches.reserve(places.size()), tellers.reserve(places.size());
   for (std::size_t n = 0; n < places.size(); ++n) {
     const FleetClosing& c = closings[places[n]];
     switches.push_back(numbers_of(*c.model, tolerance));
@@ -386,7 +357,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
             .observer = &tellers.back()};
     std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {
-      const std::vector<LanePiece>& own = pieces.emplace_back(pieces_of(c.drives[k]));
+      const std::vector<LanePiece>& own = drives.of(c.drives[k], c.model->angular_frequencies().maxCoeff());
       lane.pieces[k] = own.data();
       lane.piece_count[k] = to_int(own.size());
     }

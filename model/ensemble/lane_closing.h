@@ -75,13 +75,17 @@ class LaneObserver {
   LaneObserver& operator=(const LaneObserver&) = default;
 };
 
-/// A piece of a drive, as waveforms/pieces.h has it; its terms are one cubic polynomial:
-///   value + slope s + square s^2 + cube s^3 + [amplitude + amplitude_slope s] sin(angular_frequency t + phase),  s = t - begin
+/// A piece of a drive, as waveforms/pieces.h has it; its terms are a cubic polynomial and exponentials:
+///   value + slope s + square s^2 + cube s^3 + sum over tails of tail exp(-decay s)
+///     + [amplitude + amplitude_slope s] sin(angular_frequency t + phase),  s = t - begin
 struct LanePiece {
+  static constexpr int most_tails = 2;
   double begin = 0;                                                             // [s]
   double value = 0, slope = 0, square = 0, cube = 0;                            // [V], [V/s], [V/s^2], [V/s^3]
+  double tail[most_tails] = {}, decay[most_tails] = {};                         // [V], [1/s]
   double amplitude = 0, amplitude_slope = 0, angular_frequency = 0, phase = 0;  // [V], [V/s], [rad/s], [rad]
   double longest_step = 0;                                                      // that resolves it [s]
+  bool joins = false;                                                           // goes on smoothly: steps may go over its begin
 };
 
 struct LaneClosing {

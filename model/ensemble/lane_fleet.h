@@ -45,10 +45,13 @@ class Lanes {
   // What a lane is about.
   struct Lane {
     LaneClosing* closing = nullptr;  // null: idle
-    int piece[most_drives] = {};
-    int corrections = 0;  // of a target on the plane
-    double stop = 0;      // the next breakpoint, or the end of the window [s]
-    double longest = 0;   // that resolves the drives [s]
+    const LanePiece* drive[most_drives] = {};
+    int count[most_drives] = {};  // of its pieces
+    int piece[most_drives] = {};  // that holds
+    bool runs[most_drives] = {};  // over pieces that join, without a stop
+    int corrections = 0;          // of a target on the plane
+    double stop = 0;              // the next breakpoint, or the end of the window [s]
+    double longest = 0;           // that resolves the drives [s]
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
@@ -64,13 +67,43 @@ class Lanes {
         const V s = time - begin_[k];
         volts_[k] += s * s * (bend_[k] + s * twist_[k]);
       }
-      if (!swings_[k]) continue;
-      for (std::size_t l = 0; l < width; ++l) {
-        if (amplitude_[k][l] == 0 && amplitude_slope_[k][l] == 0) continue;
-        const double t = time[l], envelope = amplitude_[k][l] + amplitude_slope_[k][l] * (t - begin_[k][l]);
-        volts_[k][l] = volts_[k][l] + envelope * std::sin(frequency_[k][l] * t + phase_[k][l]);
+      if (tails_[k]) {
+        for (std::size_t l = 0; l < width; ++l) {
+          const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
+          if (piece.tail[0] != 0) volts_[k][l] = volts_[k][l] + tails_of(piece, time[l] - piece.begin);
+        }
       }
+      if (swings_[k]) {
+        for (std::size_t l = 0; l < width; ++l) {
+          if (amplitude_[k][l] == 0 && amplitude_slope_[k][l] == 0) continue;
+          const double t = time[l], envelope = amplitude_[k][l] + amplitude_slope_[k][l] * (t - begin_[k][l]);
+          volts_[k][l] = volts_[k][l] + envelope * std::sin(frequency_[k][l] * t + phase_[k][l]);
+        }
+      }
+      if (!runs_[k]) continue;
+      for (std::size_t l = 0; l < width; ++l)
+        if (lane_[l].runs[k]) volts_[k][l] = running(k, l, time[l]);
     }
+  }
+
+  // The piece that holds at this time, near the one that did.
+  static void find_piece(Lane& lane, int k, double t) {
+    const LanePiece* const all = lane.drive[k];
+    int& at = lane.piece[k];
+    while (at + 1 < lane.count[k] && all[at + 1].begin <= t) ++at;
+    while (at > 0 && all[at].begin > t) --at;
+  }
+  [[nodiscard]] static double tails_of(const LanePiece& piece, double elapsed) {
+    double sum = piece.tail[0] * std::exp(-piece.decay[0] * elapsed);
+    if (piece.tail[1] != 0) sum += piece.tail[1] * std::exp(-piece.decay[1] * elapsed);
+    return sum;
+  }
+  // A drive of pieces that join, at any time among them.
+  [[nodiscard]] double running(int k, std::size_t l, double t) {
+    find_piece(lane_[l], k, t);
+    const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
+    const double s = t - piece.begin;
+    return piece.value + s * (piece.slope + s * (piece.square + s * piece.cube));
   }
 
   // Modal accelerations; `least`: the smallest gap.
@@ -540,24 +573,29 @@ class Lanes {
   // The drives go on to the pieces that hold from here on.
   void enter_stretch(std::size_t l) {
     Lane& lane = lane_[l];
-    const LaneClosing& c = *lane.closing;
     const double t = t_[l];
-    lane.stop = c.duration;
+    lane.stop = lane.closing->duration;
     lane.longest = infinite;
     for (int k = 0; k < layout_.drives; ++k) {
-      while (lane.piece[k] + 1 < c.piece_count[k] && c.pieces[k][lane.piece[k] + 1].begin <= t) ++lane.piece[k];
-      const LanePiece& piece = c.pieces[k][lane.piece[k]];
+      find_piece(lane, k, t);
+      const int at = lane.piece[k];
+      const LanePiece& piece = lane.drive[k][at];
       begin_[k][l] = piece.begin, value_[k][l] = piece.value, slope_[k][l] = piece.slope;
       bend_[k][l] = piece.square, twist_[k][l] = piece.cube;
       amplitude_[k][l] = piece.amplitude, amplitude_slope_[k][l] = piece.amplitude_slope;
       frequency_[k][l] = piece.angular_frequency, phase_[k][l] = piece.phase;
       if (piece.amplitude != 0 || piece.amplitude_slope != 0) swings_[k] = true;
       if (piece.square != 0 || piece.cube != 0) bends_[k] = true;
-      if (piece.longest_step < lane.longest) lane.longest = piece.longest_step;
-      if (lane.piece[k] + 1 < c.piece_count[k]) {
-        const double next = c.pieces[k][lane.piece[k] + 1].begin;
-        if (next < lane.stop) lane.stop = next;
+      if (piece.tail[0] != 0) tails_[k] = true;
+      int next = at + 1;
+      while (next < lane.count[k] && lane.drive[k][next].joins) ++next;
+      lane.runs[k] = next > at + 1;
+      if (lane.runs[k]) {
+        runs_[k] = true;
+      } else if (piece.longest_step < lane.longest) {
+        lane.longest = piece.longest_step;
       }
+      if (next < lane.count[k] && lane.drive[k][next].begin < lane.stop) lane.stop = lane.drive[k][next].begin;
     }
     max_step_[l] = lane.longest < most_turn_[l] ? lane.longest : most_turn_[l];
     starting_[l] = special_[l] = true;
@@ -605,6 +643,7 @@ class Lanes {
     const LaneSwitch& s = *closing->numbers;
     lane = Lane{};
     lane.closing = closing;
+    for (int k = 0; k < layout_.drives; ++k) lane.drive[k] = closing->pieces[k], lane.count[k] = closing->piece_count[k];
     if (!idle) ++busy_;
     laws_.take(s, l);
     plane_[l] = s.plane;
@@ -649,7 +688,8 @@ class Lanes {
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
   V amplitude_[most_drives], amplitude_slope_[most_drives], frequency_[most_drives], phase_[most_drives];
-  bool swings_[most_drives] = {}, bends_[most_drives] = {};  // in any lane, ever
+  bool swings_[most_drives] = {}, bends_[most_drives] = {}, tails_[most_drives] = {},
+       runs_[most_drives] = {};  // in any lane, ever
   // Of the motion.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];

@@ -7,9 +7,11 @@
 #include <cstdlib>
 
 #include "model/ensemble/fleet.h"
+#include "model/ensemble/lane_drives.h"
 #include "sampling/statistics.h"
 #include "scenes.h"
 #include "studies/ensemble.h"
+#include "waveforms/driver.h"
 #include "waveforms/waveform.h"
 
 namespace softland::lanes_test {
@@ -68,7 +70,9 @@ std::vector<std::string> digits(const std::vector<DeviceOutcome>& all) {
 double off(double value, double expected) { return std::abs(value - expected) / std::abs(expected); }
 
 // What both paths may differ by: the tolerance, and in what follows the first touches what bouncing makes of it.
-void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<DeviceOutcome>& one_by_one) {
+// Lanes step over the samples of a filtered signal, whose ripple then counts as an error of some hundredths of it, `looser` times
+// what steps that end on each sample leave.
+void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<DeviceOutcome>& one_by_one, double looser = 1) {
   ASSERT_EQ(lanes.size(), one_by_one.size());
   std::vector<double> heights, forces, energies;
   std::size_t closed = 0, other_counts = 0;
@@ -81,8 +85,8 @@ void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<Dev
       continue;
     }
     ++closed;
-    EXPECT_LT(off(a.metrics.initial_contact_time, b.metrics.initial_contact_time), 1e-6);
-    EXPECT_LT(off(a.metrics.impact_velocity, b.metrics.impact_velocity), 1e-5);
+    EXPECT_LT(off(a.metrics.initial_contact_time, b.metrics.initial_contact_time), looser * 1e-6);
+    EXPECT_LT(off(a.metrics.impact_velocity, b.metrics.impact_velocity), looser * 1e-5);
     if (b.metrics.major_bounce_height > 0) heights.push_back(off(a.metrics.major_bounce_height, b.metrics.major_bounce_height));
     forces.push_back(off(a.metrics.peak_contact_force, b.metrics.peak_contact_force));
     energies.push_back(off(a.metrics.impact_energy, b.metrics.impact_energy));
@@ -90,7 +94,7 @@ void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<Dev
   }
   EXPECT_GT(closed, lanes.size() / 2);
   if (!heights.empty()) {
-    EXPECT_LT(sample_quantile(heights, 0.9), 1e-4);
+    EXPECT_LT(sample_quantile(heights, 0.9), looser * 1e-4);
   }
   EXPECT_LT(sample_quantile(forces, 0.9), 1e-3);
   EXPECT_LT(sample_quantile(energies, 0.9), 3e-2);
@@ -100,7 +104,9 @@ void expect_alike(const std::vector<DeviceOutcome>& lanes, const std::vector<Dev
 struct Case {
   std::string name;
   SceneFile file;
+  double looser = 1;  // as expect_alike() takes it
 };
+constexpr double over_samples = 5;
 
 /// Of nickel, clamped at both ends.
 SceneFile bridge() {
@@ -154,6 +160,10 @@ std::vector<Case> cases() {
       "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"17 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
   const std::string spline =
       "waveform.main={family=\"bspline\", levels=[\"24 V\", \"8 V\", \"2 V\", \"23 V\", \"12 V\", \"17 V\"], duration=\"60 us\"}";
+  const std::string dither =
+      "waveform.main={family=\"harmonic\", base=\"17 V\", amplitude=\"3 V\", frequency=\"90 kHz\", start=\"5 us\", end=\"70 "
+      "us\", "
+      "fade=\"3 us\"}";
   std::vector<Case> all;
   all.push_back({"step", gold_at_17_volts()});
   all.push_back({"pulse", gold_at_17_volts({pulse})});
@@ -162,10 +172,20 @@ std::vector<Case> cases() {
   all.push_back({"linear fringing, modal damping",
                  gold_at_17_volts({"electrode.main.fringing=\"linear\"", "structure.damping_ratio=0.02"})});
   all.push_back({"no fringing, two modes", gold_at_17_volts({"electrode.main.fringing=\"none\"", "structure.modes=2"})});
-  all.push_back(
-      {"dither", gold_at_17_volts({"waveform.main={family=\"harmonic\", base=\"17 V\", amplitude=\"3 V\", frequency=\"90 kHz\", "
-                                   "start=\"5 us\", end=\"70 us\", fade=\"3 us\"}"})});
+  all.push_back({"dither", gold_at_17_volts({dither})});
   all.push_back({"spline", gold_at_17_volts({spline})});
+  all.push_back({"sampled, slewed and filtered pulse",
+                 gold_at_17_volts({pulse, "driver.main.sample_rate=25 MHz", "driver.main.bits=14", "driver.main.bandwidth=1 MHz",
+                                   "driver.main.max_slew=50 V/us"}),
+                 over_samples});
+  all.push_back(
+      {"sampled and filtered spline",
+       gold_at_17_volts({spline, "driver.main.sample_rate=25 MHz", "driver.main.bits=14", "driver.main.bandwidth=1 MHz"}),
+       over_samples});
+  all.push_back({"slowly sampled and filtered spline",
+                 gold_at_17_volts({spline, "driver.main.sample_rate=1 MHz", "driver.main.bandwidth=200 kHz"})});
+  all.push_back(
+      {"pulse filtered twice", gold_at_17_volts({pulse, "driver.main.bandwidth=1 MHz", "driver.main.source_resistance=1 Mohm"})});
   all.push_back({"two pads", gold_at_17_volts({"electrode.main.span=[[\"60 um\", \"140 um\"], [\"160 um\", \"98 %\"]]"})});
   all.push_back({"seven pads", gold_at_17_volts({"electrode.main.span=[[\"60 um\", \"80 um\"], [\"85 um\", \"100 um\"], "
                                                  "[\"105 um\", \"120 um\"], [\"125 um\", \"140 um\"], [\"145 um\", \"160 um\"], "
@@ -193,7 +213,7 @@ std::vector<Case> cases() {
 }
 
 TEST(Lanes, CloseAsOneAtATimeDoes) {
-  for (const auto& [name, file] : cases()) {
+  for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
     const Fleet fleet(file, 40);
     ASSERT_EQ(why_not_in_lanes(fleet.nominal.model), "");
@@ -201,13 +221,13 @@ TEST(Lanes, CloseAsOneAtATimeDoes) {
     const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-6);
     for (const Vectors vectors : vectors_here()) {
       EXPECT_EQ(fleet.followed(signals, vectors, 1e-6), fleet.devices.size());
-      expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one);
+      expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one, looser);
     }
   }
 }
 
 TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
-  for (const auto& [name, file] : cases()) {
+  for (const auto& [name, file, looser] : cases()) {
     SCOPED_TRACE(name);
     Fleet fleet(file, 37);
     const std::vector<Signal> signals = fleet.nominal.signals();
@@ -230,6 +250,36 @@ TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {
     }
 #endif
   }
+}
+
+// A signal of 25 samples in a microsecond behind a filter of a time constant of four of them.
+TEST(LaneDrives, SmoothRunsOfSamplesAndKeepTheirIntegral) {
+  std::vector<std::pair<double, double>> points;
+  for (int i = 0; i <= 60; ++i) points.emplace_back(1e-6 * i, 20 * std::sin(0.06 * i));
+  const Signal drive =
+      driven(Signal::piecewise_linear(points), {.sample_rate = 25e6, .bits = 14, .bandwidth = 1e6}, {.max_voltage = 25}, 1e-3);
+  const std::vector<fleet::LanePiece> exact = fleet::pieces_of(drive);
+  const fleet::SmoothedDrive smooth = fleet::smoothed(exact);
+  EXPECT_NEAR(smooth.window, 2 / 25e6, 1e-12) << "two samples";
+  EXPECT_LT(smooth.pieces.size(), 1.1 * static_cast<double>(exact.size()));
+
+  const auto voltage = [&](double time) {
+    const auto after = std::ranges::upper_bound(smooth.pieces, time, {}, &fleet::LanePiece::begin);
+    const fleet::LanePiece& p = *std::prev(after);
+    const double s = time - p.begin;
+    return p.value + s * (p.slope + s * (p.square + s * p.cube)) + p.tail[0] * std::exp(-p.decay[0] * s);
+  };
+  constexpr double step = 1e-9, end = 70e-6;  // [s]
+  double difference = 0, largest = 0;         // [V s], [V]
+  for (double t = step / 2; t < end; t += step) {
+    const double off = voltage(t) - drive.voltage(t);
+    difference += off * step;
+    largest = std::max(largest, std::abs(off));
+  }
+  constexpr double ripple =
+      0.01;  // [V]: a sample changes by 50 mV, which the filter makes a sixteenth of, and at the corner more
+  EXPECT_LT(largest, ripple);
+  EXPECT_LT(std::abs(difference), 1e-5 * ripple * end) << "but for the sum over points";
 }
 
 // Sines and cubics are worked out in all lanes once one has them.

@@ -1,0 +1,205 @@
+#include "model/ensemble/lane_drives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace softland::fleet {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+bool is_cubic(const SignalTerm& term) { return term.decay == 0 && !term.turns(); }
+bool is_tail(const SignalTerm& term) {
+  return term.decay != 0 && !term.turns() &&
+         std::all_of(term.cosine.begin() + 1, term.cosine.end(), [](double c) { return c == 0; });
+}
+
+/// A run of short pieces [first, last) with the integrals up to each.
+class Run {
+ public:
+  Run(std::span<const LanePiece> pieces, double end) : pieces_(pieces), end_(end) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) integrals_.push_back(i == 0 ? 0 : integral_to(pieces[i].begin, i - 1));
+  }
+  [[nodiscard]] double begin() const { return pieces_.front().begin; }
+  [[nodiscard]] double end() const { return end_; }
+  /// [V]
+  [[nodiscard]] double voltage(double time) const {
+    const LanePiece& p = pieces_[piece_at(time)];
+    const double s = time - p.begin;
+    double sum = p.value + s * (p.slope + s * (p.square + s * p.cube));
+    for (int i = 0; i < LanePiece::most_tails; ++i) sum += p.tail[i] * std::exp(-p.decay[i] * s);
+    return sum;
+  }
+  /// [V/s]
+  [[nodiscard]] double rate(double time) const {
+    const LanePiece& p = pieces_[piece_at(time)];
+    const double s = time - p.begin;
+    double sum = p.slope + s * (2 * p.square + 3 * s * p.cube);
+    for (int i = 0; i < LanePiece::most_tails; ++i) sum -= p.decay[i] * p.tail[i] * std::exp(-p.decay[i] * s);
+    return sum;
+  }
+  /// From the beginning [V s]
+  [[nodiscard]] double integral(double time) const { return integral_to(time, piece_at(time)); }
+
+  /// What two pieces in succession take, half of the time at most: a sample, or two [s].
+  [[nodiscard]] double window() const {
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i + 2 < pieces_.size(); ++i) lengths.push_back(pieces_[i + 2].begin - pieces_[i].begin);
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::nth_element(lengths.begin(), middle, lengths.end());
+    return *middle;
+  }
+
+ private:
+  [[nodiscard]] std::size_t piece_at(double time) const {
+    const auto after = std::ranges::upper_bound(pieces_, time, {}, &LanePiece::begin);
+    return after == pieces_.begin() ? 0 : static_cast<std::size_t>(after - pieces_.begin()) - 1;
+  }
+  [[nodiscard]] double integral_to(double time, std::size_t piece) const {
+    const LanePiece& p = pieces_[piece];
+    const double s = time - p.begin;
+    double sum = integrals_[piece] + s * (p.value + s * (p.slope / 2 + s * (p.square / 3 + s * p.cube / 4)));
+    for (int i = 0; i < LanePiece::most_tails; ++i)
+      if (p.tail[i] != 0) sum -= p.tail[i] / p.decay[i] * std::expm1(-p.decay[i] * s);
+    return sum;
+  }
+
+  std::span<const LanePiece> pieces_;
+  double end_;
+  std::vector<double> integrals_;
+};
+
+struct Knot {
+  double time = 0, value = 0, rate = 0;  // [s], [V], [V/s]
+};
+
+/// The mean over the window about a time, and how fast it changes; near an end of the run over what there is on both sides.
+Knot mean_about(double time, const Run& run, double window) {
+  const double before = time - run.begin(), after = run.end() - time;
+  if (before <= 0) return {time, run.voltage(time), run.rate(time)};
+  if (after <= 0) return {time, run.voltage(time), run.rate(time)};
+  const double half = std::min({window / 2, before, after});
+  const double mean = (run.integral(time + half) - run.integral(time - half)) / (2 * half);
+  if (half == before) return {time, mean, (run.voltage(time + half) - mean) / half};
+  if (half == after) return {time, mean, (mean - run.voltage(time - half)) / half};
+  return {time, mean, (run.voltage(time + half) - run.voltage(time - half)) / (2 * half)};
+}
+
+/// The cubic through two knots.
+LanePiece between(const Knot& a, const Knot& b) {
+  const double h = b.time - a.time, rise = (b.value - a.value) / h;
+  return {.begin = a.time,
+          .value = a.value,
+          .slope = a.rate,
+          .square = (3 * rise - 2 * a.rate - b.rate) / h,
+          .cube = (a.rate + b.rate - 2 * rise) / (h * h),
+          .longest_step = infinite};
+}
+
+/// What is missing in the integral of the cubic between two knots [V s].
+double missing(const Knot& a, const Knot& b, const Run& run) {
+  const double h = b.time - a.time;
+  return run.integral(b.time) - run.integral(a.time) - h * ((a.value + b.value) / 2 + h * (a.rate - b.rate) / 12);
+}
+
+/// A mean cuts corners: gives back to the knots between the ends what that takes from the integral about them, all of it.
+void restore_integral(std::vector<Knot>& knots, const Run& run) {
+  const std::size_t last = knots.size() - 1;
+  std::vector<double> more(knots.size(), 0);  // [V]
+  const double step = (run.end() - run.begin()) / static_cast<double>(last);
+  for (std::size_t k = 0; k < last; ++k) {
+    const double lost = missing(knots[k], knots[k + 1], run) / step;
+    const bool is_first = k == 0, is_last = k + 1 == last;
+    if (!is_first) more[k] += is_last ? lost : lost / 2;
+    if (!is_last) more[k + 1] += is_first ? lost : lost / 2;
+  }
+  for (std::size_t k = 1; k < last; ++k) {
+    knots[k].value += more[k];
+    knots[k].rate += (more[k + 1] - more[k - 1]) / (2 * step);
+  }
+}
+
+void append_smooth(std::vector<LanePiece>& all, const Run& run, double window) {
+  const double length = run.end() - run.begin(), count = std::max(2.0, std::ceil(2 * length / window));
+  std::vector<Knot> knots{mean_about(run.begin(), run, window)};
+  for (double k = 1; k < count; ++k) knots.push_back(mean_about(run.begin() + length * (k / count), run, window));
+  knots.push_back(mean_about(run.end(), run, window));
+  restore_integral(knots, run);
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    all.push_back(between(knots[k], knots[k + 1]));
+    all.back().joins = k > 0;
+  }
+}
+
+}  // namespace
+
+bool go_in_lanes(std::span<const Signal> drives) {
+  const auto goes = [](const SignalPiece& p) {
+    return std::ranges::count_if(p.terms, is_tail) <= LanePiece::most_tails &&
+           std::ranges::all_of(p.terms, [](const SignalTerm& term) { return is_cubic(term) || is_tail(term); });
+  };
+  return std::ranges::all_of(drives, [&](const Signal& drive) { return std::ranges::all_of(drive.pieces(), goes); });
+}
+
+std::vector<LanePiece> pieces_of(const Signal& drive) {
+  std::vector<LanePiece> all;
+  all.reserve(drive.pieces().size());
+  for (const SignalPiece& p : drive.pieces()) {
+    LanePiece& piece = all.emplace_back(LanePiece{.begin = p.begin,
+                                                  .value = p.value,
+                                                  .slope = p.slope,
+                                                  .amplitude = p.amplitude,
+                                                  .amplitude_slope = p.amplitude_slope,
+                                                  .angular_frequency = p.angular_frequency,
+                                                  .phase = p.phase,
+                                                  .longest_step = drive.resolving_step(p.begin)});
+    int tails = 0;
+    for (const SignalTerm& term : p.terms) {
+      if (is_tail(term)) {
+        piece.tail[tails] = term.cosine[0], piece.decay[tails++] = term.decay;
+      } else {
+        piece.value += term.cosine[0], piece.slope += term.cosine[1];
+        piece.square += term.cosine[2], piece.cube += term.cosine[3];
+      }
+    }
+  }
+  return all;
+}
+
+SmoothedDrive smoothed(std::vector<LanePiece> exact) {
+  constexpr std::size_t fewest = 8;  // pieces of a run
+  const auto is_short = [&](std::size_t i) {
+    const LanePiece& p = exact[i];
+    const double fastest = std::max(p.decay[0], p.decay[1]);
+    return i + 1 < exact.size() && p.tail[0] != 0 && p.amplitude == 0 && p.amplitude_slope == 0 &&
+           (exact[i + 1].begin - p.begin) * fastest < 1;
+  };
+  SmoothedDrive drive;
+  for (std::size_t i = 0; i < exact.size();) {
+    std::size_t end = i;
+    while (is_short(end)) ++end;
+    if (end - i < fewest) {
+      end = std::max(end, i + 1);
+      drive.pieces.insert(drive.pieces.end(), exact.begin() + static_cast<std::ptrdiff_t>(i),
+                          exact.begin() + static_cast<std::ptrdiff_t>(end));
+    } else {
+      const std::span<const LanePiece> all(exact);
+      const Run run(all.subspan(i, end - i), exact[end].begin);
+      const double window = run.window();
+      append_smooth(drive.pieces, run, window);
+      drive.window = std::max(drive.window, window);
+    }
+    i = end;
+  }
+  return drive;
+}
+
+const std::vector<LanePiece>& LaneDrives::of(const Signal& drive, double fastest) {
+  const auto [found, is_new] = known_.try_emplace(&drive);
+  Known& known = found->second;
+  if (is_new) known.exact = pieces_of(drive), known.smooth = smoothed(known.exact);
+  return known.smooth.window > 0 && known.smooth.window * fastest < 1 ? known.smooth.pieces : known.exact;
+}
+
+}  // namespace softland::fleet

@@ -1,0 +1,44 @@
+// Drives as the lanes of fleet.h take them: numbers of pieces, and of a signal that is sampled finely and filtered a smooth
+// course.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "model/ensemble/lane_closing.h"
+#include "waveforms/signal.h"
+
+namespace softland::fleet {
+
+/// Whether these are straight lines, steady sines, cubic polynomials and a few exponentials.
+[[nodiscard]] bool go_in_lanes(std::span<const Signal> drives);
+
+/// The pieces of a signal that goes in lanes.
+[[nodiscard]] std::vector<LanePiece> pieces_of(const Signal& drive);
+
+/// Pieces whose runs of short ones are replaced by the mean over a window about each time. A run is of pieces between samples
+/// that a filter with a longer time constant lets through: ripples by so little that no switch of lower frequencies follows, and
+/// yet a breakpoint each. The mean keeps the integral of a run; its pieces join with their slopes, so that steps go over them.
+struct SmoothedDrive {
+  std::vector<LanePiece> pieces = {};
+  double window = 0;  ///< the longest, the pieces of two samples [s]; 0: there are no such runs
+};
+[[nodiscard]] SmoothedDrive smoothed(std::vector<LanePiece> exact);
+
+/// The pieces of drives, those of one drive once however many switches it closes.
+class LaneDrives {
+ public:
+  /// For a switch whose modes have angular frequencies up to `fastest` [rad/s].
+  [[nodiscard]] const std::vector<LanePiece>& of(const Signal& drive, double fastest);
+
+ private:
+  struct Known {
+    std::vector<LanePiece> exact;
+    SmoothedDrive smooth;
+  };
+  std::unordered_map<const Signal*, Known> known_;
+};
+
+}  // namespace softland::fleet
