@@ -66,13 +66,21 @@ void check_electrodes(const Device& device, const SceneFile::Impl& file) {
 Calibration read_calibration(const SceneFile::Impl& file) {
   Calibration calibration;
   for (const std::string& name : file.names_in("calibration")) {
-    if (name != measured_pull_in && name != measured_frequency) {
+    if (name != measured_pull_in && name != measured_frequency && name != measured_time) {
       file.fail_section(internal::join_path("calibration", name),
-                        "unknown measurement" + internal::hint(name, {measured_pull_in, measured_frequency}));
+                        "unknown measurement" + internal::hint(name, {measured_pull_in, measured_frequency, measured_time}));
     }
-    (name == measured_pull_in ? calibration.pull_in_error : calibration.frequency_error) =
-        SectionReader(file, "calibration", name).number("error");
+    const SectionReader in(file, "calibration", name);
+    const Quantity& error = in.quantities("error").front();
+    if (error.value != 0)
+      in.require((error.dimension == dimension::time) == (name == measured_time), "error",
+                 name == measured_time ? "must be a time [s]" : "must be a percentage or a plain number");
+    (name == measured_pull_in     ? calibration.pull_in_error
+     : name == measured_frequency ? calibration.frequency_error
+                                  : calibration.time_error) = error.value;
   }
+  if (calibration.time_error && calibration.pull_in_error)
+    file.fail_section("calibration.time", "tells the volts of a device, as Vdp does: measure one of them");
   if (const toml::node* classes = file.find({"calibration", std::string(internal::classes_key)})) {
     const std::string path = internal::join_path("calibration", internal::classes_key);
     const auto number = classes->is_integer() ? classes->as_integer()->get() : 0;

@@ -109,13 +109,18 @@ struct SimulateOptions {
 struct Calibration {
   /// Of the measurement, relative, one standard deviation; none: it is not measured.
   std::optional<double> pull_in_error = {}, frequency_error = {};
+  /// Of the closing time of a step to closing_step times the nominal Vdp, one standard deviation [s]; none: it is not measured. It
+  /// tells the volts, and is never measured beside Vdp.
+  std::optional<double> time_error = {};
   /// Into which devices are sorted by what is measured, each with one waveform; none: every device has its own.
   std::optional<int> classes = {};
 
-  [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error; }
+  [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error && !time_error; }
 };
 /// Names of the measurements in a scene.
-inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency";
+inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency", measured_time = "time";
+/// The step whose closing time is measured, in nominal pull-in voltages (Vdp): slow enough to show what a landing depends on.
+inline constexpr double closing_step = 1.2;
 inline constexpr int most_classes = 256;
 namespace internal {
 inline constexpr std::string_view classes_key = "classes";

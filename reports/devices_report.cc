@@ -47,6 +47,7 @@ ResultDevices::Row row_of(const DevicesRow& row) {
   ResultDevices::Row r{.name = row.name,
                        .pull_in_error = row.knowledge.pull_in_error.value_or(Metrics::unset),
                        .frequency_error = row.knowledge.frequency_error.value_or(Metrics::unset),
+                       .time_error = row.knowledge.time_error.value_or(Metrics::unset),
                        .searched_for_it = row.searched_for_it,
                        .bounce_free = drive.bounce_free.value,
                        .open = 1 - drive.closing.value - drive.collapsed.value,
@@ -134,7 +135,10 @@ json internal::devices_json(const ResultDevices& d) {
     json figures = json::object();
     for (const auto& [key, value] : r.at_95) figures[key] = json_number(value);
     rows.push_back({{"name", r.name},
-                    {"knowledge", {{"Vdp", json_number(r.pull_in_error)}, {"frequency", json_number(r.frequency_error)}}},
+                    {"knowledge",
+                      {{"Vdp", json_number(r.pull_in_error)},
+                       {"frequency", json_number(r.frequency_error)},
+                       {"time_s", json_number(r.time_error)}}},
                     {"searched_for_it", r.searched_for_it},
                     {"bounce_free", json_number(r.bounce_free)},
                     {"does_not_close", json_number(r.open)},
@@ -241,6 +245,22 @@ std::string internal::devices_text(const ResultDevices& d) {
   return out;
 }
 
+std::string internal::devices_keys(const ResultDevices& d) {
+  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices");
+  if (step == nullptr || own == nullptr) return {};
+  const std::vector<std::string> before = cells(*step), after = cells(*own);
+  std::string out;
+  const auto add = [&](const std::string& name, std::size_t column) {
+    out += fmt::format(
+        "<div class=\"key\"><dt>{}</dt><dd><span class=\"before\">{} <span aria-label=\"becomes\">→</span></span> <span "
+        "class=\"after\">{}</span></dd></div>\n",
+        name, escaped(before[column]), escaped(after[column]));
+  };
+  add("Devices without a rebound", 0);
+  for (std::size_t i = 0; i < 3; ++i) add(capitalised(std::string(columns[i].heading)) + ", of 95 %", i + 1);
+  return out;
+}
+
 std::string internal::devices_section(const ResultDevices& d) {
   if (d.rows.empty()) return {};
   TableRow head{"Waveform", "Without a rebound"};
@@ -248,7 +268,8 @@ std::string internal::devices_section(const ResultDevices& d) {
   head.insert(head.end(), {"Stay open", "Pulled onto the electrode"});
   std::vector<TableRow> rows;
   for (const ResultDevices::Row& row : d.rows) {
-    const std::string name = std::isnan(row.pull_in_error) ? row.name : "with " + row.name;
+    const bool is_measured = !std::isnan(row.pull_in_error) || !std::isnan(row.time_error);
+    const std::string name = is_measured ? "with " + row.name : row.name;
     TableRow& cell = rows.emplace_back(TableRow{escaped(capitalised(name))});
     const bool is_own = row.name == "for the devices";
     for (const std::string& one : cells(row)) {
@@ -263,12 +284,12 @@ std::string internal::devices_section(const ResultDevices& d) {
                                  escaped(d.spread), d.spread_assumed ? " The scene has no [spread]: this one is assumed." : "");
   body += table_html(head, rows);
   if (d.front.size() > 1) {
-    body += "<p>Sooner or softer: what 95 % of the devices reach with the other candidates.</p>\n<ul>\n";
+    body += "<p class=\"below\">Sooner or softer: what 95 % of the devices reach with the other candidates.</p>\n<ul>\n";
     for (const ResultDevices::FrontPoint& p : d.front) body += "<li>" + escaped(front_words(p)) + "</li>\n";
     body += "</ul>\n";
   }
   if (!d.next_command.empty())
-    body += fmt::format("<p>For a device whose Vdp was measured: <code>{}</code></p>\n", escaped(d.next_command));
+    body += fmt::format("<p class=\"below\">For a device whose Vdp was measured: <code>{}</code></p>\n", escaped(d.next_command));
   body += "<p>More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by figure.</p>\n";
   return section("devices", "On devices that differ", body);
 }

@@ -23,7 +23,9 @@ namespace internal {
 [[nodiscard]] std::string devices_headline(const Result& result);
 /// The table for a terminal, and the front.
 [[nodiscard]] std::string devices_text(const ResultDevices& devices);
-/// The same for a page.
+/// What stands above all else on a page: shares and 95 % quantiles of the devices, from plain step to winner.
+[[nodiscard]] std::string devices_keys(const ResultDevices& devices);
+/// The table for a page.
 [[nodiscard]] std::string devices_section(const ResultDevices& devices);
 
 }  // namespace internal

@@ -94,6 +94,7 @@ json calibration_json(const Calibration& c) {
   const auto error = [](const std::optional<double>& of) { return of ? json(*of) : json(nullptr); };
   return {{"Vdp_error", error(c.pull_in_error)},
           {"frequency_error", error(c.frequency_error)},
+          {"time_error_s", error(c.time_error)},
           {"classes", c.classes ? json(*c.classes) : json(nullptr)}};
 }
 

@@ -45,6 +45,9 @@ std::string calibration_words(const Calibration& c) {
   };
   add(measured_pull_in, c.pull_in_error);
   add(measured_frequency, c.frequency_error);
+  if (c.time_error)
+    words += (words.empty() ? "" : ", ") + fmt::format("closing time under {} Vdp{}", closing_step,
+                                                       *c.time_error > 0 ? " ± " + quantity(*c.time_error, "s") : " exactly");
   return c.classes ? fmt::format("{}, {} classes", words, *c.classes) : words;
 }
 
@@ -53,7 +56,7 @@ std::string why_no_indices(const SobolEstimate& e) {
                      e.failed_rows, e.rows);
 }
 
-bool is_erring(const Calibration& c) { return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0; }
+bool is_erring(const Calibration& c) { return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0 || c.time_error.value_or(0) > 0; }
 
 std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
   return DeviceDrives(ensemble.nominal()).shown(ensemble.values(k));

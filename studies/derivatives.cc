@@ -42,7 +42,7 @@ class Surroundings {
         drives_(nominal) {
     const Calibration& calibration = known_.calibration();
     constexpr double precision = 1e-11;  // of pull-in voltages, whose differences are taken
-    if (!calibration.is_empty()) meter_.emplace(nominal, calibration.pull_in_error.has_value(), precision);
+    if (!calibration.is_empty()) meter_.emplace(nominal, Gauges::of(calibration), precision);
     for (const SpreadVariable& v : variables()) {
       values_.push_back(v.is_factor ? 1 : v.keys.front().nominal);
       steps_.push_back(values_.back() != 0 ? SwitchSlopes::step * std::abs(values_.back())

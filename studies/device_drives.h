@@ -15,6 +15,8 @@ namespace softland {
 /// What is known of a device, over what holds for the nominal one: factors of the voltages and of the times of its drives.
 struct DeviceUnits {
   double volts = 1, time = 1;
+  /// Of volts that are told by a closing time: by which part they change with it [1/s].
+  double volts_by_time = 0;
 };
 
 /// The waveforms, in the order of Switch::drives(), in the units of one device. What drives stand at before t = 0 stays what it

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <utility>
 
@@ -137,16 +138,60 @@ void DeviceBuilder::describe(SampledDevice& device) {
   device.model.emplace(read_scene(ensemble_->scene(device.values)).device, nominal.quadrature, &nominal.model);
 }
 
-DeviceMeter::DeviceMeter(const Prepared& nominal, bool need_pull_in, double precision)
-    : nominal_(&nominal), need_pull_in_(need_pull_in), precision_(precision) {
-  if (!need_pull_in) return;
+double closing_time(const Switch& model, std::size_t drive, double step, Bias bias, double duration) {
+  std::vector<Signal> signals;
+  for (const double standing : bias) signals.push_back(Signal::standing(standing));
+  signals[drive] = Signal::constant(step);
+  const Trajectory end =
+      simulate_closing(model, signals, {.duration = duration, .tolerance = EnsembleRun{}.tolerance, .after_contact = 0});
+  return end.touches.empty() ? Metrics::unset : end.touches.front().begin;
+}
+
+DeviceMeter::DeviceMeter(const Prepared& nominal, const Gauges& gauges, double precision)
+    : nominal_(&nominal), gauges_(gauges), precision_(precision) {
+  if (!gauges.pull_in && !gauges.closing_time) return;
   require(has_pulling_electrode(nominal.scene.device), [&] {
-    return fmt::format("{}: Vdp cannot be measured: there is no electrode that pulls in", nominal.scene.file.name());
+    return fmt::format("{}: {} cannot be measured: there is no electrode that pulls in", nominal.scene.file.name(),
+                       gauges.pull_in ? "Vdp" : "a closing time");
   });
   const std::string name = searched_electrode(nominal.scene.device);
   electrode_ = searched_drive(nominal.scene.device);
   pull_in_ = pull_in(nominal.model);
   require(std::isfinite(pull_in_), [&] { return fmt::format("electrode '{}' has no pull-in voltage to calibrate by", name); });
+  if (gauges.closing_time) learn_times();
+}
+
+double DeviceMeter::time_of(const Switch& model, double step) const {
+  return softland::closing_time(model, electrode_, step, bias_of(nominal_->scene, electrode_), periods_to_close / frequency());
+}
+
+// The nominal device under steps from 0.75 to 1.19 times closing_step over the factor of the volts.
+void DeviceMeter::learn_times() {
+  constexpr double least = 0.75, most = 1.19;
+  constexpr int steps = 88;
+  for (int n = 0; n <= steps; ++n) {
+    const double volts = least + (most - least) * n / steps;
+    const double time = time_of(nominal_->model, closing_step * pull_in_ / volts);
+    if (std::isfinite(time) && (told_.empty() || time > told_.back().time)) told_.push_back({.time = time, .volts = volts});
+  }
+  require(told_.size() > 2, [&] {
+    return fmt::format("{}: no step to {} Vdp closes the switch: its closing time cannot be measured", nominal_->scene.file.name(),
+                       closing_step);
+  });
+}
+
+double DeviceMeter::closing_time() const {
+  return gauges_.closing_time ? time_of(nominal_->model, closing_step * pull_in_) : Metrics::unset;
+}
+
+// Between two steps of the nominal device on a line; beyond them on the last line.
+DeviceUnits DeviceMeter::told_by(double time) const {
+  if (!std::isfinite(time)) return {.volts = Metrics::unset, .time = 1};
+  const auto above = std::ranges::upper_bound(told_, time, {}, &ToldVolts::time);
+  const auto next = std::clamp<std::ptrdiff_t>(above - told_.begin(), 1, static_cast<std::ptrdiff_t>(told_.size()) - 1);
+  const ToldVolts &a = told_[static_cast<std::size_t>(next - 1)], &b = told_[static_cast<std::size_t>(next)];
+  const double slope = (b.volts - a.volts) / (b.time - a.time), volts = a.volts + slope * (time - a.time);
+  return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
 }
 
 double DeviceMeter::frequency() const { return nominal_->model.angular_frequencies()[0] / (2 * pi); }
@@ -159,17 +204,23 @@ double DeviceMeter::pull_in(const Switch& model) const {
 }
 
 DeviceUnits DeviceMeter::exact(const Switch& model) const {
-  return {.volts = need_pull_in_ ? pull_in(model) / pull_in_ : 1,
-          .time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0]};
+  DeviceUnits units = gauges_.closing_time ? told_by(time_of(model, closing_step * pull_in_))
+                      : gauges_.pull_in    ? DeviceUnits{.volts = pull_in(model) / pull_in_}
+                                           : DeviceUnits{};
+  units.time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0];
+  return units;
 }
 
 DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
+  constexpr double least_volts = 0.1;  // no instrument reads less than nothing
   const auto reading = [&](double error, std::uint64_t which) {
-    constexpr double least = 0.1;  // no instrument reads less than nothing
-    return std::max(least, 1 + error * random_normal(seed, Stream::measurement, 2 * k + which));
+    return std::max(least_volts, 1 + error * random_normal(seed, Stream::measurement, 2 * k + which));
   };
   DeviceUnits units;
   if (calibration.pull_in_error) units.volts = exact.volts * reading(*calibration.pull_in_error, 0);
+  if (calibration.time_error)
+    units.volts = std::max(least_volts, exact.volts * (1 + exact.volts_by_time * *calibration.time_error *
+                                                               random_normal(seed, Stream::measurement, 2 * k)));
   if (calibration.frequency_error) units.time = exact.time / reading(*calibration.frequency_error, 1);
   return units;
 }
@@ -177,9 +228,9 @@ DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& c
 namespace {
 
 // Without error.
-std::vector<DeviceUnits> reference_units(const Prepared& nominal, bool need_pull_in, std::size_t size, int jobs,
+std::vector<DeviceUnits> reference_units(const Prepared& nominal, const Gauges& gauges, std::size_t size, int jobs,
                                          const Watch& watch) {
-  const DeviceMeter meter(nominal, need_pull_in);
+  const DeviceMeter meter(nominal, gauges);
   const Ensemble ensemble(nominal, size, reference_seed);
   std::vector<DeviceUnits> units(ensemble.size());
   std::atomic<std::size_t> done = 0;
@@ -235,7 +286,8 @@ std::vector<KnownUnits::Class> KnownUnits::classes() const {
 
 KnownUnits KnownUnits::without_errors() const {
   KnownUnits exact = *this;
-  for (std::optional<double>* error : {&exact.calibration_.pull_in_error, &exact.calibration_.frequency_error}) {
+  for (std::optional<double>* error :
+       {&exact.calibration_.pull_in_error, &exact.calibration_.frequency_error, &exact.calibration_.time_error}) {
     if (*error) *error = 0;
   }
   return exact;
@@ -243,16 +295,21 @@ KnownUnits KnownUnits::without_errors() const {
 
 std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Calibration> calibrations, int jobs,
                                     const Watch& watch) {
-  std::size_t size = 0;
-  bool need_pull_in = false;
-  for (const Calibration& one : calibrations) {
-    size = std::max(size, reference_size(one));
-    need_pull_in = need_pull_in || (one.classes && one.pull_in_error);
+  // Volts that a closing time tells are others than those of Vdp.
+  std::map<bool, std::vector<DeviceUnits>> references;  // whether they are told by it
+  for (const bool by_time : {false, true}) {
+    std::size_t size = 0;
+    Gauges gauges;
+    for (const Calibration& one : calibrations) {
+      if (one.time_error.has_value() != by_time) continue;
+      size = std::max(size, reference_size(one));
+      gauges.pull_in = gauges.pull_in || (one.classes && one.pull_in_error);
+      gauges.closing_time = gauges.closing_time || (one.classes && one.time_error);
+    }
+    if (size > 0) references[by_time] = reference_units(nominal, gauges, size, jobs, watch);
   }
-  std::vector<DeviceUnits> reference;
-  if (size > 0) reference = reference_units(nominal, need_pull_in, size, jobs, watch);
   std::vector<KnownUnits> known;
-  for (const Calibration& one : calibrations) known.emplace_back(one, reference);
+  for (const Calibration& one : calibrations) known.emplace_back(one, references[one.time_error.has_value()]);
   return known;
 }
 
@@ -327,7 +384,8 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
       device_drives_(nominal) {
   const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
   if (any([](const EnsembleDrive& d) { return !d.known.calibration().is_empty(); }))
-    meter_.emplace(nominal, any([](const EnsembleDrive& d) { return d.known.calibration().pull_in_error.has_value(); }));
+    meter_.emplace(nominal, Gauges{any([](const EnsembleDrive& d) { return Gauges::of(d.known.calibration()).pull_in; }),
+                                   any([](const EnsembleDrive& d) { return Gauges::of(d.known.calibration()).closing_time; })});
   for (const EnsembleDrive& drive : drives) {
     nominal_signals_.push_back(nominal.driven(drive.waveforms));
     nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));

@@ -86,18 +86,36 @@ struct DeviceOutcome {
   [[nodiscard]] bool closed() const { return failure.empty() && std::isfinite(metrics.major_bounce_height); }
 };
 
-/// Measures devices against the nominal one, with the errors of a calibration.
+/// When a switch first touches under a step of one drive from 0 V, the others standing at a bias; NaN where it does not touch in
+/// `duration` [s].
+[[nodiscard]] double closing_time(const Switch& model, std::size_t drive, double step, Bias bias, double duration);
+/// Periods of the first mode in which a step closes a switch, or does not.
+inline constexpr double periods_to_close = 20;
+
+/// What is measured on devices beside their frequency.
+struct Gauges {
+  bool pull_in = false, closing_time = false;
+  [[nodiscard]] static Gauges of(const Calibration& calibration) {
+    return {calibration.pull_in_error.has_value(), calibration.time_error.has_value()};
+  }
+};
+
+/// Measures devices against the nominal one, with the errors of a calibration. A closing time tells the volts of a device as those
+/// that make the nominal one close as late: the nominal device closes under a step to closing_step Vdp / s in the time that the
+/// device takes under closing_step Vdp, and s is the factor of its volts.
 class DeviceMeter {
  public:
   /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there
-  /// is none, or it has no pull-in voltage, and `need_pull_in`. `precision`: of pull-in voltages, relative.
-  DeviceMeter(const Prepared& nominal, bool need_pull_in, double precision = dynamic_pull_in_precision);
+  /// is none, or it has no pull-in voltage, and one of the gauges needs it. `precision`: of pull-in voltages, relative.
+  DeviceMeter(const Prepared& nominal, const Gauges& gauges, double precision = dynamic_pull_in_precision);
   /// Of the nominal device [V], [Hz].
   [[nodiscard]] double pull_in() const { return pull_in_; }
   [[nodiscard]] double frequency() const;
   /// The number of the electrode among the drives.
   [[nodiscard]] std::size_t electrode() const { return electrode_; }
-  /// Without error. A device whose pull-in voltage cannot be found has NaN volts.
+  /// Under the step whose closing time is measured; NaN where it is not [s].
+  [[nodiscard]] double closing_time() const;
+  /// Without error. A device whose pull-in voltage cannot be found, or that does not close, has NaN volts.
   [[nodiscard]] DeviceUnits exact(const Switch& model) const;
   /// What is measured of device k, whatever class it belongs to; the errors are functions of seed and k.
   [[nodiscard]] static DeviceUnits measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed,
@@ -105,10 +123,18 @@ class DeviceMeter {
 
  private:
   [[nodiscard]] double pull_in(const Switch& model) const;  // [V]
+  void learn_times();
+  [[nodiscard]] DeviceUnits told_by(double time) const;
+  [[nodiscard]] double time_of(const Switch& model, double step) const;
+
+  struct ToldVolts {
+    double time, volts;  // [s], over those of the nominal device
+  };
 
   const Prepared* nominal_;
-  bool need_pull_in_;
+  Gauges gauges_;
   double precision_;
+  std::vector<ToldVolts> told_ = {};  // by time
   std::size_t electrode_ = 0;
   double pull_in_ = Metrics::unset;
 };

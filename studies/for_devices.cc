@@ -33,6 +33,8 @@ constexpr double more_open = 0.005;                           // of the devices
 constexpr double ranked_by_share = 0.25;                      // of the devices land without a rebound
 constexpr std::uint64_t measured_devices = 128;               // of a search in measured units
 constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
+constexpr double usual_time_error = 50e-9;                    // of an oscilloscope [s]
+constexpr double least_times_of_error = 20;
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
 constexpr double end_of_drawing = 0.35, end_of_race = 0.75;  // of a budget of time
 
@@ -443,15 +445,20 @@ class DevicesStudy {
     const Calibration coarse{.pull_in_error = coarse_error};
     const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
     const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
+    const Calibration by_time{.time_error = usual_time_error};
     const auto of_coarse = searched_in(winner, coarse, "searching for devices whose Vdp is measured");
     if (!of_coarse) return {};
     result_->calibrated = with_waveforms(result_->drawing.baseline_scene, first().space.searched(*of_coarse));
-    result_->pull_in = DeviceMeter(first().given, true).pull_in();
+    result_->pull_in = DeviceMeter(first().given, {.pull_in = true}).pull_in();
     result_->calibrated->set(fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
     std::vector<DevicesRow> rows{row_of_measured("Vdp to 1 %", *of_coarse, coarse, true),
                                  row_of_measured("Vdp and period to 1 %", *of_coarse, both, false)};
     if (const auto of_fine = searched_in(winner, fine, "searching for devices that are measured to 0.2 %"))
       rows.push_back(row_of_measured("Vdp and period to 0.2 %", *of_fine, fine, true));
+    const double time = DeviceMeter(first().given, {.closing_time = true}).closing_time();
+    if (time < least_times_of_error * usual_time_error) return rows;  // too quick for that instrument
+    if (const auto of_time = searched_in(winner, by_time, "searching for devices whose closing time is measured"))
+      rows.push_back(row_of_measured("closing time to 50 ns", *of_time, by_time, true));
     return rows;
   }
 

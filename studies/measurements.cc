@@ -30,7 +30,7 @@ namespace {
 constexpr double widest_change = 0.25;  // of the logarithm of a factor
 constexpr double first_step = 0.005;    // of the search, of the logarithm of a factor
 constexpr long closings_of_a_device = 80;
-constexpr double periods_to_close = 5;  // of a step
+constexpr double periods_of_step = 5;  // in which it closes a switch
 constexpr double probability = 0.95;
 
 constexpr double unknown = Metrics::unset;
@@ -51,16 +51,6 @@ void over_devices(std::size_t devices, int jobs, const char* what, const Watch& 
       watch.stop);
 }
 
-// Of a step of one drive, the others standing at a bias.
-double closing_time(const Switch& model, std::size_t drive, double step, Bias bias, double duration) {
-  std::vector<Signal> signals;
-  for (const double standing : bias) signals.push_back(Signal::standing(standing));
-  signals[drive] = Signal::constant(step);
-  const Trajectory end =
-      simulate_closing(model, signals, {.duration = duration, .tolerance = EnsembleRun{}.tolerance, .after_contact = 0});
-  return end.touches.empty() ? unknown : end.touches.front().begin;
-}
-
 // What is measured, and how.
 struct Instrument {
   std::string name, unit;
@@ -76,7 +66,7 @@ std::vector<Instrument> instruments(const Prepared& nominal, const DeviceMeter& 
       {"Vsp", "V", options.static_pull_in_error, [=](const Switch& m) { return static_pull_in(m, electrode, bias).voltage; }},
       {"release", "V", options.release_error, [=](const Switch& m) { return release_voltage(m, electrode, bias); }},
       {"frequency", "Hz", options.frequency_error, [](const Switch& m) { return m.angular_frequencies()[0] / (2 * pi); }}};
-  const double duration = periods_to_close / meter.frequency();
+  const double duration = periods_of_step / meter.frequency();
   for (const double step : options.steps) {
     const double volts = step * meter.pull_in();
     all.push_back({fmt::format("time at {:g} Vdp", step), "s", options.time_error,
@@ -288,7 +278,7 @@ MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOpti
         "softland optimize has found",
         nominal.scene.file.name());
   });
-  const DeviceMeter meter(nominal, true);
+  const DeviceMeter meter(nominal, {.pull_in = true});
   const RobustAim aim;
   const Ensemble ensemble(nominal, options.samples, options.seed);
   const RobustCost cost(setting, aim, build_all(ensemble, {}, options.seed, options.jobs, watch));

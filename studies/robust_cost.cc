@@ -62,7 +62,7 @@ BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::
   constexpr std::size_t together = 16;
   BuiltEnsemble built{.devices = std::vector<SampledDevice>(ensemble.size()), .units = std::vector<DeviceUnits>(ensemble.size())};
   std::optional<DeviceMeter> meter;
-  if (!known.calibration().is_empty()) meter.emplace(ensemble.nominal(), known.calibration().pull_in_error.has_value());
+  if (!known.calibration().is_empty()) meter.emplace(ensemble.nominal(), Gauges::of(known.calibration()));
   const auto task = [&](std::size_t chunk) {
     DeviceBuilder builder(ensemble);
     for (std::size_t k = chunk * together; k < std::min<std::size_t>(ensemble.size(), (chunk + 1) * together); ++k) {

@@ -113,7 +113,9 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
   Calibration exact;
   if (c.pull_in_error) exact.pull_in_error = 0;
   if (c.frequency_error) exact.frequency_error = 0;
-  const std::string name = has_both ? "Vdp and frequency" : c.pull_in_error ? "Vdp" : "frequency";
+  if (c.time_error) exact.time_error = 0;
+  std::string name = c.pull_in_error ? "Vdp" : c.time_error ? "closing time" : "frequency";
+  if (has_both || (c.time_error && c.frequency_error)) name += " and frequency";
   std::set<int> counts(worth_of_classes.begin(), worth_of_classes.end());
   if (c.classes) counts.insert(*c.classes);
   for (const int count : counts) {
@@ -289,7 +291,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
   if (const Calibration& calibration = drive.known.calibration(); !calibration.is_empty()) {
     const SampledDevice sampled = DeviceBuilder(ensemble).device(values);
     if (sampled.model) {
-      const DeviceMeter meter(nominal, calibration.pull_in_error.has_value());
+      const DeviceMeter meter(nominal, Gauges::of(calibration));
       units = drive.known.of(meter.exact(*sampled.model), seed, device);
       if (!std::isfinite(units.volts)) units = {};
     }

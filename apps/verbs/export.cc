@@ -55,7 +55,7 @@ int export_verb(const Common& c, const ExportRequest& request) {
   const Prepared p = prepare_and_choose(file, is_own, work->watch());
   std::map<std::string, Signal> signals = named_signals(p);
   if (is_own) {
-    const DeviceMeter meter(p, pull_in.has_value());
+    const DeviceMeter meter(p, {.pull_in = pull_in.has_value()});
     const Calibration& calibration = p.scene.calibration;
     require(!calibration.classes || (pull_in.has_value() == calibration.pull_in_error.has_value() &&
                                      frequency.has_value() == calibration.frequency_error.has_value()),

@@ -104,7 +104,7 @@ TEST_F(BadInput, Options) {
       {{"optimize", "gold.toml", "--robust", "worst", "--constrain", "t_i < 3 V"},
        "--constrain: initial_contact_time in 't_i < 3 V' must be a time [s]"},
       {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vsp"},
-       "--calibrate Vsp: 'Vsp' is no measurement; there are Vdp and frequency, with an error such as Vdp:1 %"},
+       "--calibrate Vsp: 'Vsp' is no measurement; there are Vdp, frequency and time, with an error such as Vdp:1 % or time:50 ns"},
       {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vdp:1 %,frequency,Vdp:2 %"},
        "--calibrate Vdp:1 %,frequency,Vdp:2 %: Vdp stands twice"},
       {{"robustness", "gold.toml", "--calibrate", "frequency,frequency in 3 classes"},

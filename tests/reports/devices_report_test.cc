@@ -99,6 +99,7 @@ TEST(DevicesReport, StandsFirstOnThePage) {
   const std::size_t table = page.find("id=\"devices\""), figures = page.find("id=\"figures\"");
   ASSERT_NE(table, std::string::npos);
   EXPECT_LT(table, figures);
+  EXPECT_THAT(page, HasSubstr("<dt>Impact speed, of 95 %</dt>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"own\">33.0\u00a0mm/s</td>"));
   EXPECT_THAT(html_report(search_alone()), Not(HasSubstr("id=\"devices\"")));
 }

@@ -123,7 +123,7 @@ TEST(Bias, CountsForDevicesMeasuredByIt) {
   const SceneFile file = small_beam(
       {R"(waveform.piezo={family="step", level="-1.5 V"})", R"(spread."piezo.d31"={distribution="normal", cov="10 %"})"});
   const Prepared p = prepare(file);
-  const DeviceMeter meter(p, true);
+  const DeviceMeter meter(p, {.pull_in = true});
   EXPECT_NEAR(meter.pull_in(), p.pull_in.at("main").dynamically.voltage, 1e-6 * meter.pull_in());
   // A layer that does more pulls in at less, and only because it is driven.
   Device stronger = p.scene.device;

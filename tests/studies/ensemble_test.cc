@@ -138,7 +138,7 @@ TEST(Calibration, GivesEveryDeviceTheWaveformInItsOwnUnits) {
     const SampledDevice device = builder.device(k);
     const double volts = pull_in_by_bisection(*device.model, 10, 20) / own;
     const double time = nominal.model.angular_frequencies()[0] / device.model->angular_frequencies()[0];
-    const DeviceUnits units = DeviceMeter(nominal, true).exact(*device.model);
+    const DeviceUnits units = DeviceMeter(nominal, {.pull_in = true}).exact(*device.model);
     EXPECT_NEAR(units.volts, volts, 3e-5);
     EXPECT_DOUBLE_EQ(units.time, time);
     const Metrics expected = closing(*device.model, {signal(scaled(drive[0], volts, time))});
@@ -166,6 +166,41 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
   // What is not measured is taken for that of the nominal device.
   EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).time, 1);
   EXPECT_EQ(DeviceMeter::measured(exact, {.pull_in_error = 0, .frequency_error = {}}, 1, 5).volts, exact.volts);
+}
+
+// The first touch under a step of the only electrode.
+double touch_under(const Switch& model, double volts) {
+  const Trajectory end = simulate_closing(model, {Signal::constant(volts)}, {.duration = 1e-3, .tolerance = 1e-9});
+  return end.touches.front().begin;
+}
+
+TEST(Calibration, TellsTheVoltsByAClosingTime) {
+  const Prepared nominal = prepare(gold_at_17_volts());
+  const DeviceMeter meter(nominal, {.closing_time = true});
+  const double step = closing_step * meter.pull_in();
+  EXPECT_NEAR(meter.closing_time(), touch_under(nominal.model, step), 1e-4 * meter.closing_time());
+  EXPECT_NEAR(meter.exact(nominal.model).volts, 1, 1e-4);
+  const Ensemble ensemble(nominal, 8);
+  DeviceBuilder builder(ensemble);
+  for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
+    const SampledDevice device = builder.device(k);
+    const DeviceUnits units = meter.exact(*device.model);
+    // The nominal device under as much less closes as late.
+    const double time = touch_under(*device.model, step);
+    EXPECT_NEAR(touch_under(nominal.model, step / units.volts), time, 1e-3 * time) << k;
+    const double more = touch_under(nominal.model, step / (1.001 * units.volts));
+    EXPECT_NEAR(units.volts_by_time, 0.001 / (more - time), 0.1 * units.volts_by_time) << k;
+    EXPECT_EQ(DeviceMeter::measured(units, {.time_error = 0}, 1, k).volts, units.volts);
+  }
+}
+
+TEST(Calibration, ByATimeErrsAsMuchAsTheClock) {
+  const DeviceUnits exact{.volts = 1.03, .time = 1, .volts_by_time = 2e4};
+  double squares = 0;
+  constexpr int devices = 4000;
+  for (std::uint64_t k = 0; k < devices; ++k)
+    squares += std::pow(DeviceMeter::measured(exact, {.time_error = 50e-9}, 3, k).volts / exact.volts - 1, 2);
+  EXPECT_NEAR(std::sqrt(squares / devices), 1e-3, 4 * 1e-3 / std::sqrt(2.0 * devices));
 }
 
 // Devices on a grid of volts and times, far apart.
@@ -209,7 +244,7 @@ TEST(KnownUnits, SortWhatIsMeasuredWithItsErrors) {
 
 TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
   const Prepared nominal = prepare(gold_at_17_volts({"simulate.accuracy=1e-3"}));
-  const DeviceMeter meter(nominal, false);  // a frequency costs no closings
+  const DeviceMeter meter(nominal, {});  // a frequency costs no closings
   const Calibration sorted{.frequency_error = 0, .classes = 3};
   const KnownUnits known = known_units(nominal, std::array{sorted}, 1).front();
   EXPECT_EQ(known_units(nominal, std::array{sorted}, 3).front().classes()[1].centre.time, known.classes()[1].centre.time);
