@@ -140,7 +140,15 @@ const std::vector<EnsembleFigure>& ensemble_figures() {
        .unit = "m/s",
        .value = [](const DeviceOutcome& o) { return or_worst(o, o.largest_impact_velocity); }},
       figure<&Metrics::peak_contact_force>(),
-      figure<&Metrics::impact_energy>()};
+      figure<&Metrics::impact_energy>(),
+      figure<&Metrics::steady_force_time>(),
+      {.key = "least_force_after_touch_N",
+       .name = "Least force after the touch",
+       .symbol = "least force",
+       .unit = "N",
+       .value = [](const DeviceOutcome& o) {
+         return std::isinf(or_worst(o, o.metrics.least_force_after_touch)) ? 0 : o.metrics.least_force_after_touch;
+       }}};
   return all;
 }
 

@@ -167,10 +167,8 @@ int check_verb(const Common& c) {
     const ClosedState state = closed_state(p, p.signals());
     add("closed state", closed_state_words(state));
     if (const std::string summits = summits_words(p, state); !summits.empty()) add("contact", summits);
-    Trajectory rest;
-    set_hold(rest, p.model, p.signals());
     const std::string unstable = warning(state);
-    if (!rest.is_held) warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
+    if (!hold_of(p.model, p.signals()).is_held) warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
   }
   for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();

@@ -92,11 +92,20 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
+const UniformAsperityContact& contact_of(const FleetClosing& closing) {
+  return std::get<UniformAsperityContact>(closing.model->contact());
+}
+
+// [m]
+double steady_depth(const FleetClosing& closing) {
+  return closing.steady_force > 0 ? contact_of(closing).interference(closing.steady_force)
+                                  : std::numeric_limits<double>::infinity();
+}
+
 /// Passes on what a lane tells, with force and energy of the contact's law.
 class Teller final : public fleet::LaneObserver {
  public:
-  explicit Teller(const FleetClosing& closing)
-      : law_(&std::get<UniformAsperityContact>(closing.model->contact())), observer_(closing.observer) {}
+  explicit Teller(const FleetClosing& closing) : law_(&contact_of(closing)), observer_(closing.observer) {}
   void touch(double begin, double end, double speed, double depth) override {
     observer_->touch({.begin = begin,
                       .end = end,
@@ -219,6 +228,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
             .after_contact = c.after_contact,
             .no_end_before = c.no_end_before,
             .no_contact_before = c.no_contact_before,
+            .steady_depth = steady_depth(c),
             .observer = &tellers.back()};
     std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {
@@ -231,7 +241,13 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
     }
   }
   run(*layout, followed.data(), followed.size());
-  for (std::size_t n = 0; n < places.size(); ++n) ends[places[n]] = {.followed = followed[n].followed, .time = followed[n].end};
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const LaneClosing& lane = followed[n];
+    ends[places[n]] = {.followed = lane.followed,
+                       .time = lane.end,
+                       .steady_force_time = lane.steady_from,
+                       .least_force_after_touch = contact_of(closings[places[n]]).force(lane.least_depth)};
+  }
   return ends;
 }
 

@@ -60,6 +60,8 @@ class Lanes {
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
+    double steady = nothing;                // since when it has been at the steady depth [s]
+    double least = infinite;                // depth after the first maximum [m]
   };
 
   // --- the equations -----------------------------------------------------------------------------------------------------------
@@ -348,10 +350,34 @@ class Lanes {
     Lane& lane = lane_[l];
     const double side = lane.touching ? 1 : -1;
     for (int k = 0; k < pieces; ++k) {
-      if (!(side * knot_s_[k][l] > 0 && side * knot_s_[k + 1][l] < 0)) continue;
-      const Curve c = curve(k, l, length);
-      const double far = side * (c.position(c.turn()) - plane_[l]);
-      if (far > lane.extreme) lane.extreme = far;
+      const double begin = side * knot_s_[k][l], end = side * knot_s_[k + 1][l];
+      if (begin > 0 && end < 0) {
+        const Curve c = curve(k, l, length);
+        const double far = side * (c.position(c.turn()) - plane_[l]);
+        if (far > lane.extreme) lane.extreme = far;
+      } else if (lane.touching && begin < 0 && end > 0) {
+        const Curve c = curve(k, l, length);
+        const double depth = c.position(c.turn()) - plane_[l];
+        if (depth < lane.least) lane.least = depth;
+        if (depth < steady_[l] - plane_[l]) rise(l, length);
+      }
+    }
+  }
+
+  // Where a lane has come to the steady depth in the step that ends here, the last time.
+  void rise(std::size_t l, double length) {
+    const double level = steady_[l];
+    const auto reach = [&](int k, double share) { lane_[l].steady = (t_[l] - length) + length * ((k + share) / pieces); };
+    for (int k = 0; k < pieces; ++k) {
+      const double p0 = knot_p_[k][l], p1 = knot_p_[k + 1][l];
+      if (!(p1 >= level)) continue;
+      if (p0 < level) {
+        reach(k, curve(k, l, length).meets(level, 0, 1));
+      } else if (knot_s_[k][l] < 0 && knot_s_[k + 1][l] > 0) {
+        const Curve c = curve(k, l, length);
+        const double turn = c.turn();
+        if (c.position(turn) < level) reach(k, c.meets(level, turn, 1));
+      }
     }
   }
 
@@ -389,6 +415,7 @@ class Lanes {
     // Most lanes just go on; what is more than that is done lane by lane.
     const M plain =
         error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= floor_ && rounds_ < V(most_rounds);
+    const M rises = position_ < steady_ && knot_p_[pieces] >= steady_;
     M taken = plain;
     if (!all_of(plain)) {
       for (std::size_t l = 0; l < width; ++l)
@@ -406,6 +433,10 @@ class Lanes {
     if (any_of(taken && turns_ && touched_)) {
       for (std::size_t l = 0; l < width; ++l)
         if (taken[l] && turns_[l] && touched_[l]) deepen(l, h[l]);
+    }
+    if (any_of(taken && rises)) {
+      for (std::size_t l = 0; l < width; ++l)
+        if (taken[l] && rises[l]) rise(l, h[l]);
     }
     where(taken, h_) = h * min(max(growth_, V(Pair::least_growth)), most_growth_);
     where(taken, most_growth_) = V(Pair::most_growth);
@@ -527,6 +558,7 @@ class Lanes {
     } else {
       lane.closing->observer->touch(lane.begin, t, lane.speed, lane.extreme);
       lane.left = t;
+      lane.least = 0;
     }
     lane.extreme = 0;
     lane.touching = !lane.touching;
@@ -604,6 +636,9 @@ class Lanes {
         tell_rebound(lane, nothing);
       }
     }
+    const double depth = lane.touching ? position_[l] - plane_[l] : 0;
+    lane.closing->steady_from = position_[l] < steady_[l] ? nothing : lane.steady;
+    lane.closing->least_depth = !lane.touched ? nothing : depth < lane.least ? depth : lane.least;
     lane.closing->followed = followed;
     lane.closing->end = t_[l];
     lane.closing = nullptr;
@@ -632,6 +667,7 @@ class Lanes {
     open_[l] = s.open, plane_[l] = s.plane, floor_[l] = s.floor;
     lane_width_[l] = s.width, thickness_[l] = s.thickness, viscosity_[l] = s.viscosity;
     strength_[l] = s.strength, height_[l] = s.height;
+    steady_[l] = s.plane + closing->steady_depth;
     double fastest = 0;
     for (int i = 0; i < modes; ++i) {
       if (i < s.modes && s.omega[i] > fastest) fastest = s.omega[i];
@@ -679,7 +715,7 @@ class Lanes {
   V shape_[most_points][modes], weight_[most_points];
   V omega_[modes], inverse_[modes], square_[modes], at_contact_[modes], piezo_[modes], friction_[modes];
   V q_weight_[modes], v_weight_[modes], per_unknown_, fastest_, most_turn_;
-  V open_, plane_, floor_, lane_width_, thickness_, viscosity_, strength_, height_;
+  V open_, plane_, steady_, floor_, lane_width_, thickness_, viscosity_, strength_, height_;
   Force force_;
   Film film_;
   Contact contact_;

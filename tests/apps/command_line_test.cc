@@ -89,7 +89,7 @@ TEST(Program, CalledOptimizeIsThatVerb) {
   EXPECT_EQ(called.status, 0);
   EXPECT_EQ(called.out, here.run({"optimize", "--help"}).out);
   EXPECT_EQ(here.run({"gold.toml", "--target", "softness"}, link).err,
-            "softland: --target softness: must be bounce, settling, rebound, count, impact, energy, force or drive, or a "
+            "softland: --target softness: must be bounce, settling, rebound, count, impact, energy, force, drive or steady, or a "
             "weighted sum such as \"0.7 bounce + 0.3 energy\"\n");
 }
 
@@ -113,22 +113,12 @@ TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
   EXPECT_EQ(keys(j), (std::set<std::string>{"status", "metrics", "errors", "natural_frequencies_rad_s", "pull_in", "work",
                                             "warnings", "scene", "version", "command", "kind", "title", "tolerance", "made_with",
                                             "closed_state", "collapse_time_s", "static_deflection_m", "capacitance_F"}));
-  const std::set<std::string> figures{"initial_contact_time_s",
-                                      "permanent_contact_time_s",
-                                      "bounce_time_s",
-                                      "bounce_count",
-                                      "major_bounce_height_m",
-                                      "first_rebound_time_s",
-                                      "impact_velocity_m_s",
-                                      "peak_contact_force_N",
-                                      "impact_energy_J",
-                                      "hold_force_N",
-                                      "capacitance_F",
-                                      "static_deflection_m",
-                                      "overshoot_m",
-                                      "open_settling_time_s",
-                                      "drive_energy_J",
-                                      "peak_voltage_V",
+  const std::set<std::string> figures{"initial_contact_time_s", "permanent_contact_time_s", "bounce_time_s",
+                                      "bounce_count",           "major_bounce_height_m",    "first_rebound_time_s",
+                                      "impact_velocity_m_s",    "peak_contact_force_N",     "impact_energy_J",
+                                      "hold_force_N",           "steady_force_time_s",      "least_force_after_touch_N",
+                                      "capacitance_F",          "static_deflection_m",      "overshoot_m",
+                                      "open_settling_time_s",   "drive_energy_J",           "peak_voltage_V",
                                       "peak_slew_V_s"};
   std::set<std::string> with_settled = figures;
   with_settled.insert("settled");
