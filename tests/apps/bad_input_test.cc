@@ -293,7 +293,7 @@ TEST_F(BadInput, Results) {
       {{"export", "empty.json"}, "empty.json: is not a result.json of softland"},
       {{"export", "none"}, "none: cannot be read: No such file or directory"},
       {{"export", "folder"}, "folder: holds neither best.toml nor result.json"},
-      {{"export", "gold.toml", "--format", "wav"}, "--format wav: must be csv or spice-pwl"},
+      {{"export", "gold.toml", "--format", "wav"}, "--format wav: must be csv, spice-pwl or codes"},
       {{"report", "nonsense.json"}, "nonsense.json: is not a result.json of softland"},
       {{"report", "empty.json"}, "empty.json: is not a result.json of softland"},
       {{"export", "none.json"}, "none.json: cannot be read: No such file or directory"},
