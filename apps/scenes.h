@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "apps/options.h"
 #include "config/scene.h"
@@ -32,7 +33,19 @@ namespace softland::apps {
 /// "Vdp,frequency:0.5 %", and " in 8 classes" where devices are sorted: puts it in the place of what the scene says.
 void set_calibration(SceneFile& file, const std::string& given);
 
-/// Voltages of the scene, for generators and simulators of circuits: the factor of the dispersion force is none.
+/// Voltages of the scene as its sources give them: the factor of the dispersion force is none.
 [[nodiscard]] std::map<std::string, Signal> named_signals(const Prepared& prepared);
+
+/// What goes to generators and simulators of circuits: what sources are told, of those that take samples these, or what they
+/// make of it.
+enum class Sent { told, output };
+struct SentSignals {
+  std::map<std::string, Signal> signals;
+  std::map<std::string, double> sample_rates = {};  ///< of those that are samples [Hz]
+};
+/// Of one waveform per drive in the order of Switch::drives().
+[[nodiscard]] SentSignals sent_signals(const Prepared& prepared, const std::vector<Waveform>& waveforms, Sent sent = Sent::told);
+/// What the sources of the scene are told, as CSV: read back under the same drivers it gives the same closing.
+[[nodiscard]] std::string told_csv(const Prepared& prepared);
 
 }  // namespace softland::apps

@@ -25,10 +25,11 @@ SEARCHES = [("mem-gold.toml", "electrostatic"), ("mem-gold-pzt.toml", "electrost
 # The figure of each target, its key and a unit to print it in.
 FIGURES = {"bounce": "major_bounce_height_m", "settling": "permanent_contact_time_s", "rebound": "major_bounce_height_m",
            "count": "bounce_count", "impact": "impact_velocity_m_s", "energy": "impact_energy_J", "force": "peak_contact_force_N",
-           "drive": "drive_energy_J"}
+           "drive": "drive_energy_J", "steady": "steady_force_time_s"}
 UNITS = {"permanent_contact_time_s": ("t_p [us]", 1e6), "bounce_count": ("N_B", 1), "major_bounce_height_m": ("B_H [nm]", 1e9),
          "impact_velocity_m_s": ("v_i [mm/s]", 1e3), "impact_energy_J": ("E_i [fJ]", 1e15),
-         "peak_contact_force_N": ("F [uN]", 1e6), "drive_energy_J": ("E_d [fJ]", 1e15)}
+         "peak_contact_force_N": ("F [uN]", 1e6), "drive_energy_J": ("E_d [fJ]", 1e15),
+         "steady_force_time_s": ("t_F [us]", 1e6)}
 TOLERATED = 0.05
 SIGNIFICANT = {"nem-tin.toml": 1e-11}  # [m]; the other scenes have the default, 1e-9
 

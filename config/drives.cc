@@ -198,6 +198,16 @@ DriverModel read_model(const SectionReader& in, std::string_view drive) {
   return model;
 }
 
+/// What the source makes of the voltage that it is asked for.
+SourceErrors read_errors(const SectionReader& in) {
+  SourceErrors errors;
+  if (!in.is_present()) return errors;
+  if (in.is_given("gain")) errors.gain = in.number("gain");
+  if (in.is_given("offset")) errors.offset = in.number("offset");
+  if (in.is_given("delay")) errors.delay = in.number("delay");
+  return errors;
+}
+
 void check_order(const SectionReader& in, const DriverLimits& limits) {
   if (limits.min_voltage < limits.max_voltage) return;
   const std::string_view key = in.is_given("min_voltage") ? "min_voltage" : "max_voltage";
@@ -239,6 +249,7 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     if (check_limits) check_order(driver, *limits);
     if (limits) drives.limits[name] = *limits;
     if (const DriverModel model = read_model(driver, drive); !model.is_ideal()) drives.models[name] = model;
+    if (const SourceErrors errors = read_errors(driver); !errors.are_none()) drives.errors[name] = errors;
 
     const SectionReader in(file, "waveform", drive);
     if (!in.is_present()) continue;
@@ -259,7 +270,10 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     }
     if (drive == main_electrode(device)) main_hold = compiled.hold_level();
     if (limits && checks == LimitChecks::all) {
-      if (std::string broken = violation(compiled, *limits); !broken.empty()) {
+      const auto model = drives.models.find(name);
+      const bool may_be_samples = model != drives.models.end() && std::holds_alternative<Table>(waveform);
+      std::string broken = violation(compiled, may_be_samples ? limits_of_samples(*limits, model->second) : *limits);
+      if (!broken.empty()) {
         if (!driver.is_present())
           broken += fmt::format("; without [{}] the limits are 0 V and {} Vdp", driver.path(), default_max_voltage);
         broken += missing_rise(waveform, before, *limits);

@@ -195,6 +195,12 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
       if (model.sample_rate) insert("sample_rate", *model.sample_rate, dimension::frequency);
       if (model.bits) keys.insert("bits", *model.bits);
     }
+    if (const auto found = drives.errors.find(name); found != drives.errors.end()) {
+      const SourceErrors& errors = found->second;
+      if (errors.gain != 1) keys.insert("gain", errors.gain);
+      if (errors.offset != 0) insert("offset", errors.offset, dimension::voltage);
+      if (errors.delay != 0) insert("delay", errors.delay, dimension::time);
+    }
     drivers.insert(name, std::move(keys));
   }
   if (!drivers.empty()) root.insert("driver", std::move(drivers));

@@ -17,6 +17,7 @@
 #include "objectives/metrics.h"
 #include "waveforms/driver.h"
 #include "waveforms/limits.h"
+#include "waveforms/source_errors.h"
 #include "waveforms/waveform.h"
 
 namespace softland {
@@ -94,6 +95,7 @@ struct Drives {
   std::map<std::string, double> before;        ///< what is given of them before t = 0 [V]; others stand at 0 V
   std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])
   std::map<std::string, DriverModel> models;   ///< only sources that are not ideal
+  std::map<std::string, SourceErrors> errors;  ///< only sources that have some: gain, offset and delay
 };
 
 struct SimulateOptions {

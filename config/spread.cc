@@ -78,10 +78,12 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
   const auto* error = find_named(drive_errors, parts[2]);
   if (error == nullptr) fail(hint(parts[2], names_of(drive_errors)));
   const bool is_factor = error->value == DriveError::gain;
+  const SectionReader of_drive(file, parts[0], parts[1]);
+  const bool is_given = of_drive.is_present() && error->value != DriveError::jitter && of_drive.is_given(error->name);
   const Range range = Key{.range = is_factor ? Range{.least = 0, .least_open = true} : Range{}}.range_of(error->dimension);
   return {.varied = {.path = name,
                      .unit = unit_symbol(error->dimension),
-                     .nominal = error->nominal,
+                     .nominal = is_given ? of_drive.number(error->name) : error->nominal,
                      .measured_in = error->dimension,
                      .member = {},
                      .drive = VariedDrive{.name = parts[1], .error = error->value},

@@ -118,6 +118,7 @@ class Run {
     Touch& touch = parts_.touches.last();
     touch.peak_force = std::numeric_limits<double>::quiet_NaN();
     touch.peak_energy = impact.energy;
+    parts_.force.pass_maximum();
     if (!impact.rests) parts_.touches.end(here().time);
     parts_.observer.pass(here(), {.kind = impact.rests ? PhaseChange::Kind::rests : PhaseChange::Kind::impact,
                                   .level = plane_,
@@ -136,7 +137,9 @@ class Run {
     audit_.rest(here(), stay.until);
     here().time = stay.until;
     const FieldFigures field = parts_.equations.field(here().state.data());
-    parts_.course.push(parts_.point(here()));
+    const TrajectoryPoint before = parts_.course.last(), now = parts_.point(here());
+    if (now.time > before.time) parts_.force.take_line(before, now);
+    parts_.course.push(now);
     if (stay.leaves) pass({.time = stay.until, .edge = Edge{.level = plane_, .side = 1, .next = Phase::flight}});
     parts_.course.hand_over();
     look_around(field);
@@ -193,6 +196,10 @@ class Run {
     out_.energy = audit_.balance();
     out_.energy_error = audit_.error();
     out_.deepest_penetration = parts_.touches.deepest_penetration();
+    if (parts_.touches.count() > 0) {
+      out_.steady_force_time = parts_.force.steady_from();
+      out_.least_force_after_touch = parts_.force.least();
+    }
     const double error = out_.energy_error / model_.bending_energy();
     if (!(error <= not_credible) && out_.status != Status::numerical_failure) {
       fail(

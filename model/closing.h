@@ -56,6 +56,8 @@ struct ClosingOptions {
   /// Potential of the closed equilibrium under the hold levels [J]: when given, Trajectory::landing_excess is measured against
   /// it.
   double closed_potential = std::numeric_limits<double>::quiet_NaN();
+  /// Contact force that counts as steady [N]: when given, Trajectory::steady_force_time is measured.
+  double steady_force = std::numeric_limits<double>::quiet_NaN();
   /// Where given, the run begins at rest on the contact, with these modal coordinates [m kg^(1/2)]: those of a closed equilibrium
   /// under what the drives have been before t = 0. The touch that holds then counts as one that began at t = 0 at no speed.
   std::span<const double> begins_closed = {};

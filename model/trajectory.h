@@ -67,7 +67,13 @@ struct Trajectory {
   /// is part of it.
   double landing_excess = std::numeric_limits<double>::quiet_NaN();
   double deepest_penetration = 0;  ///< [m]
-  EnergyBalance energy;            ///< at the end
+  /// From when on, to the end of the run, the contact force is not below ClosingOptions::steady_force [s]; NaN where it is at
+  /// the end, where nothing touched, and where none was asked for.
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN();
+  /// Of the contact, from its first maximum after the first touch to the end of the run; at the end where it only rises [N].
+  /// NaN where nothing touched.
+  double least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+  EnergyBalance energy;  ///< at the end
   /// Largest residual of the energy balance at any make or break of contact and at the end [J].
   double energy_error = 0;
   Work work;

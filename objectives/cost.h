@@ -14,11 +14,12 @@
 //
 //   bounce, rebound, count     B = 0.2 H + 0.15 V^2 + 0.45 K + 0.1 S^2 + 0.05 P + 0.02 L
 //   settling, impact, energy,  f / (1 + f) with f = F + B / 1000 where h <= h_s / 2, and 1 + (B + F) / 2 where the closing
-//   force, drive               rebounds higher; F is the target's own figure over that of the step. settling: end of the last
+//   force, drive, steady       rebounds higher; F is the target's own figure over that of the step. settling: end of the last
 //                              significant rebound, first touch if none, over first touch of the step; impact: V; energy: root
 //                              of impact energy over that of the step (of a soft touch that ratio itself can be some 1e-4, and
 //                              B / 1000 would lead); force: largest contact force; drive: energy that the drives give
-//                              within the score
+//                              within the score; steady: from when on the contact force is steady over first touch of the
+//                              step, twice the end of the score where it is not
 //
 // A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B.
 //
@@ -42,7 +43,7 @@
 
 namespace softland {
 
-enum class Target { bounce, settling, rebound, count, impact, energy, force, drive };
+enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady };
 struct TargetRow {
   Target value;
   std::string_view name;
@@ -57,7 +58,8 @@ inline constexpr auto targets = std::to_array<TargetRow>({{Target::bounce, "boun
                                                           {Target::impact, "impact", true},
                                                           {Target::energy, "energy", true},
                                                           {Target::force, "force", true},
-                                                          {Target::drive, "drive", true}});
+                                                          {Target::drive, "drive", true},
+                                                          {Target::steady, "steady", true}});
 static_assert(is_complete<targets>());
 [[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }
 [[nodiscard]] constexpr bool has_own_cost(Target target) { return row_of(targets, target).has_own_cost; }
@@ -107,6 +109,7 @@ struct CostFigures {
   double landing_excess = 0;    ///< [J]; 0 when it was not measured
   double peak_force = 0;        ///< [N]; NaN on a rigid contact
   double drive_energy = 0;      ///< [J]; NaN when it was not measured
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN();  ///< Trajectory::steady_force_time [s]
 };
 [[nodiscard]] CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options);
 

@@ -244,7 +244,7 @@ CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, con
 
 std::optional<FigureSlope> cost_slope(const Aim& aim, Status status, const CostFigures& figures, const CostScale& scale,
                                       const MetricsOptions& options, const CostSlopes& slopes) {
-  if (aim.is_about(Target::drive) || (aim.is_about(Target::force) && !slopes.has_peak_force) ||
+  if (aim.is_about(Target::drive) || aim.is_about(Target::steady) || (aim.is_about(Target::force) && !slopes.has_peak_force) ||
       (aim.is_about(Target::energy) && !slopes.has_impact_energy) || !std::isfinite(cost(aim, status, figures, scale, options)))
     return std::nullopt;
   struct Part {

@@ -21,6 +21,8 @@ double Figure::value(const Metrics& metrics) const {
 
 double Figure::counted(const Metrics& metrics, const MetricsOptions& options) const {
   const double own = value(metrics);
+  const double steady = options.steady_force * metrics.hold_force;
+  if (member == Member(&Metrics::least_force_after_touch) && own < steady) return steady;
   return member == Member(&Metrics::major_bounce_height) && own < options.significant_rebound ? options.significant_rebound : own;
 }
 
@@ -38,6 +40,8 @@ const Figure& figure_of(Target target) {
       return figure_of(&Metrics::peak_contact_force);
     case Target::drive:
       return figure_of(&Metrics::drive_energy);
+    case Target::steady:
+      return figure_of(&Metrics::steady_force_time);
     case Target::bounce:
     case Target::rebound:
       break;

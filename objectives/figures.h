@@ -57,7 +57,7 @@ struct Figure {
   }
   /// The figure of a closing, 1 for yes and 0 for no; NaN where it is not known.
   [[nodiscard]] double value(const Metrics& metrics) const;
-  /// The same for comparisons: a rebound that is too low to count is as high as one that just counts.
+  /// The same for comparisons: a rebound too low to count is as high as one that just counts, and a force as large as is steady.
   [[nodiscard]] double counted(const Metrics& metrics, const MetricsOptions& options) const;
 };
 
@@ -129,6 +129,19 @@ inline constexpr std::array all_figures{Figure{.key = "initial_contact_time_s",
                                                .unit = "N",
                                                .conditioning = Conditioning::rest,
                                                .member = &Metrics::hold_force},
+                                        Figure{.key = "steady_force_time_s",
+                                               .name = "Steady force from",
+                                               .symbol = "t_F",
+                                               .unit = "s",
+                                               .better = Better::lower,
+                                               .conditioning = Conditioning::every_touch,
+                                               .member = &Metrics::steady_force_time},
+                                        Figure{.key = "least_force_after_touch_N",
+                                               .name = "Least force after the touch",
+                                               .symbol = "least force",
+                                               .unit = "N",
+                                               .conditioning = Conditioning::every_touch,
+                                               .member = &Metrics::least_force_after_touch},
                                         Figure{.key = "capacitance_F",
                                                .name = "Capacitance at the hold level",
                                                .symbol = "capacitance",

@@ -67,6 +67,8 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   if (touched_) {
     result.peak_contact_force = peak_force_;
     result.impact_energy = impact_energy_;
+    result.steady_force_time = end.steady_force_time;
+    result.least_force_after_touch = end.least_force_after_touch;
   }
 
   result.major_bounce_height = highest_;

@@ -13,24 +13,27 @@ namespace softland {
 
 struct MetricsOptions {
   double significant_rebound = 1e-9;  ///< a rebound counts when it is higher than this [m]
+  double steady_force = 0.1;          ///< the contact force is steady from this share of the hold force on
 };
 
 struct Metrics {
   static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 
   Status status = Status::not_run;
-  double initial_contact_time = unset;    ///< t_i [s]
-  double permanent_contact_time = unset;  ///< t_p [s]; NaN when not settled
-  double bounce_time = unset;             ///< t_b = t_p - t_i [s]
-  int bounce_count = 0;                   ///< N_B, significant rebounds; meaningless when nothing touched
-  double major_bounce_height = unset;     ///< B_H [m]; 0 when there is no rebound
-  double first_rebound_time = unset;      ///< duration of the first significant rebound [s]; 0 when there is none
-  double impact_velocity = unset;         ///< v_i [m/s]
-  double peak_contact_force = unset;      ///< [N]
-  double impact_energy = unset;           ///< sum over touches of the largest stored contact energy [J]
-  double hold_force = unset;              ///< [N]
-  double capacitance = unset;             ///< Trajectory::hold_capacitance [F]
-  double drive_energy = unset;            ///< [J]
+  double initial_contact_time = unset;     ///< t_i [s]
+  double permanent_contact_time = unset;   ///< t_p [s]; NaN when not settled
+  double bounce_time = unset;              ///< t_b = t_p - t_i [s]
+  int bounce_count = 0;                    ///< N_B, significant rebounds; meaningless when nothing touched
+  double major_bounce_height = unset;      ///< B_H [m]; 0 when there is no rebound
+  double first_rebound_time = unset;       ///< duration of the first significant rebound [s]; 0 when there is none
+  double impact_velocity = unset;          ///< v_i [m/s]
+  double peak_contact_force = unset;       ///< [N]
+  double impact_energy = unset;            ///< sum over touches of the largest stored contact energy [J]
+  double hold_force = unset;               ///< [N]
+  double steady_force_time = unset;        ///< Trajectory::steady_force_time [s]
+  double least_force_after_touch = unset;  ///< Trajectory::least_force_after_touch [N]
+  double capacitance = unset;              ///< Trajectory::hold_capacitance [F]
+  double drive_energy = unset;             ///< [J]
   bool settled = false;
   // Set by simulate() where nothing touched: see set_open_figures().
   double static_deflection = unset;   ///< of the contact point in the open equilibrium under the hold levels [m]

@@ -59,8 +59,11 @@ std::vector<Metrics> at_other_pull_in(const Prepared& prepared, const Switch& fi
         continue;
       }
       const std::vector<Signal> signals = moved.signals();
-      Trajectory t = simulate_closing(fine, signals, options);
-      set_rest(t, fine, signals);
+      const Hold hold = hold_of(fine, signals);
+      ClosingOptions own = options;
+      own.steady_force = hold.steady_force(prepared.scene.metrics);
+      Trajectory t = simulate_closing(fine, signals, own);
+      set_rest(t, fine, signals, hold);
       found.push_back(metrics(t, prepared.scene.metrics));
       set_open_figures(found.back(), t, fine, signals);
     }
@@ -134,8 +137,10 @@ Closing certify(const Prepared& prepared, const Watch& watch, int jobs) {
   const bool judge_is_better = c.judge->tolerance < c.tolerance;
   const SwitchOptions& quadrature = judge_is_better ? c.judge->quadrature : c.quadrature;
   const Switch fine(prepared.scene.device, quadrature);
-  const ClosingOptions options{
-      .duration = prepared.duration, .tolerance = std::min(c.judge->tolerance, c.tolerance), .stop = watch.stop};
+  const ClosingOptions options{.duration = prepared.duration,
+                               .tolerance = std::min(c.judge->tolerance, c.tolerance),
+                               .steady_force = prepared.scene.metrics.steady_force * c.trajectory.hold_force,
+                               .stop = watch.stop};
   const Metrics& better = c.judge->metrics;
   const std::vector<Metrics> moved = at_other_pull_in(prepared, fine, quadrature, options, watch);
   std::vector<Trajectory> cloud = perturbed_closings(fine, signals, options, {.jobs = jobs}, watch);

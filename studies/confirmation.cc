@@ -21,8 +21,11 @@ struct Rerun {
 Rerun rerun(const Prepared& closing, const OtherWay& way) {
   const Switch model(way.device, quadrature_of_richer(closing.quadrature, way.device));
   const std::vector<Signal> signals = closing.signals();
-  Trajectory t = simulate_closing(model, signals, {.duration = closing.duration, .tolerance = way.tolerance});
-  set_hold(t, model, signals);
+  const Hold hold = hold_of(model, signals);
+  Trajectory t = simulate_closing(
+      model, signals,
+      {.duration = closing.duration, .tolerance = way.tolerance, .steady_force = hold.steady_force(closing.scene.metrics)});
+  set_hold(t, hold);
   return {.run = {.name = way.name, .varied = way.varied, .metrics = metrics(t, closing.scene.metrics)},
           .keeps_gas_law =
               std::ranges::none_of(t.warnings, [](const std::string& warning) { return warning.starts_with("gas law"); })};

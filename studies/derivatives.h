@@ -42,7 +42,7 @@ struct Derivatives {
     std::string why_none = {};  ///< empty where figures have derivatives by it
   };
   std::vector<Variable> variables;         ///< as in the spread
-  std::vector<FigureDerivatives> figures;  ///< as ensemble_figures(), without the count of rebounds
+  std::vector<FigureDerivatives> figures;  ///< those of ensemble_figures() that have slopes
   double grazing = 1;                      ///< CostSlopes::grazing
   std::string why_none = {};               ///< empty where there are derivatives
 

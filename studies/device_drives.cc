@@ -36,14 +36,25 @@ std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Dev
   return own;
 }
 
-// The waveforms with units and gain, which every family can express, and what is left.
+// What a source is told, and what its errors make of it. The jitter of a source that takes samples moves the edges that it
+// samples, its other errors come after; that of another comes with them, and a gain that varies stands in the waveform, which
+// every family can express.
 struct DeviceDrives::Driven {
   std::vector<Waveform> waveforms;
-  std::vector<Signal> signals;  // of those
+  std::vector<Signal> signals;  // told
   std::vector<SourceErrors> errors;
   double origin = 0;  // of the clock [s]
 
-  [[nodiscard]] Signal signal(std::size_t k) const { return with_errors(signals[k], errors[k], origin); }
+  // Told with jitter, and when that begins on the clock of the waveform [s].
+  [[nodiscard]] std::pair<Signal, double> jittered(std::size_t k) const {
+    const SourceErrors jitter{.edges = errors[k].edges};
+    const double begin = std::min(0.0, first_edge(signals[k], jitter));
+    return {jitter.are_none() ? signals[k] : with_errors(signals[k], jitter, begin), begin};
+  }
+  // What is left for a source that takes samples.
+  [[nodiscard]] SourceErrors after_samples(std::size_t k) const {
+    return {.gain = errors[k].gain, .offset = errors[k].offset, .delay = errors[k].delay - origin + jittered(k).second};
+  }
 };
 
 DeviceDrives::DeviceDrives(const Prepared& nominal) : nominal_(&nominal) {
@@ -51,10 +62,11 @@ DeviceDrives::DeviceDrives(const Prepared& nominal) : nominal_(&nominal) {
   sources_.resize(names.size());
   const std::vector<SpreadVariable>& variables = nominal.scene.spread.variables;
   for (std::size_t i = 0; i < variables.size(); ++i) {
-    for (const VariedKey& key : variables[i].keys) {
+    for (std::size_t j = 0; j < variables[i].keys.size(); ++j) {
+      const VariedKey& key = variables[i].keys[j];
       if (!key.drive) continue;
       const auto drive = static_cast<std::size_t>(std::find(names.begin(), names.end(), key.drive->name) - names.begin());
-      sources_[drive].push_back({.variable = i, .error = key.drive->error});
+      sources_[drive].push_back({.variable = i, .key = j, .error = key.drive->error});
       has_errors_ = true;
     }
   }
@@ -73,32 +85,40 @@ std::vector<double> DeviceDrives::shown(std::vector<double> values) const {
   return values;
 }
 
+// Of an error but jitter [SI unit].
+double DeviceDrives::value(const Source& source, const std::vector<double>& values) const {
+  const SpreadVariable& variable = nominal_->scene.spread.variables[source.variable];
+  return DeviceSpread::value(variable, variable.keys[source.key], values[source.variable]);
+}
+
 DeviceDrives::Driven DeviceDrives::driven(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                           const std::vector<double>& values) const {
   const std::vector<SpreadVariable>& variables = nominal_->scene.spread.variables;
   Driven all{.waveforms = in_units(nominal, nominal_->scene.device, units), .signals = {}, .errors = {}};
   all.errors.resize(nominal.size());
   for (std::size_t k = 0; k < nominal.size(); ++k) {
-    SourceErrors& errors = all.errors[k];
+    SourceErrors& errors = all.errors[k] = nominal_->errors(k);
     for (const Source& source : sources_[k]) {
-      if (source.error == DriveError::gain) all.waveforms[k] = scaled(std::move(all.waveforms[k]), values[source.variable], 1);
+      if (source.error == DriveError::gain) errors.gain = value(source, values);
     }
+    if (has_errors(k) && !nominal_->source(k).sample_rate)
+      all.waveforms[k] = scaled(std::move(all.waveforms[k]), std::exchange(errors.gain, 1), 1);
     all.signals.push_back(nominal_->told(k, all.waveforms[k]));
     for (const Source& source : sources_[k]) {
-      const double value = values[source.variable];
       switch (source.error) {
         case DriveError::gain:
           break;
         case DriveError::offset:
-          errors.offset = value;
+          errors.offset = value(source, values);
           break;
         case DriveError::delay:
-          errors.delay = value;
+          errors.delay = value(source, values);
           break;
         case DriveError::jitter:
           errors.edges.resize(edge_count(all.signals[k]));
           for (std::size_t edge = 0; edge < errors.edges.size(); ++edge)
-            errors.edges[edge] = DeviceSpread::jitter(variables[source.variable], value, number_of_edge(k, edge));
+            errors.edges[edge] =
+                DeviceSpread::jitter(variables[source.variable], values[source.variable], number_of_edge(k, edge));
           break;
       }
     }
@@ -111,18 +131,35 @@ std::vector<Signal> DeviceDrives::signals(const std::vector<Waveform>& nominal, 
                                           const std::vector<double>& values) const {
   const Driven all = driven(nominal, units, values);
   std::vector<Signal> own;
-  for (std::size_t k = 0; k < all.signals.size(); ++k) own.push_back(nominal_->driven(k, all.signal(k)));
+  for (std::size_t k = 0; k < all.signals.size(); ++k) {
+    own.push_back(nominal_->source(k).sample_rate
+                      ? nominal_->driven(k, all.jittered(k).first, all.after_samples(k))
+                      : nominal_->driven(k, with_errors(all.signals[k], all.errors[k], all.origin), SourceErrors{}));
+  }
   return own;
 }
 
-std::vector<Waveform> DeviceDrives::waveforms(const std::vector<Waveform>& nominal, const DeviceUnits& units,
-                                              const std::vector<double>& values) const {
-  Driven all = driven(nominal, units, values);
+std::vector<DeviceDrives::Written> DeviceDrives::written(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                                                         const std::vector<double>& values) const {
+  const Driven all = driven(nominal, units, values);
+  std::vector<Written> drives;
   for (std::size_t k = 0; k < all.signals.size(); ++k) {
-    const Signal own = all.signal(k);
-    if (own.pieces() != all.signals[k].pieces()) all.waveforms[k] = as_table(own, nominal_->duration);
+    Written& one = drives.emplace_back(Written{.waveform = all.waveforms[k]});
+    const auto write = [&](const Signal& own) {
+      if (own.pieces() != all.signals[k].pieces()) one.waveform = as_table(own, nominal_->duration);
+    };
+    if (nominal_->source(k).sample_rate) {
+      write(all.jittered(k).first);
+      one.errors = all.after_samples(k);
+      one.errors.delay = std::max(0.0, one.errors.delay);
+    } else if (has_errors(k) || all.errors[k].are_none()) {
+      write(with_errors(all.signals[k], all.errors[k], all.origin));
+    } else {
+      one.errors = all.errors[k];
+      one.errors.delay -= all.origin;
+    }
   }
-  return std::move(all.waveforms);
+  return drives;
 }
 
 }  // namespace softland

@@ -36,11 +36,17 @@ class DeviceDrives {
   /// device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
+  /// A waveform, and the gain, offset and delay that the scene of the device is to have beside it.
+  struct Written {
+    Waveform waveform;
+    SourceErrors errors = {};
+  };
   /// The same as waveforms: of the given family where that can express them, else a table, which is exact but for a sine,
-  /// which its lines follow within 1e-4 of the peak up to the end of the window.
-  [[nodiscard]] std::vector<Waveform> waveforms(const std::vector<Waveform>& nominal, const DeviceUnits& units,
-                                                const std::vector<double>& values) const;
-  /// Whether that drive, in the order of Switch::drives(), has errors of its own.
+  /// which its lines follow within 1e-4 of the peak up to the end of the window. Errors that vary stand in the waveform, but
+  /// where the source samples it, which they come after: there a delay below 0 is left out.
+  [[nodiscard]] std::vector<Written> written(const std::vector<Waveform>& nominal, const DeviceUnits& units,
+                                             const std::vector<double>& values) const;
+  /// Whether the errors of that drive, in the order of Switch::drives(), vary.
   [[nodiscard]] bool has_errors(std::size_t drive) const { return !sources_[drive].empty(); }
   /// The values of the varying quantities for people: of jitter, the time that is drawn for the first edge [s].
   [[nodiscard]] std::vector<double> shown(std::vector<double> values) const;
@@ -48,11 +54,12 @@ class DeviceDrives {
  private:
   /// A variable of the spread that is an error of a drive.
   struct Source {
-    std::size_t variable;
+    std::size_t variable, key;  // of the variable
     DriveError error;
   };
   struct Driven;
 
+  [[nodiscard]] double value(const Source& source, const std::vector<double>& values) const;
   [[nodiscard]] Driven driven(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                               const std::vector<double>& values) const;
 

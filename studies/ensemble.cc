@@ -35,10 +35,13 @@ class LaneFigures final : public LandingObserver {
     course_.above = std::isnan(end);
     figures_.rebound({.begin = begin, .end = end, .height = height});
   }
-  [[nodiscard]] DeviceOutcome outcome(const Switch& model, double end) {
-    course_.last_time = end;
-    const Trajectory run{
-        .status = Status::done, .contact_gap = model.device().gap.contact, .in_contact_period = model.in_contact_period()};
+  [[nodiscard]] DeviceOutcome outcome(const Switch& model, const FleetEnd& end) {
+    course_.last_time = end.time;
+    const Trajectory run{.status = Status::done,
+                         .contact_gap = model.device().gap.contact,
+                         .in_contact_period = model.in_contact_period(),
+                         .steady_force_time = end.steady_force_time,
+                         .least_force_after_touch = end.least_force_after_touch};
     return {.metrics = figures_.metrics(run, course_), .largest_impact_velocity = figures_.largest_impact_velocity()};
   }
 
@@ -313,6 +316,19 @@ std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Cal
   return known;
 }
 
+DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int jobs, const Watch& watch) {
+  constexpr std::size_t devices = 128;  // a deviation within 6 %
+  DeviceUnits squares{.volts = 0, .time = 0};
+  double known = 0;
+  for (const DeviceUnits& one : reference_units(nominal, need_pull_in, devices, jobs, watch)) {
+    if (!std::isfinite(one.volts) || !std::isfinite(one.time)) continue;
+    ++known;
+    squares.volts += (one.volts - 1) * (one.volts - 1);
+    squares.time += (one.time - 1) * (one.time - 1);
+  }
+  return {.volts = std::sqrt(squares.volts / known), .time = std::sqrt(squares.time / known)};
+}
+
 DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
                            const ClosingOptions& run) {
   if (!device.model) return {.metrics = {}, .failure = device.refusal};
@@ -340,6 +356,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
                         .after_contact = run.after_contact,
                         .no_end_before = run.no_end_before,
                         .no_contact_before = run.no_contact_before,
+                        .steady_force = run.steady_force,
                         .observer = &figures[i]});
   }
   std::vector<bool> done(closings.size(), false);
@@ -348,7 +365,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
     for (std::size_t n = 0; n < ends.size(); ++n) {
       if (!ends[n].followed) continue;
       done[places[n]] = true;
-      outcomes[places[n]] = figures[places[n]].outcome(*in_lanes[n].model, ends[n].time);
+      outcomes[places[n]] = figures[places[n]].outcome(*in_lanes[n].model, ends[n]);
     }
   }
   for (std::size_t i = 0; i < closings.size(); ++i) {
@@ -360,13 +377,9 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
 namespace {
 
 // A device that is quiet at the end of the window has not settled where its hold levels do not keep it closed.
-void judge_hold(DeviceOutcome& outcome, const SampledDevice& device, const std::vector<Signal>& signals,
-                const std::optional<ClosedEquilibrium>& nominal) {
+void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
   Metrics& m = outcome.metrics;
-  if (!outcome.closed() || !m.settled) return;
-  Trajectory end;
-  set_hold(end, *device.model, signals, nominal);
-  if (end.is_held) return;
+  if (!outcome.closed() || !m.settled || hold.is_held) return;
   m.settled = false;
   m.status = Status::not_settled;
   m.permanent_contact_time = m.bounce_time = Metrics::unset;
@@ -405,6 +418,7 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
     std::vector<std::vector<Signal>> own(devices.size());
     std::vector<DeviceClosing> closings;
     std::vector<std::size_t> places;
+    std::vector<Hold> holds;  // of closings
     for (std::size_t i = 0; i < devices.size(); ++i) {
       const std::vector<Signal>* signals = &nominal_signals_[d];
       const DeviceUnits units = devices[i].model ? drive.known.of(exact[i], seed_, first + i) : DeviceUnits{};
@@ -417,11 +431,13 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
         signals = &own[i];
       }
       places.push_back(i);
+      holds.push_back(devices[i].model ? hold_of(*devices[i].model, *signals, nominal_closed_[d]) : Hold{});
       closings.push_back({.device = &devices[i], .signals = signals, .run = options_});
+      closings.back().run.steady_force = holds.back().steady_force(nominal_->scene.metrics);
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, nominal_->scene.metrics, vectors_);
     for (std::size_t n = 0; n < places.size(); ++n) {
-      judge_hold(closed[n], *closings[n].device, *closings[n].signals, nominal_closed_[d]);
+      judge_hold(closed[n], holds[n]);
       outcomes[d][places[n]] = std::move(closed[n]);
     }
   }

@@ -170,6 +170,10 @@ class KnownUnits {
 [[nodiscard]] std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Calibration> calibrations, int jobs,
                                                   const Watch& watch = {});
 
+/// Standard deviations of the devices of the spread from the nominal one, in volts and in time, over its own. Throws Interrupted
+/// where `watch` asks to stop.
+[[nodiscard]] DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int jobs, const Watch& watch = {});
+
 /// The drives that every device gets: the waveforms of the nominal device, or, where devices are calibrated, those in the units
 /// of each one; with the errors of its sources where these vary.
 struct EnsembleDrive {

@@ -52,19 +52,39 @@ std::vector<Signal> Prepared::told(const std::vector<Waveform>& waveforms) const
 
 std::vector<Signal> Prepared::signals() const { return driven(in_drive_order(drives.waveforms)); }
 
-Signal Prepared::driven(std::size_t k, Signal told) const {
-  if (drives.models.empty()) return told;
+SourceErrors Prepared::errors(std::size_t k) const {
+  if (drives.errors.empty()) return {};
+  const auto found = drives.errors.find(drive_names()[k]);
+  return found == drives.errors.end() ? SourceErrors{} : found->second;
+}
+
+DriverModel Prepared::source(std::size_t k) const {
+  if (drives.models.empty()) return {};
   const std::string name = drive_names()[k];
   const auto found = drives.models.find(name);
-  if (found == drives.models.end()) return told;
-  const auto limits = drives.limits.find(name);
+  if (found == drives.models.end()) return {};
   DriverModel source = found->second;
   if (const auto load = loads.find(name); load != loads.end()) source.load = load->second;
-  return softland::driven(told, source, limits == drives.limits.end() ? DriverLimits{} : limits->second, duration);
+  return source;
+}
+
+DriverLimits Prepared::limits(std::size_t k) const {
+  const auto found = drives.limits.find(drive_names()[k]);
+  return found == drives.limits.end() ? DriverLimits{} : found->second;
+}
+
+Signal Prepared::told_samples(std::size_t k, const Signal& told) const {
+  return softland::told_samples(told, source(k), limits(k), duration);
+}
+
+Signal Prepared::driven(std::size_t k, const Signal& told, const SourceErrors& errors) const {
+  const DriverModel own = source(k);
+  if (own.is_ideal()) return errors.are_none() ? told : with_errors(told, errors);
+  return softland::driven(told, own, limits(k), duration, errors);
 }
 
 std::vector<Signal> Prepared::driven(std::vector<Signal> told) const {
-  for (std::size_t k = 0; k < told.size(); ++k) told[k] = driven(k, std::move(told[k]));
+  for (std::size_t k = 0; k < told.size(); ++k) told[k] = driven(k, told[k]);
   return told;
 }
 
@@ -113,6 +133,15 @@ double default_window(const Switch& model, const std::vector<Signal>& signals) {
   const Trajectory closing = simulate_closing(
       model, steps, {.duration = longest * usual, .tolerance = loose, .after_contact = 0, .max_steps = most_steps});
   return closing.touches.empty() ? usual : std::max(usual, closings * closing.touches.front().begin);
+}
+
+/// The drives but for what sampling and filters make of them.
+std::vector<Signal> without_sources(const Prepared& p) {
+  std::vector<Signal> signals = p.told(p.in_drive_order(p.drives.waveforms));
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    if (const SourceErrors errors = p.errors(k); !errors.are_none()) signals[k] = with_errors(signals[k], errors);
+  }
+  return signals;
 }
 
 /// Windows and waveforms that no computer would see the end of.
@@ -199,8 +228,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch,
   }
   p.drives = scene.drives(p.voltage_units());
   load_sources(p);
-  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration
-                                           : default_window(p.model, p.told(p.in_drive_order(p.drives.waveforms)));
+  p.duration = scene.simulate.duration > 0 ? scene.simulate.duration : default_window(p.model, without_sources(p));
   check_window(p);
   check_sources(p);
   p.tolerance =

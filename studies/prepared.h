@@ -64,8 +64,16 @@ struct Prepared {
   [[nodiscard]] std::vector<Signal> driven(const std::vector<Waveform>& waveforms) const { return driven(told(waveforms)); }
   /// What the sources make of signals that they are told to give, one per drive in that order.
   [[nodiscard]] std::vector<Signal> driven(std::vector<Signal> told) const;
-  /// What the source of drive k makes of a signal.
-  [[nodiscard]] Signal driven(std::size_t k, Signal told) const;
+  /// What the source of drive k makes of a signal, with gain, offset and delay of the scene, or with others.
+  [[nodiscard]] Signal driven(std::size_t k, const Signal& told) const { return driven(k, told, errors(k)); }
+  [[nodiscard]] Signal driven(std::size_t k, const Signal& told, const SourceErrors& errors) const;
+  /// The samples that its converter is told; what it is told where it takes none.
+  [[nodiscard]] Signal told_samples(std::size_t k, const Signal& told) const;
+  /// Gain, offset and delay of the source of drive k.
+  [[nodiscard]] SourceErrors errors(std::size_t k) const;
+  /// What that source makes of a waveform beside them, and its limits: none that a scene does not have.
+  [[nodiscard]] DriverModel source(std::size_t k) const;
+  [[nodiscard]] DriverLimits limits(std::size_t k) const;
   /// The pull-in voltages as units.
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
 };

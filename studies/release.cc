@@ -210,14 +210,12 @@ class ReleaseSearch {
 
   // What the source of drive k gives when it is told these points after it has stood at the first one for long.
   [[nodiscard]] Signal driven(std::size_t k, Line points) const {
-    const auto found = given_.drives.models.find(names_[k]);
-    if (found == given_.drives.models.end() || found->second.is_ideal()) return Signal::piecewise_linear(points);
-    const DriverModel& source = found->second;
-    const auto load = given_.loads.find(names_[k]);
-    double stands = period_;
+    const DriverModel source = given_.source(k);
+    const SourceErrors errors = given_.errors(k);
+    if (source.is_ideal() && errors.are_none()) return Signal::piecewise_linear(points);
+    double stands = period_ + errors.delay;
     if (source.bandwidth) stands += settled_after / (2 * pi * *source.bandwidth);
-    if (source.source_resistance && load != given_.loads.end())
-      stands += settled_after * *source.source_resistance * load->second;
+    if (source.source_resistance) stands += settled_after * *source.source_resistance * source.load;
     if (source.sample_rate) stands = std::ceil(stands * *source.sample_rate) / *source.sample_rate;
     for (auto& [time, voltage] : points) time += stands;
     points.insert(points.begin(), {0, points.front().second});

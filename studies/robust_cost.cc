@@ -56,6 +56,18 @@ std::vector<FigureName> conditioned_figures() {
 
 bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
 
+namespace {
+
+bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
+  const auto is_about = [](const Criterion& one) {
+    return ensemble_figures()[one.figure].key == figure_of(&Metrics::steady_force_time).key;
+  };
+  return setting.target.is_about(Target::steady) || (aim.measure.yield && is_about(*aim.measure.yield)) ||
+         std::ranges::any_of(aim.conditions, is_about);
+}
+
+}  // namespace
+
 Vectors vectors_for(const Aim& target, Vectors vectors) { return target.is_about(Target::drive) ? Vectors::none : vectors; }
 
 BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
@@ -92,16 +104,20 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
       aim_(aim),
       ensemble_(std::move(ensemble)),
       drives_(setting.given),
-      vectors_(vectors_for(setting.target, vectors)) {
+      vectors_(vectors_for(setting.target, vectors)),
+      measures_steady_force_(is_about_steady_force(setting, aim)) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
   window_ = std::max(0.6 * period, 2.5 * in_contact);
   tail_ = in_contact;
   wait_ = std::max(setting.run.no_contact_before, period);
   const std::vector<Signal> step = setting.baseline_scene.signals();
-  step_ = close_device(
-      {.values = {}, .model = model, .refusal = {}}, step, setting.given.scene.metrics,
-      {.duration = last_breakpoint(step) + wait_ + window_, .tolerance = EnsembleRun{}.tolerance, .after_contact = window_});
+  if (measures_steady_force_) held_ = closed_equilibrium(model, hold_levels(step));
+  step_ = close_device({.values = {}, .model = model, .refusal = {}}, step, setting.given.scene.metrics,
+                       {.duration = last_breakpoint(step) + wait_ + window_,
+                        .tolerance = EnsembleRun{}.tolerance,
+                        .after_contact = window_,
+                        .steady_force = setting.run.steady_force});
   if (step_.closed()) return;
   const CostFigures& imagined = setting.scale.step;
   const double drive_energy = step_.metrics.drive_energy;
@@ -126,7 +142,7 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
       std::vector<Signal>& of_device = own[i - begin];
       if (device.model && drives_.differ(units)) of_device = drives_.signals(waveforms, units, device.values);
       const std::vector<Signal>& signals = of_device.empty() ? nominal : of_device;
-      closings.push_back({.device = &device, .signals = &signals, .run = run(signals)});
+      closings.push_back({.device = &device, .signals = &signals, .run = run(device, signals)});
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
     std::move(closed.begin(), closed.end(), outcomes.begin() + static_cast<std::ptrdiff_t>(begin));
@@ -137,16 +153,18 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
 DeviceOutcome RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
   const SampledDevice& device = ensemble_.devices[k];
   const std::vector<Signal> signals = drives_.signals(waveforms, units, device.values);
-  return close_device(device, signals, setting_.given.scene.metrics, run(signals));
+  return close_device(device, signals, setting_.given.scene.metrics, run(device, signals));
 }
 
-ClosingOptions RobustCost::run(const std::vector<Signal>& signals) const {
+ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Signal>& signals) const {
   const double end = last_breakpoint(signals);
+  const Hold hold = measures_steady_force_ && device.model ? hold_of(*device.model, signals, held_) : Hold{};
   return {.duration = end + wait_ + window_,
           .tolerance = EnsembleRun{}.tolerance,
           .after_contact = window_,
           .no_end_before = end + tail_,
-          .no_contact_before = end + wait_};
+          .no_contact_before = end + wait_,
+          .steady_force = hold.steady_force(setting_.given.scene.metrics)};
 }
 
 double RobustCost::score(const DeviceOutcome& outcome) const {
@@ -174,9 +192,12 @@ double RobustCost::score(const DeviceOutcome& outcome) const {
       case Target::force:
         return over(m.peak_contact_force, step.peak_contact_force);
       case Target::drive:
+        return over(m.drive_energy, step.drive_energy);
+      case Target::steady:
         break;
     }
-    return over(m.drive_energy, step.drive_energy);
+    const bool is_steady = std::isfinite(m.steady_force_time);
+    return over(is_steady ? m.steady_force_time : 2 * (m.initial_contact_time + window_), step.initial_contact_time);
   });
   return std::isnan(score) ? worst_score : score;
 }

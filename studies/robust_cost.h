@@ -4,7 +4,7 @@
 //           bounce             (largest touch speed + highest rebound) / 2
 //           rebound            highest rebound               impact    largest touch speed
 //           count              rebounds                      settling  permanent contact, over first contact of the step
-//           energy             impact energy
+//           energy             impact energy                 steady    steady force time, over first contact of the step
 //         3, or more than any that closes, where the device does not close, or its closing cannot be followed
 //   cost  R(s) + 0.02 (median of first contact over that of the step) + 10 (sum over the conditions: violation, where positive)
 //
@@ -78,15 +78,17 @@ class RobustCost {
   [[nodiscard]] double score(const DeviceOutcome& outcome) const;
 
  private:
-  [[nodiscard]] ClosingOptions run(const std::vector<Signal>& signals) const;
+  [[nodiscard]] ClosingOptions run(const SampledDevice& device, const std::vector<Signal>& signals) const;
 
   const SearchSetting& setting_;
   const RobustAim& aim_;
   BuiltEnsemble ensemble_;
   DeviceDrives drives_;
   Vectors vectors_;
-  DeviceOutcome step_;           // of the nominal device
-  double window_, tail_, wait_;  // after first touch, after the last breakpoint, for a touch [s]
+  bool measures_steady_force_;
+  std::optional<ClosedEquilibrium> held_;  // of the nominal device
+  DeviceOutcome step_;                     // of the nominal device
+  double window_, tail_, wait_;            // after first touch, after the last breakpoint, for a touch [s]
 };
 
 /// What devices may close in when a search is about `target`: no vectors where lanes do not measure its figure.

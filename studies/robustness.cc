@@ -77,7 +77,10 @@ std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& dr
     const auto limits = nominal.drives.limits.find(name);
     if (limits == nominal.drives.limits.end()) continue;
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    const std::string broken = violation(nominal.told(k, waveform), limits->second);
+    const DriverLimits& own = limits->second;
+    const bool may_be_samples = std::holds_alternative<Table>(waveform);
+    const std::string broken =
+        violation(nominal.told(k, waveform), may_be_samples ? limits_of_samples(own, nominal.source(k)) : own);
     require(broken.empty(), [&] { return fmt::format("{}: drive '{}': {}", drive.name, name, broken); });
   }
   return nominal.in_drive_order(drive.waveforms);
@@ -94,6 +97,16 @@ void allow(SceneFile& file, const std::string& driver, const Signal& signal, con
   } else {
     file.erase(driver + ".max_slew");  // an offset is there at once
   }
+}
+
+void set_errors(SceneFile& file, const std::string& driver, const SourceErrors& errors) {
+  const auto set = [&](const char* key, double value, double none) {
+    const std::string path = driver + key;
+    value == none ? file.erase(path) : file.assign(path, value);
+  };
+  set(".gain", errors.gain, 1);
+  set(".offset", errors.offset, 0);
+  set(".delay", errors.delay, 0);
 }
 
 // The same drive for every knowledge that one can have of a device, without errors: from nothing to all that can be measured,
@@ -142,7 +155,15 @@ const std::vector<EnsembleFigure>& ensemble_figures() {
        .unit = "m/s",
        .value = [](const DeviceOutcome& o) { return or_worst(o, o.largest_impact_velocity); }},
       figure<&Metrics::peak_contact_force>(),
-      figure<&Metrics::impact_energy>()};
+      figure<&Metrics::impact_energy>(),
+      figure<&Metrics::steady_force_time>(),
+      {.key = "least_force_after_touch_N",
+       .name = "Least force after the touch",
+       .symbol = "least force",
+       .unit = "N",
+       .value = [](const DeviceOutcome& o) {
+         return std::isinf(or_worst(o, o.metrics.least_force_after_touch)) ? 0 : o.metrics.least_force_after_touch;
+       }}};
   return all;
 }
 
@@ -298,14 +319,16 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
     file.erase("calibration");  // has been used
   }
   const DeviceDrives drives(nominal);
-  const std::vector<Waveform> own =
-      drives.waveforms(waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}), units, values);
+  const std::vector<DeviceDrives::Written> own =
+      drives.written(waveforms_of(nominal, {.name = drive.name, .waveforms = drive.waveforms}), units, values);
   const std::vector<std::string> names = nominal.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string driver = "driver." + names[k];
+    set_errors(file, driver, own[k].errors);
     if (!drive.waveforms.contains(names[k]) && !drives.has_errors(k)) continue;
-    file.set_waveform(names[k], own[k]);
+    file.set_waveform(names[k], own[k].waveform);
     if (const auto limits = nominal.drives.limits.find(names[k]); limits != nominal.drives.limits.end())
-      allow(file, "driver." + names[k], nominal.told(k, own[k]), limits->second);
+      allow(file, driver, nominal.told(k, own[k].waveform), limits->second);
   }
   return file;
 }

@@ -16,7 +16,8 @@
 
 namespace softland {
 
-/// A figure that is given as a distribution. Larger is worse, and a device that does not close has the worst of all, +infinity.
+/// A figure that is given as a distribution. Larger is worse, and a device that does not close has the worst of all, +infinity;
+/// but of the least force after the touch less is worse, and such a device has 0 N.
 struct EnsembleFigure {
   std::string_view key;  ///< in JSON and as a column; ends with the unit
   std::string_view name;

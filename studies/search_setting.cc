@@ -225,6 +225,7 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
 std::string SearchSetting::gradient_refusal(const Aim& aim) const {
   if (!richer.empty()) return "the worst of several beams has no gradient";
   if (aim.is_about(Target::drive)) return "the energy of the drives has no gradient";
+  if (aim.is_about(Target::steady)) return "the time from which on the contact force is steady has no gradient";
   for (const Criterion& one : conditions) {
     const Figure& figure = all_figures[one.figure];
     const bool never_slopes = figure.is_count() || figure.conditioning == Conditioning::rest;
@@ -328,7 +329,9 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
                   .free_touch = actuator == Actuator::pzt ? braked_touch : driven_touch};
   ClosingOptions run{.duration = given.duration, .tolerance = search_tolerance, .after_contact = scale.score_window};
   const std::vector<Signal> plain = baseline_scene.signals();
-  if (const auto closed = closed_equilibrium(given.model, hold_levels(plain))) run.closed_potential = closed->potential;
+  const Hold hold = hold_of(given.model, plain);
+  if (hold.closed) run.closed_potential = hold.closed->potential;
+  run.steady_force = hold.steady_force(given.scene.metrics);
   const Trajectory step = simulate_closing(given.model, plain, run);
   scale.step = cost_figures(step, given.scene.metrics);
   if (!scale.step.touched) scale.step = imagined_step(given, period);

@@ -28,6 +28,8 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
   }
   double& height = d[&Metrics::major_bounce_height];
   height = std::max(height, lowest_separation * contact_gap);
+  double& force = d[&Metrics::least_force_after_touch];
+  force = std::max(force, shared * tolerance * a.hold_force);
   return d;
 }
 
@@ -87,7 +89,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
   }
   const double parting = parting_time(best, other, options.significant_rebound);
   if (std::isinf(parting)) return;
-  errors[&Metrics::impact_energy] = errors[&Metrics::drive_energy] = Metrics::unset;
+  errors[&Metrics::impact_energy] = errors[&Metrics::drive_energy] = errors[&Metrics::steady_force_time] = Metrics::unset;
   for (const Run* run : {&best, &other}) {
     const auto force = [](const Touch& t) { return t.peak_force; };
     if (chance_decides(run->trajectory.touches, parting, force)) errors[&Metrics::peak_contact_force] = Metrics::unset;
@@ -155,14 +157,16 @@ class ClosingRuns {
     Run r{.tolerance = tolerance, .quadrature = quadrature};
     const std::string what =
         count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
+    const Hold hold = hold_of(model, signals_);
     r.trajectory = simulate_closing(model, signals_,
                                     {.duration = prepared_.duration,
                                      .tolerance = tolerance,
                                      .max_steps = max_steps,
+                                     .steady_force = hold.steady_force(prepared_.scene.metrics),
                                      .stop = watch_.stop,
                                      .observer = observer(watch_, what, prepared_.duration)});
     was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
-    set_rest(r.trajectory, model, signals_);
+    set_rest(r.trajectory, model, signals_, hold);
     r.metrics = metrics(r.trajectory, prepared_.scene.metrics);
     set_open_figures(r.metrics, r.trajectory, model, signals_);
     return r;
@@ -305,28 +309,31 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
   return c;
 }
 
-std::optional<ClosedEquilibrium> set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
-                                          const std::optional<ClosedEquilibrium>& near) {
+Hold hold_of(const Switch& model, const std::vector<Signal>& signals, const std::optional<ClosedEquilibrium>& near) {
   const std::vector<double> levels = hold_levels(signals);
-  std::optional<ClosedEquilibrium> closed =
-      near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels);
-  const bool stays = keeps_closed(model, closed);
-  if (stays) trajectory.hold_force = closed->contact_force;
+  Hold hold{.closed = near ? closed_equilibrium_near(model, levels, *near) : closed_equilibrium(model, levels)};
+  const bool stays = keeps_closed(model, hold.closed);
+  if (stays) hold.force = hold.closed->contact_force;
   const std::optional<Contact>& contact = model.device().contact;
   const bool may_stick =
       contact && (contact->model == ContactModel::adhesive || contact->model == ContactModel::adhesive_repulsive);
-  trajectory.is_held = stays || !contact || (may_stick && !closed);
-  return closed;
+  hold.is_held = stays || !contact || (may_stick && !hold.closed);
+  return hold;
 }
 
-void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals) {
-  const std::optional<ClosedEquilibrium> closed = set_hold(trajectory, model, signals);
+void set_hold(Trajectory& trajectory, const Hold& hold) {
+  trajectory.hold_force = hold.force;
+  trajectory.is_held = hold.is_held;
+}
+
+void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold) {
+  set_hold(trajectory, hold);
   if (!has_pulling_electrode(model.device())) return;
   std::optional<Eigen::VectorXd> q;
   if (trajectory.touches.empty()) {
     q = model.open_equilibrium(hold_levels(signals));
-  } else if (closed) {
-    q = closed->q;
+  } else if (hold.closed) {
+    q = hold.closed->q;
   }
   if (!q) return;
   Switch::Workspace work = model.workspace();

@@ -56,14 +56,23 @@ inline constexpr std::string_view not_held =
     "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
     "voltage, or so high that the electrode pulls the beam past the contact";
 
-/// Sets the hold force of the closed equilibrium under the hold levels of these drives, and whether anything holds the switch:
-/// not where it has a contact and no such equilibrium, unless the contact may hold on by adhesion, nor where it is unstable.
-/// `near`: that of a switch and drives little different, from which it is found sooner. Returns that equilibrium, if there is
-/// one.
-std::optional<ClosedEquilibrium> set_hold(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals,
-                                          const std::optional<ClosedEquilibrium>& near = {});
+/// What the hold levels of drives do to a closed switch.
+struct Hold {
+  std::optional<ClosedEquilibrium> closed;  ///< if there is one
+  double force = Metrics::unset;            ///< of the contact, where it is stable [N]
+  /// Whether anything holds the switch: not where it has a contact and no such equilibrium, unless the contact may hold on by
+  /// adhesion, nor where it is unstable.
+  bool is_held = true;
+  /// ClosingOptions::steady_force [N]; NaN where nothing holds the switch.
+  [[nodiscard]] double steady_force(const MetricsOptions& options) const { return options.steady_force * force; }
+};
+/// `near`: the equilibrium of a switch and drives little different, from which this one is found sooner.
+[[nodiscard]] Hold hold_of(const Switch& model, const std::vector<Signal>& signals,
+                           const std::optional<ClosedEquilibrium>& near = {});
+/// Sets hold force and whether anything holds the switch.
+void set_hold(Trajectory& trajectory, const Hold& hold);
 /// The same, and the capacitance where the hold levels leave the switch.
-void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals);
+void set_rest(Trajectory& trajectory, const Switch& model, const std::vector<Signal>& signals, const Hold& hold);
 
 /// Peak voltage and peak slew of these drives in the window.
 void set_drive_figures(Metrics& metrics, const Prepared& prepared, const std::vector<Signal>& signals);

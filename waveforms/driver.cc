@@ -133,6 +133,12 @@ std::vector<SignalPiece> without_sweeps(const std::vector<SignalPiece>& pieces) 
 }  // namespace
 
 namespace internal {
+namespace {
+
+/// Between two voltages that a converter of so many bits gives [V].
+double step_of(const DriverLimits& limits, int bits) { return (limits.max_voltage - limits.min_voltage) / (std::exp2(bits) - 1); }
+
+}  // namespace
 
 Signal sampled(const Signal& told, double rate, std::optional<int> bits, const DriverLimits& limits, double end) {
   const SignalPiece& last = told.pieces().back();
@@ -140,7 +146,7 @@ Signal sampled(const Signal& told, double rate, std::optional<int> bits, const D
   if (last.oscillates()) until = std::max(until, end);
   const auto rounded = [&](double voltage) {
     if (!bits) return voltage;
-    const double step = (limits.max_voltage - limits.min_voltage) / (std::exp2(*bits) - 1);
+    const double step = step_of(limits, *bits);
     const double inside = std::clamp(voltage, limits.min_voltage, limits.max_voltage);
     return std::min(limits.min_voltage + step * std::round((inside - limits.min_voltage) / step), limits.max_voltage);
   };
@@ -207,13 +213,31 @@ Signal filtered(const Signal& input, double time_constant) {
 
 }  // namespace internal
 
-Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end) {
-  if (model.is_ideal() || told.is_zero()) return told;
-  Signal output = told;
-  if (model.sample_rate) {
-    output = internal::sampled(told, *model.sample_rate, model.bits, limits, end);
-    if (std::isfinite(limits.max_slew)) output = internal::slewed(output, limits.max_slew);
-  }
+DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model) {
+  constexpr double rounding = 1e-9;  // of differences of late times
+  if (model.sample_rate) limits.max_slew *= 1 + rounding;
+  if (model.sample_rate && model.bits) limits.max_slew += internal::step_of(limits, *model.bits) * *model.sample_rate;
+  return limits;
+}
+
+Signal held(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end) {
+  if (!model.sample_rate || told.is_zero()) return told;
+  return internal::sampled(told, *model.sample_rate, model.bits, limits, end);
+}
+
+Signal told_samples(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end) {
+  const Signal samples = held(told, model, limits, end);
+  if (!model.sample_rate || told.voltage(0) != told.before()) return samples;
+  std::vector<SignalPiece> pieces = samples.pieces();
+  pieces.front().value = told.before();
+  return Signal(std::move(pieces), samples.before());
+}
+
+Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end, const SourceErrors& errors) {
+  Signal output = held(told, model, limits, end);
+  if (model.sample_rate && std::isfinite(limits.max_slew) && !told.is_zero()) output = internal::slewed(output, limits.max_slew);
+  if (!errors.are_none()) output = with_errors(output, errors);
+  if (model.is_ideal() || output.is_zero()) return output;
   if (model.bandwidth) output = internal::filtered(output, 1 / (2 * std::numbers::pi * *model.bandwidth));
   if (const double rc = model.source_resistance.value_or(0) * model.load; rc > 0) output = internal::filtered(output, rc);
   return output;

@@ -16,6 +16,7 @@
 
 #include "waveforms/limits.h"
 #include "waveforms/signal.h"
+#include "waveforms/source_errors.h"
 
 namespace softland {
 
@@ -30,10 +31,23 @@ struct DriverModel {
   [[nodiscard]] bool is_ideal() const { return !sample_rate && !bandwidth && !source_resistance; }
 };
 
-/// The output of the source. One that is told 0 V at all times gives 0 V; before t = 0 it gives what it
-/// is told. A sine that never ends is sampled up to `end` [s], when the
-/// value that it swings about takes over. Throws InvalidInput when it would take more than 1e7 samples.
-[[nodiscard]] Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
+/// The samples that its converter holds, each until the next; what the source is told where it takes none, and where that is 0 V
+/// at all times. A sine that never ends is sampled up to `end` [s], when the value that it swings about takes over. Throws
+/// InvalidInput when it would take more than 1e7 samples.
+[[nodiscard]] Signal held(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
+
+/// The same for a generator or a file: what the source has stood at before t = 0 is not rounded as long as it stays there, so
+/// that nothing jumps when the samples are told.
+[[nodiscard]] Signal told_samples(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end);
+
+/// The limits that a table is held against: samples that were rounded may rise by a step of the converter more from one to the
+/// next than the waveform that they were taken of.
+[[nodiscard]] DriverLimits limits_of_samples(DriverLimits limits, const DriverModel& model);
+
+/// The output of the source, whose gain, offset and delay change what its converter gives; throws as held(). One that is told 0 V
+/// at all times gives its offset; before t = 0 it gives what it is told.
+[[nodiscard]] Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& limits, double end,
+                            const SourceErrors& errors = {});
 
 namespace internal {
 

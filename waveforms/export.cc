@@ -26,6 +26,17 @@ void require_end(double end) {
           fmt::format("the end of an exported waveform is {} s; it must be finite and >= 0", end));
 }
 
+const std::string& column_name(const std::string& drive) {
+  require(
+      !drive.empty() && drive.find_first_of(",\"\r\n#") == std::string::npos,
+      fmt::format("the name of a drive is \"{}\"; in a CSV file it must not be empty nor hold a comma, quote, hash or line break",
+                  drive));
+  return drive;
+}
+
+/// The number of the sample that is held for ever.
+double last_sample(const Signal& held, double rate) { return std::round(held.pieces().back().begin * rate); }
+
 constexpr double most_chords = 1e7;
 
 void require_few(double chords, double tolerance) {
@@ -105,17 +116,17 @@ std::vector<std::pair<double, double>> polyline(const Signal& signal, double end
   return points;
 }
 
-std::string csv(const std::map<std::string, Signal>& signals, double end) {
+std::string csv(const std::map<std::string, Signal>& signals, double end, const std::map<std::string, double>& sample_rates) {
   require_signals(signals);
   std::set<double> times;
   std::set<double> jumps;
   std::string text = "time_s";
   for (const auto& [drive, signal] : signals) {
-    require(!drive.empty() && drive.find_first_of(",\"\r\n#") == std::string::npos,
-            fmt::format(
-                "the name of a drive is \"{}\"; in a CSV file it must not be empty nor hold a comma, quote, hash or line break",
-                drive));
-    text += "," + drive;
+    text += "," + column_name(drive);
+    if (const auto rate = sample_rates.find(drive); rate != sample_rates.end()) {
+      for (double k = 0; k <= last_sample(signal, rate->second); ++k) times.insert(k / rate->second);
+      continue;
+    }
     for (const auto& [time, voltage] : polyline(signal, end, sine_tolerance * signal.peak(), 0)) {
       times.insert(time);
       if (signal.voltage_before(time) != signal.voltage(time)) jumps.insert(time);
@@ -131,6 +142,30 @@ std::string csv(const std::map<std::string, Signal>& signals, double end) {
   for (const double time : times) {
     if (jumps.contains(time)) append(time, [&](const Signal& signal) { return signal.voltage_before(time); });
     append(time, [&](const Signal& signal) { return signal.voltage(time); });
+  }
+  return text;
+}
+
+std::string codes(const std::map<std::string, Coded>& drives) {
+  require(!drives.empty(), "there are no samples to export; there must be a drive that has some");
+  const double rate = drives.begin()->second.sample_rate;
+  double last = 0;
+  std::string text = "index";
+  for (const auto& [drive, coded] : drives) {
+    require(coded.sample_rate == rate, fmt::format("drive '{}' takes samples at {} Hz, and drive '{}' at {} Hz; samples of one "
+                                                   "file must have one rate",
+                                                   drive, coded.sample_rate, drives.begin()->first, rate));
+    text += "," + column_name(drive);
+    last = std::max(last, last_sample(coded.held, rate));
+  }
+  text += '\n';
+  for (double k = 0; k <= last; ++k) {
+    fmt::format_to(std::back_inserter(text), "{}", k);
+    for (const auto& [drive, coded] : drives) {
+      const double step = (coded.maximum - coded.minimum) / (std::exp2(coded.bits) - 1);
+      fmt::format_to(std::back_inserter(text), ",{}", std::round((coded.held.voltage(k / rate) - coded.minimum) / step));
+    }
+    text += '\n';
   }
   return text;
 }

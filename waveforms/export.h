@@ -23,7 +23,22 @@ namespace softland {
 /// peak. A step, pulse or table that ends before `end` and stands alone reads back to the same signal bit for bit; together with
 /// other drives its ramps are split at their breakpoints, to rounding. Throws InvalidInput when there is no signal, a name does
 /// not fit into a header, or `end` is not finite and >= 0.
-[[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end);
+///
+/// `sample_rates`: drives that are samples, held from k / rate on until the next [Hz]. They have a row for each, up to that from
+/// which on they are held for ever, and give the same samples when they are read back.
+[[nodiscard]] std::string csv(const std::map<std::string, Signal>& signals, double end,
+                              const std::map<std::string, double>& sample_rates = {});
+
+/// Samples as the integers of a converter.
+struct Coded {
+  Signal held;                      ///< the samples, each until the next
+  double sample_rate = 0;           ///< [Hz]
+  int bits = 0;                     ///< 0 to 2^bits - 1 ...
+  double minimum = 0, maximum = 0;  ///< ... stand for these voltages [V]
+};
+/// CSV with a header `index,<drive>,<drive>...` and a row for each sample k / rate, up to that from which on all are held. Throws
+/// InvalidInput when there is none, and where the rates differ.
+[[nodiscard]] std::string codes(const std::map<std::string, Coded>& drives);
 
 /// A SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable with
 /// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a thousandth of the interval after them if that is shorter; curves

@@ -79,13 +79,14 @@ double first_edge(const Signal& signal, const SourceErrors& errors) {
   return edges.empty() ? no_bound : begins(signal.pieces(), edges, errors)[edges.front().first];
 }
 
-Signal with_errors(const Signal& signal, const SourceErrors& errors, double origin) {
+Signal with_errors(const Signal& given, const SourceErrors& errors, double origin) {
   const auto is_finite = [](double number) { return std::isfinite(number); };
-  require(is_finite(errors.offset) && is_finite(errors.delay) && is_finite(origin) &&
+  require(is_finite(errors.gain) && errors.gain > 0 && is_finite(errors.offset) && is_finite(errors.delay) && is_finite(origin) &&
               std::all_of(errors.edges.begin(), errors.edges.end(), is_finite),
-          "the errors of a source must be finite");
+          "the errors of a source must be finite, and its gain > 0");
+  const Signal signal = errors.gain == 1 ? given : scaled(given, errors.gain);
   const std::vector<SignalPiece>& pieces = signal.pieces();
-  const std::vector<Edge> edges = edges_of(signal);
+  const std::vector<Edge> edges = edges_of(given);
   std::vector<double> begin = begins(pieces, edges, errors);
   for (double& time : begin) time = std::max(0.0, time - origin);
   if (edges.empty() || edges.front().first > 0) begin[0] = 0;
@@ -97,7 +98,7 @@ Signal with_errors(const Signal& signal, const SourceErrors& errors, double orig
     // Late by much more than it lasts, a piece may have lost its duration to rounding.
     if (end > begin[i]) all.push_back(moved(signal, i, begin[i], end, errors.offset, errors.delay - origin));
   }
-  return Signal(std::move(all), signal.before());
+  return Signal(std::move(all), given.before());
 }
 
 }  // namespace softland

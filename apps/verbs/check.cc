@@ -157,6 +157,11 @@ int check_verb(const Common& c) {
                         "optimize, release, limit and robustness refuse the scene as it is",
                         name, given_quantity(signal.peak(), "V"), name));
     }
+    if (const auto errors = p.drives.errors.find(name); errors != p.drives.errors.end()) {
+      const auto& [gain, offset, delay, edges] = errors->second;
+      driver += fmt::format(", gain {}, offset {}, delay {}", plain_number(gain, 6), given_quantity(offset, "V"),
+                            given_quantity(delay, "s"));
+    }
     const std::string before = signal.before() == 0 ? "" : fmt::format("{} before t = 0, ", given_quantity(signal.before(), "V"));
     add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));
@@ -167,10 +172,8 @@ int check_verb(const Common& c) {
     const ClosedState state = closed_state(p, p.signals());
     add("closed state", closed_state_words(state));
     if (const std::string summits = summits_words(p, state); !summits.empty()) add("contact", summits);
-    Trajectory rest;
-    set_hold(rest, p.model, p.signals());
     const std::string unstable = warning(state);
-    if (!rest.is_held) warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
+    if (!hold_of(p.model, p.signals()).is_held) warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
   }
   for (const std::string& w : warnings) text += "\n" + wrapped("warning: " + w) + "\n";
   work->watch().throw_if_stopped();

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,61 +17,168 @@
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
+#include "base/choice.h"
 #include "base/require.h"
 #include "config/units.h"
+#include "reports/quantity.h"
 #include "studies/choices.h"
 #include "studies/ensemble.h"
 
 namespace softland::apps {
 namespace {
 
+constexpr double usual_error = 0.01;  // of a measurement whose error nobody gives, relative
+
 struct ExportRequest {
-  std::string result, format = "csv";
-  std::optional<std::string> device_pull_in, device_frequency;  ///< measured on the device that gets the waveform
+  std::string result, format = "csv", signal = "told";
+  std::string measured;                                         ///< "Vdp=54.2 V,frequency=10.2 kHz"
+  std::optional<std::string> device_pull_in, device_frequency;  ///< the same, each by itself
 };
 
-// What was measured on a device.
-std::optional<double> measured(const char* option, const std::optional<std::string>& text, const Dimension& due) {
-  if (!text) return std::nullopt;
-  Quantity q;
-  try {
-    q = parse_quantity(*text);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(fmt::format("{} {}: {}", option, shown(*text), error.what()));
+struct SentRow {
+  Sent value;
+  std::string_view name;
+};
+constexpr auto sent_names = std::to_array<SentRow>({{Sent::told, "told"}, {Sent::output, "output"}});
+static_assert(is_complete<sent_names>());
+
+// A quantity that was measured on a device.
+struct Measured {
+  std::string_view name;
+  Dimension due;
+  std::string said = {};  // how it was given
+  std::optional<double> value = {};
+
+  void read(const std::string& option, const std::string& text) {
+    require(!value, [&] { return fmt::format("{} {}: {} stands twice", option, shown(text), name); });
+    Quantity q;
+    try {
+      q = parse_quantity(text);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{} {}: {}", option, shown(text), error.what()));
+    }
+    require(q.dimension == due && q.value > 0, [&] {
+      return fmt::format("{} {}: must be {} above 0, such as \"{}\"", option, shown(text), describe(due), example(due));
+    });
+    value = q.value;
+    said = fmt::format("{} {}", option, shown(text));
   }
-  require(q.dimension == due && q.value > 0, [&] {
-    return fmt::format("{} {}: must be {} above 0, such as \"{}\"", option, shown(*text), describe(due), example(due));
-  });
-  return q.value;
+};
+
+// What was measured on the device that gets the waveform.
+struct Measurements {
+  Measured pull_in{.name = measured_pull_in, .due = dimension::voltage};
+  Measured frequency{.name = measured_frequency, .due = dimension::frequency};
+
+  explicit Measurements(const ExportRequest& request) {
+    if (request.device_pull_in) pull_in.read("--device-vdp", *request.device_pull_in);
+    if (request.device_frequency) frequency.read("--device-frequency", *request.device_frequency);
+    if (request.measured.empty()) return;
+    for (const std::string& one : parts_of(request.measured)) {
+      const std::size_t sign = one.find('=');
+      const std::string name = one.substr(0, sign);
+      require(sign != std::string::npos && (name == pull_in.name || name == frequency.name), [&] {
+        return fmt::format("--measured {}: '{}' is no measurement; there are {} and {}, such as \"{}=54.2 V\"",
+                           shown(request.measured), shown(one), pull_in.name, frequency.name, pull_in.name);
+      });
+      (name == pull_in.name ? pull_in : frequency).read(fmt::format("--measured {} =", name), one.substr(sign + 1));
+    }
+  }
+  [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value; }
+};
+
+// Of a measurement, relative: what [calibration] says, or the usual one, which is told.
+double error_of(const Measured& measured, const std::optional<double>& given) {
+  if (given && *given > 0) return *given;
+  say(fmt::format("{}: taken to be right to {}: [calibration] gives no error of {}", measured.said,
+                  plain_number(100 * usual_error) + " %", measured.name));
+  return usual_error;
+}
+
+// Warns of a device that hardly any is like; `deviation`: of the spread, `ratio`: what is measured over the nominal, relative.
+void warn_if_strange(const Measured& measured, double ratio, double deviation, const std::optional<double>& error) {
+  constexpr double strange = 4;
+  const double off = std::abs(ratio - 1), sigma = std::hypot(deviation, error_of(measured, error));
+  if (off <= strange * sigma) return;
+  say(
+      fmt::format("warning: {}: {} % from the nominal device, {} times the standard deviation of [spread] and measurement: is "
+                  "it this switch?",
+                  measured.said, plain_number(100 * off, 3), plain_number(off / sigma, 2)));
+}
+
+// The units of the device on which this was measured.
+DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watch& watch) {
+  const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value()});
+  const Calibration& calibration = p.scene.calibration;
+  require(!calibration.classes || (measured.pull_in.value.has_value() == calibration.pull_in_error.has_value() &&
+                                   measured.frequency.value.has_value() == calibration.frequency_error.has_value()),
+          "--measured, --device-vdp, --device-frequency: the scene sorts devices into classes: give what [calibration] measures");
+  const double volts = measured.pull_in.value.value_or(meter.pull_in()) / meter.pull_in(),
+               time = meter.frequency() / measured.frequency.value.value_or(meter.frequency());
+  if (!p.scene.spread.empty()) {
+    const DeviceUnits deviation = deviation_of_units(p, measured.pull_in.value.has_value(), job_count({}), watch);
+    if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error);
+    if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error);
+  }
+  const KnownUnits known = known_units(p, std::array{calibration}, job_count({}), watch).front();
+  return known.of({.volts = measured.pull_in.value ? volts : 1, .time = time});
+}
+
+// The waveforms of that device. Throws InvalidInput where a source cannot give them.
+std::vector<Waveform> waveforms_of(const Prepared& p, const Measurements& measured, const Watch& watch) {
+  const std::vector<Waveform> own = in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units_of(p, measured, watch));
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (!p.drives.limits.contains(names[k])) continue;
+    const std::string broken = violation(p.told(k, own[k]), p.limits(k));
+    const std::string& said = measured.pull_in.value ? measured.pull_in.said : measured.frequency.said;
+    require(broken.empty(),
+            [&] { return fmt::format("{}: the waveform of this device: drive '{}': {}", said, names[k], broken); });
+  }
+  return own;
+}
+
+// Of the drives that are samples of so many bits; tells which are not.
+std::map<std::string, Coded> coded(const Prepared& p, const SentSignals& sent) {
+  std::map<std::string, Coded> all;
+  const std::vector<std::string> names = p.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto signal = sent.signals.find(names[k]);
+    if (signal == sent.signals.end()) continue;
+    const DriverModel source = p.source(k);
+    if (!source.bits) {
+      say(fmt::format("drive '{}' is left out: [driver.{}] has no sample_rate and bits", names[k], names[k]));
+      continue;
+    }
+    const DriverLimits limits = p.limits(k);
+    all.emplace(names[k], Coded{.held = signal->second,
+                                .sample_rate = *source.sample_rate,
+                                .bits = *source.bits,
+                                .minimum = limits.min_voltage,
+                                .maximum = limits.max_voltage});
+  }
+  require(!all.empty(), "--format codes: no driver takes samples: give [driver.NAME] a sample_rate and bits");
+  return all;
 }
 
 int export_verb(const Common& c, const ExportRequest& request) {
-  SceneFile file = scene_of_result(request.result);
-  require(request.format == "csv" || request.format == "spice-pwl",
-          fmt::format("--format {}: must be csv or spice-pwl", request.format));
-  const std::optional<double> pull_in = measured("--device-vdp", request.device_pull_in, dimension::voltage),
-                              frequency = measured("--device-frequency", request.device_frequency, dimension::frequency);
-  const bool is_own = pull_in || frequency;
+  const SceneFile file = scene_of_result(request.result);
+  require(request.format == "csv" || request.format == "spice-pwl" || request.format == "codes",
+          fmt::format("--format {}: must be csv, spice-pwl or codes", request.format));
+  const SentRow* const row = find_named(sent_names, request.signal);
+  require(row != nullptr, [&] { return fmt::format("--signal {}: must be told or output", shown(request.signal)); });
+  const Sent sent_as = row->value;
+  require(request.format != "codes" || sent_as == Sent::told,
+          "--format codes --signal output: codes are the samples that a source is told, not its output");
+  const Measurements measured(request);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = prepare_and_choose(file, is_own, work->watch());
-  std::map<std::string, Signal> signals = named_signals(p);
-  if (is_own) {
-    const DeviceMeter meter(p, {.pull_in = pull_in.has_value()});
-    const Calibration& calibration = p.scene.calibration;
-    require(!calibration.classes || (pull_in.has_value() == calibration.pull_in_error.has_value() &&
-                                     frequency.has_value() == calibration.frequency_error.has_value()),
-            "--device-vdp, --device-frequency: the scene sorts devices into classes: give what [calibration] measures");
-    const KnownUnits known = known_units(p, std::array{calibration}, job_count({}), work->watch()).front();
-    const DeviceUnits units =
-        known.of({.volts = pull_in ? *pull_in / meter.pull_in() : 1, .time = frequency ? meter.frequency() / *frequency : 1});
-    const std::vector<std::string> names = p.drive_names();
-    const std::vector<Waveform> waveforms = in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units);
-    for (std::size_t k = 0; k < names.size(); ++k) {
-      if (names[k] != dispersion_drive) signals[names[k]] = p.driven(k, p.told(k, waveforms[k]));
-    }
-  }
+  const Prepared p = prepare_and_choose(file, !measured.are_none(), work->watch());
+  const SentSignals sent = sent_signals(
+      p, measured.are_none() ? p.in_drive_order(p.drives.waveforms) : waveforms_of(p, measured, work->watch()), sent_as);
   work.reset();
-  print(request.format == "csv" ? csv(signals, p.duration) : spice_pwl(signals, p.duration));
+  print(request.format == "csv"         ? csv(sent.signals, p.duration, sent.sample_rates)
+        : request.format == "spice-pwl" ? spice_pwl(sent.signals, p.duration)
+                                        : codes(coded(p, sent)));
   return exit_done;
 }
 
@@ -79,14 +187,18 @@ int export_verb(const Common& c, const ExportRequest& request) {
 void add_export(Verb& verb) {
   const auto request = std::make_shared<ExportRequest>();
   verb.positional("RESULT", request->result, "folder that --out named, result.json, or a scene file");
-  verb.option("--format", request->format, "NAME", "csv (default) or spice-pwl");
-  verb.optional("--device-vdp", request->device_pull_in, "VOLTAGE",
-                "dynamic pull-in voltage measured on a device: its own waveform, with voltages in proportion");
+  verb.option("--format", request->format, "NAME", "csv (default), spice-pwl, or codes: the samples as integers 0 to 2^bits - 1");
+  verb.option("--signal", request->signal, "NAME",
+              "told (default): what the source is told, the samples of one that takes some; output: what it makes of that");
+  verb.option("--measured", request->measured, "WHAT",
+              "measured on a device, \"Vdp=54.2 V,frequency=10.2 kHz\" or one of them: its own waveform, with voltages in "
+              "proportion to the dynamic pull-in voltage, and times to the period");
+  verb.optional("--device-vdp", request->device_pull_in, "VOLTAGE", "the same as --measured \"Vdp=VOLTAGE\"");
   verb.optional("--device-frequency", request->device_frequency, "FREQUENCY",
-                "first natural frequency measured on a device, with times in proportion to its period");
+                "the same as --measured \"frequency=FREQUENCY\": the first natural frequency");
   verb.footer(
       "Examples:\n  softland export softland-out --format spice-pwl > drive.cir\n"
-      "  softland export softland-out --device-vdp \"14.6 V\" --device-frequency \"10.2 kHz\" > device-17.csv");
+      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz\" > device-17.csv");
   verb.runs([request](const Common& common) { return export_verb(common, *request); });
 }
 

@@ -66,7 +66,7 @@ int limit_verb(const Common& c, const LimitRequest& request) {
     std::vector<std::string> left{"limit.json", "limit.svg"};
     if (found.landing) {
       folder->write("best.toml", found.landing->scene.scene.file.text());
-      folder->write("best.csv", csv(named_signals(found.landing->scene), found.landing->scene.duration));
+      folder->write("best.csv", told_csv(found.landing->scene));
       left.insert(left.end(), {"best.toml (run it with `softland simulate`)", "best.csv"});
     }
     text += left_in(folder->destination(found.interrupted), left);

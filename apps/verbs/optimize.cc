@@ -55,7 +55,7 @@ std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& resul
   ResultFolder& folder = run.folder();
   if (result.best_scene) {
     folder.write("best.toml", result.best_scene->scene.file.text());
-    folder.write("best.csv", csv(named_signals(*result.best_scene), result.best_scene->duration));
+    folder.write("best.csv", told_csv(*result.best_scene));
     left.insert(left.end(), {"trajectory.csv", "best.toml (run it with `softland simulate`)", "best.csv"});
   }
   left.emplace_back("evaluations.csv");

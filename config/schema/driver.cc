@@ -18,7 +18,9 @@ Section driver_section() {
                           "through which it charges the open switch; absent: none"),
                    number("sample_rate", {dimension::frequency}, positive, "samples are held; absent: none are taken")
                        .such_as("25 MHz"),
-                   std::move(bits)},
+                   std::move(bits), number("gain", {dimension::none}, positive, "V(t) = gain f(t - delay) + offset; default 1"),
+                   number("offset", {dimension::voltage}, any, "from t = 0 on; default 0 V"),
+                   number("delay", {dimension::time}, not_negative, "of the whole waveform; default 0 s")},
           .about = "limits of the source, hard bounds of every search, and what it makes of a waveform"};
 }
 

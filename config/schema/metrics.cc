@@ -23,7 +23,11 @@ Section metrics_section() {
           .always_in_force = true,
           .keys = {OfMetrics::number<&MetricsOptions::significant_rebound>("significant_rebound", dimension::length, positive,
                                                                            "a rebound counts when it is higher")
-                       .by_default("'1 nm'")},
+                       .by_default("'1 nm'"),
+                   OfMetrics::number<&MetricsOptions::steady_force>(
+                       "steady_force", dimension::none, {.least = 0, .most = 1, .least_open = true, .most_open = true},
+                       "of the hold force, default 10 %: from there on the contact force is steady")
+                       .such_as("10 %")},
           .about = "figures of merit",
           .begin = [](Scene&, const SectionReader&, std::string_view) { return std::size_t{0}; },
           .check = check_metrics};

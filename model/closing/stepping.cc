@@ -48,6 +48,13 @@ TrajectoryPoint ClosingParts::point(const Knot& knot) const {
   return p;
 }
 
+void ClosingParts::record(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to) {
+  touches.take(tip, from, to);
+  if (touches.count() == 0) return;
+  if (!phase.in_contact()) force.pass_maximum();
+  force.take(tip, from, to, phase.law());
+}
+
 Stepping::Stepping(ClosingParts& parts)
     : parts_(parts),
       n_(static_cast<std::size_t>(parts.model.modes())),
@@ -144,7 +151,7 @@ void Stepping::consider_step() {
 void Stepping::account(const FieldFigures& field, EnergyAudit& audit) {
   if (here_.time == next_.time) return;
   const TrajectoryPoint& from = parts_.course.last();
-  if (end_.time > from.time) parts_.touches.take(TipMotion(motion_, from, end_), from, end_);
+  if (end_.time > from.time) parts_.record(TipMotion(motion_, from, end_), from, end_);
   parts_.touches.take(here_, next_, motion_);
   audit.step(here_, next_, field.dissipation, motion_, implicit());
 }
@@ -184,7 +191,7 @@ bool Stepping::follow(std::optional<Event>& event) {
       if (event->time < to.time) --k;  // what is left of the piece
       event.reset();
     } else if (k < motion_.pieces()) {
-      parts_.touches.take(tip, from, to);
+      parts_.record(tip, from, to);
       parts_.course.push(to);
     }
   }
@@ -199,7 +206,7 @@ bool Stepping::go_through(const Event& event, const TipMotion& tip) {
                      .velocity = tip.velocity(event.time),
                      .acceleration = tip.acceleration(event.time)};
   if (parts_.model.has_pad_contact()) at.contact_force = force_on_line(at.time);
-  if (at.time > from.time) parts_.touches.take(TipMotion(motion_, from, at), from, at);
+  if (at.time > from.time) parts_.record(TipMotion(motion_, from, at), from, at);
   parts_.course.push(at);
   parts_.touches.note(event, at);
   parts_.phase.enter(event.edge->next, event.edge->zone);

@@ -12,6 +12,7 @@
 #include "model/closing/energy_audit.h"
 #include "model/closing/equations.h"
 #include "model/closing/events.h"
+#include "model/closing/force_record.h"
 #include "model/closing/resting_plate.h"
 #include "model/closing/step_motion.h"
 #include "model/closing/tolerances.h"
@@ -29,6 +30,7 @@ struct ClosingParts {
   ClosingEquations equations;
   RestingPlate plate;
   TouchRecord touches;
+  ForceRecord force;
   Course course;
   ClosingObserver& observer;
 
@@ -42,6 +44,7 @@ struct ClosingParts {
         equations(model, drives, phase, options.restart_at_contact),
         plate(model, drives, equations),
         touches(model, phase, closing_observer),
+        force(model, options.steady_force),
         course(model.device(), closing_observer),
         observer(closing_observer) {
     if (options.begins_closed.empty()) return;
@@ -51,6 +54,8 @@ struct ClosingParts {
   ClosingParts(const ClosingParts&) = delete;
   ClosingParts& operator=(const ClosingParts&) = delete;
 
+  /// Records the peaks and the contact force of a piece of a step.
+  void record(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to);
   /// The contact point at a knot.
   [[nodiscard]] TrajectoryPoint point(const Knot& knot) const;
 };

@@ -245,6 +245,14 @@ LaneSwitch numbers_of(const Switch& model, double tolerance) {
   return s;
 }
 
+/// Where the contact carries the steady force, but for its damping [m].
+double steady_depth(const FleetClosing& closing) {
+  if (!(closing.steady_force > 0)) return std::numeric_limits<double>::infinity();
+  const ElasticContact contact = *lane_contact(*closing.model);
+  if (contact.law == fleet::LaneContact::linear) return closing.steady_force / contact.strength;
+  return UniformAsperityContact{.strength = contact.strength, .height = contact.height}.interference(closing.steady_force);
+}
+
 /// Passes on what a lane tells, with force and energy of the contact's law.
 class Teller final : public fleet::LaneObserver {
  public:
@@ -354,6 +362,7 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
             .after_contact = c.after_contact,
             .no_end_before = c.no_end_before,
             .no_contact_before = c.no_contact_before,
+            .steady_depth = steady_depth(c),
             .observer = &tellers.back()};
     std::copy(rests[n].begin(), rests[n].end(), lane.start);
     for (std::size_t k = 0; k < c.drives.size(); ++k) {
@@ -363,7 +372,15 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
     }
   }
   run(*layout, followed.data(), followed.size());
-  for (std::size_t n = 0; n < places.size(); ++n) ends[places[n]] = {.followed = followed[n].followed, .time = followed[n].end};
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const LaneClosing& lane = followed[n];
+    ends[places[n]] = {.followed = lane.followed,
+                       .time = lane.end,
+                       .steady_force_time = lane.steady_from,
+                       .least_force_after_touch = std::isnan(lane.least_depth)
+                                                      ? lane.least_depth
+                                                      : contact_force(closings[places[n]].model->contact(), lane.least_depth)};
+  }
   return ends;
 }
 

@@ -65,6 +65,7 @@ struct FleetClosing {
   double duration = 0;  ///< [s]
   double after_contact = std::numeric_limits<double>::infinity(), no_end_before = 0;
   double no_contact_before = std::numeric_limits<double>::infinity();
+  double steady_force = std::numeric_limits<double>::quiet_NaN();  ///< [N]
   LandingObserver* observer = nullptr;
 };
 
@@ -73,6 +74,9 @@ struct FleetClosing {
 struct FleetEnd {
   bool followed = false;
   double time = 0;  ///< [s]
+  /// As in Trajectory [s], [N]
+  double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
+         least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Why closings of this switch are not followed in lanes; empty where they are.

@@ -94,9 +94,11 @@ struct LaneClosing {
   const LanePiece* pieces[most_drives] = {};  // by drive
   int piece_count[most_drives] = {};
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;
+  double steady_depth = 0;  // that carries the steady force; infinite: none was asked for [m]
   LaneObserver* observer = nullptr;
   bool followed = false;
   double end = 0;
+  double steady_from = 0, least_depth = 0;  // NaN where nothing touched, or it is not steady at the end [s], [m]
 };
 
 using LaneRunner = void (*)(const LaneLayout& layout, LaneClosing* closings, std::size_t count);

@@ -56,6 +56,8 @@ class Lanes {
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
     double hardest = 0;                     // force of a damped contact since then [N]
+    double steady = nothing;                // since when it has been at the steady depth [s]
+    double least = infinite;                // depth after the first maximum [m]
   };
 
   // --- the equations -----------------------------------------------------------------------------------------------------------
@@ -338,10 +340,34 @@ class Lanes {
     Lane& lane = lane_[l];
     const double side = lane.touching ? 1 : -1;
     for (int k = 0; k < pieces; ++k) {
-      if (!(side * knot_s_[k][l] > 0 && side * knot_s_[k + 1][l] < 0)) continue;
-      const Curve c = curve(k, l, length);
-      const double far = side * (c.position(c.turn()) - plane_[l]);
-      if (far > lane.extreme) lane.extreme = far;
+      const double begin = side * knot_s_[k][l], end = side * knot_s_[k + 1][l];
+      if (begin > 0 && end < 0) {
+        const Curve c = curve(k, l, length);
+        const double far = side * (c.position(c.turn()) - plane_[l]);
+        if (far > lane.extreme) lane.extreme = far;
+      } else if (lane.touching && begin < 0 && end > 0) {
+        const Curve c = curve(k, l, length);
+        const double depth = c.position(c.turn()) - plane_[l];
+        if (depth < lane.least) lane.least = depth;
+        if (depth < steady_[l] - plane_[l]) rise(l, length);
+      }
+    }
+  }
+
+  // Where a lane has come to the steady depth in the step that ends here, the last time.
+  void rise(std::size_t l, double length) {
+    const double level = steady_[l];
+    const auto reach = [&](int k, double share) { lane_[l].steady = (t_[l] - length) + length * ((k + share) / pieces); };
+    for (int k = 0; k < pieces; ++k) {
+      const double p0 = knot_p_[k][l], p1 = knot_p_[k + 1][l];
+      if (!(p1 >= level)) continue;
+      if (p0 < level) {
+        reach(k, curve(k, l, length).meets(level, 0, 1));
+      } else if (knot_s_[k][l] < 0 && knot_s_[k + 1][l] > 0) {
+        const Curve c = curve(k, l, length);
+        const double turn = c.turn();
+        if (c.position(turn) < level) reach(k, c.meets(level, turn, 1));
+      }
     }
   }
 
@@ -379,6 +405,7 @@ class Lanes {
     // Most lanes just go on; what is more than that is done lane by lane.
     const M plain = error <= V(1) && !special_ && !suspect_ && h < limit_ && end < until_ && smallest_ >= laws_.floor() &&
                     rounds_ < V(most_rounds);
+    const M rises = position_ < steady_ && knot_p_[pieces] >= steady_;
     M taken = plain;
     if (!all_of(plain)) {
       for (std::size_t l = 0; l < width; ++l)
@@ -399,6 +426,10 @@ class Lanes {
     if (any_of(taken && turns_ && touched_)) {
       for (std::size_t l = 0; l < width; ++l)
         if (taken[l] && turns_[l] && touched_[l]) deepen(l, h[l]);
+    }
+    if (any_of(taken && rises)) {
+      for (std::size_t l = 0; l < width; ++l)
+        if (taken[l] && rises[l]) rise(l, h[l]);
     }
     where(taken, h_) = h * min(max(growth_, V(Pair::least_growth)), most_growth_);
     where(taken, most_growth_) = V(Pair::most_growth);
@@ -540,6 +571,7 @@ class Lanes {
     } else {
       lane.closing->observer->touch(lane.begin, t, lane.speed, lane.extreme, lane.hardest);
       lane.left = t;
+      lane.least = 0;
     }
     lane.extreme = lane.hardest = 0;
     lane.touching = !lane.touching;
@@ -623,6 +655,9 @@ class Lanes {
         tell_rebound(lane, nothing);
       }
     }
+    const double depth = lane.touching ? position_[l] - plane_[l] : 0;
+    lane.closing->steady_from = position_[l] < steady_[l] ? nothing : lane.steady;
+    lane.closing->least_depth = !lane.touched ? nothing : depth < lane.least ? depth : lane.least;
     lane.closing->followed = followed;
     lane.closing->end = t_[l];
     lane.closing = nullptr;
@@ -647,6 +682,7 @@ class Lanes {
     if (!idle) ++busy_;
     laws_.take(s, l);
     plane_[l] = s.plane;
+    steady_[l] = s.plane + closing->steady_depth;
     double fastest = 0;
     for (int i = 0; i < modes; ++i) {
       if (i < s.modes && s.omega[i] > fastest) fastest = s.omega[i];
@@ -683,7 +719,7 @@ class Lanes {
   // Of the switches.
   V omega_[capacity], inverse_[capacity], square_[capacity], at_contact_[capacity], piezo_[capacity], friction_[capacity];
   V q_weight_[capacity], v_weight_[capacity], per_unknown_, fastest_, most_turn_;
-  V plane_;
+  V plane_, steady_;
   // Of the drives.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3

@@ -200,7 +200,8 @@ TEST_F(BadInput, Searches_long) {
   const std::string budget = ": must be a whole number of evaluations such as 2500, or a time such as \"90 s\"";
   expect_refused({
       {search({"--target", "softness"}),
-       "--target softness: must be bounce, settling, rebound, count, impact, energy, force or drive, or a weighted sum such as "
+       "--target softness: must be bounce, settling, rebound, count, impact, energy, force, drive or steady, or a weighted sum "
+       "such as "
        "\"0.7 "
        "bounce + 0.3 energy\""},
       {search({"--constrain", "t_i < 3 V"}), "--constrain: initial_contact_time in 't_i < 3 V' must be a time [s]"},
@@ -292,7 +293,7 @@ TEST_F(BadInput, Results) {
       {{"export", "empty.json"}, "empty.json: is not a result.json of softland"},
       {{"export", "none"}, "none: cannot be read: No such file or directory"},
       {{"export", "folder"}, "folder: holds neither best.toml nor result.json"},
-      {{"export", "gold.toml", "--format", "wav"}, "--format wav: must be csv or spice-pwl"},
+      {{"export", "gold.toml", "--format", "wav"}, "--format wav: must be csv, spice-pwl or codes"},
       {{"report", "nonsense.json"}, "nonsense.json: is not a result.json of softland"},
       {{"report", "empty.json"}, "empty.json: is not a result.json of softland"},
       {{"export", "none.json"}, "none.json: cannot be read: No such file or directory"},

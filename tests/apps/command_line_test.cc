@@ -89,7 +89,7 @@ TEST(Program, CalledOptimizeIsThatVerb) {
   EXPECT_EQ(called.status, 0);
   EXPECT_EQ(called.out, here.run({"optimize", "--help"}).out);
   EXPECT_EQ(here.run({"gold.toml", "--target", "softness"}, link).err,
-            "softland: --target softness: must be bounce, settling, rebound, count, impact, energy, force or drive, or a "
+            "softland: --target softness: must be bounce, settling, rebound, count, impact, energy, force, drive or steady, or a "
             "weighted sum such as \"0.7 bounce + 0.3 energy\"\n");
 }
 
@@ -113,22 +113,12 @@ TEST(Simulate, PrintsTheAgreedJsonAndNothingElse) {
   EXPECT_EQ(keys(j), (std::set<std::string>{"status", "metrics", "errors", "natural_frequencies_rad_s", "pull_in", "work",
                                             "warnings", "scene", "version", "command", "kind", "title", "tolerance", "made_with",
                                             "closed_state", "collapse_time_s", "static_deflection_m", "capacitance_F"}));
-  const std::set<std::string> figures{"initial_contact_time_s",
-                                      "permanent_contact_time_s",
-                                      "bounce_time_s",
-                                      "bounce_count",
-                                      "major_bounce_height_m",
-                                      "first_rebound_time_s",
-                                      "impact_velocity_m_s",
-                                      "peak_contact_force_N",
-                                      "impact_energy_J",
-                                      "hold_force_N",
-                                      "capacitance_F",
-                                      "static_deflection_m",
-                                      "overshoot_m",
-                                      "open_settling_time_s",
-                                      "drive_energy_J",
-                                      "peak_voltage_V",
+  const std::set<std::string> figures{"initial_contact_time_s", "permanent_contact_time_s", "bounce_time_s",
+                                      "bounce_count",           "major_bounce_height_m",    "first_rebound_time_s",
+                                      "impact_velocity_m_s",    "peak_contact_force_N",     "impact_energy_J",
+                                      "hold_force_N",           "steady_force_time_s",      "least_force_after_touch_N",
+                                      "capacitance_F",          "static_deflection_m",      "overshoot_m",
+                                      "open_settling_time_s",   "drive_energy_J",           "peak_voltage_V",
                                       "peak_slew_V_s"};
   std::set<std::string> with_settled = figures;
   with_settled.insert("settled");
@@ -554,6 +544,106 @@ TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits) {
   // What was not measured is that of the nominal device.
   EXPECT_EQ(waveform(here.run({"export", "pulse.toml", "--device-frequency", std::to_string(own_frequency) + " Hz"}).out).size(),
             nominal.size());
+}
+
+std::string sampled_gold() {
+  return edited(edited(shipped("mem-gold.toml"), "level = \"1.25 Vdp\"", "level = \"17.7 V\"\nrise_time = \"2.34 us\""),
+                "max_voltage = \"1.5 Vdp\"",
+                "max_voltage = \"22 V\"\nsample_rate = \"25 MHz\"\nbits = 12\nbandwidth = \"1 MHz\"\nmax_slew = \"20 V/us\"");
+}
+
+// For a generator: what it is told, on its grid; read back under the same driver it is the same closing.
+TEST(Export, HoldsTheSamplesThatASourceIsTold) {
+  const Workplace here;
+  write(here.path() / "sampled.toml", sampled_gold());
+  const Outcome told = here.run({"export", "sampled.toml"});
+  ASSERT_EQ(told.status, 0) << told.err;
+  const auto rows = waveform(told.out);
+  ASSERT_EQ(rows.size(), 60U) << "up to 2.36 us, and the first";
+  for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_EQ(rows[k][0], static_cast<double>(k) / 25e6);
+  write(here.path() / "told.csv", told.out);
+  write(here.path() / "again.toml", edited(sampled_gold(), "family = \"step\"\nlevel = \"17.7 V\"\nrise_time = \"2.34 us\"",
+                                           "family = \"table\"\nfile = \"told.csv\""));
+  const json first = json::parse(here.run({"simulate", "sampled.toml", "--quiet", "--json", "-"}).out),
+             again = json::parse(here.run({"simulate", "again.toml", "--quiet", "--json", "-"}).out);
+  EXPECT_EQ(again["metrics"].dump(), first["metrics"].dump());
+  EXPECT_EQ(again["errors"].dump(), first["errors"].dump());
+  EXPECT_EQ(here.run({"export", "again.toml"}).out, told.out);
+
+  const Outcome integers = here.run({"export", "sampled.toml", "--format", "codes"});
+  EXPECT_THAT(integers.out, testing::StartsWith("index,main\n0,0\n1,"));
+  EXPECT_THAT(integers.out, HasSubstr("\n59,3295\n")) << "17.7 V of 22 V in 4095 steps";
+  const Outcome output = here.run({"export", "sampled.toml", "--signal", "output"});
+  ASSERT_EQ(output.status, 0) << output.err;
+  EXPECT_NE(output.out, told.out);
+  EXPECT_GT(waveform(output.out).size(), 2 * rows.size()) << "the answer of the filter";
+  // Of a filter alone the waveform is told.
+  EXPECT_EQ(here.run({"export", "gold.toml"}).out, here.run({"export", "gold.toml", "--signal", "output"}).out);
+  for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"gold.toml", "--format", "codes"}, "no driver takes samples"},
+           {{"sampled.toml", "--format", "codes", "--signal", "output"}, "codes are the samples that a source is told"},
+           {{"gold.toml", "--signal", "both"}, "--signal both: must be told or output"}}) {
+    std::vector<std::string> all{"export"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome bad = here.run(all);
+    EXPECT_EQ(bad.status, 2) << said;
+    EXPECT_THAT(bad.err, HasSubstr(said));
+  }
+}
+
+TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange) {
+  const Workplace here;
+  const auto run = [&](const std::string& measured) { return here.run({"export", "gold.toml", "--measured", measured}); };
+  const Outcome usual = run("Vdp=14.6 V,frequency=10.2 kHz");
+  ASSERT_EQ(usual.status, 0) << usual.err;
+  EXPECT_EQ(usual.out, here.run({"export", "gold.toml", "--device-vdp", "14.6 V", "--device-frequency", "10.2 kHz"}).out);
+  EXPECT_THAT(usual.err, HasSubstr("--measured Vdp = 14.6 V: taken to be right to 1 %: [calibration] gives no error of Vdp"));
+  EXPECT_THAT(usual.err, Not(HasSubstr("warning")));
+  const Outcome strange = run("Vdp=7 V");
+  EXPECT_EQ(strange.status, 0);
+  EXPECT_THAT(strange.err, HasSubstr("warning: --measured Vdp = 7 V: "));
+  EXPECT_THAT(strange.err, HasSubstr("times the standard deviation of [spread] and measurement"));
+  EXPECT_THAT(run("frequency=30 kHz").err, HasSubstr("warning: --measured frequency = 30 kHz: "));
+  EXPECT_THAT(here.run({"export", "gold.toml", "--device-vdp", "7 V"}).err, HasSubstr("warning: --device-vdp 7 V: "));
+  for (const auto& [measured, said] : std::vector<std::pair<std::string, std::string>>{
+           {"Vdp=20 V", "--measured Vdp = 20 V: the waveform of this device: drive 'main': the voltage reaches 25 V, above"},
+           {"Vdp=3 A", "--measured Vdp = 3 A: must be a voltage [V] above 0"},
+           {"Vdp=14 V,Vdp=14 V", "Vdp stands twice"},
+           {"mass=3 kg", "'mass=3 kg' is no measurement; there are Vdp and frequency"},
+           {"Vdp", "'Vdp' is no measurement"}}) {
+    const Outcome bad = run(measured);
+    EXPECT_EQ(bad.status, 2) << measured;
+    EXPECT_THAT(bad.err, HasSubstr(said));
+  }
+}
+
+// "Set the amplifier 2 % high."
+TEST(Sources, HaveAGainThatCanBeSetAndVaried) {
+  const Workplace here;
+  const auto contact = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"simulate", "gold.toml", "--quiet", "--json", "-", "--set", "simulate.accuracy=1e-4"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return json::parse(o.out)["metrics"]["initial_contact_time_s"].get<double>();
+  };
+  const double usual = contact({}), higher = contact({"--set", "driver.main.gain=1.02"}),
+               by_level = contact({"--set", "waveform.main.level=1.275 Vdp"});
+  EXPECT_LT(higher, usual);
+  EXPECT_NEAR(higher, by_level, 1e-9 * usual);
+  EXPECT_NEAR(contact({"--set", "driver.main.delay=1 us"}), usual + 1e-6, 1e-9 * usual);
+  EXPECT_LT(contact({"--set", "driver.main.offset=0.2 V"}), usual);
+  const Outcome explored = here.run({"explore", "gold.toml", "--quiet", "--vary", "driver.main.gain=0.98:1.02:3", "--set",
+                                     "simulate.accuracy=1e-4", "--out", "gains.sqlite"});
+  ASSERT_EQ(explored.status, 0) << explored.err;
+  const Outcome table = here.run({"table", "gains.sqlite"});
+  EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 4) << table.out;
+  EXPECT_THAT(table.out, HasSubstr("steady_force_time_s"));
+  // What is asked for is sent, whatever comes of it.
+  const Outcome asked = here.run({"export", "gold.toml"});
+  write(here.path() / "gain.toml", edited(shipped("mem-gold.toml"), "[driver.main]", "[driver.main]\ngain = 1.02"));
+  EXPECT_EQ(here.run({"export", "gain.toml"}).out, asked.out);
+  EXPECT_NE(here.run({"export", "gain.toml", "--signal", "output"}).out, asked.out);
 }
 
 }  // namespace

@@ -130,6 +130,31 @@ TEST(Drives, SourcesAreReadAndWrittenBack) {
   EXPECT_EQ(resolved(scene, pull_in).json()["driver"]["main"]["bits"], 10);
 }
 
+TEST(Drives, ErrorsOfSourcesAreReadAndWrittenBack) {
+  const auto with_driver = [](const std::string& keys) {
+    return read_scene(SceneFile::parse(std::string(small_scene) + "[driver.main]\nmax_voltage = \"60 V\"\n" + keys, "x.toml"));
+  };
+  EXPECT_TRUE(with_driver("").drives(pull_in).errors.empty());
+  EXPECT_TRUE(with_driver("gain = 1\noffset = \"0 V\"\ndelay = \"0 s\"\n").drives(pull_in).errors.empty());
+  const Scene scene = with_driver("gain = 1.02\noffset = \"-20 mV\"\ndelay = \"50 ns\"\n");
+  for (const Scene& one : {scene, read_scene(resolved(scene, pull_in))}) {
+    const SourceErrors errors = one.drives(pull_in).errors.at("main");
+    EXPECT_EQ(errors.gain, 1.02);
+    EXPECT_EQ(errors.offset, -0.02);
+    EXPECT_EQ(errors.delay, 50e-9);
+  }
+  EXPECT_EQ(resolved(with_driver(""), pull_in).json()["driver"]["main"].size(), 2U) << "nothing more than limits";
+  // Limits are held against what is asked for: 50 V, amplified beyond 60 V.
+  EXPECT_NO_THROW(static_cast<void>(with_driver("gain = 1.3\n").drives(pull_in)));
+  const auto said = [](const std::string& keys) {
+    return message(std::string(small_scene) + "[driver.main]\nmax_voltage = \"60 V\"\n" + keys);
+  };
+  EXPECT_THAT(said("gain = 0\n"), testing::StartsWith("x.toml:42: driver.main.gain = 0: must be "));
+  EXPECT_THAT(said("delay = \"-1 us\"\n"), testing::StartsWith("x.toml:42: driver.main.delay = \"-1 us\": must be "));
+  EXPECT_THAT(said("offset = \"0.1 Vdp\"\n"),
+              testing::StartsWith("x.toml:42: driver.main.offset = \"0.1 Vdp\": expected a voltage"));
+}
+
 TEST(Drives, SourcesThatMakeNoSenseAreRefused) {
   const auto message = [](const std::string& drive, const std::string& keys) -> std::string {
     try {

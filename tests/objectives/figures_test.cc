@@ -36,15 +36,15 @@ TEST(Figures, AreTheMembersOfMetricsEachOnce) {
     EXPECT_EQ(&figure_of(figure.member), &figure) << figure.key << ": another row has the same member";
   }
   // Does not compile with another number of members.
-  const auto& [status, t_i, t_p, t_b, n_b, b_h, t_1, v_i, force, impact, hold, capacitance, drive, settled, deflection, overshoot,
-               settling, voltage, slew] = distinct_metrics();
+  const auto& [status, t_i, t_p, t_b, n_b, b_h, t_1, v_i, force, impact, hold, steady, least, capacitance, drive, settled,
+               deflection, overshoot, settling, voltage, slew] = distinct_metrics();
   EXPECT_EQ(status, Status::not_run);
-  constexpr std::size_t members = 18;
+  constexpr std::size_t members = 20;
   EXPECT_EQ(all_figures.size(), members);
   EXPECT_TRUE(settled);
   EXPECT_EQ(n_b, 17);
-  for (const double number :
-       {t_i, t_p, t_b, b_h, t_1, v_i, force, impact, hold, capacitance, drive, deflection, overshoot, settling, voltage, slew})
+  for (const double number : {t_i, t_p, t_b, b_h, t_1, v_i, force, impact, hold, steady, least, capacitance, drive, deflection,
+                              overshoot, settling, voltage, slew})
     EXPECT_TRUE(number > 0);
 }
 
@@ -106,7 +106,8 @@ TEST(Figures, HaveTheirErrorsFromThoseWhoCanTell) {
     return all;
   };
   EXPECT_EQ(keys([](const Figure& f) { return f.is_told_by_two_runs(); }),
-            "t_i, B_H, t_1, v_i, peak force, impact energy, static deflection, overshoot, open settling time, drive energy, ");
+            "t_i, B_H, t_1, v_i, peak force, impact energy, t_F, least force, static deflection, overshoot, open settling time, "
+            "drive energy, ");
   EXPECT_EQ(keys([](const Figure& f) { return f.has_error() && !f.is_told_by_two_runs(); }),
             "t_p, t_b, N_B, hold force, capacitance, ");
   EXPECT_EQ(keys([](const Figure& f) { return !f.has_error(); }), "peak voltage, peak slew, settled, ");
@@ -116,6 +117,7 @@ TEST(Figures, OfTargetsAreLowerWhereTheyAreBetter) {
   for (const TargetRow& row : targets) EXPECT_EQ(figure_of(row.value).better, Better::lower) << row.name;
   EXPECT_EQ(figure_of(Target::settling).symbol, "t_p");
   EXPECT_EQ(figure_of(Target::count).symbol, "N_B");
+  EXPECT_EQ(figure_of(Target::steady).symbol, "t_F");
 }
 
 TEST(Figures, CountALowReboundAsOneThatJustCounts) {
@@ -129,6 +131,18 @@ TEST(Figures, CountALowReboundAsOneThatJustCounts) {
   EXPECT_EQ(height.counted(m, from_2_nm), 3e-9);
   m.initial_contact_time = 1e-9;
   EXPECT_EQ(figure_of(&Metrics::initial_contact_time).counted(m, from_2_nm), 1e-9) << "a time is no height";
+}
+
+TEST(Figures, CountAForceThatIsNotSteadyAsOneThatJustIs) {
+  const MetricsOptions options{.steady_force = 0.2};
+  const Figure& least = figure_of(&Metrics::least_force_after_touch);
+  Metrics m;
+  m.least_force_after_touch = 1e-9;
+  EXPECT_EQ(least.counted(m, options), 1e-9) << "what holds it is not known";
+  m.hold_force = 10e-9;
+  EXPECT_EQ(least.counted(m, options), 2e-9);
+  m.least_force_after_touch = 3e-9;
+  EXPECT_EQ(least.counted(m, options), 3e-9);
 }
 
 TEST(RelativeDifference, IsASizeAndAChangeHasASign) {

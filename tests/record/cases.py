@@ -89,10 +89,12 @@ def scene_cases(name, text):
     yield Case(f"{name}.describe", [
         step("check"), step("check", "--quiet", *fast), step("modes", "--json", "modes.json"), step("modes", "--json", "-", *fast),
         step("pull-in", "--json", "pull-in.json"), step("pull-in", "--json", "-", *fast),
-        step("export", "--format", "csv"), step("export", "--format", "spice-pwl")], weight=3 if film else 1)
+        step("export", "--format", "csv"), step("export", "--format", "spice-pwl"), step("export", "--signal", "output"),
+        step("export", "--format", "codes")], weight=3 if film else 1)
     yield Case(f"{name}.simulate", [
         step("simulate", "--json", "simulate.json", "--out", "out"), Step(["report", "out", "--out", "again"]), Step(["export", "out"]),
         Step(["export", "out", "--format", "spice-pwl"]), Step(["export", "out", "--device-vdp", "20 V", "--device-frequency", "30 kHz"]),
+        Step(["export", "out", "--measured", "frequency=30 kHz"]),
         step("simulate", "--quiet", "--json", "-", *fast),
         step("simulate", "--set", "simulate.effects=auto", *fast),
         step("simulate", "--set", "structure.modes=auto", "--set", "simulate.accuracy=1e-3", *(["--set", "gas.model=strip"] if film else []))],

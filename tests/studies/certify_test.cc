@@ -208,10 +208,9 @@ TEST(Simulate, TakesNoQuietEndForRestWhereTheHoldLevelsDoNotKeepTheSwitchClosed)
   EXPECT_THAT(c.warnings, Contains(testing::HasSubstr("do not keep the switch closed")));
   const auto is_held = [](const SceneFile& file) {
     const Prepared p = prepare(file);
-    Trajectory t;
-    set_hold(t, p.model, p.signals());
-    EXPECT_EQ(std::isfinite(t.hold_force), t.is_held);
-    return t.is_held;
+    const Hold hold = hold_of(p.model, p.signals());
+    EXPECT_EQ(std::isfinite(hold.force), hold.is_held);
+    return hold.is_held;
   };
   EXPECT_TRUE(is_held(gold()));
   // A step that closes it by its swing, below the release voltage of so small a gap.

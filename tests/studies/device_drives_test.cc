@@ -184,7 +184,7 @@ TEST(DeviceDrives, StayInTheirFamilyWhereItCanExpressThem) {
   int early = 0;
   for (std::size_t k = 0; k < ensemble.size(); ++k) {
     const std::vector<double> values = ensemble.values(k);
-    const Waveform own = drives.waveforms({Step{.level = 17}}, {}, values).front();
+    const Waveform own = drives.written({Step{.level = 17}}, {}, values).front().waveform;
     const bool is_early = drives.shown(values)[0] < 0;  // its clock begins with it: nothing is left of its one edge's error
     EXPECT_EQ(family(own), is_early ? "step" : "table") << k;
     early += is_early;
@@ -200,7 +200,7 @@ TEST(DeviceDrives, OfASineAreWrittenAsCloseLines) {
   const DeviceDrives drives(nominal);
   const std::vector<Waveform> given{nominal.drives.waveforms.at("main")};
   const Signal exact = drives.signals(given, {}, {250e-9}).front();
-  const Waveform written = drives.waveforms(given, {}, {250e-9}).front();
+  const Waveform written = drives.written(given, {}, {250e-9}).front().waveform;
   ASSERT_EQ(family(written), "table");
   const Signal lines = signal(written);
   for (double t = 0; t < nominal.duration; t += 0.11e-6)
@@ -241,6 +241,69 @@ TEST(DeviceDrives, OfASearchAreThoseOfTheVerdict) {
     EXPECT_EQ(searched[k].metrics.impact_velocity, judged[k].metrics.impact_velocity);
   }
   EXPECT_NE(searched[0].metrics.initial_contact_time, searched[1].metrics.initial_contact_time);
+}
+
+const std::string gain_key = "driver.main.gain=1.03", offset_key = "driver.main.offset=\"-0.2 V\"",
+                  delay_key = "driver.main.delay=\"0.4 us\"";
+
+// The keys are what the source makes of a waveform: the same closing, amplified, shifted and late.
+TEST(SourceKeys, AreThoseOfTheWaveformThatTheyMake) {
+  SceneFile by_hand = gold_at_17_volts({throw_and_catch});
+  by_hand.set_waveform("main", Pulse{.levels = {1.03 * 20, 1.03 * 5, 1.03 * 17}, .times = {22e-6, 30e-6}, .edge = 1e-6});
+  const Metrics expected = alone(by_hand), own = alone(gold_at_17_volts({throw_and_catch, gain_key}));
+  EXPECT_NEAR(own.initial_contact_time, expected.initial_contact_time, figures_of_bits * expected.initial_contact_time);
+  EXPECT_NEAR(own.impact_velocity, expected.impact_velocity, 1e-6 * expected.impact_velocity);
+  const Metrics in_time = alone(gold_at_17_volts({throw_and_catch})),
+                late = alone(gold_at_17_volts({throw_and_catch, delay_key}));
+  EXPECT_NEAR(late.initial_contact_time, in_time.initial_contact_time + 0.4e-6, 1e-12);
+  EXPECT_NE(alone(gold_at_17_volts({throw_and_catch, offset_key})).initial_contact_time, in_time.initial_contact_time);
+}
+
+// A distribution is about the key: its factor multiplies what the scene says, its value stands for that.
+TEST(SourceKeys, AreWhatVaries) {
+  for (const std::string& samples : {std::string(), std::string("driver.main.sample_rate=\"20 MHz\"")}) {
+    SCOPED_TRACE(samples);
+    const auto scene = [&](const std::vector<std::string>& more) {
+      SceneFile file = gold_at_17_volts({throw_and_catch});
+      for (const std::string& one : more) file.set(one);
+      if (!samples.empty()) file.set(samples);
+      return file;
+    };
+    const Prepared nominal = prepare(scene({gain_key, offset_key, delay_key, spread("gain", "\"normal\", cov=\"1 %\"")}));
+    const Ensemble ensemble(nominal, 4);
+    const std::vector<DeviceOutcome> found = closings(nominal, ensemble);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const double gain = 1.03 * ensemble.values(k)[0];
+      const Metrics expected = alone(scene({fmt::format("driver.main.gain={}", gain), offset_key, delay_key}));
+      EXPECT_NEAR(found[k].metrics.initial_contact_time, expected.initial_contact_time,
+                  figures_of_bits * expected.initial_contact_time);
+      EXPECT_NEAR(found[k].metrics.impact_velocity, expected.impact_velocity, 1e-6 * expected.impact_velocity);
+    }
+    EXPECT_NE(found[0].metrics.initial_contact_time, found[1].metrics.initial_contact_time);
+  }
+}
+
+TEST(SourceKeys, StandInTheScenesOfDevices) {
+  const std::string both =
+      "spread={\"driver.main.gain\"={distribution=\"normal\", cov=\"1 %\"}, \"driver.main.jitter\"={distribution=\"normal\", "
+      "standard_deviation=\"50 ns\"}}";
+  const std::string samples = "driver.main.sample_rate=\"20 MHz\"";
+  for (const SceneFile& file :
+       {gold_at_17_volts({throw_and_catch, gain_key, offset_key, delay_key}),
+        gold_at_17_volts({throw_and_catch, gain_key, offset_key, delay_key, both}),
+        gold_at_17_volts({throw_and_catch, gain_key, offset_key, delay_key, both, samples}),
+        gold_at_17_volts({throw_and_catch, both, samples}), gold_at_17_volts({throw_and_catch, gain_key, samples})}) {
+    SceneFile varied = file;
+    if (!varied.written("spread")) varied.set("spread={\"structure.thickness\"={distribution=\"normal\", cov=\"2 %\"}}");
+    const Prepared nominal = prepare(varied);
+    const NamedDrive drive{.name = "own", .waveforms = nominal.drives.waveforms};
+    const RobustnessOptions options{.samples = 6, .vectors = Vectors::none};
+    const Robustness found = robustness(nominal, {drive}, options);
+    for (const std::size_t k : {std::size_t{1}, std::size_t{4}}) {
+      const SceneFile own = scene_of_device(nominal, found.drives.back(), k, options);
+      EXPECT_TRUE(same(found.drives.back().outcomes[k], alone(own))) << own.text();
+    }
+  }
 }
 
 // First contact under a step is that of its volts, and how late it is on top.

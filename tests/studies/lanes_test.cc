@@ -11,6 +11,7 @@
 #include "sampling/statistics.h"
 #include "scenes.h"
 #include "studies/ensemble.h"
+#include "studies/simulate.h"
 #include "waveforms/driver.h"
 #include "waveforms/waveform.h"
 
@@ -36,8 +37,12 @@ struct Fleet {
 
   [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Signal>& signals, Vectors vectors, double tolerance) const {
     std::vector<DeviceClosing> closings;
-    for (const SampledDevice& device : devices)
-      closings.push_back({.device = &device, .signals = &signals, .run = {.duration = nominal.duration, .tolerance = tolerance}});
+    for (const SampledDevice& device : devices) {
+      const double steady = device.model ? hold_of(*device.model, signals).steady_force(nominal.scene.metrics) : Metrics::unset;
+      closings.push_back({.device = &device,
+                          .signals = &signals,
+                          .run = {.duration = nominal.duration, .tolerance = tolerance, .steady_force = steady}});
+    }
     return close_devices(closings, nominal.scene.metrics, vectors);
   }
 
@@ -57,9 +62,9 @@ struct Fleet {
 // Every digit of what is made of an outcome.
 std::string digits(const DeviceOutcome& o) {
   const Metrics& m = o.metrics;
-  return fmt::format("{} {} {} {} {} {} {} {} {} {}", to_string(m.status), m.initial_contact_time, m.permanent_contact_time,
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", to_string(m.status), m.initial_contact_time, m.permanent_contact_time,
                      m.bounce_count, m.major_bounce_height, m.impact_velocity, m.peak_contact_force, m.impact_energy,
-                     o.largest_impact_velocity, o.failure);
+                     m.steady_force_time, m.least_force_after_touch, o.largest_impact_velocity, o.failure);
 }
 std::vector<std::string> digits(const std::vector<DeviceOutcome>& all) {
   std::vector<std::string> lines;
@@ -224,6 +229,37 @@ TEST(Lanes, CloseAsOneAtATimeDoes) {
       expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one, looser);
     }
   }
+}
+
+// In a window that ends before chaos sets in.
+TEST(Lanes, MeasureTheForceAsOneAtATimeDoes) {
+  const std::string soft =
+      "waveform.main={family=\"pulse\", levels=[\"21 V\", \"0 V\", \"14.5 V\"], times=[\"20 us\", \"33 us\"], edge=\"0.5 us\"}";
+  int steady = 0, lost = 0, opened = 0, kept = 0;
+  for (const std::string& waveform : {std::string("waveform.main.level=\"17 V\""), soft}) {
+    for (const char* window : {"38 us", "45 us", "70 us"}) {
+      SCOPED_TRACE(waveform + " " + window);
+      const Fleet fleet(gold_at_17_volts({waveform, std::string("simulate.duration=") + window}), 60);
+      const std::vector<Signal> signals = fleet.nominal.signals();
+      const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-7);
+      for (const Vectors vectors : vectors_here()) {
+        const std::vector<DeviceOutcome> lanes = fleet.close(signals, vectors, 1e-7);
+        for (std::size_t k = 0; k < lanes.size(); ++k) {
+          SCOPED_TRACE(k);
+          const Metrics &a = lanes[k].metrics, &b = one_by_one[k].metrics;
+          EXPECT_EQ(std::isnan(a.steady_force_time), std::isnan(b.steady_force_time));
+          EXPECT_FALSE(off(a.steady_force_time, b.steady_force_time) > 1e-6);
+          EXPECT_EQ(std::isnan(a.least_force_after_touch), std::isnan(b.least_force_after_touch));
+          EXPECT_FALSE(std::abs(a.least_force_after_touch - b.least_force_after_touch) > 1e-4 * b.peak_contact_force);
+          if (!lanes[k].closed()) continue;
+          (std::isnan(a.steady_force_time) ? lost : steady) += 1;
+          (a.least_force_after_touch > 0 ? kept : opened) += 1;
+        }
+      }
+    }
+  }
+  if (vectors_here().empty()) return;
+  for (const int count : {steady, lost, opened, kept}) EXPECT_GT(count, 5);
 }
 
 TEST(Lanes, GiveTheSameBitsWhateverTheirNumberAndCompany) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "studies/robustness.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
@@ -39,15 +40,15 @@ DeviceOutcome device() {
   o.metrics.impact_energy = 1e-15;
   o.metrics.peak_contact_force = 1e-6;
   o.metrics.drive_energy = 1e-12;
+  o.metrics.steady_force_time = 50e-6;
   return o;
 }
 
 TEST(RobustCost, IsInProportionToTheFigureThatTheTargetIsAbout) {
-  const std::map<Target, double Metrics::*> figures{{Target::rebound, &Metrics::major_bounce_height},
-                                                    {Target::settling, &Metrics::permanent_contact_time},
-                                                    {Target::energy, &Metrics::impact_energy},
-                                                    {Target::force, &Metrics::peak_contact_force},
-                                                    {Target::drive, &Metrics::drive_energy}};
+  const std::map<Target, double Metrics::*> figures{
+      {Target::rebound, &Metrics::major_bounce_height}, {Target::settling, &Metrics::permanent_contact_time},
+      {Target::energy, &Metrics::impact_energy},        {Target::force, &Metrics::peak_contact_force},
+      {Target::drive, &Metrics::drive_energy},          {Target::steady, &Metrics::steady_force_time}};
   for (const auto& [target, figure] : figures) {
     const Score score(target);
     DeviceOutcome other = device();
@@ -79,6 +80,15 @@ TEST(RobustCost, TakesWhatHasNotSettledForLater) {
   EXPECT_GT(score(o), RobustCost::not_closed - 1e-12) << "nor closed";
 }
 
+TEST(RobustCost, TakesAForceThatIsNotSteadyForLater) {
+  const Score score(Target::steady);
+  DeviceOutcome o = device();
+  const double own = score(o);
+  o.metrics.steady_force_time = Metrics::unset;
+  EXPECT_GT(score(o), own);
+  EXPECT_LT(score(o), 20 * own);
+}
+
 TEST(RobustCost, TakesAFigureThatIsNotKnownForTheWorst) {
   for (const auto& [target, figure] :
        {std::pair{Target::drive, &Metrics::drive_energy}, std::pair{Target::force, &Metrics::peak_contact_force}}) {
@@ -108,6 +118,10 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
         for (const DeviceOutcome& o : outcomes) {
           if (target == Target::drive && o.closed()) {
             EXPECT_TRUE(std::isfinite(o.metrics.drive_energy)) << name;
+          }
+          // What lands without a rebound, and stays, has its force at some time.
+          if (target == Target::steady && is_bounce_free(o) && o.metrics.least_force_after_touch > 0) {
+            EXPECT_TRUE(std::isfinite(o.metrics.steady_force_time)) << name;
           }
         }
       }

@@ -5,17 +5,24 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/literals.h"
 #include "tests/support/not_finite.h"
 #include "tests/waveforms/expect_invalid.h"
 #include "waveforms/bspline.h"
 #include "waveforms/chirp.h"
+#include "waveforms/export.h"
 #include "waveforms/harmonic.h"
 #include "waveforms/pulse.h"
 #include "waveforms/s_curve.h"
 #include "waveforms/sines.h"
 #include "waveforms/step.h"
+#include "waveforms/table.h"
+#include "waveforms/waveform.h"
 
 namespace softland {
 namespace {
@@ -216,6 +223,110 @@ TEST(Driver, GivesWhatItIsToldBeforeItBegins) {
   EXPECT_NEAR(driven(rises, filtered, limits, 1).voltage(tau), 40 - 20 * std::exp(-1), 1e-9);
   const DriverLimits slow{.min_voltage = -10, .max_voltage = 50, .max_slew = 1e6};
   EXPECT_NEAR(driven(rises, sampled, slow, 1).voltage(10e-6), 30_V, 1e-9) << "at 1 V/us from where it stood";
+}
+
+// The converter samples what it is told; what amplifies its output, and is late, comes after it and before the filters.
+TEST(Driver, ErrsAfterItsConverterAndBeforeItsFilters) {
+  const Signal told = signal(Step{.level = 40_V, .rise_time = 10_us});
+  DriverModel model = of_time_constant(tau);
+  model.sample_rate = 1e6;
+  model.bits = 4;
+  const SourceErrors errors{.gain = 1.1, .offset = 0.5, .delay = 0.3e-6};
+  const Signal samples = held(told, model, limits, 1);
+  EXPECT_EQ(driven(told, model, limits, 1, errors).pieces(),
+            internal::filtered(with_errors(samples, errors), 1 / (2 * std::numbers::pi * *model.bandwidth)).pieces());
+  EXPECT_EQ(driven(told, model, limits, 1, {}).pieces(), driven(told, model, limits, 1).pieces());
+  model.bandwidth.reset();
+  EXPECT_GT(driven(Signal::constant(limits.max_voltage), model, limits, 1, errors).maximum(), limits.max_voltage)
+      << "an amplifier gives more than is asked for";
+  EXPECT_EQ(driven(Signal(), model, limits, 1, errors).hold_level(), 0.5) << "told nothing it gives its offset";
+}
+
+const std::vector<std::pair<const char*, Waveform>>& of_every_family() {
+  static const std::vector<std::pair<const char*, Waveform>> all{
+      {"step", Step{.level = 40_V}},
+      {"ramp", Step{.level = 40_V, .rise_time = 3.3_us}},
+      {"pulse", Pulse{.levels = {40_V, 3_V, 30_V}, .times = {20_us, 45_us}, .edge = 4_us}},
+      {"harmonic", Harmonic{.base = 30_V, .amplitude = 5_V, .angular_frequency = 6e5, .start = 5_us, .end = 60_us, .fade = 9_us}},
+      {"endless", Harmonic{.base = 30_V, .amplitude = 5_V, .angular_frequency = 6e5}},
+      {"s-curve", SCurve{.levels = {40_V, 20_V}, .times = {30_us}, .edge = 9_us}},
+      {"bspline", BSpline{.levels = {0, 40, 1, 7, 30}, .duration = 50_us}},
+      {"sines", Sines{.base = 30_V, .amplitudes = {3, -5, 2}, .duration = 40_us}},
+      {"chirp", Chirp{.base = 20_V, .amplitude = 5_V, .angular_frequency = 4e5, .start = 2_us, .decay_time = 9_us}},
+      {"table", Table{.time = {0, 7e-6, 7e-6, 31e-6}, .voltage = {2, 40, 11, 13.7}}}};
+  return all;
+}
+
+std::vector<DriverModel> converters() {
+  DriverModel all = of_time_constant(tau);
+  all.sample_rate = 7.3e6, all.bits = 12, all.source_resistance = 1, all.load = tau;
+  return {{.sample_rate = 25e6}, {.sample_rate = 25e6, .bits = 14}, {.sample_rate = 1e6 / 3, .bits = 3}, all};
+}
+
+// What is written for a generator and read back is sampled to the same values.
+TEST(Driver, SamplesItsOwnSamplesToTheSameBits) {
+  const double end = 100_us;
+  for (const auto& [name, waveform] : of_every_family()) {
+    int which = 0;
+    for (const DriverModel& model : converters()) {
+      SCOPED_TRACE(std::string(name) + ", source " + std::to_string(which++));
+      const Signal told = signal(waveform), samples = told_samples(told, model, limits, end);
+      const std::string file = csv({{"main", samples}}, end, {{"main", *model.sample_rate}});
+      const Table again = parse_table(file, "again.csv", "main");
+      for (std::size_t k = 0; k < again.time.size(); ++k) ASSERT_EQ(again.time[k], static_cast<double>(k) / *model.sample_rate);
+      EXPECT_EQ(again.voltage.back(), samples.hold_level());
+      const SourceErrors errors{.gain = 1.02, .offset = 0.1, .delay = 33e-9};
+      for (const SourceErrors& own : {SourceErrors{}, errors}) {
+        EXPECT_EQ(driven(signal(again), model, limits, end, own).pieces(), driven(told, model, limits, end, own).pieces());
+      }
+      if (!model.bits) continue;
+      const std::string integers = codes({{"main",
+                                           {.held = samples,
+                                            .sample_rate = *model.sample_rate,
+                                            .bits = *model.bits,
+                                            .minimum = limits.min_voltage,
+                                            .maximum = limits.max_voltage}}});
+      std::istringstream in(integers);
+      std::string head;
+      std::getline(in, head);
+      EXPECT_EQ(head, "index,main");
+      const double most = std::exp2(*model.bits) - 1, step = (limits.max_voltage - limits.min_voltage) / most;
+      std::size_t index = 0, row = 0;
+      long code = 0;
+      for (char comma = 0; in >> index >> comma >> code; ++row) {
+        EXPECT_EQ(index, row);
+        ASSERT_LT(row, again.voltage.size());
+        EXPECT_GE(code, 0);
+        EXPECT_LE(code, most);
+        // What it stands at before it begins is not rounded.
+        const bool stands = again.voltage[row] == 0 && (row == 0 || again.voltage[row - 1] == 0);
+        EXPECT_NEAR(limits.min_voltage + step * static_cast<double>(code), again.voltage[row], stands ? step / 2 : 1e-12);
+      }
+      EXPECT_EQ(row, again.voltage.size());
+    }
+  }
+}
+
+// The rounded samples of a ramp as steep as permitted are steeper by a step of the converter.
+TEST(Driver, PermitsTheSamplesOfWhatItPermits) {
+  const DriverLimits slow{.min_voltage = -10, .max_voltage = 50, .max_slew = 20e6};
+  const DriverModel coarse{.sample_rate = 25e6, .bits = 8};
+  const Signal told = signal(Step{.level = 37_V, .rise_time = 37 / 20e6});
+  ASSERT_EQ(violation(told, slow), "");
+  const Signal samples =
+      signal(parse_table(csv({{"main", told_samples(told, coarse, slow, 1e-5)}}, 1e-5, {{"main", 25e6}}), "x", "main"));
+  EXPECT_NE(violation(samples, slow), "");
+  EXPECT_EQ(violation(samples, limits_of_samples(slow, coarse)), "");
+  EXPECT_EQ(limits_of_samples(slow, {.bandwidth = 1e6}).max_slew, slow.max_slew);
+}
+
+TEST(Codes, OfOneFileHaveOneRate) {
+  const Coded one{.held = Signal::constant(1), .sample_rate = 1e6, .bits = 2, .minimum = 0, .maximum = 3};
+  Coded other = one;
+  other.sample_rate = 2e6;
+  EXPECT_EQ(codes({{"a", one}, {"b", one}}), "index,a,b\n0,1,1\n");
+  test::expect_invalid([&] { (void)codes({{"a", one}, {"b", other}}); }, {"one rate"});
+  test::expect_invalid([&] { (void)codes({}); }, {"no samples"});
 }
 
 }  // namespace

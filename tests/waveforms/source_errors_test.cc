@@ -190,5 +190,25 @@ TEST(SourceErrors, ADelayProlongsWhatTheDriveHasStoodAt) {
   EXPECT_EQ(edge_count(signal(Step{.level = before}, before)), 0U);
 }
 
+// V(t) = gain f(t - delay) + offset from t = 0 on; what has been before t = 0 has been there already.
+TEST(SourceErrors, OfGainOffsetAndDelayAreThatFormula) {
+  for (const Waveform& waveform : one_of_each()) {
+    const Signal given = signal(waveform, 2);
+    const SourceErrors errors{.gain = 1.02, .offset = -0.3, .delay = 70e-9};
+    const Signal own = with_errors(given, errors);
+    EXPECT_EQ(own.before(), 2) << family(waveform);
+    for (double t = 1e-9; t < 60e-6; t += 0.37e-6) {
+      const double late = t - errors.delay, told = late < 0 ? 2 : given.voltage(late);
+      EXPECT_NEAR(own.voltage(t), errors.gain * told + errors.offset, 1e-9) << family(waveform) << " at " << t;
+    }
+    EXPECT_DOUBLE_EQ(own.hold_level(), 1.02 * given.hold_level() - 0.3);
+  }
+}
+
+TEST(SourceErrors, HaveAGainAboveZero) {
+  for (const double gain : {0.0, -1.0, std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(static_cast<void>(with_errors(signal(corners), {.gain = gain})), InvalidInput) << gain;
+}
+
 }  // namespace
 }  // namespace softland::source_errors_test

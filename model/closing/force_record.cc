@@ -1,0 +1,42 @@
+#include "model/closing/force_record.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/roots.h"
+
+namespace softland {
+
+// Follows the force over a time in which it only rises or only falls.
+template <class Force>
+void ForceRecord::follow(const Force& force, double begin, double from, double end, double to) {
+  has_fallen_ = has_fallen_ || (has_risen_ && to < from);
+  has_risen_ = has_risen_ || to > from;
+  if (has_fallen_) least_ = std::min({least_, from, to});
+  last_ = to;
+  if (to < threshold_) {
+    steady_from_ = none;
+  } else if (to >= threshold_ && std::isnan(steady_from_)) {
+    const auto above = [&](double t) { return force(t) - threshold_; };
+    steady_from_ = from < threshold_ ? bracketed_zero(above, begin, end) : begin;
+  }
+}
+
+void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law) {
+  if (!law.active || model_.has_pad_contact()) return take_line(from, to);
+  const double plane = model_.device().gap.contact;
+  const auto force = [&](double t) { return contact_force(model_.contact(), tip.position(t) - plane, law, tip.velocity(t)); };
+  if (!(from.velocity * to.velocity < 0)) return follow(force, from.time, from.contact_force, to.time, to.contact_force);
+  const double turn = tip.turn(), there = force(turn);
+  follow(force, from.time, from.contact_force, turn, there);
+  follow(force, turn, there, to.time, to.contact_force);
+}
+
+void ForceRecord::take_line(const TrajectoryPoint& from, const TrajectoryPoint& to) {
+  const auto force = [&](double t) {
+    return std::lerp(from.contact_force, to.contact_force, (t - from.time) / (to.time - from.time));
+  };
+  follow(force, from.time, from.contact_force, to.time, to.contact_force);
+}
+
+}  // namespace softland

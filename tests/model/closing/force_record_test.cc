@@ -1,0 +1,159 @@
+// The contact force of whole closings: from when on it is steady and how low it falls, against their knots and the contact law.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/literals.h"
+#include "integrators/quintic.h"
+#include "model/closing.h"
+#include "model/pull_in.h"
+#include "tests/model/gold.h"
+#include "tests/support/devices.h"
+#include "waveforms/pulse.h"
+#include "waveforms/step.h"
+
+namespace softland {
+namespace {
+
+using namespace literals;
+
+/// What a softer landing is like: the drive lets go before the touch and pulls again after it.
+std::vector<Signal> thrown() { return {signal(Pulse{.levels = {21_V, 0_V, 17_V}, .times = {20_us, 33_us}, .edge = 0.5_us})}; }
+
+struct Brackets {
+  double steady_from = std::numeric_limits<double>::quiet_NaN();  // not before the first of these, not after the second [s]
+  double steady_by = steady_from;
+  double least = std::numeric_limits<double>::infinity();  // [N]
+};
+
+/// By knots alone, which bracket both.
+Brackets by_knots(const Trajectory& t, double threshold) {
+  Brackets found;
+  const double touch = t.touches.front().begin;
+  bool rises = false, falls = false;
+  for (std::size_t i = 1; i < t.points.size(); ++i) {
+    const TrajectoryPoint &a = t.points[i - 1], &b = t.points[i];
+    if (b.time <= touch) continue;
+    falls = falls || (rises && b.contact_force < a.contact_force);
+    rises = rises || b.contact_force > a.contact_force;
+    if (falls) found.least = std::min(found.least, b.contact_force);
+    if (a.contact_force < threshold && b.contact_force >= threshold) found.steady_from = a.time, found.steady_by = b.time;
+  }
+  return found;
+}
+
+TEST(ForceRecord, IsBracketedByTheKnotsUnderEveryLaw) {
+  int steady = 0, lost = 0;
+  std::vector<Contact> all = test::contacts();
+  for (const Contact& padded : test::pad_contacts()) all.push_back(padded);
+  for (const Contact& contact : all) {
+    Device device = test::gold_cantilever();
+    device.contact = contact;
+    const Switch model(device);
+    for (const std::vector<Signal>& drives : {std::vector{Signal::constant(test::step_level)}, thrown()}) {
+      SCOPED_TRACE(fmt::format("{}, damping {}, {} pieces", name_of(contact_laws, contact.model), contact.damping,
+                               drives[0].pieces().size()));
+      const auto closed = closed_equilibrium(model, hold_levels(drives));
+      const double threshold = 0.1 * (closed ? closed->contact_force : 1e-7);
+      const Trajectory t = simulate_closing(model, drives, {.duration = 150_us, .tolerance = 1e-7, .steady_force = threshold});
+      ASSERT_EQ(t.status, Status::done) << t.message;
+      ASSERT_FALSE(t.touches.empty());
+      const Brackets expected = by_knots(t, threshold);
+      if (t.points.back().contact_force < threshold) {
+        EXPECT_TRUE(std::isnan(t.steady_force_time));
+        ++lost;
+      } else {
+        EXPECT_GE(t.steady_force_time, expected.steady_from);
+        ++steady;
+      }
+      EXPECT_LE(t.least_force_after_touch, expected.least);
+      EXPECT_GE(t.least_force_after_touch, expected.least - 0.05 * std::abs(expected.least) - 1e-9);
+      const Trajectory unasked = simulate_closing(model, drives, {.duration = 150_us, .tolerance = 1e-7});
+      EXPECT_TRUE(std::isnan(unasked.steady_force_time));
+      EXPECT_EQ(unasked.least_force_after_touch, t.least_force_after_touch);
+      EXPECT_EQ(unasked.points.back().position, t.points.back().position) << "measuring changes nothing";
+    }
+  }
+  EXPECT_GE(steady, 5);
+  EXPECT_GE(lost, 1);
+}
+
+/// Of an undamped law without memory the force is one of the place.
+TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
+  const Switch& model = test::gold();
+  const std::vector<Signal> drives = thrown();
+  const double hold = closed_equilibrium(model, hold_levels(drives))->contact_force;
+  int inside = 0;
+  for (double share = 0.01; share < 1; share += 0.03) {
+    SCOPED_TRACE(share);
+    const Trajectory t = simulate_closing(model, drives, {.duration = 150_us, .tolerance = 1e-8, .steady_force = share * hold});
+    double last_below = 0, least = std::numeric_limits<double>::infinity(), before = 0;
+    bool falls = false;
+    for (std::size_t i = 1; i < t.points.size(); ++i) {
+      const TrajectoryPoint &a = t.points[i - 1], &b = t.points[i];
+      if (b.time <= t.touches.front().begin || !(b.time > a.time)) continue;
+      const Quintic tip(a.time, a.position, a.velocity, a.acceleration, b.time, b.position, b.velocity, b.acceleration);
+      constexpr int samples = 50;
+      for (int s = 1; s <= samples; ++s) {
+        const double at = a.time + (b.time - a.time) * s / samples, d = tip.position(at) - t.contact_gap;
+        const double force = d > 0 ? contact_force(model.contact(), d, true, 0) : 0;
+        falls = falls || force < before;
+        if (falls) least = std::min(least, force);
+        if (force < share * hold) last_below = at;
+        before = force;
+      }
+    }
+    EXPECT_LE(t.least_force_after_touch, least + 1e-12 * hold);
+    EXPECT_NEAR(t.least_force_after_touch, least, 1e-3 * hold);
+    if (std::isnan(t.steady_force_time)) {
+      EXPECT_GT(last_below, t.points.back().time - 1e-9) << "below at the end";
+      continue;
+    }
+    ++inside;
+    constexpr double sampled = 5e-9;  // [s] of a fiftieth of a piece
+    EXPECT_NEAR(t.steady_force_time, last_below, sampled);
+    EXPECT_GT(t.steady_force_time, t.touches.front().begin);
+  }
+  EXPECT_GT(inside, 10);
+}
+
+TEST(ForceRecord, OfWhatNeverTouchesIsNotKnown) {
+  const Trajectory t =
+      simulate_closing(test::gold(), std::vector{Signal::constant(5)}, {.duration = 100_us, .steady_force = 1e-9});
+  EXPECT_TRUE(std::isnan(t.steady_force_time));
+  EXPECT_TRUE(std::isnan(t.least_force_after_touch));
+}
+
+/// A plate that does not rebound rests at once: its force is that of the electrode less that of the spring.
+TEST(ForceRecord, FollowsAPlateAtRest) {
+  Device device = test::nickel_plate();
+  device.contact = Contact{.model = ContactModel::rigid, .restitution = 0};
+  const Switch model(device);
+  const double volts = 1.2 * dynamic_pull_in(model, 0, static_pull_in(model, 0)).voltage, later = 1_ms;
+  const std::vector<Signal> drives{Signal::piecewise_linear({{0, volts}, {later, volts}, {2 * later, 2 * volts}})};
+  const auto at = [&](double steady) {
+    return simulate_closing(model, drives, {.duration = 3 * later, .tolerance = 1e-8, .steady_force = steady});
+  };
+  const Trajectory first = at(0);
+  ASSERT_EQ(first.status, Status::done) << first.message;
+  ASSERT_EQ(first.touches.size(), 1U);
+  const double touch = first.touches[0].begin, hold = first.points.back().contact_force;
+  EXPECT_LT(touch, later);
+  EXPECT_EQ(first.steady_force_time, touch);
+  EXPECT_GT(first.least_force_after_touch, 0);
+  const double begun = first.least_force_after_touch;
+  EXPECT_EQ(at(0.99 * begun).steady_force_time, touch);
+  const Trajectory between = at((begun + hold) / 2);
+  EXPECT_GT(between.steady_force_time, later);
+  EXPECT_LT(between.steady_force_time, 2 * later);
+  EXPECT_TRUE(std::isnan(at(1.01 * hold).steady_force_time));
+  device.contact->restitution = 0.5;
+  const Trajectory bouncing = simulate_closing(Switch(device), drives, {.duration = 3 * later, .tolerance = 1e-8});
+  EXPECT_EQ(bouncing.least_force_after_touch, 0) << "it opens";
+}
+
+}  // namespace
+}  // namespace softland
