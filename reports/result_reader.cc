@@ -202,6 +202,8 @@ std::optional<ResultRobust> robust(const json& found) {
                    .fresh_devices = number(found, {"fresh_devices"}),
                    .closings = number(found, {"closings"}),
                    .cost_on_searched = number(found, {"cost_on_searched_devices"}),
+                   .failing = number(found, {"failing_share"}),
+                   .is_told = truth(found, {"measure_tells"}).value_or(true),
                    .yield = {},
                    .conditions = each(at(found, {"conditions"}), condition)};
   if (at(found, {"yield"}).is_object()) all.yield = condition(at(found, {"yield"}));

@@ -310,7 +310,7 @@ void judge_hold(DeviceOutcome& outcome, const SampledDevice& device, const std::
   Trajectory end;
   set_hold(end, *device.model, signals, nominal);
   if (end.is_held) return;
-  m.settled = false;
+  outcome.is_held = m.settled = false;
   m.status = Status::not_settled;
   m.permanent_contact_time = m.bounce_time = Metrics::unset;
 }

@@ -81,6 +81,9 @@ struct DeviceOutcome {
   Metrics metrics;
   double largest_impact_velocity = Metrics::unset;  ///< of all touches [m/s]
   std::string failure = {};                         ///< why it has no figures: refused as a device, or not to be simulated
+  /// Not where the hold levels do not keep it closed, as far as that was asked: by DeviceCloser of what has settled, by
+  /// RobustCost of every device.
+  bool is_held = true;
 
   /// Whether it closed and its closing could be followed to the end of the window.
   [[nodiscard]] bool closed() const { return failure.empty() && std::isfinite(metrics.major_bounce_height); }

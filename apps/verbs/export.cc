@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
@@ -44,6 +45,12 @@ std::optional<double> measured(const char* option, const std::optional<std::stri
   return q.value;
 }
 
+double last_breakpoint(const std::map<std::string, Signal>& signals) {
+  double last = 0;
+  for (const auto& [name, signal] : signals) last = std::max(last, signal.pieces().back().begin);
+  return last;
+}
+
 int export_verb(const Common& c, const ExportRequest& request) {
   SceneFile file = scene_of_result(request.result);
   require(request.format == "csv" || request.format == "spice-pwl",
@@ -52,7 +59,7 @@ int export_verb(const Common& c, const ExportRequest& request) {
                               frequency = measured("--device-frequency", request.device_frequency, dimension::frequency);
   const bool is_own = pull_in || frequency;
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = prepare_and_choose(file, is_own, work->watch());
+  Prepared p = prepare_and_choose(file, is_own, work->watch());
   std::map<std::string, Signal> signals = named_signals(p);
   if (is_own) {
     const DeviceMeter meter(p, pull_in.has_value());
@@ -63,6 +70,7 @@ int export_verb(const Common& c, const ExportRequest& request) {
     const KnownUnits known = known_units(p, std::array{calibration}, job_count({}), work->watch()).front();
     const DeviceUnits units =
         known.of({.volts = pull_in ? *pull_in / meter.pull_in() : 1, .time = frequency ? meter.frequency() / *frequency : 1});
+    p.duration *= std::max(1.0, units.time);  // the window of a slow device
     const std::vector<std::string> names = p.drive_names();
     const std::vector<Waveform> waveforms = in_units(p.in_drive_order(p.drives.waveforms), p.scene.device, units);
     for (std::size_t k = 0; k < names.size(); ++k) {
@@ -70,7 +78,8 @@ int export_verb(const Common& c, const ExportRequest& request) {
     }
   }
   work.reset();
-  print(request.format == "csv" ? csv(signals, p.duration) : spice_pwl(signals, p.duration));
+  const double end = std::max(p.duration, last_breakpoint(signals));  // the hold level belongs to the waveform
+  print(request.format == "csv" ? csv(signals, end) : spice_pwl(signals, end));
   return exit_done;
 }
 

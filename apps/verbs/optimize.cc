@@ -83,6 +83,7 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
 std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& result, Result& found, const fs::path& place) {
   for (const auto& [index, e] : run.log().evaluations())
     found.search.evaluations.push_back({static_cast<double>(index), e.value});
+  found.search.evaluations = drawn_evaluations(std::move(found.search.evaluations));
   found.reproduce = run.commands();
   found.reproduce.push_back("softland simulate " + shell_word((place / "best.toml").string()));
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
