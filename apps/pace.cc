@@ -1,5 +1,7 @@
 #include "apps/pace.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -16,6 +18,23 @@ double Pace::to_compute() const {
   const double share = static_cast<double>(reused) / taken;
   const auto rows_left = static_cast<double>(std::max<std::int64_t>(0, earlier - reused));
   return left - std::min(share * left, rows_left);
+}
+
+void WorkPace::note(std::string_view what, double part, double elapsed) {
+  if (what != what_ || part < part_) {
+    what_ = what;
+    began_ = elapsed;
+    first_part_ = part;
+  }
+  part_ = part;
+}
+
+std::string WorkPace::words(double elapsed) const {
+  constexpr double least_told = 0.01;  // of all, from which the rest can be told
+  std::string text = fmt::format("{}: {:.0f} %, {:.0f} s", what_, 100 * std::clamp(part_, 0.0, 1.0), elapsed);
+  if (const double done = part_ - first_part_; done >= least_told)
+    text += fmt::format(", about {:.0f} s left", std::max(0.0, (elapsed - began_) * (1 - part_) / done));
+  return text;
 }
 
 double Pace::seconds_left() const { return computed > 0 ? to_compute() * seconds / static_cast<double>(computed) : unknown; }

@@ -13,7 +13,9 @@ namespace softland::apps {
 Bar::Bar(bool quiet) : terminal_(isatty(2) != 0), quiet_(quiet), start_(std::chrono::steady_clock::now()), shown_(start_) {}
 
 bool Bar::due() const {
-  return !quiet_ && std::chrono::steady_clock::now() - shown_ >= std::chrono::milliseconds(terminal_ ? 200 : 10000);
+  const bool is_first = shown_ == start_;
+  const int wait = terminal_ ? 200 : is_first ? 5000 : 10000;  // [ms]
+  return !quiet_ && std::chrono::steady_clock::now() - shown_ >= std::chrono::milliseconds(wait);
 }
 
 void Bar::show(const State& state) {
@@ -28,9 +30,11 @@ void Bar::close(const State& state) {
   end_bar();
 }
 
+double Bar::elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
 void Bar::print(const State& state) const {
   if (quiet_) return;
-  const auto [part, words] = state(std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+  const auto [part, words] = state(elapsed());
   if (terminal_) {
     constexpr int cells = 24;
     const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(part * cells), 0, cells));
@@ -43,8 +47,9 @@ void Bar::print(const State& state) const {
 WatchedWork::WatchedWork(bool quiet, const std::atomic<bool>* stop) : bar_(quiet) {
   watch_.stop = stop;
   watch_.progress = [this](std::string_view what, double part) {
+    pace_.note(what, part, bar_.elapsed());
     if (!bar_.due()) return;
-    bar_.show([&](double elapsed) { return std::pair(part, fmt::format("{}, {:.0f} s", what, elapsed)); });
+    bar_.show([&](double elapsed) { return std::pair(part, pace_.words(elapsed)); });
     shown_ = true;
   };
 }
@@ -69,6 +74,10 @@ std::pair<double, std::string> SearchProgress::state(double elapsed) const {
   const bool timed = std::isfinite(seconds_);
   std::string state = timed ? fmt::format("{:.0f} of {:g} s, {} {}", elapsed, seconds_, progress_.evaluations, counted_)
                             : fmt::format("{} of {} {}, {:.0f} s", progress_.evaluations, budget_, counted_, elapsed);
+  if (!timed && progress_.evaluations > 0 && progress_.evaluations < budget_) {
+    const auto done = static_cast<double>(progress_.evaluations);
+    state += fmt::format(", about {:.0f} s left", elapsed * (static_cast<double>(budget_) - done) / done);
+  }
   state += std::isfinite(progress_.best_cost)
                ? fmt::format(", cost {:.4f} (plain step {:.4f})", progress_.best_cost, progress_.baseline_cost)
                : ", no feasible waveform yet";

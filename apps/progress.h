@@ -1,4 +1,5 @@
-// How far a verb is, on standard error: a bar that is rewritten in place on a terminal, elsewhere a line every ten seconds.
+// How far a verb is, on standard error: a bar that is rewritten in place on a terminal, elsewhere a line
+// after five seconds, and every ten from then on.
 #pragma once
 
 #include <chrono>
@@ -6,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/pace.h"
 #include "base/watch.h"
 #include "studies/optimize.h"
 
@@ -25,6 +27,7 @@ class Bar {
  private:
   friend class WatchedWork;
   [[nodiscard]] bool due() const;
+  [[nodiscard]] double elapsed() const;  // [s]
   void print(const State& state) const;
 
   bool terminal_, quiet_;
@@ -44,6 +47,7 @@ class WatchedWork {
  private:
   Bar bar_;
   bool shown_ = false;
+  WorkPace pace_;
   Watch watch_;
 };
 

@@ -4,41 +4,34 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "model/pull_in.h"
 #include "reports/quantity.h"
+#include "studies/closed_state.h"
 
 namespace softland::apps {
 
 using nlohmann::json;
 
-namespace {
-
-// From where on the closed switch is pulled through: NaN where it is not, or there is no contact to hold it.
-double pulled_through(const Switch& model, std::size_t k, std::vector<double> volts) {
-  if (!model.has_contact() || !pulls_in(model.device(), k)) return std::numeric_limits<double>::quiet_NaN();
-  volts[k] = release_voltage(model, k, volts);
-  return std::isfinite(volts[k]) ? pull_through_voltage(model, k, volts) : volts[k];
+json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
+  return pull_in_json(p, k, electrode_pull_in(p.model, k, bias_of(p.scene, k), watch));
 }
 
-}  // namespace
-
-json pull_in_of(const Prepared& p, std::size_t k, const Watch& watch) {
+json pull_in_json(const Prepared& p, std::size_t k, const ElectrodePullIn& known) {
   const std::vector<double> bias = bias_of(p.scene, k);
-  const StaticPullIn s = static_pull_in(p.model, k, bias);
-  const DynamicPullIn d = dynamic_pull_in(p.model, k, s, bias, watch);
+  const auto& [s, d] = known;
+  const ClosedRange closed = closed_range(p.model, k, bias);
   const auto number = [](double v) { return std::isfinite(v) ? json(v) : json(nullptr); };
   json found{{"status", to_string(s.status == Status::done ? d.status : s.status)},
              {"pull_in",
               {{"static_V", number(s.voltage)},
-               {"static_kind", to_string(s.kind)},
+               {"static_kind", std::isfinite(s.voltage) ? json(to_string(s.kind)) : json(nullptr)},
                {"deflection_m", number(s.deflection)},
                {"dynamic_V", number(d.voltage)},
-               {"release_V", number(release_voltage(p.model, k, bias))},
-               {"pulled_through_V", number(pulled_through(p.model, k, bias))}}}};
+               {"release_V", number(closed.release)},
+               {"pulled_through_V", number(closed.pulled_through)}}}};
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t other = 0; other < names.size(); ++other) {
     if (bias[other] == 0) continue;
@@ -77,11 +70,16 @@ std::string deflection_words(const json& pull_in) {
   return deflection.is_number() ? internal::quantity(deflection.get<double>(), "m", digits) : "none";
 }
 
-std::string dynamic_words(const json& pull_in) {
+std::string dynamic_words(const Prepared& p, std::size_t k, const json& pull_in) {
   const json &statically = pull_in["static_V"], &dynamically = pull_in["dynamic_V"];
-  const bool overdamped = statically.is_number() && dynamically.is_number() &&
-                          dynamically.get<double>() >= (1 - dynamic_pull_in_precision) * statically.get<double>();
-  return volts(dynamically) + (overdamped ? " (overdamped: equals the static one)" : "");
+  const bool equal = statically.is_number() && dynamically.is_number() &&
+                     dynamically.get<double>() >= (1 - dynamic_pull_in_precision) * statically.get<double>();
+  if (!equal) return volts(dynamically);
+  std::vector<double> levels = bias_of(p.scene, k);
+  levels[k] = statically.get<double>();
+  return volts(dynamically) + (leaves_at_rest(p.model, bias_of(p.scene, k), levels)
+                                   ? " (the static one: no step moves it, from there on its rest is unstable)"
+                                   : " (overdamped: equals the static one)");
 }
 
 }  // namespace softland::apps

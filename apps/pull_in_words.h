@@ -16,6 +16,9 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 /// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force.
 [[nodiscard]] nlohmann::json pull_in_of(const Prepared& prepared, std::size_t k, const Watch& watch);
 
+/// The same of voltages that are known.
+[[nodiscard]] nlohmann::json pull_in_json(const Prepared& prepared, std::size_t k, const ElectrodePullIn& known);
+
 /// Whether this, as pull_in_of() has found it, is a switch that closes by itself.
 [[nodiscard]] bool collapsed(const nlohmann::json& pull_in);
 
@@ -27,7 +30,8 @@ inline constexpr const char* no_open_state = "no pull-in voltage: the switch has
 /// How far the contact point is deflected at the static pull-in voltage.
 [[nodiscard]] std::string deflection_words(const nlohmann::json& pull_in);
 
-/// The dynamic pull-in voltage; a step that damping lets not overshoot needs no less than the static one.
-[[nodiscard]] std::string dynamic_words(const nlohmann::json& pull_in);
+/// The dynamic pull-in voltage, of what pull_in_of() has found of electrode `k`. A step that damping lets not overshoot needs no
+/// less than the static one; nor does one that leaves the switch where it rests.
+[[nodiscard]] std::string dynamic_words(const Prepared& prepared, std::size_t k, const nlohmann::json& pull_in);
 
 }  // namespace softland::apps

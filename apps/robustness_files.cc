@@ -18,6 +18,7 @@ void add_details(RobustnessReport& report, bool other_ways_too, const Watch& wat
       sensitivity(report.nominal, last, std::clamp<std::uint64_t>(report.options.samples / devices_per_row, 8, most_rows),
                   report.options, watch);
   report.derivatives = derivatives(report.nominal, internal::exactly_measured(report.nominal, last), {}, watch);
+  report.windows = hold_windows(report.nominal, report.options, watch);
   report.courses = device_courses(report.nominal, last, report.found, report.options);
   if (other_ways_too) report.other_ways = other_ways(report.nominal, last, report.options, {}, watch);
   report.interrupted = watch.stopped();

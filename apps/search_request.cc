@@ -305,9 +305,11 @@ PlannedSearch planned(const Common& c, const OptimizeRequest& given, const json&
                        .seeds = seeds,
                        .plan = {}};
   search.plan = plan_of(search, request, as_given);
-  for (const StartingScene& start : search.starts)
+  for (const StartingScene& start : search.starts) {
+    Drives drives = prepare(start.scene, false, {.stop = c.stop}).drives;
     search.options.starts.push_back(
-        {.name = "--start " + start.name, .waveforms = prepare(start.scene, false, {.stop = c.stop}).drives.waveforms});
+        {.name = "--start " + start.name, .waveforms = std::move(drives.waveforms), .before = std::move(drives.before)});
+  }
   return search;
 }
 

@@ -15,7 +15,12 @@ namespace softland {
 /// most `digits` significant digits, but up to a million all of those before the point: 2500 stays 2500. Twelve do not show what
 /// arithmetic leaves behind in a number that was typed. No prefix for 0, for values beyond the prefixes, and for a unit that
 /// takes none: "kg/m^3", "1/m^2", "m^2", "Vdp", "".
+///
+/// From 1 kV/s to 1 GV/us a slew rate is told in V/us, as drivers' data sheets do.
 [[nodiscard]] inline std::string engineering(double value, std::string_view unit, int digits = 12) {
+  constexpr double fast = 1e3, fastest = 1e15, per_microsecond = 1e-6;
+  if (unit == "V/s" && std::abs(value) >= fast && std::abs(value) < fastest)
+    return engineering(per_microsecond * value, "V/us", digits);
   constexpr std::array<std::pair<int, std::string_view>, 9> prefixes{
       {{9, "G"}, {6, "M"}, {3, "k"}, {0, ""}, {-3, "m"}, {-6, "u"}, {-9, "n"}, {-12, "p"}, {-15, "f"}}};
   const auto text = [digits](double number) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -254,6 +255,16 @@ std::vector<std::string> split_path(std::string_view path) {
   return parts;
 }
 
+std::pair<std::string, std::optional<std::size_t>> without_element(std::string_view name) {
+  const std::size_t bracket = name.find('[');
+  if (bracket == std::string_view::npos || !name.ends_with(']')) return {std::string(name), std::nullopt};
+  std::size_t element = 0;
+  const char* const end = name.data() + name.size() - 1;
+  const auto [rest, error] = std::from_chars(name.data() + bracket + 1, end, element);
+  if (error != std::errc() || rest != end) return {std::string(name), std::nullopt};
+  return {std::string(name.substr(0, bracket)), element};
+}
+
 toml::table parse_value(std::string_view toml_text) {
   return parse_toml(fmt::format("{} = {}", value_key, toml_text), std::string(toml_text));
 }
@@ -364,6 +375,21 @@ void SceneFile::Impl::insert(const std::vector<std::string>& path, const toml::n
   origins[path_text] = place;
 }
 
+toml::array SceneFile::Impl::with_element(const std::vector<std::string>& path, std::size_t element, const toml::node& value,
+                                          const std::string& option) const {
+  const toml::node* there = find(path);
+  const toml::array* list = there == nullptr ? nullptr : there->as_array();
+  require(list != nullptr, [&] {
+    return fmt::format("{}: {} is no list in this scene: give the whole list, such as --set '{}=[\"10 um\", \"tip\"]'", option,
+                       fmt::join(path, "."), fmt::join(path, "."));
+  });
+  require(element >= 1 && element <= list->size(),
+          [&] { return fmt::format("{}: {} is a list of {}, counted from 1", option, fmt::join(path, "."), list->size()); });
+  toml::array changed = *list;
+  value.visit([&](const auto& node) { changed.replace(changed.cbegin() + static_cast<std::ptrdiff_t>(element - 1), node); });
+  return changed;
+}
+
 std::vector<std::string> SceneFile::Impl::names_in(const std::string& section) const {
   std::vector<std::string> names;
   const toml::node* node = find({section});
@@ -408,9 +434,10 @@ void SceneFile::set(std::string_view assignment) {
   require(equals != std::string_view::npos, option + ": not of the form key.path=value");
   const std::string_view value = assignment.substr(equals + 1);
 
+  const auto [key, element] = internal::without_element(assignment.substr(0, equals));
   std::vector<std::string> path;
   try {
-    path = internal::split_path(assignment.substr(0, equals));
+    path = internal::split_path(key);
   } catch (const InvalidInput& error) {
     throw InvalidInput(option + ": " + error.what());
   }
@@ -433,7 +460,11 @@ void SceneFile::set(std::string_view assignment) {
   const toml::node& node = *parsed.get(internal::value_key);
   require(path.size() + levels(node) <= internal::deepest_path,
           [&] { return fmt::format("{}: a key has more than {} parts", option, internal::deepest_path); });
-  impl_->insert(path, node, {option, true});
+  if (element) {
+    impl_->insert(path, impl_->with_element(path, *element, node, option), {option, true});
+  } else {
+    impl_->insert(path, node, {option, true});
+  }
 }
 
 void SceneFile::assign(const std::string& path, const SceneValue& value) {

@@ -5,8 +5,10 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/scene.h"
@@ -19,6 +21,8 @@ namespace softland::internal {
 [[nodiscard]] std::string join_path(const std::string& path, std::string_view key);
 /// The parts of such a text. Throws InvalidInput with the rule only.
 [[nodiscard]] std::vector<std::string> split_path(std::string_view path);
+/// "electrode.main.span[2]" as its path and 2; a name that ends otherwise as it is, without a number.
+[[nodiscard]] std::pair<std::string, std::optional<std::size_t>> without_element(std::string_view name);
 /// Whether TOML takes this key without quotes.
 [[nodiscard]] bool is_bare_key(std::string_view key);
 /// A basic TOML string with its quotes.
@@ -66,6 +70,10 @@ struct SceneFile::Impl {
   [[noreturn]] void fail_section(std::string_view path, std::string_view rule) const;
 
   /// NAME of every [section.NAME], sorted. Throws InvalidInput when something else stands there.
+  /// The list there with another value in the place of an element, counted from 1. Throws InvalidInput that begins with `option`
+  /// where there is no such list.
+  [[nodiscard]] toml::array with_element(const std::vector<std::string>& path, std::size_t element, const toml::node& value,
+                                         const std::string& option) const;
   [[nodiscard]] std::vector<std::string> names_in(const std::string& section) const;
 
   /// Puts a value at this path, which comes from `place`, and makes the sections on the way. A value that can be given in one of

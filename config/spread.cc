@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -91,20 +90,18 @@ FoundKey find_drive_error(const SceneFile::Impl& file, const Device& device, con
           .dimensions = {error->dimension}};
 }
 
-/// "electrode.main.span[2]" as its path and 2.
-std::pair<std::string, std::size_t> without_element(const std::string& name) {
-  const std::size_t bracket = name.find('[');
-  std::size_t element = 0;
-  if (bracket == std::string::npos || !name.ends_with(']')) return {name, 0};
-  const char* const end = name.data() + name.size() - 1;
-  const auto [rest, error] = std::from_chars(name.data() + bracket + 1, end, element);
-  return error == std::errc() && rest == end ? std::pair(name.substr(0, bracket), element) : std::pair(name, std::size_t{0});
+/// Whether an end of a span is written as "tip".
+bool is_tip(const SceneFile::Impl& file, const std::vector<std::string>& path, std::size_t element) {
+  const toml::node* node = file.find(path);
+  const toml::node* end = node != nullptr && node->is_array() ? node->as_array()->get(element - 1) : nullptr;
+  return end != nullptr && end->is_string() && end->as_string()->get() == tip;
 }
 
 /// The key that an entry of [spread] names. Throws InvalidInput unless it is a number that is in force in this scene.
 FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader& in, const std::string& name) {
   std::vector<std::string> parts;
-  const auto [path, element] = without_element(name);
+  const auto [path, given_element] = without_element(name);
+  const std::size_t element = given_element.value_or(0);
   try {
     parts = split_path(path);
   } catch (const InvalidInput& error) {
@@ -125,6 +122,12 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     }
     if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) {
       const Key& key = *of_key.find(parts.back());
+      if (element > 0 && is_tip(file, parts, element)) {
+        file.fail_section(in.path(),
+                          fmt::format("{} is the tip of every device, and does not differ from it: write a length or a "
+                                      "percentage of structure.length there to let it vary",
+                                      name));
+      }
       const Quantity given = of_key.quantities(key.name)[element == 0 ? 0 : element - 1];
       FoundKey found{.varied = {.path = path,
                                 .element = element,
@@ -202,6 +205,11 @@ class Scale {
       return;
     }
     const std::vector<Dimension>& allowed = keys_.front().dimensions;
+    const bool is_share = keys_.front().varied.element > 0 && allowed.front() == dimension::none;
+    in_.require(!is_share, key,
+                fmt::format("{} is a percentage of structure.length in this scene: give a percentage of it here too, or write a "
+                            "length there",
+                            keys_.front().varied.name()));
     in_.require(std::find(allowed.begin(), allowed.end(), given) != allowed.end(), key,
                 fmt::format("expected {}, got {}", describe(allowed.front()), describe(given)));
     is_factor_ = false;

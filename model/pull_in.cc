@@ -422,8 +422,8 @@ bool keeps_closed(const Switch& model, const std::optional<ClosedEquilibrium>& c
   return closed && (closed->smallest_eigenvalue > 0 || !judges_stability(model));
 }
 
-double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts) {
-  constexpr double factor = 1.05, range = 10, precision = 1e-6;
+double pull_through_voltage(const Switch& model, std::size_t drive, std::span<const double> volts, double precision) {
+  constexpr double factor = 1.05, range = 10;
   std::vector<double> levels(volts.begin(), volts.end());
   const auto holds = [&](double v) {
     levels[drive] = v;
@@ -508,8 +508,11 @@ std::optional<ClosedEquilibrium> closed_equilibrium(const Switch& model, std::sp
   return closed_at(model, held->q, static_push(model, held->q), volts);
 }
 
-std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, std::span<const double> volts,
-                                                         const ClosedEquilibrium& near) {
+namespace {
+
+// By Newton's method from an equilibrium of little different voltages, where that ends on a stable one.
+std::optional<ClosedEquilibrium> closed_by_newton(const Switch& model, std::span<const double> volts,
+                                                  const ClosedEquilibrium& near) {
   Statics statics(model);
   const double plane = model.device().gap.contact;
   std::optional<ClosedEquilibrium> found;
@@ -520,7 +523,42 @@ std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, st
     found = closed_at(model, *q, static_push(model, *q), volts);
   }
   const bool is_one = found && found->contact_force > 0 && keeps_closed(model, found);
-  return is_one ? found : closed_equilibrium(model, volts);
+  return is_one ? found : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ClosedEquilibrium> closed_equilibrium_near(const Switch& model, std::span<const double> volts,
+                                                         const ClosedEquilibrium& near) {
+  std::optional<ClosedEquilibrium> found = closed_by_newton(model, volts, near);
+  return found ? found : closed_equilibrium(model, volts);
+}
+
+double pull_through_voltage_near(const Switch& model, std::size_t drive, std::span<const double> volts,
+                                 const ClosedEquilibrium& near, double precision) {
+  constexpr double factor = 1.05, range = 10;
+  std::vector<double> levels(volts.begin(), volts.end());
+  std::optional<ClosedEquilibrium> last = near;
+  const auto follows = [&](double v) {
+    levels[drive] = v;
+    std::optional<ClosedEquilibrium> next = closed_by_newton(model, levels, *last);
+    const bool found = next.has_value();
+    if (found) last = std::move(next);
+    return found;
+  };
+  double low = volts[drive], high = low;
+  if (!follows(low)) return pull_through_voltage(model, drive, volts, precision);
+  for (high *= factor; follows(high); high *= factor) {
+    low = high;
+    if (high > range * volts[drive]) return nan;
+  }
+  while (high - low > precision * high) {
+    const double middle = low + (high - low) / 2;
+    (follows(middle) ? low : high) = middle;
+  }
+  // Newton's method may have failed where there is an equilibrium.
+  levels[drive] = high;
+  return keeps_closed(model, closed_equilibrium(model, levels)) ? pull_through_voltage(model, drive, volts, precision) : high;
 }
 
 bool step_closes(const Switch& model, std::size_t drive, double value, Bias bias, const Watch& watch, double tolerance) {

@@ -429,6 +429,10 @@ std::string words_of(Ipopt::ApplicationReturnStatus status) {
       return "Ipopt: Maximum_Iterations_Exceeded";
     case Ipopt::Restoration_Failed:
       return "Ipopt: Restoration_Failed";
+    case Ipopt::Diverging_Iterates:
+      return "Ipopt: Diverging_Iterates";
+    case Ipopt::Invalid_Number_Detected:
+      return "Ipopt: Invalid_Number_Detected";
     case Ipopt::User_Requested_Stop:
       return "Ipopt: stopped by us";
     default:

@@ -85,7 +85,9 @@ std::string open_clause(const Actor& actor, const FigureValues& figures) {
 }  // namespace
 
 std::string closing_clause(const Actor& actor, const ResultRun& run, double window) {
-  if (run.status == "collapsed_at_rest") return actor.subject + " has no stable rest position: it collapses before it is driven";
+  if (run.status == "collapsed_at_rest")
+    return actor.subject +
+           " has no stable rest position under what its drives stand at before t = 0: it collapses before it is driven";
   if (run.status == "collapsed_onto_electrode") {
     const bool through = !run.figures || touches(*run.figures);
     return actor.subject + (through ? " is pulled through the contact onto the electrode"

@@ -105,6 +105,7 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
                   .drawing = found.drawing.best ? FigureValues(found.drawing.best->metrics) : FigureValues(),
                   .drawing_status = found.drawing.best ? std::string(to_string(found.drawing.best->metrics.status)) : "",
                   .drawing_goal_met = found.drawing.goal_met,
+                  .measured = found.calibrated_row,
                   .next_command = std::move(next_command)};
   d.spread = spread_words(found.varied.scene.spread);
   for (const std::string_view key : found.worse_in) d.worse_in.emplace_back(key);
@@ -173,6 +174,7 @@ json internal::devices_json(const ResultDevices& d) {
           {"front", std::move(front)},
           {"race", std::move(race)},
           {"conditions", std::move(conditions)},
+          {"measured", d.measured},
           {"next_command", d.next_command}};
 }
 
@@ -186,7 +188,7 @@ std::string internal::drawing_words(const ResultDevices& d) {
 
 std::string internal::devices_headline(const Result& result) {
   const ResultDevices& d = *result.devices;
-  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices"), *measured = d.row("Vdp to 1 %");
+  const ResultDevices::Row *step = d.row("plain step"), *own = d.row("for the devices"), *measured = d.row(d.measured);
   if (step == nullptr || own == nullptr) return {};
   const std::string assumed = d.spread_assumed ? " (assumed, the scene has no [spread]: " + d.spread + ")" : "";
   if (!d.better_than_plain_step) {
@@ -204,11 +206,10 @@ std::string internal::devices_headline(const Result& result) {
   std::string words = fmt::format("Of {:.0f} devices that differ{}, {} at no more than {} instead of {}: best.toml.", d.count,
                                   assumed, lands, speed_of(*own), speed_of(*step));
   if (measured != nullptr && !d.next_command.empty()) {
-    const bool both_land = measured->bounce_free >= half;
-    words += both_land ? fmt::format(" With Vdp measured to 1 % on each, {} land without a rebound: calibrated.toml.",
-                                     percent(measured->bounce_free))
-                       : fmt::format(" With Vdp measured to 1 % on each, 95 % touch at no more than {}: calibrated.toml.",
-                                     speed_of(*measured));
+    const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
+    words += measured->bounce_free >= half
+                 ? fmt::format(" With {} on each, {} land without a rebound: calibrated.toml.", what, percent(measured->bounce_free))
+                 : fmt::format(" With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
   }
   return words;
 }
@@ -241,7 +242,7 @@ std::string internal::devices_text(const ResultDevices& d) {
                                percent(c.share))) +
            "\n";
   if (!d.next_command.empty())
-    out += "\n" + wrapped(fmt::format("For a device whose Vdp was measured: {}", d.next_command)) + "\n";
+    out += "\n" + wrapped(fmt::format("For a device that was measured: {}", d.next_command)) + "\n";
   return out;
 }
 
@@ -289,7 +290,7 @@ std::string internal::devices_section(const ResultDevices& d) {
     body += "</ul>\n";
   }
   if (!d.next_command.empty())
-    body += fmt::format("<p class=\"below\">For a device whose Vdp was measured: <code>{}</code></p>\n", escaped(d.next_command));
+    body += fmt::format("<p class=\"below\">For a device that was measured: <code>{}</code></p>\n", escaped(d.next_command));
   body += "<p>More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by figure.</p>\n";
   return section("devices", "On devices that differ", body);
 }

@@ -82,6 +82,19 @@ std::string of_modes(const Result& result) {
                      worst.name.substr(worst.name.find(' ') + 1), course_of(worst));
 }
 
+// Of a search over devices, where some of them fail whatever is done.
+std::string of_devices_that_fail(const Result& result) {
+  if (!result.robust || !(result.robust->failing > 0)) return {};
+  std::string words = fmt::format(
+      " {} of the fresh devices end open, are not kept closed by their hold levels, or are outside the model; they count as "
+      "worst.",
+      percent(result.robust->failing));
+  if (!result.robust->is_told)
+    words += fmt::format(" That is all that {} looks at, so that it tells no waveform from another: nothing is gained.",
+                         result.robust->measure);
+  return words;
+}
+
 std::string laws_caption(const std::vector<ResultCheck>& laws) {
   std::string names;
   for (const ResultCheck& law : laws) names += (names.empty() ? "" : ", ") + law.name.substr(law.name.find(' ') + 1);
@@ -125,7 +138,9 @@ Headline headline(const Result& result) {
     return {capitalised(closing_clause({.subject = "the switch"}, result.best, window)) + "." + rest, ""};
   }
   if (result.status == "collapsed_at_rest")
-    return {"The switch has no stable rest position: it collapses before it is driven.", ""};
+    return {
+        "The switch has no stable rest position under what its drives stand at before t = 0: it collapses before it is driven.",
+        ""};
   Headline line;
   if (result.status == "interrupted") line.main = "The search was interrupted; this is its best so far. ";
   if (result.status != "interrupted" && result.goal_met == false) line.main = "The goal was not met. ";
@@ -134,7 +149,7 @@ Headline headline(const Result& result) {
                    : "No feasible waveform was found";
   if (result.baseline.figures)
     line.rest = "; " + closing_clause({.subject = step_subject, .object = "it"}, result.baseline, window);
-  (line.rest.empty() ? line.main : line.rest) += "." + rest + of_modes(result);
+  (line.rest.empty() ? line.main : line.rest) += "." + rest + of_devices_that_fail(result) + of_modes(result);
   return line;
 }
 

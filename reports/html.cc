@@ -104,9 +104,10 @@ TableRow figure_row(const Result& result, const Figure& one, bool pair, bool est
   if (estimated) {
     constexpr double ill = 0.1;  // an error above a tenth of the figure
     const std::string cloud = cloud_text(result, one);
-    const bool is_ill = !cloud.empty() || error > ill * std::abs(own);
-    row.emplace_back((!cloud.empty() ? cloud : error_text(one, own, error)) +
-                     (is_ill ? " <span class=\"note\">ill-conditioned</span>" : ""));
+    const std::string stated = error_text(one, own, error);
+    const bool is_hidden = stated.starts_with('<');  // below the last digit that is shown
+    const bool is_ill = !cloud.empty() || (!is_hidden && error > ill * std::abs(own));
+    row.emplace_back((!cloud.empty() ? cloud : stated) + (is_ill ? " <span class=\"note\">ill-conditioned</span>" : ""));
   }
   return row;
 }

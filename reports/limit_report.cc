@@ -105,9 +105,10 @@ std::string words_after(const LimitLanding& landing) {
   std::string others;
   for (const ConfirmingRun& c : landing.checks) {
     if (c.varied == Varied::gas) continue;
-    if (c.metrics.bounce_count > 0 || c.metrics.status != Status::done)
-      others += fmt::format("{} {} up to {}", others.empty() ? ", but with" : ",", c.name,
-                            quantity(c.metrics.major_bounce_height, "m"));
+    if (c.metrics.bounce_count == 0 && c.metrics.status == Status::done) continue;
+    const std::string course =
+        c.metrics.bounce_count > 0 ? "up to " + quantity(c.metrics.major_bounce_height, "m") : std::string("it is not settled");
+    others += fmt::format("{} {} {}", others.empty() ? ", but with" : ",", c.name, course);
   }
   words += others;
   return words;
@@ -119,6 +120,12 @@ std::string words_of_catch(const LimitLanding& landing) {
   std::string words = fmt::format("landing, then a catch of {}", quantity(pulled, "s"));
   if (landing.catch_delay > 0) words += fmt::format(" after {}", quantity(landing.catch_delay, "s"));
   return words;
+}
+
+std::vector<std::string> all_warnings(const Limit& limit) {
+  std::vector<std::string> all = limit.given.scene.warnings;
+  if (!limit.hold_warning.empty()) all.push_back(limit.hold_warning);
+  return all;
 }
 
 // Column pairs of a curve; what was not found is left out.
@@ -156,6 +163,8 @@ json limit_json(const Limit& limit, const Provenance& provenance) {
           {"plain_step", metrics_json(limit.step)},
           {"touch", least_json(limit.touch)},
           {"at_rest", least_json(limit.rest)},
+          {"closed_state", closed_state_json(limit.closed_state)},
+          {"warnings", all_warnings(limit)},
           {"landing", limit.landing ? landing_json(*limit.landing) : json()},
           {"over_impact_velocity", list_json(limit.over_velocity)},
           {"over_peak_voltage", list_json(limit.over_peak)},
@@ -169,6 +178,7 @@ std::string limit_text(const Limit& limit) {
   std::string text = limit.interrupted ? "Interrupted: what follows is not all.\n\n" : "";
   const std::string peak = std::isfinite(limit.touch.peak) ? fmt::format(", up to {}", quantity(limit.touch.peak, "V")) : "";
   text += fmt::format("How quickly {} can close the switch{}\n\n", drives_of(limit.options.actuator), peak);
+  if (!limit.hold_warning.empty()) text += wrapped("warning: " + limit.hold_warning) + "\n\n";
   text += limit_row("", "first touch", "speed");
   text += limit_row("plain step", quantity(limit.step.initial_contact_time, "s", 4), quantity(limit.step.impact_velocity, "m/s"));
   text += least_row(fmt::format("least time of a touch at {} or less", quantity(limit.impact_velocity, "m/s")), limit.touch);

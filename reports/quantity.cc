@@ -117,8 +117,8 @@ bool takes_prefix(std::string_view unit) {
 }
 
 double resolution(std::string_view unit) {
-  constexpr std::array<std::pair<std::string_view, double>, 7> least{
-      {{"m", 1e-12}, {"s", 1e-15}, {"m/s", 1e-9}, {"N", 1e-15}, {"J", 1e-21}, {"V", 1e-6}, {"V/s", 1}}};
+  constexpr std::array<std::pair<std::string_view, double>, 8> least{
+      {{"m", 1e-12}, {"s", 1e-15}, {"m/s", 1e-9}, {"N", 1e-15}, {"J", 1e-21}, {"V", 1e-6}, {"V/s", 1}, {"V/µs", 1e-6}}};
   const auto* const found = std::find_if(least.begin(), least.end(), [&](const auto& one) { return one.first == unit; });
   return found == least.end() ? 0 : found->second;
 }
@@ -127,14 +127,28 @@ std::string quantity(double value, std::string_view unit, int digits) {
   return quantity_within(value, std::numeric_limits<double>::quiet_NaN(), unit, digits);
 }
 
+namespace {
+
+/// From 1 kV/s on a slew rate is told in volts per microsecond.
+bool is_fast(double size, std::string_view unit) {
+  constexpr double fast = 1e3;
+  return unit == "V/s" && std::isfinite(size) && std::abs(size) >= fast;
+}
+constexpr double per_microsecond = 1e-6;
+constexpr std::string_view fast_slew = "V/µs";
+
+}  // namespace
+
 std::string quantity_beside(double value, double neighbour, std::string_view unit, int digits) {
   if (value != 0 || unit.empty() || !std::isfinite(neighbour)) return quantity(value, unit, digits);
+  if (is_fast(neighbour, unit)) return quantity_beside(value, per_microsecond * neighbour, fast_slew, digits);
   return fmt::format("0{}{}{}", no_break_space, prefix_for(rounded(neighbour, last_place(neighbour, 0, unit, digits))).symbol,
                      unit);
 }
 
 std::string quantity_within(double value, double error, std::string_view unit, int digits) {
   if (!std::isfinite(value)) return none;
+  if (is_fast(value, unit)) return quantity_within(per_microsecond * value, per_microsecond * error, fast_slew, digits);
   const double least = resolution(unit);
   const bool known = !(error >= least);  // to better than the resolution
   if (known && value > 0 && value < least) return "< " + quantity(least, unit, 1);
@@ -146,6 +160,7 @@ std::string quantity_within(double value, double error, std::string_view unit, i
 std::string error_of(double value, double error, std::string_view unit, int digits) {
   if (!std::isfinite(value) || !std::isfinite(error)) return none;
   if (error == 0) return quantity_beside(0, value, unit);
+  if (is_fast(value, unit)) return error_of(per_microsecond * value, per_microsecond * error, fast_slew, digits);
   const Shown s = shown(value, error, unit, digits);
   return (error < std::pow(10, s.place) / 2 ? "< " : "") + in_prefix(rounded_up(error, s.place), s.place, s.prefix, unit);
 }

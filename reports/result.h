@@ -62,6 +62,10 @@ struct DriveLimits {
   double slew = Metrics::unset;                              ///< [V/s]
 };
 
+/// Rows of a curve, rebounds, and evaluations of a search that a result holds at most: its file stays readable (base/read_file.h)
+/// however long a run is.
+inline constexpr std::size_t most_curve_rows = 20'000, most_rebounds = 20'000, most_evaluations = 100'000;
+
 /// What a report shows of the scene.
 struct ResultScene {
   using Span = std::optional<std::array<double, 2>>;  ///< from the clamped end [m]
@@ -114,7 +118,9 @@ struct ResultRobust {
   std::string measure;
   double devices = Metrics::unset, fresh_devices = Metrics::unset, closings = Metrics::unset;
   double cost_on_searched = Metrics::unset;  ///< of the winner, on the devices that were searched
-  std::optional<Condition> yield;            ///< what was to be fulfilled by as many devices as possible
+  double failing = Metrics::unset;  ///< share of the fresh devices that end open, are not kept closed, or are outside the model
+  bool is_told = true;              ///< the measure looks further than at those
+  std::optional<Condition> yield;   ///< what was to be fulfilled by as many devices as possible
   std::vector<Condition> conditions;
 };
 
@@ -149,6 +155,7 @@ struct ResultDevices {
   FigureValues drawing;  ///< of the drawing's waveform on the nominal device
   std::string drawing_status;
   bool drawing_goal_met = false;
+  std::string measured;  ///< the row that calibrated.toml is of; empty where there is none
   std::string next_command;
 
   /// Null where there is none of that name.

@@ -123,6 +123,8 @@ json robust_json(const ResultRobust& robust) {
          {"fresh_devices", json_number(robust.fresh_devices)},
          {"closings", json_number(robust.closings)},
          {"cost_on_searched_devices", json_number(robust.cost_on_searched)},
+         {"failing_share", json_number(robust.failing)},
+         {"measure_tells", robust.is_told},
          {"conditions", std::move(conditions)}};
   if (robust.yield) j["yield"] = condition(*robust.yield);
   return j;

@@ -1,11 +1,15 @@
 #include "reports/result_maker.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "integrators/quintic.h"
 #include "reports/devices_report.h"
 #include "reports/made_with.h"
 #include "reports/result_reader.h"
+#include "reports/thin.h"
 #include "studies/omissions.h"
 #include "version.h"
 #include "waveforms/export.h"
@@ -71,6 +75,25 @@ Result started(const Prepared& p, const Provenance& provenance) {
   return r;
 }
 
+// Of a long run the rows that draw the same picture: files stay readable however long it was.
+void keep_most_rows(ResultCurve& c) {
+  const std::vector<std::size_t> rows = internal::thinned({&c.gap, &c.velocity, &c.force}, most_curve_rows);
+  if (rows.size() == c.time.size()) return;
+  for (std::vector<double>* column : {&c.time, &c.gap, &c.velocity, &c.force}) {
+    std::vector<double> kept;
+    for (const std::size_t row : rows) kept.push_back((*column)[row]);
+    *column = std::move(kept);
+  }
+}
+
+// In the order of time.
+void keep_highest(std::vector<Rebound>& all) {
+  if (all.size() <= most_rebounds) return;
+  std::ranges::nth_element(all, all.begin() + most_rebounds, std::ranges::greater(), &Rebound::height);
+  all.resize(most_rebounds);
+  std::ranges::sort(all, {}, &Rebound::begin);
+}
+
 }  // namespace
 
 ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) {
@@ -99,7 +122,17 @@ ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) {
   for (const Rebound& r : rebounds(t)) {
     if (r.height > options.significant_rebound) c.rebounds.push_back(r);
   }
+  keep_most_rows(c);
+  keep_highest(c.rebounds);
   return c;
+}
+
+Points drawn_evaluations(Points all) {
+  std::vector<double> values;
+  for (const auto& [index, value] : all) values.push_back(value);
+  Points kept;
+  for (const std::size_t row : internal::thinned({&values}, most_evaluations)) kept.push_back(all[row]);
+  return kept;
 }
 
 Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance) {
@@ -172,6 +205,8 @@ Result result_of(const RobustResult& found, const OptimizeOptions& options, cons
                           .fresh_devices = found.verdict ? static_cast<double>(found.verdict->devices) : Metrics::unset,
                           .closings = static_cast<double>(found.closings),
                           .cost_on_searched = found.cost_on_searched,
+                          .failing = found.failing,
+                          .is_told = found.is_told,
                           .yield = {},
                           .conditions = {}};
   if (found.yield) r.robust->yield = condition(robust.aim.measure.yield->text, *found.yield, true);

@@ -16,10 +16,14 @@ struct Provenance {
   std::string command;  ///< the command line
 };
 
-/// The motion of a run: knots, and points of the interpolant where knots are far apart.
+/// The motion of a run: knots, and points of the interpolant where knots are far apart; of a long run the most_curve_rows of them
+/// that draw the same picture, with all extremes, and the most_rebounds highest rebounds.
 [[nodiscard]] ResultCurve curve_of(const Trajectory& trajectory, const MetricsOptions& options);
 
-/// The result of simulate. Curves have the resolution of the integration.
+/// The evaluations of a long search of which most_evaluations draw the same picture.
+[[nodiscard]] Points drawn_evaluations(Points all);
+
+/// The result of simulate. Curves have the resolution of the integration, up to most_curve_rows.
 [[nodiscard]] Result result_of(const Prepared& prepared, const Closing& closing, const Provenance& provenance);
 
 /// The result of optimize. Equal for equal seeds but for the time that it took and the command line. Of the evaluations it holds

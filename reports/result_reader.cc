@@ -202,6 +202,8 @@ std::optional<ResultRobust> robust(const json& found) {
                    .fresh_devices = number(found, {"fresh_devices"}),
                    .closings = number(found, {"closings"}),
                    .cost_on_searched = number(found, {"cost_on_searched_devices"}),
+                   .failing = number(found, {"failing_share"}),
+                   .is_told = truth(found, {"measure_tells"}).value_or(true),
                    .yield = {},
                    .conditions = each(at(found, {"conditions"}), condition)};
   if (at(found, {"yield"}).is_object()) all.yield = condition(at(found, {"yield"}));
@@ -242,6 +244,7 @@ std::optional<ResultDevices> devices(const json& result) {
                   .drawing = figures(at(result, {"drawing", "metrics"})),
                   .drawing_status = text(result, {"drawing", "metrics", "status"}),
                   .drawing_goal_met = truth(result, {"drawing", "goal_met"}).value_or(false),
+                  .measured = text(found, {"measured"}),
                   .next_command = text(found, {"next_command"})};
   d.front = each(at(found, {"front"}), [](const json& one) {
     return ResultDevices::FrontPoint{.first_touch = number(one, {"initial_contact_time_s"}),

@@ -29,12 +29,14 @@ using internal::error_words;
 using internal::escaped;
 using internal::is_erring;
 using internal::is_had;
+using internal::outside_words;
 using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;
 using internal::quantity;
 using internal::section;
 using internal::shown_values;
+using internal::some_collapse;
 using internal::spread_words;
 using internal::symbol_html;
 using internal::table_html;
@@ -221,6 +223,11 @@ std::string statistics_table(const Robustness& found) {
   return table_html(head, rows) + fmt::format("<p class=\"below\">In brackets: 95 % confidence. {}</p>\n", worst_words);
 }
 
+std::string window_paragraph(const HoldWindows& windows) {
+  const std::string words = internal::window_words(windows);
+  return words.empty() ? words : "<p>" + escaped(words) + "</p>\n";
+}
+
 std::string knowledge_table(const Robustness& found) {
   if (found.by_knowledge.empty()) return {};
   std::vector<TableRow> rows;
@@ -332,7 +339,7 @@ std::string keys_of(const Robustness& found) {
 }  // namespace
 
 std::string robustness_html(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
   const internal::Picture drawn = picture_of(report);
   std::string charts;
   for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
@@ -357,8 +364,8 @@ std::string robustness_html(const RobustnessReport& report) {
                          .headline_rest = rest,
                          .keys = keys_of(found),
                          .body = section("charts", "How the devices differ", about + charts) + knowledge_table(found) +
-                                 section("figures", "Figures", statistics_table(found)) + sensitivity_table(sensitivity) +
-                                 internal::derivatives_html(derivatives, found.drives.back()) +
+                                 section("figures", "Figures", statistics_table(found) + window_paragraph(windows)) +
+                                 sensitivity_table(sensitivity) + internal::derivatives_html(derivatives, found.drives.back()) +
                                  (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal) : "") +
                                  worst_table(report) + internal::reproduce(result) + internal::scene(result),
                          .style = internal::chart_style(),

@@ -124,10 +124,18 @@ json sensitivity_json(const Sensitivity& sensitivity) {
   return j;
 }
 
+// [lower, upper] by electrode; null where no level holds as many devices, or an end where there is none.
+json windows_json(const HoldWindows& windows) {
+  json all = json::object();
+  for (const auto& [electrode, window] : windows.of_electrodes)
+    all[electrode] = std::isfinite(window.lower) ? json::array({window.lower, json_number(window.upper)}) : json();
+  return all;
+}
+
 }  // namespace
 
 json robustness_json(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
@@ -166,6 +174,8 @@ json robustness_json(const RobustnessReport& report) {
           {"duration_s", found.duration},
           {"tolerance", found.tolerance},
           {"spread", spread_json(nominal.scene.spread)},
+          {"hold_window_V", windows_json(windows)},
+          {"hold_window_devices", windows.devices},
           {"drives", std::move(drives)},
           {"by_knowledge", std::move(by_knowledge)},
           {"sensitivity", sensitivity_json(sensitivity)},
@@ -180,7 +190,7 @@ json robustness_json(const RobustnessReport& report) {
 }
 
 std::string robustness_csv(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   std::string text = "device";
   // Names may hold commas and quotes.

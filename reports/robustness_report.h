@@ -9,6 +9,7 @@
 
 #include "reports/result_maker.h"
 #include "studies/derivatives.h"
+#include "studies/hold_window.h"
 #include "studies/other_ways.h"
 #include "studies/robustness.h"
 
@@ -24,6 +25,7 @@ struct RobustnessReport {
   Derivatives derivatives = {};
   std::vector<DeviceCourse> courses = {};
   std::optional<OtherWays> other_ways = {};  ///< of the last drive as well
+  HoldWindows windows = {};                  ///< of hold levels, whatever the drive
   bool interrupted = found.interrupted;      ///< in the study, or in what was to be known beside it
 };
 

@@ -121,7 +121,7 @@ std::string figures_text(const Robustness& found) {
 }  // namespace
 
 std::string robustness_text(const RobustnessReport& report) {
-  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, interrupted] = report;
+  const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
   std::string text;
   if (found.interrupted) text += "Interrupted: these are not all devices.\n\n";
   const Calibration& calibration = found.drives.empty() ? Calibration{} : found.drives.back().known.calibration();
@@ -132,10 +132,11 @@ std::string robustness_text(const RobustnessReport& report) {
                                     "device, known of it: " +
                                         calibration_words(calibration) + ".",
                               error_words(nominal.scene.spread)) +
-                  outside_words(found)) +
+                  internal::outside_words(found)) +
           "\n\n";
   if (found.devices == 0) return text;
   text += figures_text(found);
+  if (const std::string words = internal::window_words(windows); !words.empty()) text += "\n" + wrapped(words) + "\n";
   text += knowledge_text(found) + sensitivity_text(sensitivity) + internal::derivatives_text(derivatives, found.drives.back());
   if (ways) text += internal::other_ways_text(*ways, found.drives.back(), nominal);
   text += "\n" +

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "reports/quantity.h"
 
@@ -35,6 +36,21 @@ std::string outside_words(const Robustness& found) {
   return fmt::format(
       " {} of them cannot be, and count as those that do not close; the first: {}.{}", count, why,
       why.find(".span = ") == std::string::npos ? "" : " A span up to \"tip\", or in percent, follows the length.");
+}
+
+std::string window_words(const HoldWindows& windows) {
+  constexpr int digits = 4;
+  std::string words;
+  for (const auto& [electrode, window] : windows.of_electrodes) {
+    words += fmt::format("{}electrode {} ", words.empty() ? "" : ", ", electrode);
+    words += !std::isfinite(window.lower) ? "at no level"
+             : std::isinf(window.upper)
+                 ? fmt::format("from {} on", quantity(window.lower, "V", digits))
+                 : fmt::format("{} to {}", quantity(window.lower, "V", digits), quantity(window.upper, "V", digits));
+  }
+  if (words.empty()) return words;
+  return fmt::format("Hold levels that keep {:.0f} % of {} devices closed, from release voltage to pull-through: {}.",
+                     100 * held_share, windows.devices, words);
 }
 
 std::string calibration_words(const Calibration& c) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/hold_window.h"
 #include "studies/robustness.h"
 
 namespace softland::internal {
@@ -20,6 +21,9 @@ namespace softland::internal {
 /// "Vdp ± 1 %, frequency ± 0.5 %"
 [[nodiscard]] std::string calibration_words(const Calibration& calibration);
 [[nodiscard]] bool is_erring(const Calibration& calibration);
+
+/// The hold levels that keep 99 % of the devices closed; empty where nothing is known of them.
+[[nodiscard]] std::string window_words(const HoldWindows& windows);
 
 /// The varying quantities of device k, as they are shown.
 [[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);

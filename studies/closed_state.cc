@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/engineering.h"
 
 namespace softland {
@@ -23,13 +25,34 @@ ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& si
   return state;
 }
 
-std::string unstable_rest(const Switch& model, const std::vector<Signal>& signals) {
+ClosedRange closed_range(const Switch& model, std::size_t electrode, std::vector<double> bias) {
+  if (!model.has_contact() || !pulls_in(model.device(), electrode)) return {};
+  ClosedRange range{.release = release_voltage(model, electrode, bias)};
+  bias[electrode] = range.release;
+  if (std::isfinite(range.release)) range.pulled_through = pull_through_voltage(model, electrode, bias);
+  return range;
+}
+
+namespace {
+
+bool is_equilibrium(const Switch& model, const Eigen::VectorXd& q, const std::vector<double>& levels) {
   constexpr double rounding = 1e-9;  // of the force that bends the beam by the contact gap
+  const double left = static_force(model, q, levels).cwiseQuotient(model.angular_frequencies()).squaredNorm();
+  return left <= rounding * rounding * model.bending_energy();
+}
+
+}  // namespace
+
+bool leaves_at_rest(const Switch& model, const std::vector<double>& before, const std::vector<double>& levels) {
+  const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(before);
+  return rest && is_equilibrium(model, *rest, levels);
+}
+
+std::string unstable_rest(const Switch& model, const std::vector<Signal>& signals) {
   const std::optional<Eigen::VectorXd> rest = model.open_equilibrium(values_before(signals));
   if (!rest) return {};
   const std::vector<double> levels = hold_levels(signals);
-  const double left = static_force(model, *rest, levels).cwiseQuotient(model.angular_frequencies()).squaredNorm();
-  if (left > rounding * rounding * model.bending_energy()) return {};
+  if (!is_equilibrium(model, *rest, levels)) return {};
   const double smallest = open_tangent_eigenvalue(model, *rest, levels);
   if (smallest > 0) return {};
   return fmt::format(

@@ -22,8 +22,20 @@ struct ClosedState {
   std::map<std::string, double> pulled_through;
 };
 
+/// The voltages of an electrode between which a closed switch stays closed, its other drives at a bias.
+struct ClosedRange {
+  double release = std::numeric_limits<double>::quiet_NaN();         ///< release_voltage() [V]
+  double pulled_through = std::numeric_limits<double>::quiet_NaN();  ///< pull_through_voltage() from there on [V]
+};
+/// Without contact, and of an electrode on the far side, neither.
+[[nodiscard]] ClosedRange closed_range(const Switch& model, std::size_t electrode, std::vector<double> bias);
+
 /// Under the hold levels of these drives, of a switch that has a contact.
 [[nodiscard]] ClosedState closed_state(const Prepared& prepared, const std::vector<Signal>& signals);
+
+/// Whether a switch at rest under the values `before` of its drives stays where it is under these levels: forces that balance
+/// there.
+[[nodiscard]] bool leaves_at_rest(const Switch& model, const std::vector<double>& before, const std::vector<double>& levels);
 
 /// What is to be warned of in a switch that its hold levels leave where it rests, in an equilibrium that is unstable: the least
 /// asymmetry of a device closes it. Empty where they move it, or it is stable.

@@ -320,7 +320,7 @@ DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int j
   constexpr std::size_t devices = 128;  // a deviation within 6 %
   DeviceUnits squares{.volts = 0, .time = 0};
   double known = 0;
-  for (const DeviceUnits& one : reference_units(nominal, need_pull_in, devices, jobs, watch)) {
+  for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, watch)) {
     if (!std::isfinite(one.volts) || !std::isfinite(one.time)) continue;
     ++known;
     squares.volts += (one.volts - 1) * (one.volts - 1);
@@ -380,7 +380,7 @@ namespace {
 void judge_hold(DeviceOutcome& outcome, const Hold& hold) {
   Metrics& m = outcome.metrics;
   if (!outcome.closed() || !m.settled || hold.is_held) return;
-  m.settled = false;
+  outcome.is_held = m.settled = false;
   m.status = Status::not_settled;
   m.permanent_contact_time = m.bounce_time = Metrics::unset;
 }

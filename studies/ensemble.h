@@ -81,6 +81,9 @@ struct DeviceOutcome {
   Metrics metrics;
   double largest_impact_velocity = Metrics::unset;  ///< of all touches [m/s]
   std::string failure = {};                         ///< why it has no figures: refused as a device, or not to be simulated
+  /// Not where the hold levels do not keep it closed, as far as that was asked: by DeviceCloser of what has settled, by
+  /// RobustCost of every device.
+  bool is_held = true;
 
   /// Whether it closed and its closing could be followed to the end of the window.
   [[nodiscard]] bool closed() const { return failure.empty() && std::isfinite(metrics.major_bounce_height); }
@@ -115,6 +118,8 @@ class DeviceMeter {
   [[nodiscard]] std::size_t electrode() const { return electrode_; }
   /// Under the step whose closing time is measured; NaN where it is not [s].
   [[nodiscard]] double closing_time() const;
+  /// The volts of a device that closes in this time, in units of the nominal one; NaN where it does not close [s].
+  [[nodiscard]] DeviceUnits told_by(double time) const;
   /// Without error. A device whose pull-in voltage cannot be found, or that does not close, has NaN volts.
   [[nodiscard]] DeviceUnits exact(const Switch& model) const;
   /// What is measured of device k, whatever class it belongs to; the errors are functions of seed and k.
@@ -124,7 +129,6 @@ class DeviceMeter {
  private:
   [[nodiscard]] double pull_in(const Switch& model) const;  // [V]
   void learn_times();
-  [[nodiscard]] DeviceUnits told_by(double time) const;
   [[nodiscard]] double time_of(const Switch& model, double step) const;
 
   struct ToldVolts {

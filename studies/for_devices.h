@@ -80,8 +80,10 @@ struct ForDevicesResult {
   std::vector<DevicesRow> rows = {};
   std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
   std::vector<FrontPoint> front = {};            ///< by first touch
-  std::optional<SceneFile> calibrated = {};      ///< in units measured to 1 %, with its [calibration]
+  std::optional<SceneFile> calibrated = {};      ///< in units that are measured on every device, with its [calibration]
+  std::string calibrated_row = {};               ///< the row that it is of
   double pull_in = Metrics::unset;               ///< Vdp of the nominal device, where there is a calibrated waveform [V]
+  double closing_time = Metrics::unset;          ///< of the nominal device, under the step that is measured [s]
   std::vector<FulfilledCondition> conditions{};  ///< of the winner
   long closings = 0;                             ///< of devices, in all searches
   bool interrupted = false;

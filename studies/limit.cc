@@ -480,16 +480,33 @@ class LimitStudy {
 
 }  // namespace
 
+namespace {
+
+// An electrode with a face on either side whose far face is the nearer one pushes the switch off its contact at any voltage.
+void refuse_what_pulls_away(const Prepared& given, Actuator actuator) {
+  if (actuator == Actuator::pzt || !has_pulling_electrode(given.scene.device)) return;
+  const std::size_t k = searched_drive(given.scene.device);
+  if (static_pull_in(given.model, k, bias_of(given.scene, k)).status != Status::no_contact) return;
+  given.scene.file.refuse("electrode." + given.scene.device.electrodes[k].name + ".gap", pulls_away);
+}
+
+}  // namespace
+
 Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch) {
   Prepared given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "limit needs a [contact] section: without contact there is nothing to land on");
+  refuse_what_pulls_away(given, options.actuator);
   const std::vector<std::string> names = given.drive_names();
   for (const auto& [name, waveform] : options.start) {
     require(std::find(names.begin(), names.end(), name) != names.end(),
             fmt::format("the waveform to start with is of a drive \"{}\", which the switch does not have", name));
   }
+  const std::string elsewhere = begins_elsewhere(options.start, options.before, given);
+  require(elsewhere.empty(), [&] { return "the waveform to start with: " + elsewhere; });
   Limit result{.given = std::move(given), .options = options};
   const Prepared& prepared = result.given;
+  result.closed_state = closed_state(prepared, prepared.signals());
+  result.hold_warning = hold_warning(prepared.model, prepared.signals(), result.closed_state);
   result.step =
       simulate(read_back(with_waveforms(prepared, plain_step(prepared, options.actuator)), "step.toml", prepared), false, watch)
           .metrics;

@@ -19,6 +19,7 @@
 #include "base/watch.h"
 #include "objectives/metrics.h"
 #include "optimizers/collocation.h"
+#include "studies/closed_state.h"
 #include "studies/optimize.h"
 #include "studies/prepared.h"
 #include "studies/search_space.h"
@@ -81,6 +82,7 @@ struct LimitOptions {
   Actuator actuator = Actuator::electrostatic;
   std::optional<double> impact_velocity = {};  ///< permitted [m/s]; none: a hundredth of the plain step's
   std::map<std::string, Waveform> start = {};  ///< see LeastTimeOptions
+  std::map<std::string, double> before = {};   ///< what the drives of `start` stand at before t = 0, where that is not 0 [V]
   bool curves = true;                          ///< over the peak voltage, and over the permitted speed
 };
 
@@ -88,6 +90,8 @@ struct Limit {
   Prepared given;
   LimitOptions options;
   double impact_velocity = std::numeric_limits<double>::quiet_NaN();  ///< permitted [m/s]
+  ClosedState closed_state = {};                                      ///< under the hold levels
+  std::string hold_warning = {};                                      ///< where they do not keep the switch closed
   Metrics step;                                                       ///< of the plain step
   LeastTime touch;                                                    ///< at the permitted speed
   LeastTime rest;                                                     ///< with every mode at rest
@@ -96,8 +100,9 @@ struct Limit {
   bool interrupted = false;
 };
 
-/// All of it. Asked to stop, it holds what there is. Throws InvalidInput as least_time(), and where the plain step does not touch
-/// and no speed is given; Interrupted before there is anything.
+/// All of it. Asked to stop, it holds what there is. Throws InvalidInput as least_time(), where the plain step does not touch
+/// and no speed is given, where the electrode that is shaped pulls away from the contact, and where a waveform to start with
+/// begins at another rest; Interrupted before there is anything.
 [[nodiscard]] Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& watch = {});
 
 }  // namespace softland

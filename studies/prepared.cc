@@ -96,6 +96,19 @@ std::map<std::string, PullInVoltages> Prepared::voltage_units() const {
   return units;
 }
 
+std::string begins_elsewhere(const std::map<std::string, Waveform>& waveforms, const std::map<std::string, double>& before,
+                             const Prepared& scene) {
+  for (const auto& [drive, waveform] : waveforms) {
+    const auto found = before.find(drive);
+    const double own = found == before.end() ? 0 : found->second, due = scene.before(drive);
+    if (own != due)
+      return fmt::format(
+          "the drive '{}' stands at {} before its waveform, and at {} in the scene: both have to begin at one rest", drive,
+          engineering(own, "V"), engineering(due, "V"));
+  }
+  return {};
+}
+
 // The cheapest that deliver on random scenes: results/accuracy.md.
 double tolerance_for(double accuracy, bool stiff) { return std::clamp(accuracy / 10, 1e-12, stiff ? 1e-4 : 1e-3); }
 
@@ -199,6 +212,26 @@ std::vector<double> bias_of(const Scene& scene, std::size_t drive) {
   return bias;
 }
 
+namespace {
+
+// ", under piezo at 0.3 V": what the other drives stand at, where that is not 0.
+std::string under_bias(const Prepared& p, std::size_t electrode) {
+  const std::vector<double> bias = bias_of(p.scene, electrode);
+  const std::vector<std::string> names = p.drive_names();
+  std::string words;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (bias[k] == 0) continue;
+    constexpr int digits = 5;
+    words += words.empty() ? ", under " : " and ";
+    words += names[k] == dispersion_drive
+                 ? fmt::format("dispersion force at a factor of {}", engineering(1 + bias[k], "", digits))
+                 : fmt::format("{} at {}", names[k], engineering(bias[k], "V", digits));
+  }
+  return words;
+}
+
+}  // namespace
+
 ElectrodePullIn electrode_pull_in(const Switch& model, std::size_t electrode, Bias bias, const Watch& watch) {
   ElectrodePullIn found{.statically = static_pull_in(model, electrode, bias)};
   found.dynamically = dynamic_pull_in(model, electrode, found.statically, bias, watch);
@@ -222,7 +255,7 @@ Prepared prepare(const SceneFile& file, bool default_limits, const Watch& watch,
     const bool ok = found.dynamically.status == Status::done;
     if (needed && !ok) {
       file.refuse("electrode." + name + ".span",
-                  "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found");
+                  "its pull-in voltage is needed for the unit Vsp or Vdp, but none could be found" + under_bias(p, k));
     }
     if (ok) p.pull_in.emplace(name, found);
   }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/watch.h"
@@ -29,6 +30,9 @@ inline constexpr std::string_view dispersion_drive = "dispersion";
 
 /// What the other drives stand at where the pull-in voltages of this one are asked for: Scene::standing, its own at 0 V.
 [[nodiscard]] std::vector<double> bias_of(const Scene& scene, std::size_t drive);
+
+/// What is to be said of an electrode that has a face on either side and pulls away from the contact where the switch rests.
+inline constexpr std::string_view pulls_away = "it pulls away from the contact; its other side is nearer";
 
 struct DescribedEffects;
 
@@ -77,6 +81,11 @@ struct Prepared {
   /// The pull-in voltages as units.
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
 };
+
+/// Why waveforms of a scene whose drives stand at `before` do not begin as those of this one do; empty where they do. `before`:
+/// by drive, what is not there stands at 0 V.
+[[nodiscard]] std::string begins_elsewhere(const std::map<std::string, Waveform>& waveforms,
+                                           const std::map<std::string, double>& before, const Prepared& scene);
 
 /// Integrator tolerance and quadrature that deliver a relative `accuracy` of t_i, v_i, B_H and the peak force.
 [[nodiscard]] double tolerance_for(double accuracy, bool stiff = false);  ///< `stiff`: with a compressible film

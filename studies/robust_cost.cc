@@ -10,6 +10,7 @@
 #include "sampling/risk.h"
 #include "sampling/statistics.h"
 #include "studies/robustness.h"
+#include "studies/simulate.h"
 
 namespace softland {
 namespace {
@@ -53,6 +54,8 @@ std::vector<FigureName> conditioned_figures() {
   for (const EnsembleFigure& f : ensemble_figures()) all.push_back({.key = f.key, .symbol = f.symbol, .unit = f.unit});
   return all;
 }
+
+bool fails(const DeviceOutcome& outcome) { return !outcome.closed() || !outcome.is_held; }
 
 bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
 
@@ -112,12 +115,17 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
   tail_ = in_contact;
   wait_ = std::max(setting.run.no_contact_before, period);
   const std::vector<Signal> step = setting.baseline_scene.signals();
-  if (measures_steady_force_) held_ = closed_equilibrium(model, hold_levels(step));
+  levels_ = hold_levels(step);
+  nominal_closed_ = closed_equilibrium(model, levels_);
+  if (!keeps_closed(model, nominal_closed_)) nominal_closed_.reset();
   step_ = close_device({.values = {}, .model = model, .refusal = {}}, step, setting.given.scene.metrics,
                        {.duration = last_breakpoint(step) + wait_ + window_,
                         .tolerance = EnsembleRun{}.tolerance,
                         .after_contact = window_,
                         .steady_force = setting.run.steady_force});
+  const std::vector<Waveform> plain = setting.drives({});
+  for (std::size_t k = 0; k < devices(); ++k)
+    kept_closed_.push_back(!ensemble_.devices[k].model || is_kept_closed(k, signals(plain, k, ensemble_.units[k])));
   if (step_.closed()) return;
   const CostFigures& imagined = setting.scale.step;
   const double drive_energy = step_.metrics.drive_energy;
@@ -127,10 +135,22 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
   step_.metrics.major_bounce_height = imagined.rebound_height;
 }
 
+std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
+  return drives_.differ(units) ? drives_.signals(waveforms, units, ensemble_.devices[k].values)
+                               : setting_.given.driven(waveforms);
+}
+
+// Where the nominal device is not, nothing is asked of the others.
+bool RobustCost::is_kept_closed(std::size_t k, const std::vector<Signal>& signals) const {
+  if (!nominal_closed_) return true;
+  return hold_of(*ensemble_.devices[k].model, signals, nominal_closed_).is_held;
+}
+
 std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& waveforms, std::size_t first, std::size_t last,
                                              int jobs) const {
   constexpr std::size_t together = 64;  // devices of one task
   const std::vector<Signal> nominal = setting_.given.driven(waveforms);
+  const bool same_levels = hold_levels(nominal) == levels_;
   std::vector<DeviceOutcome> outcomes(last - first);
   run_tasks((outcomes.size() + together - 1) / together, jobs, [&](std::size_t task) {
     const std::size_t begin = task * together, end = std::min(outcomes.size(), begin + together);
@@ -145,6 +165,10 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
       closings.push_back({.device = &device, .signals = &signals, .run = run(device, signals)});
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
+    for (std::size_t i = 0; i < closed.size(); ++i) {
+      const std::size_t k = first + begin + i;
+      if (closed[i].closed()) closed[i].is_held = same_levels ? kept_closed_[k] : is_kept_closed(k, *closings[i].signals);
+    }
     std::move(closed.begin(), closed.end(), outcomes.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   return outcomes;
@@ -158,7 +182,7 @@ DeviceOutcome RobustCost::close(const std::vector<Waveform>& waveforms, std::siz
 
 ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Signal>& signals) const {
   const double end = last_breakpoint(signals);
-  const Hold hold = measures_steady_force_ && device.model ? hold_of(*device.model, signals, held_) : Hold{};
+  const Hold hold = measures_steady_force_ && device.model ? hold_of(*device.model, signals, nominal_closed_) : Hold{};
   return {.duration = end + wait_ + window_,
           .tolerance = EnsembleRun{}.tolerance,
           .after_contact = window_,
@@ -168,7 +192,7 @@ ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Si
 }
 
 double RobustCost::score(const DeviceOutcome& outcome) const {
-  if (!outcome.closed()) return worst_score;
+  if (fails(outcome)) return worst_score;
   const Metrics &m = outcome.metrics, &step = step_.metrics;
   const double speed = over(outcome.largest_impact_velocity, step_.largest_impact_velocity);
   const double height = over(m.major_bounce_height, step.major_bounce_height);
@@ -202,20 +226,32 @@ double RobustCost::score(const DeviceOutcome& outcome) const {
   return std::isnan(score) ? worst_score : score;
 }
 
+std::vector<double> RobustCost::scores(std::span<const DeviceOutcome> outcomes) const {
+  std::vector<double> all;
+  for (const DeviceOutcome& o : outcomes) all.push_back(std::min(score(o), worst_score));
+  return all;
+}
+
+double RobustCost::share_fulfilling(std::span<const DeviceOutcome> outcomes, const Criterion& condition) {
+  const auto good = std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); });
+  return static_cast<double>(good) / static_cast<double>(outcomes.size());
+}
+
+bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
+  constexpr double rounding = 1e-9;
+  return aim_.measure.yield ? share_fulfilling(outcomes, *aim_.measure.yield) > 0
+                            : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
+}
+
 double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const {
-  std::vector<double> scores, times, of_devices;
-  for (const DeviceOutcome& o : outcomes) {
-    scores.push_back(std::min(score(o), worst_score));
+  const std::vector<double> scores = this->scores(outcomes);
+  std::vector<double> times, of_devices;
+  for (const DeviceOutcome& o : outcomes)
     times.push_back(o.closed() ? over(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
-  }
-  double value = 0;
-  if (aim.measure.yield) {
-    const auto good =
-        std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, *aim.measure.yield); });
-    value = 1 - static_cast<double>(good) / static_cast<double>(outcomes.size()) + weight_of_scores * sample_mean(scores);
-  } else {
-    value = risk(scores, aim.measure.risk);
-  }
+  double value = aim.measure.yield
+                     ? 1 - share_fulfilling(outcomes, *aim.measure.yield) + weight_of_scores * sample_mean(scores)
+                     : risk(scores, aim.measure.risk);
+  value += static_cast<double>(std::ranges::count_if(outcomes, fails)) / static_cast<double>(outcomes.size());
   value += weight_of_time * sample_quantile(times, 0.5);
   for (const Criterion& condition : aim.conditions) {
     of_devices.clear();

@@ -5,8 +5,10 @@
 //           rebound            highest rebound               impact    largest touch speed
 //           count              rebounds                      settling  permanent contact, over first contact of the step
 //           energy             impact energy                 steady    steady force time, over first contact of the step
-//         3, or more than any that closes, where the device does not close, or its closing cannot be followed
-//   cost  R(s) + 0.02 (median of first contact over that of the step) + 10 (sum over the conditions: violation, where positive)
+//         3, or more than any that closes, where the device does not close or its hold levels do not keep it closed, where its
+//         closing cannot be followed, or no such device can be described: it fails
+//   cost  R(s) + (share of devices that fail) + 0.02 (median of first contact over that of the step)
+//         + 10 (sum over the conditions: violation, where positive)
 //
 // R is the measure that was asked for (sampling/risk.h), or for a yield 1 less the share of devices that fulfil its condition,
 // plus a tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the
@@ -18,6 +20,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -68,6 +71,9 @@ class RobustCost {
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes) const { return value(outcomes, aim_); }
   /// By another aim.
   [[nodiscard]] double value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const;
+  /// Whether the measure tells these devices from such as all fail: not where as many of them fail as it looks at, or none
+  /// fulfils the condition of a yield.
+  [[nodiscard]] bool is_told(std::span<const DeviceOutcome> outcomes) const;
 
   /// s_k of a device that does not close.
   static constexpr double not_closed = 3;
@@ -79,6 +85,12 @@ class RobustCost {
 
  private:
   [[nodiscard]] ClosingOptions run(const SampledDevice& device, const std::vector<Signal>& signals) const;
+  [[nodiscard]] std::vector<double> scores(std::span<const DeviceOutcome> outcomes) const;
+  [[nodiscard]] static double share_fulfilling(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
+
+  [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& waveforms, std::size_t k,
+                                            const DeviceUnits& units) const;
+  [[nodiscard]] bool is_kept_closed(std::size_t k, const std::vector<Signal>& signals) const;
 
   const SearchSetting& setting_;
   const RobustAim& aim_;
@@ -86,13 +98,18 @@ class RobustCost {
   DeviceDrives drives_;
   Vectors vectors_;
   bool measures_steady_force_;
-  std::optional<ClosedEquilibrium> held_;  // of the nominal device
-  DeviceOutcome step_;                     // of the nominal device
-  double window_, tail_, wait_;            // after first touch, after the last breakpoint, for a touch [s]
+  DeviceOutcome step_;                               // of the nominal device
+  std::optional<ClosedEquilibrium> nominal_closed_;  // under the hold levels; none where they do not keep it closed
+  std::vector<double> levels_;                       // those, of the nominal device
+  std::vector<bool> kept_closed_;                    // each device, under them
+  double window_, tail_, wait_;                      // after first touch, after the last breakpoint, for a touch [s]
 };
 
 /// What devices may close in when a search is about `target`: no vectors where lanes do not measure its figure.
 [[nodiscard]] Vectors vectors_for(const Aim& target, Vectors vectors = vectors_in_use());
+
+/// Whether a device does not close and stay closed, cannot be followed, or cannot be described.
+[[nodiscard]] bool fails(const DeviceOutcome& outcome);
 
 /// Whether a device fulfils a condition.
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);

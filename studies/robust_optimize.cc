@@ -313,7 +313,10 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
   const std::vector<DeviceOutcome>& outcomes = result.verdict->drives.back().outcomes;
   out.best_cost = cost.value(outcomes);
   out.baseline_cost = cost.value(result.verdict->drives.front().outcomes);
-  out.better_than_baseline = out.best_cost < out.baseline_cost;
+  const auto failing = std::ranges::count_if(outcomes, fails);
+  result.failing = static_cast<double>(failing) / static_cast<double>(outcomes.size());
+  result.is_told = cost.is_told(outcomes);
+  out.better_than_baseline = result.is_told && out.best_cost < out.baseline_cost;
   const Metrics& drawn = out.best->metrics;
   out.goal_met = out.better_than_baseline && drawn.settled && drawn.bounce_count == 0;
   if (robust.aim.measure.yield) result.yield = share_that_fulfils(outcomes, *robust.aim.measure.yield);

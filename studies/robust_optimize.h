@@ -43,7 +43,10 @@ struct RobustResult {
   OptimizeResult found;  ///< costs are those on fresh devices
   double cost_on_searched = Metrics::unset;
   std::optional<Robustness> verdict;  ///< plain step and winner on the same fresh devices; none where it was interrupted
-  std::optional<Yield> yield;         ///< of the condition that was to be fulfilled by as many as possible
+  /// Of the fresh devices: the share that fails (robust_cost.h), and whether the measure looks further than at those.
+  double failing = Metrics::unset;
+  bool is_told = true;
+  std::optional<Yield> yield;  ///< of the condition that was to be fulfilled by as many as possible
   std::vector<FulfilledCondition> conditions;
   long closings = 0;  ///< of devices, in the search
 };

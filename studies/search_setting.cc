@@ -290,7 +290,8 @@ std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const 
 
 void SearchSetting::check_starts(const std::vector<StartingWaveforms>& starts) const {
   for (const StartingWaveforms& start : starts) {
-    const std::string reason = space.misfit(start.waveforms);
+    std::string reason = begins_elsewhere(start.waveforms, start.before, given);
+    if (reason.empty()) reason = space.misfit(start.waveforms);
     require(reason.empty(), [&] { return fmt::format("{}: {}", start.name, reason); });
   }
 }

@@ -26,6 +26,8 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
     const double own = figure.value(a);
     d[figure] = std::max(std::abs(own - figure.value(b)), shared * tolerance * std::abs(own));
   }
+  // A rebound that neither run has lasts for no time that could be wrong.
+  if (a.first_rebound_time == 0 && b.first_rebound_time == 0) d[&Metrics::first_rebound_time] = Metrics::unset;
   double& height = d[&Metrics::major_bounce_height];
   height = std::max(height, lowest_separation * contact_gap);
   double& force = d[&Metrics::least_force_after_touch];
@@ -203,6 +205,15 @@ JudgedRun with_judge(Run own, ClosingRuns& runs, const Prepared& prepared, bool 
   return {.own = std::move(own), .judge = std::move(judge), .error = e};
 }
 
+// In one digit, or as many as tell it from a bound that it is above.
+std::string in_telling_digits(double above, double bound) {
+  constexpr int most_digits = 12;
+  const std::string other = engineering(bound, "");
+  std::string text;
+  for (int digits = 1; digits <= most_digits && (text.empty() || text == other); ++digits) text = engineering(above, "", digits);
+  return text;
+}
+
 // The errors that a judge finds, and what is to be warned of.
 void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool may_tighten) {
   const Run &own = run.own, &judge = run.judge;
@@ -213,13 +224,14 @@ void add_errors(Closing& c, const JudgedRun& run, const Prepared& prepared, bool
   allow_for_residual(c.errors, own.trajectory);
   const double accuracy = prepared.scene.simulate.accuracy;
   if (may_tighten && run.error > accuracy) {
-    c.warnings.push_back(fmt::format(
-        "accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is {}, {}",
-        engineering(accuracy, ""), engineering(own.tolerance, "", 1),
-        std::isfinite(run.error) ? fmt::format("still known to {} only", engineering(run.error, "", 1)) : "not known at all",
-        is_tighter         ? "for so small a change decides it"
-        : can_tighten(own) ? "and no tighter run comes to its end"
-                           : "and rounding forbids a tighter run"));
+    c.warnings.push_back(
+        fmt::format("accuracy {} is not reached: at an integrator tolerance of {} t_i, v_i, B_H or the peak force is {}, {}",
+                    engineering(accuracy, ""), engineering(own.tolerance, "", 1),
+                    std::isfinite(run.error) ? fmt::format("still known to {} only", in_telling_digits(run.error, accuracy))
+                                             : "not known at all",
+                    is_tighter         ? "for so small a change decides it"
+                    : can_tighten(own) ? "and no tighter run comes to its end"
+                                       : "and rounding forbids a tighter run"));
   }
   const double moved = std::abs(own.metrics.bounce_time - judge.metrics.bounce_time);
   if (own.metrics.bounce_count != judge.metrics.bounce_count || moved > 0.01 * std::abs(own.metrics.bounce_time)) {
@@ -299,14 +311,21 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
     }
   }
   if (!c.trajectory.is_held && c.metrics.status != Status::open) {
-    const std::string unstable = warning(closed_state(prepared, runs.signals()));
-    c.warnings.push_back(unstable.empty() ? std::string(not_held) : unstable);
+    const ClosedState state = closed_state(prepared, runs.signals());
+    c.warnings.push_back(hold_warning(prepared.model, runs.signals(), state));
+    c.is_pulled_through = !warning(state).empty() || !prepared.model.open_equilibrium(hold_levels(runs.signals()));
   }
   if (runs.was_interrupted()) say_interrupted(c);
   c.warnings.insert(c.warnings.begin(), c.trajectory.warnings.begin(), c.trajectory.warnings.end());
   c.warnings.insert(c.warnings.begin(), prepared.scene.warnings.begin(), prepared.scene.warnings.end());
   set_drive_figures(c.metrics, prepared, runs.signals());
   return c;
+}
+
+std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state) {
+  if (hold_of(model, signals).is_held) return {};
+  const std::string unstable = warning(state);
+  return unstable.empty() ? std::string(not_held) : unstable;
 }
 
 Hold hold_of(const Switch& model, const std::vector<Signal>& signals, const std::optional<ClosedEquilibrium>& near) {

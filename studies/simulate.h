@@ -11,6 +11,7 @@
 #include "model/closing.h"
 #include "model/pull_in.h"
 #include "objectives/figures.h"
+#include "studies/closed_state.h"
 #include "studies/prepared.h"
 
 namespace softland {
@@ -35,9 +36,12 @@ struct Closing {
   /// not estimated: t_p, t_b and N_B have none but from certify(), nor what comes after the runs part in a rebound's height,
   /// since no two runs tell the range of a chaotic figure.
   FigureValues errors;
-  double tolerance = 0;                                 ///< of the integrator, in the run that the figures are of
-  SwitchOptions quadrature;                             ///< of that run
-  std::optional<Judge> judge;                           ///< of that run, where errors are estimated
+  double tolerance = 0;        ///< of the integrator, in the run that the figures are of
+  SwitchOptions quadrature;    ///< of that run
+  std::optional<Judge> judge;  ///< of that run, where errors are estimated
+  /// A touch that does not last: the hold levels neither keep the switch closed (its closed equilibrium is unstable, or there is
+  /// none) nor leave it an open equilibrium to go back to.
+  bool is_pulled_through = false;
   std::vector<std::string> warnings;                    ///< of the scene, of the laws, and of ill-conditioned figures
   std::shared_ptr<const Certificate> certificate = {};  ///< from certify() only
 };
@@ -55,6 +59,10 @@ void allow_for_residual(FigureValues& errors, const Trajectory& run);
 inline constexpr std::string_view not_held =
     "the hold levels do not keep the switch closed: it has no closed equilibrium under them. They are below its release "
     "voltage, or so high that the electrode pulls the beam past the contact";
+
+/// What is to be warned of where the hold levels of these drives do not keep a switch closed whose closed state under them is
+/// `state`; empty where they do.
+[[nodiscard]] std::string hold_warning(const Switch& model, const std::vector<Signal>& signals, const ClosedState& state);
 
 /// What the hold levels of drives do to a closed switch.
 struct Hold {

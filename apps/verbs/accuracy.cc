@@ -26,8 +26,9 @@ int accuracy_verb(const Common& c) {
   AccuracyOptions options{.stop = c.stop};
   std::size_t done = 0, of = 0;
   const auto state = [&](double elapsed) {
-    return std::pair(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of)),
-                     fmt::format("{} of {} settings, {:.0f} s", done, of, elapsed));
+    const double part = static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(1, of));
+    const std::string left = done > 0 ? fmt::format(", about {:.0f} s left", elapsed * (1 - part) / part) : "";
+    return std::pair(part, fmt::format("{} of {} settings, {:.0f} s{}", done, of, elapsed, left));
   };
   options.on_progress = [&](std::size_t now, std::size_t all) {
     done = now;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -28,6 +29,7 @@ namespace softland::apps {
 namespace {
 
 constexpr double usual_error = 0.01;  // of a measurement whose error nobody gives, relative
+constexpr double usual_time_error = 50e-9;  // of a closing time [s]
 
 struct ExportRequest {
   std::string result, format = "csv", signal = "told";
@@ -69,6 +71,7 @@ struct Measured {
 struct Measurements {
   Measured pull_in{.name = measured_pull_in, .due = dimension::voltage};
   Measured frequency{.name = measured_frequency, .due = dimension::frequency};
+  Measured time{.name = measured_time, .due = dimension::time};  // of closing under a step to closing_step Vdp
 
   explicit Measurements(const ExportRequest& request) {
     if (request.device_pull_in) pull_in.read("--device-vdp", *request.device_pull_in);
@@ -77,14 +80,24 @@ struct Measurements {
     for (const std::string& one : parts_of(request.measured)) {
       const std::size_t sign = one.find('=');
       const std::string name = one.substr(0, sign);
-      require(sign != std::string::npos && (name == pull_in.name || name == frequency.name), [&] {
-        return fmt::format("--measured {}: '{}' is no measurement; there are {} and {}, such as \"{}=54.2 V\"",
-                           shown(request.measured), shown(one), pull_in.name, frequency.name, pull_in.name);
+      Measured* const known = sign == std::string::npos ? nullptr
+                              : name == pull_in.name    ? &pull_in
+                              : name == frequency.name  ? &frequency
+                              : name == time.name       ? &time
+                                                        : nullptr;
+      require(known != nullptr, [&] {
+        return fmt::format("--measured {}: '{}' is no measurement; there are {}, {} and {}, such as \"{}=54.2 V\"",
+                           shown(request.measured), shown(one), pull_in.name, frequency.name, time.name, pull_in.name);
       });
-      (name == pull_in.name ? pull_in : frequency).read(fmt::format("--measured {} =", name), one.substr(sign + 1));
+      known->read(fmt::format("--measured {} =", name), one.substr(sign + 1));
     }
+    require(!time.value || !pull_in.value,
+            "--measured: a closing time tells the volts of a device, as Vdp does: give one of them");
   }
-  [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value; }
+  [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value && !time.value; }
+  [[nodiscard]] const std::string& said() const {
+    return pull_in.value ? pull_in.said : time.value ? time.said : frequency.said;
+  }
 };
 
 // Of a measurement, relative: what [calibration] says, or the usual one, which is told.
@@ -108,20 +121,25 @@ void warn_if_strange(const Measured& measured, double ratio, double deviation, c
 
 // The units of the device on which this was measured.
 DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watch& watch) {
-  const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value()});
+  const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value(), .closing_time = measured.time.value.has_value()});
   const Calibration& calibration = p.scene.calibration;
   require(!calibration.classes || (measured.pull_in.value.has_value() == calibration.pull_in_error.has_value() &&
-                                   measured.frequency.value.has_value() == calibration.frequency_error.has_value()),
+                                   measured.frequency.value.has_value() == calibration.frequency_error.has_value() &&
+                                   measured.time.value.has_value() == calibration.time_error.has_value()),
           "--measured, --device-vdp, --device-frequency: the scene sorts devices into classes: give what [calibration] measures");
-  const double volts = measured.pull_in.value.value_or(meter.pull_in()) / meter.pull_in(),
+  const DeviceUnits told = measured.time.value ? meter.told_by(*measured.time.value) : DeviceUnits{};
+  const double volts = measured.pull_in.value ? *measured.pull_in.value / meter.pull_in() : told.volts,
                time = meter.frequency() / measured.frequency.value.value_or(meter.frequency());
   if (!p.scene.spread.empty()) {
-    const DeviceUnits deviation = deviation_of_units(p, measured.pull_in.value.has_value(), job_count({}), watch);
+    const DeviceUnits deviation =
+        deviation_of_units(p, measured.pull_in.value.has_value() || measured.time.value.has_value(), job_count({}), watch);
+    if (measured.time.value)
+      warn_if_strange(measured.time, volts, deviation.volts, told.volts_by_time * calibration.time_error.value_or(usual_time_error));
     if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error);
     if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error);
   }
   const KnownUnits known = known_units(p, std::array{calibration}, job_count({}), watch).front();
-  return known.of({.volts = measured.pull_in.value ? volts : 1, .time = time});
+  return known.of({.volts = volts, .time = time, .volts_by_time = told.volts_by_time});
 }
 
 // The waveforms of that device. Throws InvalidInput where a source cannot give them.
@@ -131,7 +149,7 @@ std::vector<Waveform> waveforms_of(const Prepared& p, const Measurements& measur
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (!p.drives.limits.contains(names[k])) continue;
     const std::string broken = violation(p.told(k, own[k]), p.limits(k));
-    const std::string& said = measured.pull_in.value ? measured.pull_in.said : measured.frequency.said;
+    const std::string& said = measured.said();
     require(broken.empty(),
             [&] { return fmt::format("{}: the waveform of this device: drive '{}': {}", said, names[k], broken); });
   }
@@ -161,6 +179,12 @@ std::map<std::string, Coded> coded(const Prepared& p, const SentSignals& sent) {
   return all;
 }
 
+double last_breakpoint(const std::map<std::string, Signal>& signals) {
+  double last = 0;
+  for (const auto& [name, signal] : signals) last = std::max(last, signal.pieces().back().begin);
+  return last;
+}
+
 int export_verb(const Common& c, const ExportRequest& request) {
   const SceneFile file = scene_of_result(request.result);
   require(request.format == "csv" || request.format == "spice-pwl" || request.format == "codes",
@@ -172,12 +196,13 @@ int export_verb(const Common& c, const ExportRequest& request) {
           "--format codes --signal output: codes are the samples that a source is told, not its output");
   const Measurements measured(request);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  const Prepared p = prepare_and_choose(file, !measured.are_none(), work->watch());
+  Prepared p = prepare_and_choose(file, !measured.are_none(), work->watch());
   const SentSignals sent = sent_signals(
       p, measured.are_none() ? p.in_drive_order(p.drives.waveforms) : waveforms_of(p, measured, work->watch()), sent_as);
   work.reset();
-  print(request.format == "csv"         ? csv(sent.signals, p.duration, sent.sample_rates)
-        : request.format == "spice-pwl" ? spice_pwl(sent.signals, p.duration)
+  const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
+  print(request.format == "csv"         ? csv(sent.signals, end, sent.sample_rates)
+        : request.format == "spice-pwl" ? spice_pwl(sent.signals, end)
                                         : codes(coded(p, sent)));
   return exit_done;
 }

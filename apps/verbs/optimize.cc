@@ -49,6 +49,7 @@ using nlohmann::json;
 std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& result, Result& found, const fs::path& place) {
   for (const auto& [index, e] : run.log().evaluations())
     found.search.evaluations.push_back({static_cast<double>(index), e.value});
+  found.search.evaluations = drawn_evaluations(std::move(found.search.evaluations));
   found.reproduce = run.commands();
   found.reproduce.push_back("softland simulate " + shell_word((place / "best.toml").string()));
   std::vector<std::string> left{"report.html", "gap.svg", "result.json"};
@@ -180,8 +181,10 @@ void write_scene(ResultFolder& folder, const std::string& name, const Prepared& 
 // How a device that was measured gets its waveform; empty where there is none for it.
 std::string next_command(const ForDevicesResult& result, const fs::path& place) {
   if (!result.calibrated) return {};
-  return fmt::format("softland export {} --device-vdp \"{}\"", shell_word((place / "calibrated.toml").string()),
-                     internal::given_quantity(result.pull_in, "V", 4));
+  const bool by_time = result.calibrated->written("calibration.time").has_value();
+  return fmt::format("softland export {} --measured \"{}\"", shell_word((place / "calibrated.toml").string()),
+                     by_time ? fmt::format("{}={:.4g} us", measured_time, 1e6 * result.closing_time)
+                             : fmt::format("{}={:.4g} V", measured_pull_in, result.pull_in));
 }
 
 int run_for_devices(const Asked& asked) {

@@ -91,6 +91,13 @@ void set_bias(Prepared& p, const std::string& assignment) {
   p.scene.standing[static_cast<std::size_t>(drive - names.begin())] = is_factor ? given.value - 1 : given.value;
 }
 
+// How static pull-in comes about; empty where there is none.
+std::string kind_words(const nlohmann::json& found) {
+  if (!found["static_kind"].is_string()) return {};
+  return found["static_kind"] == to_string(StaticKind::fold) ? " (fold of the static branch)"
+                                                             : " (the contact point reaches the contact first)";
+}
+
 // What pull_in_of() has found of an electrode, in words.
 std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one) {
   std::string text = fmt::format("electrode {}\n", p.scene.device.electrodes[k].name);
@@ -99,12 +106,10 @@ std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one
   if (one["status"] == to_string(Status::no_contact))
     return text + "  pulls away from the contact where the switch rests: no pull-in voltage\n";
   const nlohmann::json& found = one["pull_in"];
-  const bool is_fold = found["static_kind"] == to_string(StaticKind::fold);
-  text += collapsed(one) ? fmt::format("  {}\n", no_open_state)
-                         : fmt::format("  static pull-in   {} ({})\n  pull-in position {}\n  dynamic pull-in  {}\n",
-                                       volts(found["static_V"]),
-                                       is_fold ? "fold of the static branch" : "the contact point reaches the contact first",
-                                       deflection_words(found), dynamic_words(found));
+  text += collapsed(one)
+              ? fmt::format("  {}\n", no_open_state)
+              : fmt::format("  static pull-in   {}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found["static_V"]),
+                            kind_words(found), deflection_words(found), dynamic_words(p, k, found));
   if (p.model.has_contact()) {
     text += fmt::format("  release          {}\n", volts(found["release_V"]));
     if (found["pulled_through_V"].is_number())

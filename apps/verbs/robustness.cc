@@ -37,16 +37,6 @@ struct RobustnessRequest {
   std::optional<std::string> jobs;     ///< default: one per core
 };
 
-// The devices of one comparison begin at the same rest.
-void require_same_before(const std::string& name, const Prepared& other, const Prepared& nominal) {
-  for (const auto& [drive, waveform] : other.drives.waveforms) {
-    require(other.before(drive) == nominal.before(drive), [&, drive = drive] {
-      return fmt::format("{}: the drive '{}' stands at {} before its waveform, and at {} in the scene: devices begin at one rest",
-                         name, drive, engineering(other.before(drive), "V"), engineering(nominal.before(drive), "V"));
-    });
-  }
-}
-
 int robustness_verb(const Common& c, const RobustnessRequest& request) {
   RobustnessOptions options{.jobs = job_count(request.jobs)};
   options.samples = sample_count(request.samples, options.samples, 1, SamplePoints::largest_size);
@@ -63,7 +53,8 @@ int robustness_verb(const Common& c, const RobustnessRequest& request) {
   std::vector<NamedDrive> drives{{.name = c.scene, .waveforms = nominal.drives.waveforms, .calibration = calibration}};
   for (const std::string& result : request.results) {
     const Prepared other = prepare(scene_of_result(result), false, work->watch());
-    require_same_before(result, other, nominal);
+    const std::string elsewhere = begins_elsewhere(other.drives.waveforms, other.drives.before, nominal);
+    require(elsewhere.empty(), [&] { return result + ": " + elsewhere; });
     drives.push_back({.name = result, .waveforms = other.drives.waveforms, .calibration = calibration});
   }
   std::vector<std::string> files(robustness_files.begin(), robustness_files.end());

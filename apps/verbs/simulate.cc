@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
@@ -65,7 +66,8 @@ int simulate_verb(const Common& c, const SimulateRequest& request) {
   if (!interrupted && prepared.effects && !prepared.effects->choice.left_out.empty() && !c.quiet) log_time_saved(prepared);
   if (!closing.trajectory.message.empty())
     say(fmt::format("{} ({})", closing.trajectory.message, to_string(closing.metrics.status)));
-  return exit_status_of(closing.metrics.status);
+  const bool is_lost = closing.metrics.status == Status::not_settled && closing.is_pulled_through;
+  return is_lost ? exit_no_success : exit_status_of(closing.metrics.status);
 }
 
 }  // namespace

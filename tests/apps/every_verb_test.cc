@@ -69,6 +69,24 @@ class EveryVerb : public testing::TestWithParam<Shipped> {
       refused(words, "there is no waveform to export");
     }
   }
+  /// What `check` and `pull-in` tell of the voltages of each electrode, under the same keys.
+  static void expect_same_pull_in(const json& checked, const json& pull_in, bool contact) {
+    const bool is_one = pull_in.contains("pull_in");
+    std::size_t windows = 0;
+    const json by_name = is_one ? json{{"", pull_in}} : pull_in;
+    for (const auto& [name, one] : by_name.items()) {
+      EXPECT_FALSE(one.contains("scene")) << "as README.md says";
+      const json& voltages = one["pull_in"];
+      EXPECT_EQ(voltages["static_V"].is_null(), voltages["static_kind"].is_null());
+      if (voltages["static_V"].is_null()) continue;  // on the far side
+      const json& own = is_one || !checked["pull_in"].contains(name) ? checked["pull_in"] : checked["pull_in"][name];
+      EXPECT_EQ(own, voltages) << name;
+      windows += contact ? 1 : 0;
+    }
+    EXPECT_EQ(checked["hold_window_V"].size(), windows);
+    for (const auto& [name, window] : checked["hold_window_V"].items())
+      EXPECT_TRUE(window[1].is_null() || window[0] < window[1]) << name;
+  }
   [[nodiscard]] json data(const std::vector<std::string>& words) const {
     const json j = json::parse(done(words).out, nullptr, false);
     EXPECT_TRUE(j.is_object()) << place(words);
@@ -98,11 +116,21 @@ TEST_P(EveryVerb, Describes) {
     EXPECT_TRUE(contact || check.find(figure) == std::string::npos) << figure << " without contact in\n" << check;
   }
   (void)done(scene().quickly({"modes", name}));
-  EXPECT_FALSE(data(scene().quickly({"modes", name, "--json", "-"}))["natural_frequencies_rad_s"].empty());
+  const json modes = data(scene().quickly({"modes", name, "--json", "-"}));
+  EXPECT_FALSE(modes["natural_frequencies_rad_s"].empty());
+  EXPECT_FALSE(modes.contains("scene")) << "as README.md says";
+  const json checked = data(scene().quickly({"check", name, "--quiet", "--json", "-"}));
+  EXPECT_EQ(keys(checked), (std::set<std::string>{"kind", "status", "title", "natural_frequencies_rad_s", "pull_in",
+                                                  "dynamic_precision", "hold_window_V", "closed_state", "duration_s", "tolerance",
+                                                  "warnings", "scene", "version", "made_with", "command"}));
+  EXPECT_EQ(checked["natural_frequencies_rad_s"], modes["natural_frequencies_rad_s"]);
+  EXPECT_EQ(checked["closed_state"].is_object(), contact);
+  EXPECT_EQ(checked["scene"]["structure"]["kind"].is_string(), true);
   if (scene().has("\\[electrode")) {
     const std::string text = done(scene().quickly({"pull-in", name})).out;
     EXPECT_EQ(text.find("release") != std::string::npos, contact) << text;
-    (void)data(scene().quickly({"pull-in", name, "--json", "-"}));
+    const json pull_in = data(scene().quickly({"pull-in", name, "--json", "-"}));
+    expect_same_pull_in(checked, pull_in, contact);
   } else {
     refused(scene().quickly({"pull-in", name}), "there is no electrode to pull in");
   }
@@ -192,6 +220,13 @@ TEST_P(EveryVerb, Judges_long) {
   const json j = json::parse(read(here.path() / "out/robustness.json"), nullptr, false);
   EXPECT_EQ(j["devices"], 20);
   EXPECT_EQ(j["drives"][0]["worst"].size(), 10U);
+  EXPECT_EQ(j["hold_window_V"].empty(), !scene().has("\\[electrode"));
+  for (const auto& [electrode, window] : j["hold_window_V"].items()) {
+    EXPECT_TRUE(window[1].is_null() || window[0] < window[1]) << electrode;
+    EXPECT_EQ(j["hold_window_devices"], 20);
+    EXPECT_NE(text.find("Hold levels that keep 99 % of 20 devices closed"), std::string::npos) << text;
+    EXPECT_NE(read(here.path() / "out/robustness.html").find("Hold levels that keep"), std::string::npos);
+  }
   (void)done({"simulate", "out/worst-1.toml", "--quiet"});
 }
 

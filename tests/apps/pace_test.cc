@@ -35,5 +35,20 @@ TEST(Pace, IsOverWhenNothingRemains) {
   EXPECT_DOUBLE_EQ((Pace{.computed = 10, .reused = 5, .earlier = 5, .seconds = 1}).seconds_left(), 0);
 }
 
+TEST(WorkPace, TellsTheTimeThatIsLeftOfWhatIsDoneNow) {
+  WorkPace pace;
+  pace.note("dynamic pull-in voltage", 0.9, 4);
+  pace.note("closing", 0, 6);
+  EXPECT_EQ(pace.words(6), "closing: 0 %, 6 s");
+  pace.note("closing", 0.25, 8);
+  EXPECT_EQ(pace.words(8), "closing: 25 %, 8 s, about 6 s left");
+  pace.note("closing", 1, 14);
+  EXPECT_EQ(pace.words(14), "closing: 100 %, 14 s, about 0 s left");
+  pace.note("closing", 0.1, 15);  // the same once more
+  EXPECT_EQ(pace.words(15), "closing: 10 %, 15 s");
+  pace.note("closing", 0.4, 18);
+  EXPECT_EQ(pace.words(18), "closing: 40 %, 18 s, about 6 s left");
+}
+
 }  // namespace
 }  // namespace softland::apps

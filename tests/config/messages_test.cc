@@ -197,7 +197,7 @@ INSTANTIATE_TEST_SUITE_P(Drives, BadFile, testing::Values(
     Edit{R"(min_voltage = "-1 V")", R"(min_voltage = "2 V")", R"(x.toml:36: driver.piezo.min_voltage = "2 V": min_voltage of 2 V must be less than max_voltage of 1 V)"},
     Edit{R"(min_voltage = "-1 V")", R"(min_voltage = "-1 Vsp")", R"(x.toml:36: driver.piezo.min_voltage = "-1 Vsp": pull-in voltages belong to electrodes; give the piezo volts [V])"},
     Edit{R"(max_voltage = "1 V")", "max_voltage = \"1 V\"\nmax_slew = \"3 V\"", R"(x.toml:38: driver.piezo.max_slew = "3 V": expected a slew rate [V/s], got a voltage [V])"},
-    Edit{R"(max_voltage = "1 V")", "max_voltage = \"1 V\"\nmax_slew = \"1 mV/us\"", "x.toml:30: [waveform.piezo]: the voltage changes at 120 kV/s, faster than the driver's max_slew of 1 kV/s"},
+    Edit{R"(max_voltage = "1 V")", "max_voltage = \"1 V\"\nmax_slew = \"1 mV/us\"", "x.toml:30: [waveform.piezo]: the voltage changes at 120 mV/us, faster than the driver's max_slew of 1 mV/us"},
     Edit{"[piezo]\nspan = [\"5 um\", \"240 um\"]\nthickness = \"1 um\"\nyoungs_modulus = \"61 GPa\"\ndensity = \"7750 kg/m^3\"\nd31 = \"-171 pm/V\"\n", "", "x.toml:24: [waveform.piezo]: there is no [piezo] layer to drive"}));
 
 INSTANTIATE_TEST_SUITE_P(Families, BadFile, testing::Values(
@@ -320,7 +320,7 @@ INSTANTIATE_TEST_SUITE_P(Set, BadOption, testing::Values(
     Options{{"gap.electrode=1 um"}, R"(x.toml:11: gap.contact = "2 um": must be less than gap.electrode = "1 um")"},
     Options{{"electrode.side.fringing=none"}, R"(--set electrode.side.fringing=none: [electrode.side]: missing key 'span' (a list such as ["10 um", "tip"]))"},
     Options{{"waveform.main.level=70 V"}, "--set waveform.main.level=70 V: [waveform.main]: the voltage reaches 70 V, above the driver's max_voltage of 60 V; without [driver.main] the limits are 0 V and 1.5 Vdp"},
-    Options{{"driver.main={min_voltage=\"0 V\", max_voltage=\"60 V\", max_slew=\"20 V/us\"}"}, "x.toml:27: [waveform.main]: the voltage jumps, faster than the driver's max_slew of 20 MV/s; rise_time = \"driver\" makes it as steep as that permits, in 2.5 us"},
+    Options{{"driver.main={min_voltage=\"0 V\", max_voltage=\"60 V\", max_slew=\"20 V/us\"}"}, "x.toml:27: [waveform.main]: the voltage jumps, faster than the driver's max_slew of 20 V/us; rise_time = \"driver\" makes it as steep as that permits, in 2.5 us"},
     Options{{"waveform.side.family=step"}, "--set waveform.side.family=step: [waveform.side]: no such electrode (known: main, piezo)"},
     Options{{"title=\xff"}, "--set title: the value is not UTF-8 text"},
     Options{{"structure.modes=4\nstructure.modes=5"}, R"(--set structure.modes=4\u000astructure.modes=5: expected a whole number or "auto")"},

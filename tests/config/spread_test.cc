@@ -2,6 +2,7 @@
 #include "config/spread.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -101,6 +102,23 @@ TEST(Spread, TakesTheEndsOfASpan) {
   for (const char* wrong : {"electrode.main.span", "electrode.main.span[0]", "electrode.main.span[3]", "gap.contact[1]"})
     EXPECT_THROW((void)spread_of(fmt::format(R"("{}" = {{ distribution = "normal", cov = "2 %" }})", wrong)), InvalidInput)
         << wrong;
+}
+
+TEST(Spread, SaysWhyAnEndThatFollowsTheLengthCannotDiffer) {
+  const auto refused = [](const std::string& end, const std::string& entry) {
+    try {
+      (void)read_scene(SceneFile::parse(edited(with_spread(entry), R"("240 um"])", end + "]"), "x.toml"));
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refused("\"tip\"", R"("electrode.main.span[2]" = { distribution = "normal", cov = "2 %" })"),
+              testing::HasSubstr(R"([spread."electrode.main.span[2]"]: electrode.main.span[2] is the tip of every device)"));
+  EXPECT_THAT(refused("\"90 %\"", R"("electrode.main.span[2]" = { distribution = "normal", standard_deviation = "1 um" })"),
+              testing::HasSubstr(
+                  R"(standard_deviation = "1 um": electrode.main.span[2] is a percentage of structure.length in this scene)"));
+  EXPECT_EQ(refused("\"90 %\"", R"("electrode.main.span[2]" = { distribution = "normal", cov = "2 %" })"), "");
 }
 
 TEST(Spread, RefusesValuesThatTheKeyCannotHave) {

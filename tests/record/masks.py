@@ -43,8 +43,8 @@ TEXT_MASKS = [(verb, file, re.compile(expression, re.M)) for verb, file, express
     ("", ".html", r"(<p class=\"below\">Computed by ).*(\.</p>)"),
 ]]
 
-# Progress, which is told every ten seconds: whole lines.
-PROGRESS = re.compile(r"^softland: .*, \d+ s(, cost .* \(plain step .*\)|, no feasible waveform yet)?$")
+# Progress, which is told after five seconds, and every ten from then on: whole lines.
+PROGRESS = re.compile(r"^softland: .*, \d+ s(, about \d+ s left)?(, cost .* \(plain step .*\)|, no feasible waveform yet)?$")
 
 # Columns of tables on standard output that hold times, by verb and heading.
 COLUMN_MASKS = {"effects": {"rhs"}, "accuracy": {"time"}}

@@ -49,6 +49,7 @@ Result sample() {
   d.drawing[&Metrics::major_bounce_height] = 0;
   d.drawing_status = "done";
   d.drawing_goal_met = true;
+  d.measured = "Vdp to 1 %";
   d.next_command = "softland export out/calibrated.toml --device-vdp \"14.2 V\"";
   r.devices = d;
   return r;

@@ -87,8 +87,9 @@ TEST(Headline, NamesTheReboundsThatAreTooSmallToCount) {
 }
 
 TEST(Headline, SaysWhyThereIsNoClosing) {
-  EXPECT_EQ(sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
-            "The switch has no stable rest position: it collapses before it is driven.");
+  EXPECT_EQ(
+      sentence({{"kind", "simulate"}, {"status", "collapsed_at_rest"}}),
+      "The switch has no stable rest position under what its drives stand at before t = 0: it collapses before it is driven.");
   EXPECT_EQ(sentence({{"kind", "simulate"},
                       {"status", "collapsed_onto_electrode"},
                       {"metrics", {{"initial_contact_time_s", nullptr}, {"settled", false}}}}),
@@ -133,7 +134,7 @@ TEST(Captions, StateWhatTheNumbersSay) {
             "Closed and at rest, the contact "
             "carries 2.10 µN.");
   EXPECT_EQ(plain(waveform_caption(read_result(result), "piezo")),
-            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, at most 121 kV/s; the plain step "
+            "Voltage of the drive “piezo”. Softland's waveform runs between 0 mV and 603 mV, at most 121 mV/µs; the plain step "
             "stays at 0 V.");
   EXPECT_EQ(plain(waveform_caption(read_result(result), "main")), "Voltage of the drive “main”. Both waveforms stay at 28.1 V.");
   EXPECT_EQ(plain(checks_caption(read_result(result))),

@@ -151,8 +151,8 @@ TEST(HtmlReport, DrawsTheSwitchAndWhatEveryDriveDemands) {
   result["scene"]["driver"]["piezo"] = {{"min_voltage", "-1 V"}, {"max_voltage", "1 V"}, {"max_slew", "1e6 V/s"}};
   const std::string page = html_report(read_result(result));
   for (const char* words : {"id=\"sketch\"", "length 250\u00a0µm", "to the contact 2\u00a0µm", "to the electrode 3.5\u00a0µm",
-                            "electrode main", "Peak voltage, piezo</th>", "121\u00a0kV/s", "most the driver gives",
-                            "least the driver gives", "The driver gives −1\u00a0V to 1\u00a0V, at most 1\u00a0MV/s."})
+                            "electrode main", "Peak voltage, piezo</th>", "121\u00a0mV/µs", "most the driver gives",
+                            "least the driver gives", "The driver gives −1\u00a0V to 1\u00a0V, at most 1\u00a0V/µs."})
     EXPECT_THAT(page, HasSubstr(words)) << words;
   EXPECT_THAT(page, HasSubstr("± integration only"));
   result["certified"] = json::object();
@@ -251,6 +251,21 @@ TEST(PageFiles, AreTheFilesOfTheSourceTree) {
     EXPECT_EQ(internal::page_file(name), text) << name;
   }
   EXPECT_THROW((void)internal::page_file("page/none"), std::logic_error);
+}
+
+TEST(HtmlReport, CallsNoFigureIllConditionedWhoseErrorIsBelowItsDigits) {
+  const auto note = [](double height, double error) {
+    json result = softland::test::sample_simulate_result(600);
+    result["metrics"]["major_bounce_height_m"] = result["best"]["metrics"]["major_bounce_height_m"] = height;
+    result["errors"]["major_bounce_height_m"] = error;
+    const std::string page = html_report(read_result(result));
+    const std::size_t row = page.find("Highest rebound", page.find("± integration only"));
+    return page.substr(row, page.find("</tr>", row) - row).find("ill-conditioned") != std::string::npos;
+  };
+  EXPECT_FALSE(note(0, 1e-18)) << "no rebound, to rounding";
+  EXPECT_TRUE(note(0, 3e-9)) << "the other run rebounds";
+  EXPECT_TRUE(note(1e-9, 3e-9));
+  EXPECT_FALSE(note(100e-9, 3e-9));
 }
 
 TEST(HtmlReport, GivesIllConditionedFiguresAsMedianAndRange) {

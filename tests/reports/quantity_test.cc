@@ -77,6 +77,11 @@ struct Printed {
 };
 
 std::optional<Printed> read_back(std::string text, const std::string& unit) {
+  if (unit == "V/s" && text.ends_with("V/µs")) {
+    std::optional<Printed> fast = read_back(text, "V/µs");
+    if (fast) fast->value *= 1e6, fast->last_place *= 1e6;
+    return fast;
+  }
   Printed p;
   if (text.starts_with("< ")) {
     p.bound = true;
@@ -105,6 +110,15 @@ std::optional<Printed> read_back(std::string text, const std::string& unit) {
   const std::size_t first = number.find_first_not_of('0');
   p.digits = first == std::string::npos ? 0 : static_cast<int>(number.size() - first);
   return p;
+}
+
+TEST(Quantity, OfAFastSlewIsInVoltsPerMicrosecond) {
+  EXPECT_EQ(quantity(2e7, "V/s"), "20.0\u00a0V/µs");
+  EXPECT_EQ(given_quantity(1e6, "V/s"), "1\u00a0V/µs");
+  EXPECT_EQ(quantity(999, "V/s"), "999\u00a0V/s");
+  EXPECT_EQ(quantity_beside(0, 2e7, "V/s"), "0\u00a0V/µs");
+  EXPECT_EQ(quantity_within(2e7, 3e4, "V/s", 4), "20.00\u00a0V/µs");
+  EXPECT_EQ(error_of(2e7, 3e4, "V/s", 4), "0.03\u00a0V/µs");
 }
 
 TEST(Quantity, NeverSaysMoreThanIsKnownNorLessThanIsAskedFor) {

@@ -1,6 +1,7 @@
 // What goes into a store comes out of it, whoever goes on with it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <filesystem>
 #include <thread>
@@ -35,6 +36,52 @@ TEST_F(Store, LeavesOneFileWhenItIsClosed) {
   EXPECT_THAT(names_in(file.parent_path()), ::testing::ElementsAre("study.sqlite"));
   static_cast<void>(rows_in(file));
   EXPECT_THAT(names_in(file.parent_path()), ::testing::ElementsAre("study.sqlite"));
+}
+
+// The system's files under a clock that stands after the year 9999, of which SQLite knows no date.
+class FarClock {
+ public:
+  FarClock() : usual_(sqlite3_vfs_find(nullptr)), files_(*usual_) {
+    files_.zName = "far clock";
+    files_.xCurrentTimeInt64 = [](sqlite3_vfs*, sqlite3_int64* now) {
+      constexpr sqlite3_int64 day = 86'400'000, of_the_year_10346 = 5'500'000;  // [ms], Julian
+      *now = of_the_year_10346 * day;
+      return SQLITE_OK;
+    };
+    sqlite3_vfs_register(&files_, 1);
+  }
+  FarClock(const FarClock&) = delete;
+  FarClock& operator=(const FarClock&) = delete;
+  ~FarClock() {
+    sqlite3_vfs_unregister(&files_);
+    sqlite3_vfs_register(usual_, 1);
+  }
+
+ private:
+  sqlite3_vfs* usual_;
+  sqlite3_vfs files_;
+};
+
+TEST_F(Store, IsWrittenReadAndGoneOnWithAfterTheYear9999) {
+  {
+    const FarClock clock;
+    StudyStore store(file, plan_of(100), origin(), Opening::fresh);
+    for (std::int64_t point = 0; point < 60; ++point) store.add(row_of(point));
+    store.close();
+  }
+  const FarClock clock;
+  StudyStore more(file, plan_of(100), origin(), Opening::resume);
+  for (std::int64_t point = 60; point < 100; ++point) more.add(row_of(point));
+  more.close();
+  make_store(path("now.sqlite"), 100);
+  EXPECT_EQ(dump(file), dump(path("now.sqlite")));
+  const std::vector<StoredSession> sessions = StudyReader(file).sessions();
+  ASSERT_EQ(sessions.size(), 2U);
+  for (const StoredSession& one : sessions) {
+    EXPECT_EQ(one.began, "after the year 9999");
+    EXPECT_EQ(one.last, "after the year 9999");
+    EXPECT_FALSE(one.seconds > 0) << "nobody knows how long it took";
+  }
 }
 
 TEST_F(Store, KeepsThePlanAndWhoComputed) {

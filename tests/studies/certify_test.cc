@@ -257,6 +257,12 @@ TEST(Simulate, IsNeverItsOwnJudge_optimized) {
   }
   const Closing asked = simulate(far_electrode("simulate.accuracy=1e-12"), true);
   EXPECT_THAT(asked.warnings, Contains(testing::HasSubstr("accuracy 1e-12 is not reached")));
+  // What is known is another number than what was asked for, in as many digits as that takes.
+  for (const char* setting : {"simulate.accuracy=1e-12", "simulate.accuracy=1e-11", "simulate.accuracy=1e-10"}) {
+    const std::string asked_for = std::string(setting).substr(18);
+    for (const std::string& warning : simulate(far_electrode(setting), true).warnings)
+      EXPECT_THAT(warning, testing::Not(testing::HasSubstr("still known to " + asked_for + " only")));
+  }
 }
 
 TEST(Certify, GivesTheRangeOfAChaoticCount_optimized) {

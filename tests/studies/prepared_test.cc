@@ -160,6 +160,12 @@ TEST(Prepare, NamesTheElectrodeWhosePullInCannotBeFound) {
   EXPECT_EQ(refusal([] { (void)prepare(gold({"electrode.main.span=[\"249.99999999 um\", \"250 um\"]"})); }),
             "--set electrode.main.span=[\"249.99999999 um\", \"250 um\"]: its pull-in voltage is needed for the unit Vsp or Vdp, "
             "but none could be found");
+  // Under what the other drives stand at: a piezo that pulls the beam down to its contact leaves no open state.
+  EXPECT_THAT(refusal([] {
+                (void)prepare(gold_pzt({"waveform.piezo={family=\"step\",level=\"-5 V\"}", "driver.piezo.min_voltage=-9 V",
+                                        "simulate.accuracy=1e-4"}));
+              }),
+              testing::EndsWith("but none could be found, under piezo at -5 V"));
 }
 
 }  // namespace

@@ -98,6 +98,31 @@ TEST(RobustCost, TakesAFigureThatIsNotKnownForTheWorst) {
   }
 }
 
+// Devices that fail rank behind, whatever the others do, and what sees nothing but them says so.
+TEST(RobustCost, OfFewerDevicesThatFailIsLess) {
+  const SearchSetting setting = search_setting(gold({"simulate.duration=150 us", "structure.modes=2"}), Target::bounce,
+                                               Actuator::electrostatic, "pulse", {});
+  const auto with = [](std::size_t failing) {
+    std::vector<DeviceOutcome> all(20, device());
+    for (std::size_t k = 0; k < failing; ++k) {
+      if (k % 3 == 0) all[k].failure = "no such device can be described";
+      if (k % 3 == 1) all[k].metrics.major_bounce_height = Metrics::unset;  // open
+      if (k % 3 == 2) all[k].is_held = false;
+    }
+    return all;
+  };
+  for (const char* measure : {"cvar:0.9", "quantile:0.9", "mean+2sigma", "worst"}) {
+    const RobustAim aim{.measure = parse_robust_measure(measure, conditioned_figures()), .conditions = {}};
+    const RobustCost cost(setting, aim, {});
+    EXPECT_TRUE(cost.is_told(with(0))) << measure;
+    EXPECT_FALSE(cost.is_told(with(20))) << measure;
+    for (std::size_t failing = 0; failing < 20; ++failing)
+      EXPECT_LT(cost.value(with(failing)), cost.value(with(failing + 1))) << measure << " " << failing;
+  }
+  const RobustAim yield{.measure = parse_robust_measure("yield:bounce_count == 0", conditioned_figures()), .conditions = {}};
+  EXPECT_FALSE(RobustCost(setting, yield, {}).is_told(with(0))) << "all of these rebound";
+}
+
 // Under every measure: a search has figures to go by, whatever closes several devices at once leaves out.
 TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
   int scenes = 0;

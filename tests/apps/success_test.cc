@@ -1,0 +1,292 @@
+// What is told as a success is one: exit statuses and first lines of what does not last, is refused, or gains nothing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+// A nickel bridge that touches at its centre. From 66.1 V on the electrode, long to both sides, pulls it through there.
+const std::string bridge = R"(title = "Nickel bridge, contact at the centre"
+[structure]
+kind = "clamped-clamped"
+length = "400 um"
+width = "60 um"
+thickness = "2 um"
+youngs_modulus = "190 GPa"
+density = "8900 kg/m^3"
+residual_stress = "20 MPa"
+modes = 4
+[gap]
+electrode = "2.5 um"
+contact = "1.8 um"
+[electrode.main]
+span = ["50 um", "350 um"]
+[gas]
+model = "strip"
+[contact]
+model = "asperity-uniform"
+pad_length = "10 um"
+asperity_radius = "100 nm"
+asperity_density = "1e12 1/m^2"
+asperity_height = "100 nm"
+effective_modulus = "60 GPa"
+[waveform.main]
+family = "step"
+level = "67 V"
+[driver.main]
+max_voltage = "80 V"
+[simulate]
+accuracy = 1e-4
+)";
+
+// A plate between two electrodes at one voltage, one on either side.
+const std::string between_two = R"(
+[structure]
+kind = "plate"
+mass = "2.7e-11 kg"
+stiffness = "1.92 N/m"
+area = "10000 um^2"
+[gap]
+electrode = "3 um"
+contact = "2.9 um"
+[electrode.main]
+fringing = "none"
+side = "both"
+gap = "3 um"
+[contact]
+model = "linear"
+stiffness = "1e5 N/m"
+[waveform.main]
+family = "step"
+level = "17.5 V"
+[driver.main]
+max_voltage = "30 V"
+[simulate]
+duration = "1 ms"
+)";
+
+json parsed(const Outcome& o) { return json::parse(o.out, nullptr, false); }
+
+TEST(Success, IsNotAClosedStateThatIsPulledThrough) {
+  const Workplace here;
+  write(here.path() / "bridge.toml", bridge);
+  const auto at = [&](const char* level) {
+    return here.run({"simulate", "bridge.toml", "--quiet", "--json", "-", "--set", level});
+  };
+  const Outcome leaves = at("waveform.main.level=67 V"), stays = at("waveform.main.level=63 V");
+  EXPECT_EQ(parsed(leaves)["status"], "not_settled");
+  EXPECT_EQ(parsed(leaves)["closed_state"]["stable"], false);
+  EXPECT_EQ(leaves.status, 4);
+  EXPECT_EQ(parsed(stays)["closed_state"]["stable"], true);
+  EXPECT_EQ(stays.status, 0) << stays.err;
+  // One that is let go of again was meant to: it has an open equilibrium to go back to.
+  const Outcome opens =
+      here.run({"simulate", "bridge.toml", "--quiet", "--json", "-", "--set", "simulate.duration=60 us", "--set",
+                R"(waveform.main={family="pulse",levels=["63 V","0 V"],times=["30 us"],edge="1 us"})"});
+  EXPECT_EQ(parsed(opens)["status"], "not_settled") << opens.out;
+  EXPECT_EQ(opens.status, 0) << opens.err;
+}
+
+TEST(Success, OfALimitSaysFirstThatTheHoldLevelsPullTheSwitchThrough) {
+  const Workplace here;
+  write(here.path() / "bridge.toml", bridge);
+  const std::vector<std::string> words{"limit", "bridge.toml", "--no-curves", "--quiet", "--impact-velocity", "5 mm/s"};
+  std::vector<std::string> as_json = words;
+  as_json.insert(as_json.end(), {"--json", "-"});
+  const std::string text = here.run(words).out;
+  EXPECT_THAT(text.substr(0, 300), HasSubstr("\n\nwarning: the hold levels do not keep the switch closed")) << text;
+  const json j = parsed(here.run(as_json));
+  EXPECT_EQ(j["closed_state"]["stable"], false);
+  EXPECT_THAT(j["warnings"].dump(), HasSubstr("closed equilibrium is unstable"));
+  as_json.insert(as_json.end(), {"--set", "waveform.main.level=60 V"});
+  const json stable = parsed(here.run(as_json));
+  EXPECT_EQ(stable["closed_state"]["stable"], true);
+  EXPECT_THAT(stable["warnings"].dump(), Not(HasSubstr("closed")));
+}
+
+TEST(Success, OfALimitIsRefusedWhereTheElectrodePullsAway) {
+  const Workplace here;
+  write(here.path() / "away.toml", edited(between_two, "electrode = \"3 um\"", "electrode = \"30 um\""));
+  const Outcome o = here.run({"limit", "away.toml", "--quiet", "--impact-velocity", "1 mm/s"});
+  EXPECT_EQ(o.status, 2);
+  EXPECT_EQ(o.err,
+            "softland: away.toml:13: electrode.main.gap = \"3 um\": it pulls away from the contact; its other side is nearer\n");
+}
+
+TEST(NoStableRest, IsNotCalledOverdamped) {
+  const Workplace here;
+  write(here.path() / "two.toml", between_two);
+  for (const char* verb : {"check", "pull-in"}) {
+    const Outcome o = here.run({verb, "two.toml", "--quiet"});
+    EXPECT_THAT(o.out, AllOf(HasSubstr("no step moves it, from there on its rest is unstable"), Not(HasSubstr("overdamped"))));
+    // A film as thick as honey holds a step back that would overshoot.
+    const Outcome thick = here.run({verb, "gold.toml", "--quiet", "--set", "gas.viscosity=1 Pa s"});
+    EXPECT_THAT(thick.out, HasSubstr("overdamped: equals the static one")) << thick.err;
+  }
+}
+
+// Numbers that are none, wherever a scene or a file of it may hold one, in every verb that takes a scene.
+TEST(NotFinite, IsRefusedByEveryVerbWithItsKey) {
+  const Workplace here;
+  const std::string gold = shipped("mem-gold.toml");
+  struct Written {
+    std::string text, place;
+  };
+  std::vector<Written> all{
+      {edited(gold, "\"250 um\"", "\"nan um\""), "structure.length"},
+      {edited(gold, "\"250 um\"", "\"1e400 um\""), "structure.length"},
+      {edited(gold, "modes = 4", "modes = nan"), "structure.modes"},
+      {edited(gold, "level = \"1.25 Vdp\"", "level = \"inf Vdp\""), "waveform.main.level"},
+      {edited(gold, "max_voltage = \"1.5 Vdp\"", "max_voltage = \"-inf V\""), "driver.main.max_voltage"},
+      {edited(gold, "family = \"step\"\nlevel = \"1.25 Vdp\"", "family = \"table\"\nfile = \"nan.csv\""), "waveform.main.file"}};
+  write(here.path() / "nan.csv", "time_s,main\n0,0\n1e-6,nan\n");
+  for (const char* number : {"nan", "inf", "-inf"}) {
+    all.push_back({edited(gold, "\"1 nm\"", std::string("\"") + number + " nm\""), "metrics.significant_rebound"});
+    all.push_back({edited(gold, "accuracy = 1e-6", std::string("accuracy = ") + number), "simulate.accuracy"});
+  }
+  for (const auto& [text, place] : all) {
+    write(here.path() / "odd.toml", text);
+    for (const char* verb : {"simulate", "check", "pull-in", "modes", "effects", "accuracy", "optimize", "limit", "release",
+                             "robustness", "calibrate", "export"}) {
+      const Outcome o = here.run({verb, "odd.toml"});
+      EXPECT_EQ(o.status, 2) << verb << " " << place << ": " << o.out;
+      EXPECT_THAT(o.err, AllOf(StartsWith("softland: odd.toml:"), HasSubstr(place))) << verb;
+      EXPECT_EQ(o.out, "") << verb;
+    }
+    const Outcome explored = here.run({"explore", "odd.toml", "--vary", "structure.width=10 um:20 um:2", "--out", "o.sqlite"});
+    EXPECT_EQ(explored.status, 2) << place;
+    EXPECT_THAT(explored.err, HasSubstr(place));
+  }
+  for (const char* speed : {"nan m/s", "inf m/s", "1e400 m/s"})
+    EXPECT_EQ(here.run({"limit", "gold.toml", "--impact-velocity", speed}).status, 2) << speed;
+}
+
+// Of devices of which too many cannot be, no waveform can be told from another.
+TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail) {
+  const Workplace here;
+  const std::string text = shipped("mem-gold.toml");
+  write(here.path() / "half.toml",
+        text.substr(0, text.find("[spread]")) +
+            "[spread]\n\"electrode.main.span[2]\" = { distribution = \"normal\", standard_deviation = \"100 um\" }\n");
+  const Outcome o = here.run({"optimize",
+                              "half.toml",
+                              "--quiet",
+                              "--robust",
+                              "cvar:0.9",
+                              "--samples",
+                              "16",
+                              "--budget",
+                              "200",
+                              "--out",
+                              "out",
+                              "--jobs",
+                              "1",
+                              "--set",
+                              "structure.modes=2",
+                              "--set",
+                              "simulate.accuracy=1e-3",
+                              "--set",
+                              "waveform.main.level=19 V",
+                              "--set",
+                              "driver.main.max_voltage=25 V"});
+  EXPECT_EQ(o.status, 4) << o.err;
+  const std::string first_lines = o.out.substr(0, o.out.find("\n\n"));
+  EXPECT_THAT(first_lines, AllOf(HasSubstr("outside the model"), HasSubstr("nothing is gained"))) << o.out.substr(0, 800);
+  const json found = json::parse(read(here.path() / "out/result.json"), nullptr, false);
+  EXPECT_EQ(found["goal_met"], false);
+  EXPECT_EQ(found["robust"]["measure_tells"], false);
+  EXPECT_GT(found["robust"]["failing_share"], 0.3);
+}
+
+TEST(Start, OfAnotherRestIsRefused) {
+  const Workplace here;
+  const std::string gold = edited(edited(shipped("mem-gold.toml"), "1.25 Vdp", "19 V"), "1.5 Vdp", "25 V");
+  write(here.path() / "here.toml", gold);
+  write(here.path() / "there.toml", edited(gold, "level = \"19 V\"", "level = \"19 V\"\nbefore = \"3 V\""));
+  const std::string reason = "the drive 'main' stands at 3 V before its waveform, and at 0 V in the scene";
+  for (const char* verb : {"optimize", "limit"}) {
+    const Outcome o = here.run({verb, "here.toml", "--quiet", "--start", "there.toml", "--out", "out"});
+    EXPECT_EQ(o.status, 2) << verb << o.out;
+    EXPECT_THAT(o.err, HasSubstr(reason)) << verb;
+  }
+}
+
+TEST(SetElement, OfAListIsThatOfTheWholeList) {
+  const Workplace here;
+  const auto modes = [&](const std::string& assignment) {
+    return here.run({"pull-in", "gold.toml", "--quiet", "--json", "-", "--set", assignment});
+  };
+  const Outcome whole = modes(R"(electrode.main.span=["60 um", "200 um"])"), element = modes("electrode.main.span[2]=200 um");
+  EXPECT_EQ(element.status, 0) << element.err;
+  EXPECT_EQ(element.out, whole.out);
+  EXPECT_EQ(modes("electrode.main.span[2]=tip").out, modes(R"(electrode.main.span=["60 um", "tip"])").out);
+  EXPECT_EQ(modes("electrode.main.span[3]=tip").err,
+            "softland: --set electrode.main.span[3]=tip: electrode.main.span is a list of 2, counted from 1\n");
+  EXPECT_EQ(modes("piezo.span[1]=5 um").err,
+            "softland: --set piezo.span[1]=5 um: piezo.span is no list in this scene: give the whole list, such as --set "
+            "'piezo.span=[\"10 um\", \"tip\"]'\n");
+  EXPECT_EQ(modes("electrode.main.span[2]=2 V").err.substr(0, 47), "softland: --set electrode.main.span[2]=2 V: val");
+}
+
+// What a run writes does not grow with it: a beam in vacuum that swings, and bounces, for a thousand periods.
+TEST(LongRuns, LeaveFilesThatCanBeReadAgain_optimized) {
+  const Workplace here;
+  const std::string gold = shipped("mem-gold.toml");
+  write(here.path() / "long.toml", edited(edited(gold, "1.25 Vdp", "19 V"), "1.5 Vdp", "25 V"));
+  const auto run = [&](const std::string& duration) {
+    const Outcome o = here.run({"simulate", "long.toml", "--quiet", "--out", "out", "--set", "gas.viscosity=1e-9 Pa s", "--set",
+                                "simulate.tolerance=1e-4", "--set", "simulate.duration=" + duration});
+    EXPECT_EQ(o.status, 0) << o.err;
+    const std::string csv = read(here.path() / "out/trajectory.csv");
+    return std::pair(std::count(csv.begin(), csv.end(), '\n'), fs::file_size(here.path() / "out/result.json"));
+  };
+  const auto [rows, bytes] = run("20 ms");
+  EXPECT_GT(rows, 10'000);
+  EXPECT_LE(rows, 20'001);
+  EXPECT_LT(bytes, std::uintmax_t{8} << 20U);
+  EXPECT_EQ(here.run({"report", "out"}).status, 0);
+  // Every figure is that of all knots.
+  const json metrics = json::parse(read(here.path() / "out/result.json"), nullptr, false)["metrics"];
+  const std::string csv = read(here.path() / "out/trajectory.csv");
+  double highest = 0;
+  bool touched = false;
+  std::istringstream lines(csv.substr(csv.find('\n') + 1));
+  for (std::string line; std::getline(lines, line);) {
+    const double gap = std::strtod(line.c_str() + line.find(',') + 1, nullptr);
+    touched = touched || gap <= 0;
+    if (touched) highest = std::max(highest, gap);
+  }
+  EXPECT_NEAR(highest, metrics["major_bounce_height_m"].get<double>(), 1e-3 * highest) << "extremes stay";
+}
+
+TEST(Export, OfASlowDeviceEndsOnTheHoldLevel) {
+  const Workplace here;
+  write(here.path() / "pulse.toml",
+        edited(edited(edited(shipped("mem-gold.toml"), "family = \"step\"", "family = \"pulse\""), "level = \"1.25 Vdp\"",
+                      "levels = [\"16 V\", \"3 V\", \"15 V\"]\ntimes = [\"20 us\", \"90 us\"]\nedge = \"1 us\""),
+               "1.5 Vdp", "25 V"));
+  const auto last = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"export", "pulse.toml"});
+    const std::string text = here.run(words).out;
+    return text.substr(text.rfind('\n', text.size() - 2) + 1);
+  };
+  const json modes = json::parse(here.run({"modes", "pulse.toml", "--json", "-"}).out);
+  const double frequency = modes["natural_frequencies_rad_s"][0].get<double>() / 6.283185307179586;
+  for (const double slower : {1.0, 7.0, 50.0})
+    EXPECT_TRUE(last({"--device-frequency", std::to_string(frequency / slower) + " Hz"}).ends_with(",15\n")) << slower;
+}
+
+}  // namespace
+}  // namespace softland
