@@ -239,8 +239,21 @@ double RobustCost::share_fulfilling(std::span<const DeviceOutcome> outcomes, con
 
 bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
   constexpr double rounding = 1e-9;
+  if (!aim_.measure.yield && aim_.measure.risk.kind == RiskKind::mean_sigma) return !std::ranges::all_of(outcomes, fails);
   return aim_.measure.yield ? share_fulfilling(outcomes, *aim_.measure.yield) > 0
                             : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
+}
+
+// Of scores where some devices fail: their deviation would fall again where most of them do.
+double RobustCost::risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure) {
+  if (measure.kind != RiskKind::mean_sigma || std::ranges::none_of(outcomes, fails)) return risk(scores, measure);
+  std::vector<double> others;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    if (!fails(outcomes[k])) others.push_back(scores[k]);
+  }
+  const double own = others.size() < 2 ? worst_score : risk(others, measure);
+  const double share = 1 - static_cast<double>(others.size()) / static_cast<double>(outcomes.size());
+  return own + (1 + measure.parameter) * worst_score * std::sqrt(share);
 }
 
 double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAim& aim) const {
@@ -250,7 +263,7 @@ double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAi
     times.push_back(o.closed() ? over(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
   double value = aim.measure.yield
                      ? 1 - share_fulfilling(outcomes, *aim.measure.yield) + weight_of_scores * sample_mean(scores)
-                     : risk(scores, aim.measure.risk);
+                     : risk_of(outcomes, scores, aim.measure.risk);
   value += static_cast<double>(std::ranges::count_if(outcomes, fails)) / static_cast<double>(outcomes.size());
   value += weight_of_time * sample_quantile(times, 0.5);
   for (const Criterion& condition : aim.conditions) {

@@ -10,6 +10,9 @@
 //   cost  R(s) + (share of devices that fail) + 0.02 (median of first contact over that of the step)
 //         + 10 (sum over the conditions: violation, where positive)
 //
+// Of mean+sigma R is that of the devices that do not fail, plus 3 (1 + factor) times the root of the share of those that do: the
+// deviation over all of them would fall again where most fail.
+//
 // R is the measure that was asked for (sampling/risk.h), or for a yield 1 less the share of devices that fulfil its condition,
 // plus a tenth of the mean of s, which leads the search where the share does not change. A condition holds when 95 % of the
 // devices fulfil it: its violation is the 95 % quantile of that of the devices (config/criterion.h).
@@ -86,6 +89,7 @@ class RobustCost {
  private:
   [[nodiscard]] ClosingOptions run(const SampledDevice& device, const std::vector<Signal>& signals) const;
   [[nodiscard]] std::vector<double> scores(std::span<const DeviceOutcome> outcomes) const;
+  [[nodiscard]] static double risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure);
   [[nodiscard]] static double share_fulfilling(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
 
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& waveforms, std::size_t k,
