@@ -66,7 +66,7 @@ CostFigures CostObserver::figures(const Trajectory& end) {
     f.reopened = open->height > contact_gap_ / 2;
   }
   f.closest = 0;
-  f.steady_force_time = end.steady_force_time;
+  f.steady_force_time = std::isfinite(end.steady_force_time) ? end.steady_force_time : rebounds_.last_time();
   f.separated = separated_;
   f.rebound_height = rebound_height_;
   if (std::isfinite(last_rebound_end_)) f.last_rebound_end = last_rebound_end_;
@@ -117,8 +117,7 @@ double cost(const Aim& aim, Status status, const CostFigures& f, const CostScale
       case Target::steady:
         break;
     }
-    const bool is_steady = std::isfinite(f.steady_force_time);
-    return ratio(is_steady ? f.steady_force_time : 2 * (f.first_touch + scale.score_window), scale.step.first_touch);
+    return ratio(f.steady_force_time, scale.step.first_touch);
   };
   // What lets go again is no landing, however softly it came: behind all that stay, before what never touches.
   const double reopening = f.reopened ? 5 : 0;

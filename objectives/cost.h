@@ -19,7 +19,7 @@
 //                              of impact energy over that of the step (of a soft touch that ratio itself can be some 1e-4, and
 //                              B / 1000 would lead); force: largest contact force; drive: energy that the drives give
 //                              within the score; steady: from when on the contact force is steady over first touch of the
-//                              step, twice the end of the score where it is not
+//                              step, the end of the score where it is not
 //
 // A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B.
 //
@@ -98,18 +98,18 @@ class Aim {
 /// The raw figures behind the costs, over a run that ends a fixed time after first contact.
 struct CostFigures {
   bool touched = false;
-  bool reopened = false;        ///< at the end of the run, by more than half of the contact gap
-  double closest = 0;           ///< smallest separation while nothing touched [m]
-  double first_touch = 0;       ///< [s]
-  double touch_speed = 0;       ///< largest over all touches [m/s]
-  double rebound_height = 0;    ///< [m]
-  double separated = 0;         ///< time above the first-touch plane after first touch [s]
-  double last_rebound_end = 0;  ///< of those above the significant height; first_touch if none [s]
-  double impact_energy = 0;     ///< [J]
-  double landing_excess = 0;    ///< [J]; 0 when it was not measured
-  double peak_force = 0;        ///< [N]; NaN on a rigid contact
-  double drive_energy = 0;      ///< [J]; NaN when it was not measured
-  double steady_force_time = std::numeric_limits<double>::quiet_NaN();  ///< Trajectory::steady_force_time [s]
+  bool reopened = false;         ///< at the end of the run, by more than half of the contact gap
+  double closest = 0;            ///< smallest separation while nothing touched [m]
+  double first_touch = 0;        ///< [s]
+  double touch_speed = 0;        ///< largest over all touches [m/s]
+  double rebound_height = 0;     ///< [m]
+  double separated = 0;          ///< time above the first-touch plane after first touch [s]
+  double last_rebound_end = 0;   ///< of those above the significant height; first_touch if none [s]
+  double impact_energy = 0;      ///< [J]
+  double landing_excess = 0;     ///< [J]; 0 when it was not measured
+  double peak_force = 0;         ///< [N]; NaN on a rigid contact
+  double drive_energy = 0;       ///< [J]; NaN when it was not measured
+  double steady_force_time = 0;  ///< Trajectory::steady_force_time, the end of the run where that is not known [s]
 };
 [[nodiscard]] CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options);
 

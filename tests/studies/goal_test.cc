@@ -18,6 +18,7 @@ Metrics closing(bool settled, int bounces, double settling_time, double velocity
   m.impact_velocity = velocity;
   m.impact_energy = energy;
   m.peak_contact_force = 1e-3 * velocity;
+  m.steady_force_time = m.permanent_contact_time;
   m.drive_energy = 10 * energy;
   return m;
 }
