@@ -33,7 +33,7 @@ ResultDevices::Row row(const std::string& name, double bounce_free, double speed
                     {"peak_contact_force_N", std::numeric_limits<double>::infinity()}}};
 }
 
-Result sample() {
+Result devices_result() {
   Result r = search_alone();
   ResultDevices d{.spread = "gaps ± 2 %", .count = 2000, .seed = 7, .closings = 150'000, .measure = "cvar:0.9", .waveform = "catch",
                   .better_than_plain_step = true};
@@ -56,25 +56,25 @@ Result sample() {
 }
 
 TEST(DevicesReport, SaysFirstWhatDevicesDo) {
-  const std::string words = internal::headline(sample()).whole();
+  const std::string words = internal::headline(devices_result()).whole();
   EXPECT_THAT(words, HasSubstr("for the drawing closes it without a rebound at 33.4\u00a0µs: drawing.toml. Of 2000 devices that differ, 95 % "
                                "touch at no more than 33.0\u00a0mm/s instead of 107\u00a0mm/s: best.toml. With Vdp measured to 1 % on each, 95 % "
                                "touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
-  const std::string text = text_report(sample());
+  const std::string text = text_report(devices_result());
   EXPECT_EQ(text.find("The waveform for the drawing"), 0U);
   for (const char* part : {"plain step", "for the drawing", "for the devices", "Vdp to 1 %", "107\u00a0mm/s", "732\u00a0nm", "∞",
-                           "catch by cvar:0.9: touch within 90.0\u00a0µs", "The condition t_i < 3 step holds: 97.0\u00a0% of the devices"})
+                           "catch by cvar:0.9: touch within 90.0\u00a0µs", "The condition t_i < 3 step holds: 97.0 % of the devices"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
 TEST(DevicesReport, SaysHowManyLandWhereHalfOfThemDo) {
-  Result r = sample();
+  Result r = devices_result();
   r.devices->rows[2].bounce_free = 0.77;
-  EXPECT_THAT(internal::headline(r).whole(), HasSubstr("77.0\u00a0% land without a rebound (plain step 0.0\u00a0%), and 95 % touch"));
+  EXPECT_THAT(internal::headline(r).whole(), HasSubstr("77.0 % land without a rebound (plain step 0.0 %), and 95 % touch"));
 }
 
 TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
-  Result r = sample();
+  Result r = devices_result();
   r.devices->better_than_plain_step = false;
   r.devices->worse_in = {"largest_impact_velocity_m_s"};
   r.devices->spread_assumed = true;
@@ -84,19 +84,19 @@ TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
 }
 
 TEST(DevicesReport, ComesBackFromJsonAsItWas) {
-  const nlohmann::json written = result_json(sample());
+  const nlohmann::json written = result_json(devices_result());
   const Result read = read_result(written);
   ASSERT_TRUE(read.devices);
   EXPECT_EQ(internal::devices_json(*read.devices), written.at("devices"));
   EXPECT_EQ(read.devices->drawing_goal_met, true);
-  EXPECT_EQ(internal::headline(read).whole(), internal::headline(sample()).whole());
+  EXPECT_EQ(internal::headline(read).whole(), internal::headline(devices_result()).whole());
   EXPECT_TRUE(written.at("drawing").at("goal_met"));
   EXPECT_TRUE(written["devices"]["rows"][0]["quantile_95"]["peak_contact_force_N"].is_null()) << "infinite";
   EXPECT_FALSE(read_result(result_json(search_alone())).devices);
 }
 
 TEST(DevicesReport, StandsFirstOnThePage) {
-  const std::string page = html_report(sample());
+  const std::string page = html_report(devices_result());
   const std::size_t table = page.find("id=\"devices\""), figures = page.find("id=\"figures\"");
   ASSERT_NE(table, std::string::npos);
   EXPECT_LT(table, figures);

@@ -65,7 +65,7 @@ class Devices {
   Devices(const Prepared& nominal, const EnsembleDrive& drive)
       : nominal_(nominal), drive_(drive), ensemble_(nominal, 1), builder_(ensemble_), drives_(nominal) {
     if (!drive.known.calibration().is_empty())
-      meter_.emplace(nominal, drive.known.calibration().pull_in_error.has_value(), 1e-11);
+      meter_.emplace(nominal, Gauges::of(drive.known.calibration()), 1e-11);
   }
 
   std::vector<double> figures(const std::vector<double>& values) {
