@@ -1,6 +1,6 @@
 // Closings of devices that differ, one at a time and in lanes: what building and closing one of them takes on one core, sampling
 // included, and the error of its B_H against a run at a tight setting.
-//   bench_fleet [SCENE [DEVICES [ACCURACY [TOLERANCE]]]]     (default: mem-gold.toml 2000 1e-4 1e-5)
+//   bench_fleet [SCENE [DEVICES [ACCURACY [TOLERANCE [key=value ...]]]]]     (default: mem-gold.toml 2000 1e-4 1e-5)
 // ACCURACY chooses the quadrature, as simulate.accuracy does. The output is JSON, times in seconds: medians of five rounds that
 // take the paths in turn.
 #include <algorithm>
@@ -28,14 +28,14 @@ double seconds() { return std::chrono::duration<double>(std::chrono::steady_cloc
 
 /// Devices of a scene, and the window that a search scores.
 struct Fleet {
-  Fleet(const std::string& scene, std::string_view accuracy, std::uint64_t count)
-      : nominal(prepared(scene, accuracy)), ensemble(nominal, count), signals(nominal.signals()) {
+  Fleet(const std::string& scene, const std::vector<std::string>& changes, std::uint64_t count)
+      : nominal(prepared(scene, changes)), ensemble(nominal, count), signals(nominal.signals()) {
     build();
     window = std::max(0.6 * 2 * M_PI / nominal.model.angular_frequencies()[0], 2.5 * nominal.model.in_contact_period());
   }
-  static Prepared prepared(const std::string& scene, std::string_view accuracy) {
+  static Prepared prepared(const std::string& scene, const std::vector<std::string>& changes) {
     SceneFile file = SceneFile::load(scene);
-    file.set("simulate.accuracy=" + std::string(accuracy));
+    for (const std::string& change : changes) file.set(change);
     return prepare(file);
   }
   void build() {
@@ -83,8 +83,11 @@ int main(int argc, char** argv) {
   const std::string scene = argc > 1 ? argv[1] : SOFTLAND_SCENES "/mem-gold.toml", accuracy = argc > 3 ? argv[3] : "1e-4";
   const std::uint64_t devices = argc > 2 ? std::stoul(argv[2]) : 2000;
   const double tolerance = argc > 4 ? std::stod(argv[4]) : 1e-5;
-  Fleet fleet(scene, accuracy, devices);
-  const Fleet judge(scene, tight_accuracy, std::min(devices, judged_devices));
+  std::vector<std::string> changes(argv + std::min(argc, 5), argv + argc);
+  changes.push_back("simulate.accuracy=" + accuracy);
+  Fleet fleet(scene, changes, devices);
+  changes.back() = "simulate.accuracy=" + std::string(tight_accuracy);
+  const Fleet judge(scene, changes, std::min(devices, judged_devices));
   const std::vector<DeviceOutcome> tight = judge.close(tight_tolerance, Vectors::none);
 
   std::vector<double> building;

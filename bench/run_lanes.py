@@ -2,6 +2,7 @@
 """Closings of an ensemble per second and core against SciPy's LSODA, all measured in turn in one run.
 
     bench/run_lanes.py BUILD > results/lanes.md
+    bench/run_lanes.py BUILD --kinds      # the table of kinds of scenes alone
 
 BUILD is configured with SOFTLAND_BENCH=ON. Takes about five minutes on a machine that does nothing else. PYTHON names the interpreter that
 has NumPy and SciPy.
@@ -25,6 +26,19 @@ ROUNDS = 5
 # Quadrature and tolerance: what simulate takes for accuracy 1e-4, and the loosest whose B_H is right to 1e-4 for 95 % of the devices.
 SETTINGS = (("1e-4", "1e-5"), ("1e-3", "3e-5"))
 PATHS = ("none", "avx2", "avx512")
+SPLINE = 'waveform.main={family="bspline", levels=["0 V", "12 V", "18 V", "16 V", "19 V", "17 V", "18 V", "17.8 V"], duration="120 us"}'
+DRIVER = ("driver.main.sample_rate=25 MHz", "driver.main.bits=14", "driver.main.bandwidth=1 MHz", "driver.main.max_slew=20 V/us")
+KINDS = (("a cantilever of four modes", "mem-gold.toml", ()),
+         ("its step from a source of 25 MS/s, 14 bits, 1 MHz, 20 V/us", "mem-gold.toml", ("waveform.main.rise_time=1 us", *DRIVER)),
+         ("a spline", "mem-gold.toml", (SPLINE,)),
+         ("the spline from that source", "mem-gold.toml", (SPLINE, *DRIVER)),
+         ("six modes", "mem-gold.toml", ("structure.modes=6",)),
+         ("eight modes", "mem-gold.toml", ("structure.modes=8",)),
+         ("a bridge that stretches, five modes", "new/clamped-clamped.toml", ()),
+         ("van der Waals and Casimir force", "nem-tin.toml", ()),
+         *((f"film {film}", "mem-gold.toml", (f"gas.model={film}",)) for film in ("veijola", "gallis-torczynski", "near-contact", "guo-alexeenko")),
+         ("a plate, an electrode on either side, damped contact", "two-electrodes.toml", ()),
+         ("a plate, an electrode of two faces, two films over slits", "gap-closing-actuator.toml", ()))
 ONE_THREAD = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
@@ -54,9 +68,32 @@ def timed(program, words, vectors):
         return time.monotonic() - begin, used.ru_maxrss / 1024
 
 
+def kinds(bench):
+    """Closings of each kind of scene, one at a time and in lanes."""
+    print(f"""## Kinds of scenes
+
+Closings of 200 devices per second and core, by one at a time and in lanes: medians of five rounds that take turns, so that their ratio holds where something else runs on the machine too.
+
+- made by `bench/run_lanes.py BUILD --kinds`, {datetime.date.today()}, revision {revision()}
+- machine: {machine()}
+
+| scene | one at a time | avx2 | avx512 | avx2, times | avx512, times |
+|---|---|---|---|---|---|""")
+    for words, scene, changes in KINDS:
+        found = json_of(bench, HERE.parent / "scenes" / scene, "200", *SETTINGS[0], *changes)
+        if found["not_in_lanes"]:
+            sys.exit(f"{words}: {found['not_in_lanes']}")
+        closing = {path["vectors"]: path["closing_s"] for path in found["paths"]}
+        rates = [f"{1 / closing[path]:.0f}" if path in closing else "" for path in PATHS]
+        times = [f"{closing['none'] / closing[path]:.1f}" if path in closing else "" for path in PATHS[1:]]
+        print(f"| {words} | {' | '.join(rates + times)} |", flush=True)
+
+
 def main():
     build = pathlib.Path(sys.argv[1]).resolve()
     bench, program = build / "bench" / "bench_fleet", build / "apps" / "softland"
+    if "--kinds" in sys.argv:
+        return kinds(bench)
     settings, odeint = against_scipy(bench)
     measured = [p for p in PATHS if any(p == found["vectors"] for found in settings[0][0]["paths"])]
     one = statistics.median(odeint)
@@ -99,7 +136,9 @@ Wall time on all cores.
         print(f"| {what} | {measured[-1]} | {seconds:.1f} s | {megabytes:.0f} MB |", flush=True)
     print(f"""
 Commands: `softland {" ".join(str(w) if w != SCENE else "scenes/mem-gold.toml" for w in search)}` and
-`softland robustness scenes/mem-gold.toml --samples N`, for the short window with `--set simulate.duration="100 us"`.""")
+`softland robustness scenes/mem-gold.toml --samples N`, for the short window with `--set simulate.duration="100 us"`.
+""")
+    kinds(bench)
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ namespace {
 using internal::calibration_words;
 using internal::error_words;
 using internal::is_erring;
+using internal::outside_words;
 using internal::percent;
 using internal::quantile_95;
 using internal::quantile_text;

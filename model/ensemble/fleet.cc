@@ -332,11 +332,12 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   const fleet::LaneRunner run = runner(vectors);
   if (run == nullptr) return ends;
 
+  fleet::LaneDrives drives;
   std::optional<LaneLayout> layout;
   std::vector<std::size_t> places;     // of those that run
   std::vector<Eigen::VectorXd> rests;  // from which they start
   for (std::size_t i = 0; i < closings.size(); ++i) {
-    if (!why_not_in_lanes(*closings[i].model).empty() || !fleet::go_in_lanes(closings[i].drives)) continue;
+    if (!why_not_in_lanes(*closings[i].model).empty() || !drives.go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));
     if (!rest) continue;
     const LaneLayout own = layout_of(*closings[i].model);
@@ -350,7 +351,6 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   std::vector<LaneSwitch> switches;
   std::vector<Teller> tellers;
   std::vector<LaneClosing> followed(places.size());
-  fleet::LaneDrives drives;
   switches.reserve(places.size()), tellers.reserve(places.size());
   for (std::size_t n = 0; n < places.size(); ++n) {
     const FleetClosing& c = closings[places[n]];

@@ -134,12 +134,11 @@ void append_smooth(std::vector<LanePiece>& all, const Run& run, double window) {
 
 }  // namespace
 
-bool go_in_lanes(std::span<const Signal> drives) {
-  const auto goes = [](const SignalPiece& p) {
+bool goes_in_lanes(const Signal& drive) {
+  return std::ranges::all_of(drive.pieces(), [](const SignalPiece& p) {
     return std::ranges::count_if(p.terms, is_tail) <= LanePiece::most_tails &&
            std::ranges::all_of(p.terms, [](const SignalTerm& term) { return is_cubic(term) || is_tail(term); });
-  };
-  return std::ranges::all_of(drives, [&](const Signal& drive) { return std::ranges::all_of(drive.pieces(), goes); });
+  });
 }
 
 std::vector<LanePiece> pieces_of(const Signal& drive) {
@@ -193,6 +192,14 @@ SmoothedDrive smoothed(std::vector<LanePiece> exact) {
     i = end;
   }
   return drive;
+}
+
+bool LaneDrives::go_in_lanes(std::span<const Signal> drives) {
+  return std::ranges::all_of(drives, [this](const Signal& drive) {
+    const auto [found, is_new] = go_.try_emplace(&drive);
+    if (is_new) found->second = goes_in_lanes(drive);
+    return found->second;
+  });
 }
 
 const std::vector<LanePiece>& LaneDrives::of(const Signal& drive, double fastest) {

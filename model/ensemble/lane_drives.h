@@ -12,8 +12,8 @@
 
 namespace softland::fleet {
 
-/// Whether these are straight lines, steady sines, cubic polynomials and a few exponentials.
-[[nodiscard]] bool go_in_lanes(std::span<const Signal> drives);
+/// Whether a signal is straight lines, steady sines, cubic polynomials and a few exponentials.
+[[nodiscard]] bool goes_in_lanes(const Signal& drive);
 
 /// The pieces of a signal that goes in lanes.
 [[nodiscard]] std::vector<LanePiece> pieces_of(const Signal& drive);
@@ -27,9 +27,10 @@ struct SmoothedDrive {
 };
 [[nodiscard]] SmoothedDrive smoothed(std::vector<LanePiece> exact);
 
-/// The pieces of drives, those of one drive once however many switches it closes.
+/// What drives are in lanes, found once however many switches a drive closes.
 class LaneDrives {
  public:
+  [[nodiscard]] bool go_in_lanes(std::span<const Signal> drives);
   /// For a switch whose modes have angular frequencies up to `fastest` [rad/s].
   [[nodiscard]] const std::vector<LanePiece>& of(const Signal& drive, double fastest);
 
@@ -38,6 +39,7 @@ class LaneDrives {
     std::vector<LanePiece> exact;
     SmoothedDrive smooth;
   };
+  std::unordered_map<const Signal*, bool> go_;
   std::unordered_map<const Signal*, Known> known_;
 };
 

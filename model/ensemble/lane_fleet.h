@@ -46,12 +46,13 @@ class Lanes {
   struct Lane {
     LaneClosing* closing = nullptr;  // null: idle
     const LanePiece* drive[most_drives] = {};
-    int count[most_drives] = {};  // of its pieces
-    int piece[most_drives] = {};  // that holds
-    bool runs[most_drives] = {};  // over pieces that join, without a stop
-    int corrections = 0;          // of a target on the plane
-    double stop = 0;              // the next breakpoint, or the end of the window [s]
-    double longest = 0;           // that resolves the drives [s]
+    int count[most_drives] = {};    // of its pieces
+    int piece[most_drives] = {};    // that holds
+    bool runs[most_drives] = {};    // over pieces that join, without a stop
+    bool curves[most_drives] = {};  // more than a cubic
+    int corrections = 0;            // of a target on the plane
+    double stop = 0;                // the next breakpoint, or the end of the window [s]
+    double longest = 0;             // that resolves the drives [s]
     bool touched = false, touching = false;
     double begin = 0, left = 0, speed = 0;  // of the touch: begin, end [s], speed [m/s]
     double extreme = 0;                     // deepest or highest since the last event [m]
@@ -65,26 +66,27 @@ class Lanes {
   void set_drives(V time) {
     for (int k = 0; k < layout_.drives; ++k) {
       volts_[k] = value_[k] + slope_[k] * (time - begin_[k]);
-      if (bends_[k]) {
-        const V s = time - begin_[k];
-        volts_[k] += s * s * (bend_[k] + s * twist_[k]);
+      if (curves_[k]) add_curves(k, time);
+    }
+  }
+
+  // What is more than straight lines.
+  void add_curves(int k, V time) {
+    const V s = time - begin_[k];
+    volts_[k] += s * s * (bend_[k] + s * twist_[k]);
+    for (std::size_t l = 0; l < width; ++l) {
+      const Lane& lane = lane_[l];
+      if (!lane.curves[k]) continue;
+      const double t = time[l];
+      if (lane.runs[k]) {
+        volts_[k][l] = running(k, l, t);
+        continue;
       }
-      if (tails_[k]) {
-        for (std::size_t l = 0; l < width; ++l) {
-          const LanePiece& piece = lane_[l].drive[k][lane_[l].piece[k]];
-          if (piece.tail[0] != 0) volts_[k][l] = volts_[k][l] + tails_of(piece, time[l] - piece.begin);
-        }
-      }
-      if (swings_[k]) {
-        for (std::size_t l = 0; l < width; ++l) {
-          if (amplitude_[k][l] == 0 && amplitude_slope_[k][l] == 0) continue;
-          const double t = time[l], envelope = amplitude_[k][l] + amplitude_slope_[k][l] * (t - begin_[k][l]);
-          volts_[k][l] = volts_[k][l] + envelope * std::sin(frequency_[k][l] * t + phase_[k][l]);
-        }
-      }
-      if (!runs_[k]) continue;
-      for (std::size_t l = 0; l < width; ++l)
-        if (lane_[l].runs[k]) volts_[k][l] = running(k, l, time[l]);
+      const LanePiece& piece = lane.drive[k][lane.piece[k]];
+      if (piece.tail[0] != 0) volts_[k][l] = volts_[k][l] + tails_of(piece, t - piece.begin);
+      if (piece.amplitude == 0 && piece.amplitude_slope == 0) continue;
+      const double envelope = piece.amplitude + piece.amplitude_slope * (t - piece.begin);
+      volts_[k][l] = volts_[k][l] + envelope * std::sin(piece.angular_frequency * t + piece.phase);
     }
   }
 
@@ -614,19 +616,12 @@ class Lanes {
       const LanePiece& piece = lane.drive[k][at];
       begin_[k][l] = piece.begin, value_[k][l] = piece.value, slope_[k][l] = piece.slope;
       bend_[k][l] = piece.square, twist_[k][l] = piece.cube;
-      amplitude_[k][l] = piece.amplitude, amplitude_slope_[k][l] = piece.amplitude_slope;
-      frequency_[k][l] = piece.angular_frequency, phase_[k][l] = piece.phase;
-      if (piece.amplitude != 0 || piece.amplitude_slope != 0) swings_[k] = true;
-      if (piece.square != 0 || piece.cube != 0) bends_[k] = true;
-      if (piece.tail[0] != 0) tails_[k] = true;
       int next = at + 1;
       while (next < lane.count[k] && lane.drive[k][next].joins) ++next;
       lane.runs[k] = next > at + 1;
-      if (lane.runs[k]) {
-        runs_[k] = true;
-      } else if (piece.longest_step < lane.longest) {
-        lane.longest = piece.longest_step;
-      }
+      lane.curves[k] = lane.runs[k] || piece.tail[0] != 0 || piece.amplitude != 0 || piece.amplitude_slope != 0;
+      if (lane.curves[k] || piece.square != 0 || piece.cube != 0) curves_[k] = true;
+      if (!lane.runs[k] && piece.longest_step < lane.longest) lane.longest = piece.longest_step;
       if (next < lane.count[k] && lane.drive[k][next].begin < lane.stop) lane.stop = lane.drive[k][next].begin;
     }
     max_step_[l] = lane.longest < most_turn_[l] ? lane.longest : most_turn_[l];
@@ -723,9 +718,7 @@ class Lanes {
   // Of the drives.
   V begin_[most_drives], value_[most_drives], slope_[most_drives], volts_[most_drives];
   V bend_[most_drives], twist_[most_drives];  // coefficients of s^2 and s^3
-  V amplitude_[most_drives], amplitude_slope_[most_drives], frequency_[most_drives], phase_[most_drives];
-  bool swings_[most_drives] = {}, bends_[most_drives] = {}, tails_[most_drives] = {},
-       runs_[most_drives] = {};  // in any lane, ever
+  bool curves_[most_drives] = {};             // more than straight lines, in any lane, ever
   // Of the motion.
   V q_[capacity], v_[capacity], a_[capacity], trial_q_[capacity], trial_v_[capacity], trial_a_[capacity];
   V slope_q_[7][capacity], slope_v_[7][capacity];

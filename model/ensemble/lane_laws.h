@@ -80,7 +80,8 @@ class UsualLaws {
     };
     const Film film = film_;
     const Force force = force_;
-    for (int s = 0; s < layout_.segments; ++s) {
+    const int segments = layout_.segments;
+    for (int s = 0; s < segments; ++s) {
       const Segment segment = layout_.segment[s];
       if (segment.electrode < 0) {
         if constexpr (has_film) {
