@@ -61,7 +61,8 @@ Quantity parse_number(const Key& key, const toml::node& node) {
   } else {
     throw InvalidInput("not a number with a unit" + expected(key));
   }
-  if (!has_unit && !key.is_bare_number()) throw InvalidInput("no unit" + expected(key));
+  const bool may_be_bare = key.is_bare_number() || std::ranges::find(key.dimensions, dimension::none) != key.dimensions.end();
+  if (!has_unit && !may_be_bare) throw InvalidInput("no unit" + expected(key));
   const auto& allowed = key.dimensions;
   if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), quantity.dimension) == allowed.end()) {
     throw InvalidInput(fmt::format("expected {}, got {}", describe(allowed.front()), describe(quantity.dimension)));

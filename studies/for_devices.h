@@ -5,7 +5,8 @@
 //   2  its candidates ranked again on 16 devices, the best of them on 64
 //   3  a race over families and measures (race.h)
 //   4  choice on 512 other devices, beside the plain step
-//   5  searches in units that are measured on every device: Vdp to 1 %, Vdp and period to 0.2 %, the closing time of one slow step
+//   5  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of switches
+//      for which that is no time, Vdp and period to 0.2 %)
 //   6  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
 //      which moves 95 % quantiles by less than 0.4 %
 //

@@ -327,10 +327,13 @@ TEST(Lanes, GiveTheSameBitsBesideOtherDrives) {
     if (one.name == "step" || one.name == "dither" || one.name == "spline") drives.push_back(prepare(one.file).signals());
   ASSERT_EQ(drives.size(), 3U);
   std::vector<DeviceClosing> mixed;
-  for (std::size_t k = 0; k < fleet.devices.size(); ++k)
+  for (std::size_t k = 0; k < fleet.devices.size(); ++k) {
+    const std::vector<Signal>& signals = drives[k % drives.size()];
+    const double steady = hold_of(*fleet.devices[k].model, signals).steady_force(fleet.nominal.scene.metrics);
     mixed.push_back({.device = &fleet.devices[k],
-                     .signals = &drives[k % drives.size()],
-                     .run = {.duration = fleet.nominal.duration, .tolerance = 1e-5}});
+                     .signals = &signals,
+                     .run = {.duration = fleet.nominal.duration, .tolerance = 1e-5, .steady_force = steady}});
+  }
   for (const Vectors vectors : vectors_here()) {
     const std::vector<std::string> together = digits(close_devices(mixed, fleet.nominal.scene.metrics, vectors));
     for (std::size_t k = 0; k < drives.size(); ++k) {

@@ -11,6 +11,7 @@
 #include "model/closing.h"
 #include "model/constants.h"
 #include "model/pull_in.h"
+#include "studies/simulate.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
