@@ -75,10 +75,13 @@ void set_calibration(SceneFile& file, const std::string& given) {
   std::set<std::string> seen;
   for (const std::string& one : parts_of(given.substr(0, in))) {
     const std::size_t colon = one.find(':');
-    const std::string name = one.substr(0, colon), error = colon != std::string::npos ? one.substr(colon + 1) : name == measured_time ? "0 s" : "0 %";
+    const std::string name = one.substr(0, colon), error = colon != std::string::npos ? one.substr(colon + 1)
+                                                           : name == measured_time    ? "0 s"
+                                                                                      : "0 %";
     require(name == measured_pull_in || name == measured_frequency || name == measured_time, [&] {
-      return fmt::format("--calibrate {}: '{}' is no measurement; there are {}, {} and {}, with an error such as {}:1 % or {}:50 ns",
-                         shown(given), name, measured_pull_in, measured_frequency, measured_time, measured_pull_in, measured_time);
+      return fmt::format(
+          "--calibrate {}: '{}' is no measurement; there are {}, {} and {}, with an error such as {}:1 % or {}:50 ns",
+          shown(given), name, measured_pull_in, measured_frequency, measured_time, measured_pull_in, measured_time);
     });
     require(seen.insert(name).second, [&] { return fmt::format("--calibrate {}: {} stands twice", shown(given), name); });
     file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));

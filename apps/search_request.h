@@ -44,10 +44,10 @@ struct StartingScene {
 /// A search, or several that differ in their seeds, ready to run.
 struct PlannedSearch {
   SceneFile scene;
-  OptimizeOptions options;  ///< with the first of the seeds
-  std::optional<RobustOptions> robust;          ///< of a search over devices by one measure
+  OptimizeOptions options;                       ///< with the first of the seeds
+  std::optional<RobustOptions> robust;           ///< of a search over devices by one measure
   std::optional<ForDevicesOptions> for_devices;  ///< of one that races measures and families
-  std::vector<std::string> conditions;  ///< in the words of the options
+  std::vector<std::string> conditions;           ///< in the words of the options
   std::vector<StartingScene> starts;
   std::uint64_t seeds = 1;
   nlohmann::json plan;  ///< all that decides what is found, see plan_of()

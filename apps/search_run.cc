@@ -161,10 +161,9 @@ std::vector<std::string> SearchRun::commands() const {
 
 std::string search_words(const Common& c, const PlannedSearch& search) {
   const OptimizeOptions& o = search.options;
-  const std::string devices =
-      search.robust        ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text)
-      : search.for_devices ? std::string(", then one for devices that differ")
-                           : std::string();
+  const std::string devices = search.robust ? fmt::format(", over devices of the spread ({})", search.robust->aim.measure.text)
+                              : search.for_devices ? std::string(", then one for devices that differ")
+                                                   : std::string();
   return fmt::format("{}: searching a {} waveform, actuator {}, target {}{}", c.scene.empty() ? c.out : c.scene,
                      families_in_words(o.family), name_of(actuators, o.actuator), o.target.text(), devices);
 }

@@ -29,8 +29,7 @@ bool assume_spread(SceneFile& file) {
     vary(file, "structure.thickness", "2 %");
     vary(file, "structure.youngs_modulus", "3 %");
   }
-  if (!gaps.empty())
-    file.set(fmt::format("spread.gaps={{keys=[{}],distribution=\"normal\",cov=\"2 %\"}}", fmt::join(gaps, ",")));
+  if (!gaps.empty()) file.set(fmt::format("spread.gaps={{keys=[{}],distribution=\"normal\",cov=\"2 %\"}}", fmt::join(gaps, ",")));
   return true;
 }
 

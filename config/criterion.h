@@ -49,7 +49,8 @@ struct RobustMeasure {
   std::string text;                ///< as it was given
 };
 
-/// cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (of no significant rebound). Throws InvalidInput with the broken rule.
+/// cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (of no significant rebound). Throws InvalidInput with
+/// the broken rule.
 [[nodiscard]] RobustMeasure parse_robust_measure(std::string_view text, std::span<const FigureName> figures);
 
 }  // namespace softland

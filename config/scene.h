@@ -111,8 +111,8 @@ struct SimulateOptions {
 struct Calibration {
   /// Of the measurement, relative, one standard deviation; none: it is not measured.
   std::optional<double> pull_in_error = {}, frequency_error = {};
-  /// Of the closing time of a step to closing_step times the nominal Vdp, one standard deviation [s]; none: it is not measured. It
-  /// tells the volts, and is never measured beside Vdp.
+  /// Of the closing time of a step to closing_step times the nominal Vdp, one standard deviation [s]; none: it is not measured.
+  /// It tells the volts, and is never measured beside Vdp.
   std::optional<double> time_error = {};
   /// Into which devices are sorted by what is measured, each with one waveform; none: every device has its own.
   std::optional<int> classes = {};

@@ -61,7 +61,7 @@ Quantity parse_number(const Key& key, const toml::node& node) {
   } else {
     throw InvalidInput("not a number with a unit" + expected(key));
   }
-  const bool may_be_bare = key.is_bare_number() || std::ranges::find(key.dimensions, dimension::none) != key.dimensions.end();
+  const bool may_be_bare = key.is_bare_number() || (!key.dimensions.empty() && key.dimensions.front() == dimension::none);
   if (!has_unit && !may_be_bare) throw InvalidInput("no unit" + expected(key));
   const auto& allowed = key.dimensions;
   if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), quantity.dimension) == allowed.end()) {

@@ -75,10 +75,10 @@ std::vector<std::string> cells(const ResultDevices::Row& row) {
   for (const Column& c : columns) {
     const auto found = row.at_95.find(std::string(c.key));
     const double value = found == row.at_95.end() ? Metrics::unset : found->second;
-    all.push_back(std::isinf(value)               ? "∞"
-                  : std::isnan(value)             ? "—"
+    all.push_back(std::isinf(value)                                ? "∞"
+                  : std::isnan(value)                              ? "—"
                   : c.key == "major_bounce_height_m" && value == 0 ? "none"
-                                                  : quantity(value, ensemble_figure(c.key).unit));
+                                                                   : quantity(value, ensemble_figure(c.key).unit));
   }
   all.push_back(percent(std::max(0.0, row.open)));
   all.push_back(percent(row.collapsed));
@@ -137,9 +137,9 @@ json internal::devices_json(const ResultDevices& d) {
     for (const auto& [key, value] : r.at_95) figures[key] = json_number(value);
     rows.push_back({{"name", r.name},
                     {"knowledge",
-                      {{"Vdp", json_number(r.pull_in_error)},
-                       {"frequency", json_number(r.frequency_error)},
-                       {"time_s", json_number(r.time_error)}}},
+                     {{"Vdp", json_number(r.pull_in_error)},
+                      {"frequency", json_number(r.frequency_error)},
+                      {"time_s", json_number(r.time_error)}}},
                     {"searched_for_it", r.searched_for_it},
                     {"bounce_free", json_number(r.bounce_free)},
                     {"does_not_close", json_number(r.open)},
@@ -194,22 +194,22 @@ std::string internal::devices_headline(const Result& result) {
   if (!d.better_than_plain_step) {
     std::string figures;
     for (const std::string& key : d.worse_in) figures += (figures.empty() ? "" : " and ") + figure_name(key);
-    return fmt::format("On devices that differ{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
-                       "best.toml is the plain step.",
-                       assumed, figures);
+    return fmt::format(
+        "On devices that differ{}, no waveform that was found is as good as the plain step: the best is worse in its {}. "
+        "best.toml is the plain step.",
+        assumed, figures);
   }
-  const std::string lands =
-      own->bounce_free >= half
-          ? fmt::format("{} land without a rebound (plain step {}), and 95 % touch", percent(own->bounce_free),
-                        percent(step->bounce_free))
-          : std::string("95 % touch");
+  const std::string lands = own->bounce_free >= half ? fmt::format("{} land without a rebound (plain step {}), and 95 % touch",
+                                                                   percent(own->bounce_free), percent(step->bounce_free))
+                                                     : std::string("95 % touch");
   std::string words = fmt::format("Of {:.0f} devices that differ{}, {} at no more than {} instead of {}: best.toml.", d.count,
                                   assumed, lands, speed_of(*own), speed_of(*step));
   if (measured != nullptr && !d.next_command.empty()) {
     const char* const what = std::isfinite(measured->time_error) ? "one closing time measured to 50 ns" : "Vdp measured to 1 %";
-    words += measured->bounce_free >= half
-                 ? fmt::format(" With {} on each, {} land without a rebound: calibrated.toml.", what, percent(measured->bounce_free))
-                 : fmt::format(" With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
+    words +=
+        measured->bounce_free >= half
+            ? fmt::format(" With {} on each, {} land without a rebound: calibrated.toml.", what, percent(measured->bounce_free))
+            : fmt::format(" With {} on each, 95 % touch at no more than {}: calibrated.toml.", what, speed_of(*measured));
   }
   return words;
 }
@@ -229,8 +229,9 @@ std::string internal::devices_text(const ResultDevices& d) {
     out += "\n";
   }
   if (!d.measure.empty())
-    out += "\n" + wrapped(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.", d.waveform,
-                                      d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread)) +
+    out += "\n" +
+           wrapped(fmt::format("best.toml is a {} waveform, searched by {}; {:.0f} closings in all. Devices: {}.", d.waveform,
+                               d.measure == "drawing" ? "the nominal search" : d.measure, d.closings, d.spread)) +
            "\n";
   if (d.front.size() > 1) {
     out += "\nSooner or softer, of 95 % of the devices:\n";
@@ -241,8 +242,7 @@ std::string internal::devices_text(const ResultDevices& d) {
            wrapped(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                                percent(c.share))) +
            "\n";
-  if (!d.next_command.empty())
-    out += "\n" + wrapped(fmt::format("For a device that was measured: {}", d.next_command)) + "\n";
+  if (!d.next_command.empty()) out += "\n" + wrapped(fmt::format("For a device that was measured: {}", d.next_command)) + "\n";
   return out;
 }
 
@@ -281,8 +281,9 @@ std::string internal::devices_section(const ResultDevices& d) {
       }
     }
   }
-  std::string body = fmt::format("<p>{:.0f} fresh devices: {}.{} Figures are those that 95 % of the devices stay below.</p>\n", d.count,
-                                 escaped(d.spread), d.spread_assumed ? " The scene has no [spread]: this one is assumed." : "");
+  std::string body =
+      fmt::format("<p>{:.0f} fresh devices: {}.{} Figures are those that 95 % of the devices stay below.</p>\n", d.count,
+                  escaped(d.spread), d.spread_assumed ? " The scene has no [spread]: this one is assumed." : "");
   body += table_html(head, rows);
   if (d.front.size() > 1) {
     body += "<p class=\"below\">Sooner or softer: what 95 % of the devices reach with the other candidates.</p>\n<ul>\n";

@@ -326,9 +326,10 @@ std::string html_report(const Result& result) {
                .headline_rest = line.rest,
                .doubt = checks_agree(result) ? "" : checks_caption(result),
                .keys = result.devices ? devices_keys(*result.devices) : key_numbers(result),
-               .body = (result.devices ? devices_section(*result.devices) : std::string()) + drawn_switch(result) + charts(drawn) + figures_table(result) + checks_table(result) +
-                       seeds_section(result.seeds) + list_of(result.warnings, "Warnings", "warnings") + parameters_table(result) +
-                       facts(result) + reproduce(result) + scene(result),
+               .body = (result.devices ? devices_section(*result.devices) : std::string()) + drawn_switch(result) +
+                       charts(drawn) + figures_table(result) + checks_table(result) + seeds_section(result.seeds) +
+                       list_of(result.warnings, "Warnings", "warnings") + parameters_table(result) + facts(result) +
+                       reproduce(result) + scene(result),
                .style = chart_style(),
                .scripts = chart_scripts(drawn)});
 }

@@ -127,7 +127,7 @@ struct ResultRobust {
 /// Of a search for devices, what its waveforms do on fresh ones.
 struct ResultDevices {
   struct Row {
-    std::string name;                                                     ///< "plain step", "for the drawing", "Vdp to 1 %"
+    std::string name;                                                         ///< "plain step", "for the drawing", "Vdp to 1 %"
     double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< of what is measured, relative; NaN: it is not
     double time_error = Metrics::unset;                                       ///< of a closing time [s]
     bool searched_for_it = true;

@@ -211,9 +211,7 @@ std::optional<ResultRobust> robust(const json& found) {
 }
 
 // A number that is null in JSON where it is infinite.
-double or_infinite(const json& value) {
-  return value.is_null() ? std::numeric_limits<double>::infinity() : number(value);
-}
+double or_infinite(const json& value) { return value.is_null() ? std::numeric_limits<double>::infinity() : number(value); }
 
 ResultDevices::Row devices_row(const json& one) {
   return {.name = text(one, {"name"}),

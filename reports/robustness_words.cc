@@ -72,7 +72,9 @@ std::string why_no_indices(const SobolEstimate& e) {
                      e.failed_rows, e.rows);
 }
 
-bool is_erring(const Calibration& c) { return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0 || c.time_error.value_or(0) > 0; }
+bool is_erring(const Calibration& c) {
+  return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0 || c.time_error.value_or(0) > 0;
+}
 
 std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
   return DeviceDrives(ensemble.nominal()).shown(ensemble.values(k));

@@ -178,8 +178,8 @@ void DeviceMeter::learn_times() {
     if (std::isfinite(time) && (told_.empty() || time > told_.back().time)) told_.push_back({.time = time, .volts = volts});
   }
   require(told_.size() > 2, [&] {
-    return fmt::format("{}: no step to {} Vdp closes the switch: its closing time cannot be measured", nominal_->scene.file.name(),
-                       closing_step);
+    return fmt::format("{}: no step to {} Vdp closes the switch: its closing time cannot be measured",
+                       nominal_->scene.file.name(), closing_step);
   });
 }
 

@@ -103,9 +103,9 @@ struct Gauges {
   }
 };
 
-/// Measures devices against the nominal one, with the errors of a calibration. A closing time tells the volts of a device as those
-/// that make the nominal one close as late: the nominal device closes under a step to closing_step Vdp / s in the time that the
-/// device takes under closing_step Vdp, and s is the factor of its volts.
+/// Measures devices against the nominal one, with the errors of a calibration. A closing time tells the volts of a device as
+/// those that make the nominal one close as late: the nominal device closes under a step to closing_step Vdp / s in the time that
+/// the device takes under closing_step Vdp, and s is the factor of its volts.
 class DeviceMeter {
  public:
   /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there

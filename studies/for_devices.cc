@@ -54,7 +54,7 @@ bool closes(const DeviceOutcome& o) { return o.closed(); }
 // What the choice asks of a candidate beside its rank.
 struct Bounds {
   std::array<double, judged_figures.size()> figures;  // 95 % quantiles of the plain step
-  double first_touch, open;                             // likewise, and its share of devices that do not close
+  double first_touch, open;                           // likewise, and its share of devices that do not close
 
   explicit Bounds(const std::vector<DeviceOutcome>& step)
       : first_touch(quantile_95(step, "initial_contact_time_s")), open(1 - share_of(step, closes)) {
@@ -127,7 +127,8 @@ class DevicesStudy {
   ForDevicesResult run() {
     drawing_options_ = options_of_drawing();
     OptimizeResult drawing = optimize(file_, drawing_options_);
-    result_.emplace(ForDevicesResult{.varied = first().given, .drawing = drawing, .best = std::move(drawing), .spread_assumed = spread_assumed_});
+    result_.emplace(ForDevicesResult{
+        .varied = first().given, .drawing = drawing, .best = std::move(drawing), .spread_assumed = spread_assumed_});
     if (!result_->drawing.best_scene || stopped()) return interrupted_here();
     try {
       search_devices();
@@ -173,7 +174,8 @@ class DevicesStudy {
 
   void search_devices() {
     tell("building devices", 0);
-    cost_.emplace(first(), tail_aim_, own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
+    cost_.emplace(first(), tail_aim_,
+                  own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
     const std::vector<DeviceOutcome> step = closed(*cost_, {}, cost_->devices());
     make_aims(step);
     std::vector<ChosenFrom> pool = ranked_again();
@@ -197,8 +199,7 @@ class DevicesStudy {
     const double step_time = quantile_95(step, "initial_contact_time_s");
     const std::vector<FigureName> figures = conditioned_figures();
     tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
-    aims_ = {.tail = tail_aim_,
-             .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_}};
+    aims_ = {.tail = tail_aim_, .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_}};
     if (!std::isfinite(step_time) || says_when_to_close()) return;
     const auto bound = [&](double times) {
       return parse_criterion(fmt::format("initial_contact_time < {:.17g} s", times * step_time), figures);
@@ -209,9 +210,8 @@ class DevicesStudy {
 
   // A condition of the user's takes the place of the usual bound.
   [[nodiscard]] bool says_when_to_close() const {
-    return std::ranges::any_of(conditions_, [](const Criterion& one) {
-      return ensemble_figures()[one.figure].key == "initial_contact_time_s";
-    });
+    return std::ranges::any_of(
+        conditions_, [](const Criterion& one) { return ensemble_figures()[one.figure].key == "initial_contact_time_s"; });
   }
   [[nodiscard]] bool keeps_conditions(const std::vector<DeviceOutcome>& outcomes) const {
     return std::ranges::all_of(conditions_, [&](const Criterion& one) { return share_that(one, outcomes) >= constrained_share; });
@@ -243,7 +243,8 @@ class DevicesStudy {
   std::vector<ChosenFrom> ranked_again() {
     std::vector<ChosenFrom> all;
     for (TriedWaveform& one : result_->drawing.tried)
-      all.push_back({.measure = "drawing", .family = one.family, .waveforms = std::move(one.waveforms), .parameters = {}, .variables = {}});
+      all.push_back(
+          {.measure = "drawing", .family = one.family, .waveforms = std::move(one.waveforms), .parameters = {}, .variables = {}});
     result_->drawing.tried.clear();
     all = best_on(std::move(all), scouted_on, kept_of_scouted);
     all = best_on(std::move(all), ranked_on, most_of_ranked);
@@ -337,8 +338,8 @@ class DevicesStudy {
   }
 
   void judge() {
-    const std::vector<NamedDrive> drives{
-        {.name = for_the_drawing, .waveforms = all_drives(result_drawing_waveforms())}, of_candidate(0)};
+    const std::vector<NamedDrive> drives{{.name = for_the_drawing, .waveforms = all_drives(result_drawing_waveforms())},
+                                         of_candidate(0)};
     std::vector<DevicesRow> measured;
     if (known_->calibration().is_empty()) measured = searched_in_units(result_->candidates.front());
     tell("verdict on fresh devices", 0);
@@ -362,9 +363,8 @@ class DevicesStudy {
     return searched;
   }
   [[nodiscard]] NamedDrive of_candidate(std::size_t n) const {
-    return {.name = for_the_devices,
-            .waveforms = all_drives(result_->candidates[n].waveforms),
-            .calibration = known_->calibration()};
+    return {
+        .name = for_the_devices, .waveforms = all_drives(result_->candidates[n].waveforms), .calibration = known_->calibration()};
   }
 
   // The row of a drive that is judged, by its name or as one that is driven alike.
@@ -531,10 +531,10 @@ class DevicesStudy {
       watch_.throw_if_stopped();
       const std::vector<DeviceOutcome> outcomes = closed(fresh, one->waveforms, fresh.devices());
       result_->front.push_back({.first_touch = quantile_95(outcomes, "initial_contact_time_s"),
-                               .impact_speed = quantile_95(outcomes, "largest_impact_velocity_m_s"),
-                               .bounce_free = share_of(outcomes, is_bounce_free),
-                               .measure = one->measure,
-                               .waveform = one->family});
+                                .impact_speed = quantile_95(outcomes, "largest_impact_velocity_m_s"),
+                                .bounce_free = share_of(outcomes, is_bounce_free),
+                                .measure = one->measure,
+                                .waveform = one->family});
     }
     std::ranges::stable_sort(result_->front, {}, &FrontPoint::first_touch);
   }

@@ -5,15 +5,16 @@
 //   2  its candidates ranked again on 16 devices, the best of them on 64
 //   3  a race over families and measures (race.h)
 //   4  choice on 512 other devices, beside the plain step
-//   5  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of switches
+//   5  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of
+//   switches
 //      for which that is no time, Vdp and period to 0.2 %)
 //   6  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
 //      which moves 95 % quantiles by less than 0.4 %
 //
-// What wins: of the candidates that are not worse than the plain step, that close in at most five times its 95 % time (seven where
-// half the devices land) and leave no more devices open than it does (and half a percent), the one with most devices that land
-// without a rebound, where that is at least half of them; else that of the least tail of the cost. Where the verdict finds the
-// winner worse than the plain step the next one is judged; where all are, the plain step wins.
+// What wins: of the candidates that are not worse than the plain step, that close in at most five times its 95 % time (seven
+// where half the devices land) and leave no more devices open than it does (and half a percent), the one with most devices that
+// land without a rebound, where that is at least half of them; else that of the least tail of the cost. Where the verdict finds
+// the winner worse than the plain step the next one is judged; where all are, the plain step wins.
 //
 // The stages are counted in closings, so that the result is a function of scene, options and seed.
 #pragma once
@@ -77,7 +78,7 @@ struct ForDevicesResult {
   bool spread_assumed = false;              ///< the scene says nothing of how devices differ
   std::optional<ChosenFrom> chosen;         ///< none where the plain step wins
   std::vector<ChosenFrom> candidates = {};  ///< the best first
-  Robustness verdict;  ///< of plain step, drawing and winner
+  Robustness verdict;                       ///< of plain step, drawing and winner
   std::vector<DevicesRow> rows = {};
   std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
   std::vector<FrontPoint> front = {};            ///< by first touch

@@ -128,7 +128,8 @@ class Race {
     }
   }
 
-  [[nodiscard]] std::vector<Point> starts_of(std::size_t family, const std::vector<std::map<std::string, Waveform>>& begun) const {
+  [[nodiscard]] std::vector<Point> starts_of(std::size_t family,
+                                             const std::vector<std::map<std::string, Waveform>>& begun) const {
     const SearchSpace& space = settings_[family].space;
     const std::vector<Variable> variables = space.variables();
     std::vector<Point> all = space.starts();
@@ -187,8 +188,8 @@ class Race {
         [&](std::size_t i) {
           Runner& r = runners[i];
           r.outcomes = closed(r.family, r.x, devices, options_.jobs);
-          r.bounce_free = static_cast<double>(std::ranges::count_if(r.outcomes, is_bounce_free)) /
-                          static_cast<double>(r.outcomes.size());
+          r.bounce_free =
+              static_cast<double>(std::ranges::count_if(r.outcomes, is_bounce_free)) / static_cast<double>(r.outcomes.size());
           r.tail = cost_.value(r.outcomes, aims_.tail);
           r.share = cost_.value(r.outcomes, aims_.share);
         },

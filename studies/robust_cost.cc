@@ -233,7 +233,8 @@ std::vector<double> RobustCost::scores(std::span<const DeviceOutcome> outcomes) 
 }
 
 double RobustCost::share_fulfilling(std::span<const DeviceOutcome> outcomes, const Criterion& condition) {
-  const auto good = std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); });
+  const auto good =
+      std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); });
   return static_cast<double>(good) / static_cast<double>(outcomes.size());
 }
 
@@ -261,9 +262,8 @@ double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAi
   std::vector<double> times, of_devices;
   for (const DeviceOutcome& o : outcomes)
     times.push_back(o.closed() ? over(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
-  double value = aim.measure.yield
-                     ? 1 - share_fulfilling(outcomes, *aim.measure.yield) + weight_of_scores * sample_mean(scores)
-                     : risk_of(outcomes, scores, aim.measure.risk);
+  double value = aim.measure.yield ? 1 - share_fulfilling(outcomes, *aim.measure.yield) + weight_of_scores * sample_mean(scores)
+                                   : risk_of(outcomes, scores, aim.measure.risk);
   value += static_cast<double>(std::ranges::count_if(outcomes, fails)) / static_cast<double>(outcomes.size());
   value += weight_of_time * sample_quantile(times, 0.5);
   for (const Criterion& condition : aim.conditions) {

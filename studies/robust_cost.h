@@ -89,7 +89,8 @@ class RobustCost {
  private:
   [[nodiscard]] ClosingOptions run(const SampledDevice& device, const std::vector<Signal>& signals) const;
   [[nodiscard]] std::vector<double> scores(std::span<const DeviceOutcome> outcomes) const;
-  [[nodiscard]] static double risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores, const Risk& measure);
+  [[nodiscard]] static double risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores,
+                                      const Risk& measure);
   [[nodiscard]] static double share_fulfilling(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
 
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& waveforms, std::size_t k,

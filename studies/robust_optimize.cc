@@ -195,7 +195,8 @@ class RobustSearch {
       for (std::size_t i = 0; i < u.size(); ++i) u[i] = variables_[i].lower + u[i] * (variables_[i].upper - variables_[i].lower);
       add(u);
     }
-    for (const std::size_t devices : {std::min(stages[0], cost_.devices()), std::min(stages[1], cost_.devices()), cost_.devices()}) {
+    for (const std::size_t devices :
+         {std::min(stages[0], cost_.devices()), std::min(stages[1], cost_.devices()), cost_.devices()}) {
       const std::size_t begun = run_tasks(
           all.size(), options_.jobs,
           [&](std::size_t i) {
@@ -365,9 +366,10 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   Candidate winner = candidates.front();
   try {
     if (out.search.termination != Termination::interrupted)
-      winner = compared(std::move(candidates), setting,
-                        RobustCost(setting, robust.aim, own_devices(setting, known, selection_devices, options.seed, 1, options.jobs, watch)),
-                        options.jobs);
+      winner = compared(
+          std::move(candidates), setting,
+          RobustCost(setting, robust.aim, own_devices(setting, known, selection_devices, options.seed, 1, options.jobs, watch)),
+          options.jobs);
   } catch (const Interrupted&) {
     out.search.termination = Termination::interrupted;
   }

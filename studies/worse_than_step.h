@@ -15,10 +15,10 @@ namespace softland {
 
 /// Keys of ensemble_figures() that are compared.
 inline constexpr std::array judged_figures{std::string_view("largest_impact_velocity_m_s"),
-                                             std::string_view("major_bounce_height_m"),
-                                             std::string_view("peak_contact_force_N")};
+                                           std::string_view("major_bounce_height_m"), std::string_view("peak_contact_force_N")};
 
-/// The figures in which the drive is worse, of outcomes by device; `significant`: height of a rebound from which on it counts [m].
+/// The figures in which the drive is worse, of outcomes by device; `significant`: height of a rebound from which on it counts
+/// [m].
 [[nodiscard]] std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive,
                                                      const std::vector<DeviceOutcome>& step, double significant,
                                                      std::uint64_t seed);

@@ -28,7 +28,7 @@
 namespace softland::apps {
 namespace {
 
-constexpr double usual_error = 0.01;  // of a measurement whose error nobody gives, relative
+constexpr double usual_error = 0.01;        // of a measurement whose error nobody gives, relative
 constexpr double usual_time_error = 50e-9;  // of a closing time [s]
 
 struct ExportRequest {
@@ -95,9 +95,7 @@ struct Measurements {
             "--measured: a closing time tells the volts of a device, as Vdp does: give one of them");
   }
   [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value && !time.value; }
-  [[nodiscard]] const std::string& said() const {
-    return pull_in.value ? pull_in.said : time.value ? time.said : frequency.said;
-  }
+  [[nodiscard]] const std::string& said() const { return pull_in.value ? pull_in.said : time.value ? time.said : frequency.said; }
 };
 
 // Of a measurement, relative: what [calibration] says, or the usual one, which is told.
@@ -134,7 +132,8 @@ DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watc
     const DeviceUnits deviation =
         deviation_of_units(p, measured.pull_in.value.has_value() || measured.time.value.has_value(), job_count({}), watch);
     if (measured.time.value)
-      warn_if_strange(measured.time, volts, deviation.volts, told.volts_by_time * calibration.time_error.value_or(usual_time_error));
+      warn_if_strange(measured.time, volts, deviation.volts,
+                      told.volts_by_time * calibration.time_error.value_or(usual_time_error));
     if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error);
     if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error);
   }
@@ -212,13 +211,15 @@ int export_verb(const Common& c, const ExportRequest& request) {
 void add_export(Verb& verb) {
   const auto request = std::make_shared<ExportRequest>();
   verb.positional("RESULT", request->result, "folder that --out named, result.json, or a scene file");
-  verb.option("--format", request->format, "NAME", "csv (default), spice-pwl, or codes: the samples as integers 0 to 2^bits - 1");
+  verb.option("--format", request->format, "NAME",
+              "csv (default), spice-pwl or codes; these are the samples as integers 0 to 2^bits - 1");
   verb.option("--signal", request->signal, "NAME",
-              "told (default): what the source is told, the samples of one that takes some; output: what it makes of that");
-  verb.option("--measured", request->measured, "WHAT",
-              "measured on a device, \"Vdp=54.2 V,frequency=10.2 kHz\" or one of them: its own waveform, with voltages in "
-              "proportion to the dynamic pull-in voltage, and times to the period; \"time=36.1 us\", the closing time under a step "
-              "to 1.2 Vdp of the nominal device, tells the voltages as well");
+              "told (default) or output: what the source is told, the samples of one that takes some, or what it makes of that");
+  verb.option(
+      "--measured", request->measured, "WHAT",
+      "measured on a device, \"Vdp=54.2 V,frequency=10.2 kHz\" or one of them: its own waveform, with voltages in "
+      "proportion to the dynamic pull-in voltage, and times to the period; \"time=36.1 us\", the closing time under a step "
+      "to 1.2 Vdp of the nominal device, tells the voltages as well");
   verb.optional("--device-vdp", request->device_pull_in, "VOLTAGE", "the same as --measured \"Vdp=VOLTAGE\"");
   verb.optional("--device-frequency", request->device_frequency, "FREQUENCY",
                 "the same as --measured \"frequency=FREQUENCY\": the first natural frequency");

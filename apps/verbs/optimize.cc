@@ -203,10 +203,11 @@ int run_for_devices(const Asked& asked) {
   if (result.calibrated)
     write_scene(run.folder(), "calibrated", read_back(*result.calibrated, "calibrated.toml", result.drawing.scene), left);
   if (!result.rows.empty()) {
-    const RobustnessReport report{.nominal = result.varied,
-                                  .found = result.verdict,
-                                  .options = {.samples = asked.search.for_devices->verdict, .seed = options.seed, .jobs = options.jobs},
-                                  .command = c.command};
+    const RobustnessReport report{
+        .nominal = result.varied,
+        .found = result.verdict,
+        .options = {.samples = asked.search.for_devices->verdict, .seed = options.seed, .jobs = options.jobs},
+        .command = c.command};
     write_robustness(run.folder(), report);
     left.insert(left.end(), robustness_files.begin(), robustness_files.end());
   }
@@ -305,8 +306,10 @@ void add_optimize(Verb& verb) {
               "drives that the search may shape: " + first_is_default(listed(actuators)));
   verb.option(
       "--waveform", request->waveform, "NAME",
-      "family to search: step, pulse, catch (default with a measure of --robust and --calibrate), harmonic, ramp, staircase, knots "
-      "(default with a measure of --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines; with a number of levels, knots, "
+      "family to search: step, pulse, catch (default with a measure of --robust and --calibrate), harmonic, ramp, staircase, "
+      "knots "
+      "(default with a measure of --robust), coast, dual-pulse, pulses, s-curve, dither, chirp, bspline or sines; with a number "
+      "of levels, knots, "
       "pulses or sines: knots:8; for each drive its own: main=step,pzt=pulse; several, each begun where those before it ended, "
       "of which the best goes on: " +
           fmt::format("{} (default), {} (for both, and electrodes on both sides), {} (for pzt)",
@@ -332,12 +335,13 @@ void add_optimize(Verb& verb) {
                 "begin with the waveform of this scene or result (of softland limit, say), which must be of the searched drives; "
                 "from another family, with the nearest waveform of the searched one; it stays the best unless a better one is "
                 "found, and without --robust the search never ends worse; may be repeated");
-  verb.optional("--budget", request->budget, "N|TIME",
-                fmt::format("evaluations, or time (\"90 s\"); default: {} for an electrode, {} for several drives, {} for a "
-                            "piezo, half as much again for {}; and {} closings of devices; with --robust auto all closings together, "
-                            "with a measure closings of devices, {}",
-                            default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
-                            default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), race_closings, default_closings));
+  verb.optional(
+      "--budget", request->budget, "N|TIME",
+      fmt::format("evaluations, or time (\"90 s\"); default: {} for an electrode, {} for several drives, {} for a "
+                  "piezo, half as much again for {}; and {} closings of devices; with --robust auto all closings together, "
+                  "with a measure closings of devices, {}",
+                  default_budget(Target::bounce, Shaped::electrode), default_budget(Target::bounce, Shaped::several),
+                  default_budget(Target::bounce, Shaped::piezo), targets_with_own_cost(), race_closings, default_closings));
   verb.with_seed(request->seed, "same result, whatever --jobs is");
   verb.optional("--seeds", request->seeds, "N",
                 "search from N seeds, --seed and those after it, as one study: the best is reported, and how the others spread");

@@ -8,9 +8,11 @@ Section calibration_section() {
           .is_named = true,
           .beside = classes_key,
           .keys = {number("error", {dimension::none, dimension::time}, {.least = 0, .most = 0.5},
-                       "of the measurement, one standard deviation; of a time in its unit")
+                          "of the measurement, one standard deviation; of a time in its unit")
                        .by_default("'0 %'")},
-          .about = "what is measured on every device before it is driven: NAME is Vdp, frequency or time, that of closing under a step to 1.2 Vdp"};
+          .about =
+              "what is measured on every device before it is driven: NAME is Vdp, frequency or time, that of closing under a "
+              "step to 1.2 Vdp"};
 }
 
 }  // namespace softland::internal

@@ -98,13 +98,15 @@ TEST_F(BadInput, Options) {
        "The following argument was not expected: --certify (see softland optimize --help)"},
       {{"optimize", "--resume", "--out", "folder"}, "--resume: folder holds no search to go on with"},
       {{"optimize", "gold.toml", "--robust", "wrost"},
-       "--robust wrost: 'wrost' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst, yield and yield:\"bounce_count == "
+       "--robust wrost: 'wrost' is no measure: there are cvar:0.9, quantile:0.95, mean+2sigma, worst, yield and "
+       "yield:\"bounce_count == "
        "0\""},
       {{"optimize", "gold.toml", "--robust", "cvar:2"}, "--robust cvar:2: the level of cvar must be at least 0 and less than 1"},
       {{"optimize", "gold.toml", "--robust", "worst", "--constrain", "t_i < 3 V"},
        "--constrain: initial_contact_time in 't_i < 3 V' must be a time [s]"},
       {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vsp"},
-       "--calibrate Vsp: 'Vsp' is no measurement; there are Vdp, frequency and time, with an error such as Vdp:1 % or time:50 ns"},
+       "--calibrate Vsp: 'Vsp' is no measurement; there are Vdp, frequency and time, with an error such as Vdp:1 % or time:50 "
+       "ns"},
       {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vdp:1 %,frequency,Vdp:2 %"},
        "--calibrate Vdp:1 %,frequency,Vdp:2 %: Vdp stands twice"},
       {{"robustness", "gold.toml", "--calibrate", "frequency,frequency in 3 classes"},
@@ -117,8 +119,16 @@ TEST_F(BadInput, Options) {
       {{"optimize", "gold.toml", "--robust", "worst", "--samples", "3"}, "--samples 3: must be a whole number from 8 on"},
       {{"optimize", "gold.toml", "--robust", "worst", "--optimizer", "bobyqa"},
        "--optimizer bobyqa: a robust search has a method of its own"},
-      {{"optimize", "gold.toml", "--samples=3"},
-       "--calibrate and --samples are for a search over devices: give --robust too, such as --robust cvar:0.9"},
+      {{"optimize", "gold.toml", "--samples=3"}, "--samples 3: must be a whole number from 100 on"},
+      {{"optimize", "gold.toml", "--robust", "none", "--samples=300"},
+       "--calibrate and --samples are for a search over devices: they say nothing with --robust none"},
+      {{"optimize", "gold.toml", "--robust", "auto", "--seeds", "2"},
+       "--seeds: is for searches on the nominal device, or over devices by one measure such as --robust cvar:0.9"},
+      {{"optimize", "gold.toml", "--robust", "worst", "--constrain", "t_i < 0 step"},
+       "--constrain: '0' in 't_i < 0 step' must be a number above 0 of the plain step's figure"},
+      {{"optimize", "gold.toml", "--calibrate", "Vdp:1 %,time:50 ns"},
+       "--set calibration.time.error=\"50 ns\": [calibration.time]: tells the volts of a device, as Vdp does: measure one of "
+       "them"},
       {{"pull-in", "pzt.toml", "--bias", "piezo"}, "--bias piezo: not of the form NAME=VOLTAGE, such as \"piezo=-1.5 V\""},
       {{"pull-in", "pzt.toml", "--bias", "pieso=1 V"}, "--bias pieso=1 V: no such drive (did you mean 'piezo'?)"},
       {{"pull-in", "pzt.toml", "--bias", "piezo=1"},

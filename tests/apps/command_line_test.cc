@@ -609,7 +609,7 @@ TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange) {
            {"Vdp=20 V", "--measured Vdp = 20 V: the waveform of this device: drive 'main': the voltage reaches 25 V, above"},
            {"Vdp=3 A", "--measured Vdp = 3 A: must be a voltage [V] above 0"},
            {"Vdp=14 V,Vdp=14 V", "Vdp stands twice"},
-           {"mass=3 kg", "'mass=3 kg' is no measurement; there are Vdp and frequency"},
+           {"mass=3 kg", "'mass=3 kg' is no measurement; there are Vdp, frequency and time"},
            {"Vdp", "'Vdp' is no measurement"}}) {
     const Outcome bad = run(measured);
     EXPECT_EQ(bad.status, 2) << measured;

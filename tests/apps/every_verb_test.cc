@@ -232,9 +232,8 @@ TEST_P(EveryVerb, Judges_long) {
 
 TEST_P(EveryVerb, Searches_long) {
   for (const char* actuator : {"electrostatic", "pzt", "both"}) {
-    const std::vector<std::string> words = scene().quickly(
-        {"optimize", scene().name, "--quiet", "--robust", "none", "--budget", "2", "--jobs", "1", "--actuator", actuator, "--out",
-         actuator});
+    const std::vector<std::string> words = scene().quickly({"optimize", scene().name, "--quiet", "--robust", "none", "--budget",
+                                                            "2", "--jobs", "1", "--actuator", actuator, "--out", actuator});
     const bool has_electrode = scene().has("\\[electrode"), has_piezo = scene().has("\\[piezo\\]");
     if (!scene().has("\\[contact\\]")) {
       refused(words, "optimize needs a [contact] section");

@@ -509,18 +509,18 @@ TEST_F(Faults, WhatAKilledSearchLeftMayBeRefinedInPlace) {
   fs::create_directories(place.path() / "out/unfinished");
   fs::copy(place.path() / "gold.toml", place.path() / "out/unfinished/best.toml");
   const std::string before = read(place.path() / "out/unfinished/best.toml");
-  const Outcome o = place.run(
-      words("optimize", std::vector<std::string>{"out/unfinished/best.toml"} + in_volts +
-                            std::vector<std::string>{"--robust", "none", "--budget", "6", "--set", "simulate.duration=150 us",
-                                                     "--out", "out"}));
+  const Outcome o = place.run(words("optimize", std::vector<std::string>{"out/unfinished/best.toml"} + in_volts +
+                                                    std::vector<std::string>{"--robust", "none", "--budget", "6", "--set",
+                                                                             "simulate.duration=150 us", "--out", "out"}));
   EXPECT_NE(o.status, bad_input) << o.err;
   EXPECT_EQ(read(place.path() / "out/unfinished/best.toml"), before) << "the scene that it read";
 }
 
 TEST_F(Faults, AFolderThatVanishesIsOutputThatIsLost_optimized) {
   const Workplace place;
-  const pid_t child = place.start(words("optimize", std::vector<std::string>{"gold.toml"} + in_volts +
-                                                        std::vector<std::string>{"--robust", "none", "--budget", "2 s", "--out", "out"}));
+  const pid_t child =
+      place.start(words("optimize", std::vector<std::string>{"gold.toml"} + in_volts +
+                                        std::vector<std::string>{"--robust", "none", "--budget", "2 s", "--out", "out"}));
   for (int i = 0; i < 600 && !fs::exists(place.path() / "out/unfinished/best.toml"); ++i) std::this_thread::sleep_for(20ms);
   fs::rename(place.path() / "out", place.path() / "gone");  // at once, whatever is being written in it
   // Somebody else works there now.

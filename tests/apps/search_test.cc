@@ -141,8 +141,8 @@ TEST_F(Search, FindsTheSameBitsWithTwoJobs_optimized) {
 
 TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_slow) {
   const auto tells = [&](std::vector<std::string> more, const std::string& scene = "two-electrodes.toml") {
-    more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--robust", "none",
-                               "--waveform", "pulse", "--json", "told.json", "--out", "told"});
+    more.insert(more.begin(), {"optimize", (fs::path(SOFTLAND_SOURCE_DIR) / "scenes" / scene).string(), "--quiet", "--robust",
+                               "none", "--waveform", "pulse", "--json", "told.json", "--out", "told"});
     const Outcome o = here->run(more);
     EXPECT_TRUE(o.status == 0 || o.status == 4) << o.err;
     return json::parse(read(here->path() / "told.json")).contains("limit");
@@ -162,8 +162,8 @@ TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereThatTakesLittle_slow) {
 
 TEST_F(Search, TellsHowNearItComesToTheLeastTimeWhereAsked_optimized) {
   const std::string scene = (fs::path(SOFTLAND_SOURCE_DIR) / "scenes/two-electrodes.toml").string();
-  const Outcome o =
-      here->run({"optimize", scene, "--quiet", "--robust", "none", "--budget", "200", "--limit", "--json", "limit.json", "--out", "near"});
+  const Outcome o = here->run(
+      {"optimize", scene, "--quiet", "--robust", "none", "--budget", "200", "--limit", "--json", "limit.json", "--out", "near"});
   const json found = json::parse(read(here->path() / "limit.json"));
   const double least = found.at("limit").at("least_time_s"), own = found["metrics"]["initial_contact_time_s"];
   EXPECT_EQ(found["limit"]["impact_velocity_m_s"], found["metrics"]["impact_velocity_m_s"]);
@@ -397,6 +397,67 @@ TEST(RobustSearch, LeavesWhatRobustnessFindsAgain_slow) {
   ASSERT_EQ(report.status, 0) << report.err;
   EXPECT_NE(report.out.find("Searched over 16 devices"), std::string::npos) << report.out;
   EXPECT_NE(o.out.find("Searched over 16 devices"), std::string::npos) << o.out;
+}
+
+// A few modes and devices, and no race: the drawing's candidates are ranked again.
+const std::vector<std::string> for_few_devices{"--robust", "auto",  "--samples",         "100",   "--budget",
+                                               "600",      "--set", "structure.modes=2", "--set", "simulate.accuracy=1e-3"};
+
+std::vector<std::string> for_devices(const std::string& out, std::vector<std::string> more = {}) {
+  std::vector<std::string> all = for_few_devices;
+  all.insert(all.end(), more.begin(), more.end());
+  all.insert(all.end(), {"--out", out});
+  return all;
+}
+
+TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
+  const Workplace here;
+  write(here.path() / "gold.toml", shipped("mem-gold.toml"));
+  const Outcome o = here.run(words("optimize", for_devices("out")));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(o.out.find("The waveform for the drawing"), 0U) << o.out;
+  EXPECT_THAT(o.out, testing::HasSubstr("On 100 devices, 95 % below"));
+  for (const char* name : {"best.toml", "best.csv", "drawing.toml", "drawing.csv", "report.html", "robustness.html",
+                           "robustness.json", "devices.csv", "result.json"})
+    EXPECT_TRUE(fs::exists(here.path() / "out" / name)) << name;
+  const json found = result(here, "out");
+  EXPECT_EQ(found["devices"]["count"], 100);
+  EXPECT_EQ(found["devices"]["rows"][0]["name"], "plain step");
+  EXPECT_TRUE(found["devices"]["better_than_plain_step"]);
+  // Both waveforms simulate to the figures that are told.
+  for (const auto& [scene, told] : {std::pair("best", found["metrics"]), std::pair("drawing", found["drawing"]["metrics"])}) {
+    const Outcome again = here.run({"simulate", std::string("out/") + scene + ".toml", "--json", "-", "--quiet"});
+    const json own = json::parse(again.out)["metrics"];
+    for (const char* key : {"initial_contact_time_s", "impact_velocity_m_s", "bounce_count"})
+      EXPECT_EQ(own[key], told[key]) << scene;
+  }
+  EXPECT_EQ(here.run({"report", "out", "--out", "again"}).status, 0);
+  EXPECT_THAT(read(here.path() / "again/report.html"), testing::HasSubstr("On devices that differ"));
+}
+
+TEST(SearchForDevices, GoesOnToTheSameBits_optimized) {
+  const Workplace here;
+  write(here.path() / "gold.toml", shipped("mem-gold.toml"));
+  ASSERT_EQ(here.run(words("optimize", for_devices("one"))).status, 0);
+  ASSERT_EQ(here.run(words("optimize", for_devices("two", {"--jobs", "2"}))).status, 0);
+  const Outcome o = here.run({"optimize", "--resume", "--quiet", "--out", "two"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  for (const char* name : {"best.toml", "drawing.toml", "best.csv", "evaluations.csv", "devices.csv"})
+    EXPECT_EQ(read(here.path() / "one" / name), read(here.path() / "two" / name)) << name;
+}
+
+TEST(SearchForDevices, SaysThatTheSpreadIsAssumed_optimized) {
+  const Workplace here;
+  std::string scene = shipped("mem-gold.toml");
+  write(here.path() / "gold.toml", scene.substr(0, scene.find("[spread]")));
+  const Outcome o = here.run(words("optimize", for_devices("out")));
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, testing::HasSubstr("(assumed, the scene has no [spread]:"));
+  EXPECT_TRUE(result(here, "out")["devices"]["spread_assumed"]);
+  EXPECT_EQ(read(here.path() / "out/best.toml").find("[spread"), std::string::npos);
+  const Outcome judged = here.run({"robustness", "gold.toml", "--samples", "20", "--quiet", "--json", "-", "--set",
+                                   "structure.modes=2", "--set", "simulate.accuracy=1e-3"});
+  EXPECT_TRUE(json::parse(judged.out)["spread_assumed"]) << judged.err;
 }
 
 TEST(RobustSearch, DrivesDevicesBySourcesThatErr_optimized) {

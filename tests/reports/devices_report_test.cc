@@ -35,9 +35,15 @@ ResultDevices::Row row(const std::string& name, double bounce_free, double speed
 
 Result devices_result() {
   Result r = search_alone();
-  ResultDevices d{.spread = "gaps ± 2 %", .count = 2000, .seed = 7, .closings = 150'000, .measure = "cvar:0.9", .waveform = "catch",
+  ResultDevices d{.spread = "gaps ± 2 %",
+                  .count = 2000,
+                  .seed = 7,
+                  .closings = 150'000,
+                  .measure = "cvar:0.9",
+                  .waveform = "catch",
                   .better_than_plain_step = true};
-  d.rows = {row("plain step", 0, 0.107, 732e-9), row("for the drawing", 0.02, 0.08, 150e-9), row("for the devices", 0.01, 0.033, 90e-9)};
+  d.rows = {row("plain step", 0, 0.107, 732e-9), row("for the drawing", 0.02, 0.08, 150e-9),
+            row("for the devices", 0.01, 0.033, 90e-9)};
   ResultDevices::Row measured = row("Vdp to 1 %", 0.1, 0.0166, 50e-9);
   measured.pull_in_error = 0.01;
   d.rows.push_back(measured);
@@ -57,13 +63,17 @@ Result devices_result() {
 
 TEST(DevicesReport, SaysFirstWhatDevicesDo) {
   const std::string words = internal::headline(devices_result()).whole();
-  EXPECT_THAT(words, HasSubstr("for the drawing closes it without a rebound at 33.4\u00a0µs: drawing.toml. Of 2000 devices that differ, 95 % "
-                               "touch at no more than 33.0\u00a0mm/s instead of 107\u00a0mm/s: best.toml. With Vdp measured to 1 % on each, 95 % "
-                               "touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
+  EXPECT_THAT(
+      words,
+      HasSubstr(
+          "for the drawing closes it without a rebound at 33.4\u00a0µs: drawing.toml. Of 2000 devices that differ, 95 % "
+          "touch at no more than 33.0\u00a0mm/s instead of 107\u00a0mm/s: best.toml. With Vdp measured to 1 % on each, 95 % "
+          "touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
   const std::string text = text_report(devices_result());
   EXPECT_EQ(text.find("The waveform for the drawing"), 0U);
-  for (const char* part : {"plain step", "for the drawing", "for the devices", "Vdp to 1 %", "107\u00a0mm/s", "732\u00a0nm", "∞",
-                           "catch by cvar:0.9: touch within 90.0\u00a0µs", "The condition t_i < 3 step holds: 97.0 % of the devices"})
+  for (const char* part :
+       {"plain step", "for the drawing", "for the devices", "Vdp to 1 %", "107\u00a0mm/s", "732\u00a0nm", "∞",
+        "catch by cvar:0.9: touch within 90.0\u00a0µs", "The condition t_i < 3 step holds: 97.0 % of the devices"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
@@ -79,7 +89,9 @@ TEST(DevicesReport, SaysInWhichFigureNothingIsAsGoodAsThePlainStep) {
   r.devices->worse_in = {"largest_impact_velocity_m_s"};
   r.devices->spread_assumed = true;
   const std::string words = internal::headline(r).whole();
-  EXPECT_THAT(words, HasSubstr("(assumed, the scene has no [spread]: gaps ± 2 %), no waveform that was found is as good as the plain step"));
+  EXPECT_THAT(
+      words,
+      HasSubstr("(assumed, the scene has no [spread]: gaps ± 2 %), no waveform that was found is as good as the plain step"));
   EXPECT_THAT(words, HasSubstr("the best is worse in its largest impact speed. best.toml is the plain step."));
 }
 

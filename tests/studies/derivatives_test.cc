@@ -64,8 +64,7 @@ class Devices {
  public:
   Devices(const Prepared& nominal, const EnsembleDrive& drive)
       : nominal_(nominal), drive_(drive), ensemble_(nominal, 1), builder_(ensemble_), drives_(nominal) {
-    if (!drive.known.calibration().is_empty())
-      meter_.emplace(nominal, Gauges::of(drive.known.calibration()), 1e-11);
+    if (!drive.known.calibration().is_empty()) meter_.emplace(nominal, Gauges::of(drive.known.calibration()), 1e-11);
   }
 
   std::vector<double> figures(const std::vector<double>& values) {

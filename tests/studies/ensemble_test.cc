@@ -170,7 +170,8 @@ TEST(Calibration, ErrsAsMuchAsItsMeasurements) {
 
 // The first touch under a step of the only electrode.
 double touch_under(const Switch& model, double volts) {
-  const Trajectory end = simulate_closing(model, std::vector<Signal>{Signal::constant(volts)}, {.duration = 1e-3, .tolerance = 1e-9});
+  const Trajectory end =
+      simulate_closing(model, std::vector<Signal>{Signal::constant(volts)}, {.duration = 1e-3, .tolerance = 1e-9});
   return end.touches.front().begin;
 }
 

@@ -42,7 +42,8 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   EXPECT_LE(cost_of(found, "for the devices"), cost_of(found, "for the drawing"));
   EXPECT_LT(cost_of(found, "Vdp to 1 %"), cost_of(found, "for the devices"));
   // best.toml simulates to the figures that are told.
-  const Closing again = simulate(prepare_and_choose(SceneFile::parse(found.best.best_scene->scene.file.text(), "best.toml")), true);
+  const Closing again =
+      simulate(prepare_and_choose(SceneFile::parse(found.best.best_scene->scene.file.text(), "best.toml")), true);
   EXPECT_EQ(again.metrics.initial_contact_time, found.best.best->metrics.initial_contact_time);
   EXPECT_FALSE(found.spread_assumed);
   EXPECT_TRUE(found.best.best_scene->scene.file.written("spread"));
@@ -55,7 +56,8 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
 }
 
 TEST(ForDevices, HasTheSameBitsWithAnyJobs_optimized) {
-  const ForDevicesResult one = searched(quick_gold(), race_closings / 4, 2, 1), two = searched(quick_gold(), race_closings / 4, 2, 2);
+  const ForDevicesResult one = searched(quick_gold(), race_closings / 4, 2, 1),
+                         two = searched(quick_gold(), race_closings / 4, 2, 2);
   EXPECT_EQ(one.best.best_scene->scene.file.text(), two.best.best_scene->scene.file.text());
   EXPECT_EQ(one.calibrated->text(), two.calibrated->text());
   EXPECT_EQ(one.closings, two.closings);
@@ -79,9 +81,8 @@ TEST(ForDevices, AssumesASpreadWhereTheSceneHasNone_optimized) {
 
 TEST(ForDevices, AreNeverGivenWhatIsWorseThanThePlainStep_optimized) {
   // A family that can only rise more slowly.
-  const ForDevicesResult found =
-      optimize_for_devices(quick_gold(), {.family = "step", .max_evaluations = 100, .jobs = 2},
-                           {.verdict = 200, .families = "step", .closings = 100});
+  const ForDevicesResult found = optimize_for_devices(quick_gold(), {.family = "step", .max_evaluations = 100, .jobs = 2},
+                                                      {.verdict = 200, .families = "step", .closings = 100});
   ASSERT_TRUE(found.best.best_scene);
   EXPECT_LE(cost_of(found, "for the devices"), 1.01 * cost_of(found, "plain step"));
   EXPECT_EQ(found.plain_step_wins, !found.worse_in.empty());

@@ -21,9 +21,9 @@ namespace {
 class Race : public testing::Test {
  protected:
   Race()
-      : settings_(search_settings(gold({"simulate.duration=150 us", "structure.modes=2", "waveform.main.level=18 V",
-                                        "driver.main.max_voltage=25 V"}),
-                                  Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
+      : settings_(search_settings(
+            gold({"simulate.duration=150 us", "structure.modes=2", "waveform.main.level=18 V", "driver.main.max_voltage=25 V"}),
+            Target::bounce, Actuator::electrostatic, "pulse+catch", {})),
         cost_(settings_.front(), aims_.tail, own_devices(settings_.front(), KnownUnits(), 32, 5, 0, 1, {})) {}
 
   RaceResult run(RaceOptions options) {
