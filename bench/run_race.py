@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `softland optimize` comes to with its defaults, over switches, actuators and seeds: results/race.md.
+"""What `softland optimize` comes to with its defaults, over switches, actuators and seeds: the tables of results/race.md.
 
     bench/run_race.py PROGRAM FOLDER [--seeds 1,2,3]
 

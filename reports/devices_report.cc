@@ -50,7 +50,7 @@ ResultDevices::Row row_of(const DevicesRow& row) {
                        .time_error = row.knowledge.time_error.value_or(Metrics::unset),
                        .searched_for_it = row.searched_for_it,
                        .bounce_free = drive.bounce_free.value,
-                       .open = 1 - drive.closing.value - drive.collapsed.value,
+                       .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
                        .collapsed = drive.collapsed.value,
                        .at_95 = {}};
   for (std::size_t i = 0; i < drive.figures.size(); ++i)

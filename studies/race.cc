@@ -11,6 +11,7 @@
 #include "optimizers/sobol.h"
 #include "studies/device_chain.h"
 #include "studies/family_search.h"
+#include "studies/robustness.h"
 
 namespace softland {
 namespace {

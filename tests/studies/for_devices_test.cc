@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "studies/choices.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
