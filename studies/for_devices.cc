@@ -36,7 +36,7 @@ constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements
 constexpr double usual_time_error = 50e-9;                    // of an oscilloscope [s]
 constexpr double least_times_of_error = 20;
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
-constexpr double end_of_drawing = 0.35, end_of_race = 0.75;  // of a budget of time
+constexpr double end_of_drawing = 0.3, least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
 
 constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the drawing", *for_the_devices = "for the devices";
 
@@ -176,7 +176,9 @@ class DevicesStudy {
     tell("building devices", 0);
     cost_.emplace(first(), tail_aim_,
                   own_devices(first(), *known_, raced_devices, options_.seed, which_searched, options_.jobs, watch_));
+    const double before = seconds();
     const std::vector<DeviceOutcome> step = closed(*cost_, {}, cost_->devices());
+    reserve_for_verdict((seconds() - before) / static_cast<double>(step.size()));
     make_aims(step);
     std::vector<ChosenFrom> pool = ranked_again();
     tell("searching for the devices", 0);
@@ -221,6 +223,13 @@ class DevicesStudy {
     return static_cast<double>(good) / static_cast<double>(outcomes.size());
   }
 
+  // Of a budget of time the searches leave what the verdict takes, where they keep a part; `closing`: of one device [s].
+  void reserve_for_verdict(double closing) {
+    constexpr double rows = 20;  // over a search's window: three over the whole one, three in measured units, and the front
+    const double verdict = rows * static_cast<double>(devices_.verdict) * closing, all = options_.max_seconds;
+    race_end_ = std::clamp(all - verdict, least_of_race * all, end_of_race * all);
+  }
+
   RaceOptions race_options() {
     return {.closings = devices_.closings,
             .seed = options_.seed,
@@ -229,7 +238,7 @@ class DevicesStudy {
             .memory = options_.memory,
             .first = first_,
             .all = first_ + raced_names_.size(),
-            .out_of_time = [this] { return seconds() > end_of_race * options_.max_seconds; },
+            .out_of_time = [this] { return seconds() > race_end_; },
             .progress = [this](double part) { tell("searching for the devices", part); }};
   }
 
@@ -555,6 +564,7 @@ class DevicesStudy {
   RaceAims aims_;
   std::optional<RobustCost> cost_;
   std::size_t eligible_ = 0;
+  double race_end_ = 0;  // since the beginning [s]
   bool spread_assumed_ = false;
   std::optional<ForDevicesResult> result_;  // once there is a drawing
 };

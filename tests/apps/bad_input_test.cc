@@ -263,7 +263,7 @@ TEST_F(BadInput, Searches_long) {
   EXPECT_TRUE(unknown.starts_with("softland: optimizer \"magic\" is unknown; there are auto, ")) << unknown;
 }
 
-TEST_F(BadInput, CostsNoEarlierResult) {
+TEST_F(BadInput, CostsNoEarlierResult_optimized) {
   for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{{"--target", "softness"},
                                                                                     {"--actuator", "magnetic"},
                                                                                     {"--actuator", "pzt"},

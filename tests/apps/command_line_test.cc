@@ -520,7 +520,7 @@ std::vector<std::array<double, 2>> waveform(const std::string& csv) {
   return rows;
 }
 
-TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits) {
+TEST(Export, PrintsTheWaveformOfOneDeviceInItsOwnUnits_optimized) {
   const Workplace here;
   write(here.path() / "pulse.toml",
         edited(edited(edited(shipped("mem-gold.toml"), "family = \"step\"", "family = \"pulse\""), "level = \"1.25 Vdp\"",
@@ -591,7 +591,7 @@ TEST(Export, HoldsTheSamplesThatASourceIsTold) {
   }
 }
 
-TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange) {
+TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {
   const Workplace here;
   const auto run = [&](const std::string& measured) { return here.run({"export", "gold.toml", "--measured", measured}); };
   const Outcome usual = run("Vdp=14.6 V,frequency=10.2 kHz");
@@ -618,7 +618,7 @@ TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange) {
 }
 
 // "Set the amplifier 2 % high."
-TEST(Sources, HaveAGainThatCanBeSetAndVaried) {
+TEST(Sources, HaveAGainThatCanBeSetAndVaried_optimized) {
   const Workplace here;
   const auto contact = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"simulate", "gold.toml", "--quiet", "--json", "-", "--set", "simulate.accuracy=1e-4"};

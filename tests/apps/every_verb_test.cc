@@ -108,7 +108,7 @@ class EveryVerb : public testing::TestWithParam<Shipped> {
   }
 };
 
-TEST_P(EveryVerb, Describes) {
+TEST_P(EveryVerb, Describes_optimized) {
   const std::string& name = scene().name;
   const bool contact = scene().has("\\[contact\\]");
   const std::string check = done(scene().quickly({"check", name})).out;

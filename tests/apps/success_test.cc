@@ -99,7 +99,7 @@ TEST(Success, IsNotAClosedStateThatIsPulledThrough) {
   EXPECT_EQ(opens.status, 0) << opens.err;
 }
 
-TEST(Success, OfALimitSaysFirstThatTheHoldLevelsPullTheSwitchThrough) {
+TEST(Success, OfALimitSaysFirstThatTheHoldLevelsPullTheSwitchThrough_optimized) {
   const Workplace here;
   write(here.path() / "bridge.toml", bridge);
   const std::vector<std::string> words{"limit", "bridge.toml", "--no-curves", "--quiet", "--impact-velocity", "5 mm/s"};
@@ -125,7 +125,7 @@ TEST(Success, OfALimitIsRefusedWhereTheElectrodePullsAway) {
             "softland: away.toml:13: electrode.main.gap = \"3 um\": it pulls away from the contact; its other side is nearer\n");
 }
 
-TEST(NoStableRest, IsNotCalledOverdamped) {
+TEST(NoStableRest, IsNotCalledOverdamped_optimized) {
   const Workplace here;
   write(here.path() / "two.toml", between_two);
   for (const char* verb : {"check", "pull-in"}) {
@@ -174,7 +174,7 @@ TEST(NotFinite, IsRefusedByEveryVerbWithItsKey) {
 }
 
 // Of devices of which too many cannot be, no waveform can be told from another.
-TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail) {
+TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail_optimized) {
   const Workplace here;
   const std::string text = shipped("mem-gold.toml");
   write(here.path() / "half.toml",
