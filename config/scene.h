@@ -123,6 +123,8 @@ struct Calibration {
 inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency", measured_time = "time";
 /// The step whose closing time is measured, in nominal pull-in voltages (Vdp): slow enough to show what a landing depends on.
 inline constexpr double closing_step = 1.2;
+/// Of a closing time where nobody says it: of a generator and an oscilloscope [s].
+inline constexpr double usual_time_error = 50e-9;
 inline constexpr int most_classes = 256;
 namespace internal {
 inline constexpr std::string_view classes_key = "classes";

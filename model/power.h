@@ -18,28 +18,34 @@
 namespace softland {
 
 // Inlined whatever the size of the caller: a call would keep its loop from becoming vector instructions.
-[[nodiscard, gnu::always_inline]] inline double power(double x, double y) {
+template <class S>
+requires std::same_as<S, double> || LaneOfNumbers<S>
+[[nodiscard, gnu::always_inline]] inline S power(const S& x, double y) {
   constexpr double ln2 = 0.69314718055994530942;
   // Bits of 2^52 + 2^51: adding it puts a rounded number, negative or not, into the low bits.
-  constexpr double shift = 6755399441055744.0;
+  static constexpr double shift = 6755399441055744.0;
   constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
-  const auto bits = std::bit_cast<std::int64_t>(x);
-  const std::int64_t above = bits - low_root;                          // e in the exponent's place, then what m is above the root
-  const std::int64_t mantissa = (above & 0xFFFFFFFFFFFFF) + low_root;  // m
-  const auto m = std::bit_cast<double>(mantissa);
-  // Shifted as an unsigned number, with a bias that is taken off again: vectors have no signed shift.
-  const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
-  const double e = std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
-  const double f = (m - 1) / (m + 1), s = f * f;
-  double series = 1.0 / 21;
+  const S m = one_by_one(x, [](double number) {
+    const std::int64_t above =
+        std::bit_cast<std::int64_t>(number) - low_root;  // e in the exponent's place, then what m is above the root
+    return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
+  });
+  const S e = one_by_one(x, [](double number) {
+    const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
+    // Shifted as an unsigned number, with a bias that is taken off again: vectors have no signed shift.
+    const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
+  });
+  const S f = (m - 1.0) / (m + 1.0), s = f * f;
+  S series = 1.0 / 21;
   for (int k = 19; k >= 1; k -= 2) series = series * s + 1.0 / k;
-  const double z = y * (e + (2 / ln2) * f * series);
-  const double shifted = z + shift;
-  const double n = shifted - shift, r = (z - n) * ln2;
-  double sum = 1;
-  for (int k = 13; k >= 1; --k) sum = 1 + sum * (r * (1.0 / k));
-  const std::int64_t exponent = (std::bit_cast<std::int64_t>(shifted) << 52) + one;  // of 2^n
-  return sum * std::bit_cast<double>(exponent);
+  const S z = y * (e + (2 / ln2) * f * series);
+  const S shifted = z + shift;
+  const S n = shifted - shift, r = (z - n) * ln2;
+  S sum = 1;
+  for (int k = 13; k >= 1; --k) sum = 1.0 + sum * (r * (1.0 / k));
+  return sum * one_by_one(shifted,
+                          [](double number) { return std::bit_cast<double>((std::bit_cast<std::int64_t>(number) << 52) + one); });
 }
 
 /// h^(-1/4) of a positive normal number, or of every number of a lane, to rounding: without division or root, which take longest
@@ -64,33 +70,6 @@ template <class S>
 [[nodiscard]] S inverse_fourth_root(const S& h) {
   using std::sqrt;
   return S(1) / sqrt(sqrt(h));
-}
-
-/// The same for every number of a lane.
-template <LaneOfNumbers S>
-[[nodiscard, gnu::always_inline]] inline S power(const S& x, double y) {
-  constexpr double ln2 = 0.69314718055994530942;
-  static constexpr double shift = 6755399441055744.0;
-  constexpr auto one = std::bit_cast<std::int64_t>(1.0), low_root = std::bit_cast<std::int64_t>(0.70710678118654752440);
-  const S m = one_by_one(x, [](double number) {
-    const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
-    return std::bit_cast<double>((above & 0xFFFFFFFFFFFFF) + low_root);
-  });
-  const S e = one_by_one(x, [](double number) {
-    const std::int64_t above = std::bit_cast<std::int64_t>(number) - low_root;
-    const auto biased = static_cast<std::uint64_t>(above + (std::int64_t{1024} << 52)) >> 52;
-    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(shift) + biased) - (shift + 1024);
-  });
-  const S f = (m - 1.0) / (m + 1.0), s = f * f;
-  S series = 1.0 / 21;
-  for (int k = 19; k >= 1; k -= 2) series = series * s + 1.0 / k;
-  const S z = y * (e + (2 / ln2) * f * series);
-  const S shifted = z + shift;
-  const S n = shifted - shift, r = (z - n) * ln2;
-  S sum = 1;
-  for (int k = 13; k >= 1; --k) sum = 1.0 + sum * (r * (1.0 / k));
-  return sum * one_by_one(shifted,
-                          [](double number) { return std::bit_cast<double>((std::bit_cast<std::int64_t>(number) << 52) + one); });
 }
 
 /// For other scalars (complex numbers in tests) the library's.

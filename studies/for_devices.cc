@@ -33,7 +33,6 @@ constexpr double more_open = 0.005;                           // of the devices
 constexpr double ranked_by_share = 0.25;                      // of the devices land without a rebound
 constexpr std::uint64_t measured_devices = 128;               // of a search in measured units
 constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
-constexpr double usual_time_error = 50e-9;                    // of an oscilloscope [s]
 constexpr double least_times_of_error = 20;
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
 constexpr double end_of_drawing = 0.3, least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
@@ -71,22 +70,6 @@ struct Bounds {
     const double times = share_of(own, is_bounce_free) >= lands_half ? most_times_of_landings : most_times;
     return !in_time || !std::isfinite(first_touch) || quantile_95(own, "initial_contact_time_s") <= times * first_touch;
   }
-};
-
-// A memory of the nominal search, whose parameters are the first of all.
-class MemoryOfFirst final : public EvaluationMemory {
- public:
-  MemoryOfFirst(EvaluationMemory& all, std::size_t size) : all_(all), size_(size) {}
-  std::optional<EvaluationValues> recall(const EvaluationKey& key) noexcept override { return all_.recall(among_all(key)); }
-  void note(const EvaluationKey& key, const EvaluationValues& values) noexcept override { all_.note(among_all(key), values); }
-
- private:
-  [[nodiscard]] EvaluationKey among_all(EvaluationKey key) const {
-    key.x.resize(size_, std::numeric_limits<double>::quiet_NaN());
-    return key;
-  }
-  EvaluationMemory& all_;
-  std::size_t size_;
 };
 
 // The settings of the families that the scene has room for, and their names joined by +.
@@ -129,12 +112,12 @@ class DevicesStudy {
     OptimizeResult drawing = optimize(file_, drawing_options_);
     result_.emplace(ForDevicesResult{
         .varied = first().given, .drawing = drawing, .best = std::move(drawing), .spread_assumed = spread_assumed_});
-    if (!result_->drawing.best_scene || stopped()) return interrupted_here();
     try {
-      search_devices();
-      judge();
-    } catch (const Interrupted&) {
-      return interrupted_here();
+      if (result_->drawing.best_scene && !stopped()) {
+        search_devices();
+        judge();
+      }
+    } catch (const Interrupted&) {  // what there is stands
     }
     result_->interrupted = stopped();
     return *std::move(result_);
@@ -149,10 +132,6 @@ class DevicesStudy {
   void tell(std::string_view what, double part) const {
     if (options_.on_preparation) options_.on_preparation(what, part);
   }
-  ForDevicesResult interrupted_here() {
-    result_->interrupted = stopped();
-    return *std::move(result_);
-  }
 
   // The nominal search keeps what devices may do better with, and tells of its parameters among those of all searches.
   OptimizeOptions options_of_drawing() {
@@ -166,7 +145,8 @@ class DevicesStudy {
       first_ = names.size();
       if (options_.on_start) options_.on_start(all);
       if (options_.memory == nullptr) return;  // which may be there from now on only
-      memory_of_drawing_.emplace(*options_.memory, all.size());
+      block_of_drawing_.emplace(0, names.size(), all.size());
+      memory_of_drawing_.emplace(*options_.memory, *block_of_drawing_);
       drawing_options_.memory = &*memory_of_drawing_;
     };
     return own;
@@ -216,11 +196,8 @@ class DevicesStudy {
         conditions_, [](const Criterion& one) { return ensemble_figures()[one.figure].key == "initial_contact_time_s"; });
   }
   [[nodiscard]] bool keeps_conditions(const std::vector<DeviceOutcome>& outcomes) const {
-    return std::ranges::all_of(conditions_, [&](const Criterion& one) { return share_that(one, outcomes) >= constrained_share; });
-  }
-  static double share_that(const Criterion& condition, const std::vector<DeviceOutcome>& outcomes) {
-    const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
-    return static_cast<double>(good) / static_cast<double>(outcomes.size());
+    return std::ranges::all_of(
+        conditions_, [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value >= constrained_share; });
   }
 
   // Of a budget of time the searches leave what the verdict takes, where they keep a part; `closing`: of one device [s].
@@ -424,9 +401,7 @@ class DevicesStudy {
       result_->best.variables = result_->candidates[n].variables;
     }
     for (const Criterion& condition : conditions_) {
-      const std::vector<DeviceOutcome>& outcomes = row_of_devices().judged.outcomes;
-      const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
-      const Yield share = yield_of(static_cast<std::size_t>(good), outcomes.size());
+      const Yield share = share_that_fulfils(row_of_devices().judged.outcomes, condition);
       result_->conditions.push_back({.condition = condition, .share = share, .holds = share.value >= constrained_share});
     }
   }
@@ -557,7 +532,8 @@ class DevicesStudy {
   std::vector<std::string> names_, raced_names_;
   std::optional<KnownUnits> known_;
   OptimizeOptions drawing_options_;
-  std::optional<MemoryOfFirst> memory_of_drawing_;
+  std::optional<ParameterBlock> block_of_drawing_;  // its parameters among those of all searches
+  std::optional<MemoryOfFamily> memory_of_drawing_;
   std::size_t first_ = 0;
   std::vector<Criterion> conditions_;  // with limits of their own
   RobustAim tail_aim_;

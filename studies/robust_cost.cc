@@ -59,6 +59,11 @@ bool fails(const DeviceOutcome& outcome) { return !outcome.closed() || !outcome.
 
 bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
 
+Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition) {
+  const auto good = std::ranges::count_if(outcomes, [&](const DeviceOutcome& o) { return fulfils(o, condition); });
+  return yield_of(static_cast<std::size_t>(good), outcomes.size());
+}
+
 namespace {
 
 bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
@@ -232,16 +237,10 @@ std::vector<double> RobustCost::scores(std::span<const DeviceOutcome> outcomes) 
   return all;
 }
 
-double RobustCost::share_fulfilling(std::span<const DeviceOutcome> outcomes, const Criterion& condition) {
-  const auto good =
-      std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); });
-  return static_cast<double>(good) / static_cast<double>(outcomes.size());
-}
-
 bool RobustCost::is_told(std::span<const DeviceOutcome> outcomes) const {
   constexpr double rounding = 1e-9;
   if (!aim_.measure.yield && aim_.measure.risk.kind == RiskKind::mean_sigma) return !std::ranges::all_of(outcomes, fails);
-  return aim_.measure.yield ? share_fulfilling(outcomes, *aim_.measure.yield) > 0
+  return aim_.measure.yield ? share_that_fulfils(outcomes, *aim_.measure.yield).devices > 0
                             : risk(scores(outcomes), aim_.measure.risk) < (1 - rounding) * worst_score;
 }
 
@@ -262,8 +261,9 @@ double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAi
   std::vector<double> times, of_devices;
   for (const DeviceOutcome& o : outcomes)
     times.push_back(o.closed() ? over(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
-  double value = aim.measure.yield ? 1 - share_fulfilling(outcomes, *aim.measure.yield) + weight_of_scores * sample_mean(scores)
-                                   : risk_of(outcomes, scores, aim.measure.risk);
+  double value = aim.measure.yield
+                     ? 1 - share_that_fulfils(outcomes, *aim.measure.yield).value + weight_of_scores * sample_mean(scores)
+                     : risk_of(outcomes, scores, aim.measure.risk);
   value += static_cast<double>(std::ranges::count_if(outcomes, fails)) / static_cast<double>(outcomes.size());
   value += weight_of_time * sample_quantile(times, 0.5);
   for (const Criterion& condition : aim.conditions) {

@@ -29,6 +29,7 @@
 
 #include "config/criterion.h"
 #include "studies/ensemble.h"
+#include "studies/robustness.h"
 #include "studies/search_setting.h"
 
 namespace softland {
@@ -91,7 +92,6 @@ class RobustCost {
   [[nodiscard]] std::vector<double> scores(std::span<const DeviceOutcome> outcomes) const;
   [[nodiscard]] static double risk_of(std::span<const DeviceOutcome> outcomes, const std::vector<double>& scores,
                                       const Risk& measure);
-  [[nodiscard]] static double share_fulfilling(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
 
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& waveforms, std::size_t k,
                                             const DeviceUnits& units) const;
@@ -118,5 +118,7 @@ class RobustCost {
 
 /// Whether a device fulfils a condition.
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);
+/// The share of devices that does.
+[[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
 
 }  // namespace softland

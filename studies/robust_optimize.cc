@@ -291,12 +291,6 @@ Candidate compared(std::vector<Candidate> candidates, const SearchSetting& setti
   return winner;
 }
 
-Yield share_that_fulfils(const std::vector<DeviceOutcome>& outcomes, const Criterion& condition) {
-  const auto good =
-      std::count_if(outcomes.begin(), outcomes.end(), [&](const DeviceOutcome& o) { return fulfils(o, condition); });
-  return yield_of(static_cast<std::size_t>(good), outcomes.size());
-}
-
 // The winner and the plain step on fresh devices, over the whole window.
 void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& options, const RobustOptions& robust,
            const Watch& watch) {

@@ -30,8 +30,7 @@ namespace {
 
 using internal::plain_number;
 
-constexpr double usual_error = 0.01;        // of a measurement whose error nobody gives, relative
-constexpr double usual_time_error = 50e-9;  // of a closing time [s]
+constexpr double usual_error = 0.01;  // of a measurement whose error nobody gives, relative
 
 struct ExportRequest {
   std::string result, format = "csv", signal = "told";

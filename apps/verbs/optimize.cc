@@ -43,7 +43,42 @@ namespace softland::apps {
 namespace {
 
 namespace fs = std::filesystem;
+using internal::percent;
+using internal::quantity;
 using nlohmann::json;
+
+// How a winner does on devices of its scene's spread, beside the plain step, in a sentence; empty where nothing varies, or when
+// asked to stop.
+std::string on_devices(const Common& c, const Prepared& winner, int jobs, const fs::path& place) {
+  if (winner.scene.spread.empty()) return {};
+  constexpr std::uint64_t devices = 200;
+  try {
+    const WatchedWork work(c.quiet, c.stop);
+    const Robustness found = robustness(winner, {{.name = "found", .waveforms = winner.drives.waveforms}},
+                                        {.samples = devices, .jobs = jobs}, work.watch());
+    if (found.interrupted || found.drives.size() < 2) return {};
+    const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
+      const EnsembleFigure& figure = ensemble_figure(key);
+      const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(&figure - ensemble_figures().data())].quantiles[2];
+      return quantity(q.value, figure.unit);
+    };
+    const auto words = [&](const DriveRobustness& drive) {
+      if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));
+      return fmt::format("95 % have rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
+                         at_95_percent(drive, "largest_impact_velocity_m_s"));
+    };
+    const DriveRobustness &step = found.drives[0], &own = found.drives[1];
+    return "\n" +
+           wrapped(fmt::format("On {} devices that differ as [spread] says, with the same volts: {} land without a rebound, and "
+                               "{} (plain step: {}, {}).{} "
+                               "More: softland robustness {}",
+                               devices, percent(own.bounce_free.value), words(own), percent(step.bounce_free.value), words(step),
+                               internal::outside_words(found), shell_word((place / "best.toml").string()))) +
+           "\n";
+  } catch (const Interrupted&) {
+    return {};
+  }
+}
 
 // Writes what a search has found, and names the files it leaves.
 std::vector<std::string> write_found(SearchRun& run, const OptimizeResult& result, Result& found, const fs::path& place) {
@@ -167,7 +202,8 @@ int run_nominal(const Asked& asked) {
   if (!c.quiet) {
     for (const std::string& broken : result.broken_conditions) say(fmt::format("the winner breaks --constrain \"{}\"", broken));
   }
-  print_result(c, found, left_in(place, left));
+  const bool judged = result.best_scene && !interrupted && c.json != "-";
+  print_result(c, found, (judged ? on_devices(c, result.best_scene.value(), options.jobs, place) : "") + left_in(place, left));
   return status_of(result);
 }
 

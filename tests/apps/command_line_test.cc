@@ -553,7 +553,7 @@ std::string sampled_gold() {
 }
 
 // For a generator: what it is told, on its grid; read back under the same driver it is the same closing.
-TEST(Export, HoldsTheSamplesThatASourceIsTold) {
+TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
   const Workplace here;
   write(here.path() / "sampled.toml", sampled_gold());
   const Outcome told = here.run({"export", "sampled.toml"});

@@ -137,7 +137,7 @@ TEST_P(EveryVerb, Describes_optimized) {
   for (const char* format : {"csv", "spice-pwl"}) exports({"export", name, "--format", format});
 }
 
-TEST_P(EveryVerb, Simulates) {
+TEST_P(EveryVerb, Simulates_optimized) {
   const std::string& name = scene().name;
   const bool contact = scene().has("\\[contact\\]");
   const json j = data(scene().quickly({"simulate", name, "--quiet", "--json", "-"}));

@@ -210,7 +210,7 @@ TEST(Success, OfARobustSearchIsNotThatOfDevicesThatAllFail_optimized) {
   EXPECT_GT(found["robust"]["failing_share"], 0.3);
 }
 
-TEST(Start, OfAnotherRestIsRefused) {
+TEST(Start, OfAnotherRestIsRefused_optimized) {
   const Workplace here;
   const std::string gold = edited(edited(shipped("mem-gold.toml"), "1.25 Vdp", "19 V"), "1.5 Vdp", "25 V");
   write(here.path() / "here.toml", gold);
@@ -223,7 +223,7 @@ TEST(Start, OfAnotherRestIsRefused) {
   }
 }
 
-TEST(SetElement, OfAListIsThatOfTheWholeList) {
+TEST(SetElement, OfAListIsThatOfTheWholeList_optimized) {
   const Workplace here;
   const auto modes = [&](const std::string& assignment) {
     return here.run({"pull-in", "gold.toml", "--quiet", "--json", "-", "--set", assignment});
