@@ -13,6 +13,7 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
   has_fallen_ = has_fallen_ || (has_risen_ && to < from);
   has_risen_ = has_risen_ || to > from;
   if (has_fallen_) least_ = std::min({least_, from, to});
+  largest_ = std::max({largest_, from, to});
   last_ = to;
   if (to < threshold_) {
     steady_from_ = none;
@@ -20,6 +21,13 @@ void ForceRecord::follow(const Force& force, double begin, double from, double e
     const auto above = [&](double t) { return force(t) - threshold_; };
     steady_from_ = from < threshold_ ? bracketed_zero(above, begin, end) : begin;
   }
+}
+
+// Where a contact opens the force is 0 but for the rounding of its place.
+double ForceRecord::least() const {
+  constexpr double rounding = 1e-12;
+  const double least = has_fallen_ ? least_ : last_;
+  return std::abs(least) < rounding * largest_ ? 0 : least;
 }
 
 void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law) {

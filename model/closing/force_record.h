@@ -29,7 +29,7 @@ class ForceRecord {
   /// Trajectory::steady_force_time [s]
   [[nodiscard]] double steady_from() const { return steady_from_; }
   /// Trajectory::least_force_after_touch [N]
-  [[nodiscard]] double least() const { return has_fallen_ ? least_ : last_; }
+  [[nodiscard]] double least() const;
 
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -41,6 +41,7 @@ class ForceRecord {
   double threshold_;  // [N]
   bool has_risen_ = false, has_fallen_ = false;
   double steady_from_ = none, least_ = std::numeric_limits<double>::infinity(), last_ = 0;
+  double largest_ = 0;  // [N]
 };
 
 }  // namespace softland

@@ -120,6 +120,18 @@ TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
   EXPECT_GT(inside, 10);
 }
 
+TEST(ForceRecord, IsNothingWhereTheContactOpens) {
+  int opened = 0;
+  for (double volts = 16; volts < 22; volts += 0.1) {
+    const Trajectory t =
+        simulate_closing(test::gold(), std::vector{Signal::constant(volts)}, {.duration = 100_us, .tolerance = 1e-7});
+    if (t.touches.size() < 2) continue;
+    ++opened;
+    EXPECT_EQ(t.least_force_after_touch, 0) << volts;
+  }
+  EXPECT_GT(opened, 30);
+}
+
 TEST(ForceRecord, OfWhatNeverTouchesIsNotKnown) {
   const Trajectory t =
       simulate_closing(test::gold(), std::vector{Signal::constant(5)}, {.duration = 100_us, .steady_force = 1e-9});
