@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/printable.h"
 #include "reports/course.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
@@ -242,7 +243,7 @@ std::string internal::devices_text(const ResultDevices& d) {
            wrapped(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
                                percent(c.share))) +
            "\n";
-  if (!d.next_command.empty()) out += "\n" + wrapped(fmt::format("For a device that was measured: {}", d.next_command)) + "\n";
+  if (!d.next_command.empty()) out += "\nFor a device that was measured:\n  " + printable_line(d.next_command) + "\n";
   return out;
 }
 
