@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -430,24 +432,25 @@ class DevicesStudy {
     const Calibration both{.pull_in_error = coarse_error, .frequency_error = coarse_error};
     const Calibration fine{.pull_in_error = fine_error, .frequency_error = fine_error};
     const Calibration by_time{.time_error = usual_time_error};
-    const auto of_coarse = searched_in(winner, coarse, "searching for devices whose Vdp is measured");
-    if (!of_coarse) return {};
-    const DeviceMeter meter(first().given, {.closing_time = true});
-    result_->pull_in = meter.pull_in();
-    result_->closing_time = meter.closing_time();
-    std::vector<DevicesRow> rows{row_of_measured("Vdp to 1 %", *of_coarse, coarse, true),
-                                 row_of_measured("Vdp and period to 1 %", *of_coarse, both, false)};
-    std::optional<std::map<std::string, Waveform>> of_time;  // where the instrument is quick enough
-    if (result_->closing_time > least_times_of_error * usual_time_error)
-      of_time = searched_in(winner, by_time, "searching for devices whose closing time is measured");
-    // A recipe for what is known precisely: of a quick switch it has to be searched apart.
-    const auto of_fine = of_time ? of_time : searched_in(winner, fine, "searching for devices that are measured to 0.2 %");
-    if (of_fine) rows.push_back(row_of_measured("Vdp and period to 0.2 %", *of_fine, fine, !of_time));
-    if (of_time) rows.push_back(row_of_measured("closing time to 50 ns", *of_time, by_time, true));
-    const bool time_wins = of_time && is_better(rows.back(), rows.front());
+    try {
+      const DeviceMeter meter(first().given, {.closing_time = true});
+      result_->pull_in = meter.pull_in();
+      result_->closing_time = meter.closing_time();
+    } catch (const InvalidInput&) {
+      return {};  // no electrode that pulls in
+    }
+    // A recipe for what is known precisely: of a switch too quick for the instrument it has to be searched apart.
+    const bool tells_time = result_->closing_time > least_times_of_error * usual_time_error;
+    const auto found = searched_in(winner, std::array{coarse, tells_time ? by_time : fine});
+    if (!found[0]) return {};
+    std::vector<DevicesRow> rows{row_of_measured("Vdp to 1 %", *found[0], coarse, true),
+                                 row_of_measured("Vdp and period to 1 %", *found[0], both, false)};
+    if (found[1]) rows.push_back(row_of_measured("Vdp and period to 0.2 %", *found[1], fine, !tells_time));
+    if (found[1] && tells_time) rows.push_back(row_of_measured("closing time to 50 ns", *found[1], by_time, true));
+    const bool time_wins = found[1] && tells_time && is_better(rows.back(), rows.front());
     result_->calibrated_row = time_wins ? rows.back().name : rows.front().name;
     result_->calibrated =
-        with_waveforms(result_->drawing.baseline_scene, first().space.searched(time_wins ? *of_time : *of_coarse));
+        with_waveforms(result_->drawing.baseline_scene, first().space.searched(time_wins ? *found[1] : *found[0]));
     result_->calibrated->set(time_wins ? fmt::format("calibration.{}.error=\"50 ns\"", measured_time)
                                        : fmt::format("calibration.{}.error=\"1 %\"", measured_pull_in));
     return rows;
@@ -464,9 +467,7 @@ class DevicesStudy {
   DevicesRow row_of_measured(const char* name, const std::map<std::string, Waveform>& waveforms, const Calibration& knowledge,
                              bool searched_for_it) {
     const KnownUnits known = known_units(first().given, std::array{knowledge}, options_.jobs, watch_).front();
-    const RobustCost fresh(
-        first(), aims_.tail,
-        build_all(Ensemble(first().given, devices_.verdict, options_.seed), known, options_.seed, options_.jobs, watch_));
+    const RobustCost fresh(first(), aims_.tail, known_as(gauged(knowledge), known, options_.seed));
     std::vector<DeviceOutcome> outcomes = closed(fresh, waveforms, fresh.devices());
     watch_.throw_if_stopped();
     return {.name = name,
@@ -476,26 +477,44 @@ class DevicesStudy {
                                            std::move(outcomes))};
   }
 
-  std::optional<std::map<std::string, Waveform>> searched_in(const ChosenFrom& winner, const Calibration& calibration,
-                                                             std::string_view words) {
+  // The devices of the verdict, gauged once for all that is known of them.
+  const GaugedEnsemble& gauged(const Calibration& knowledge) {
+    std::optional<GaugedEnsemble>& all = knowledge.time_error ? gauged_by_time_ : gauged_by_pull_in_;
+    if (!all)
+      all = gauge_all(Ensemble(first().given, devices_.verdict, options_.seed), Gauges::of(knowledge), options_.jobs, watch_);
+    return *all;
+  }
+
+  using Found = std::optional<std::map<std::string, Waveform>>;
+  // For each of these calibrations, side by side; none where a search came to nothing.
+  std::array<Found, 2> searched_in(const ChosenFrom& winner, const std::array<Calibration, 2>& calibrations) {
     const auto family = std::ranges::find(names_, winner.family);
     const std::size_t k = family == names_.end() ? 0 : static_cast<std::size_t>(family - names_.begin());
-    std::optional<KnownUnits> known;
-    try {
-      known = known_units(first().given, std::array{calibration}, options_.jobs, watch_).front();
-    } catch (const InvalidInput&) {
-      return std::nullopt;  // no electrode that pulls in
-    }
-    const RobustCost cost(first(), aims_.tail,
-                          own_devices(first(), *known, measured_devices, options_.seed, which_measured, options_.jobs, watch_));
-    RaceOptions own = race_options();
-    own.memory = nullptr;  // whose keys do not tell units
-    own.progress = [this, words](double part) { tell(words, part); };
-    const RaceResult found = race_alone(settings_[k], k, cost, aims_, winner.bounce_free >= ranked_by_share,
-                                        {winner.waveforms, result_drawing_waveforms()}, own);
-    result_->closings += found.closings;
+    const std::vector<KnownUnits> known = known_units(first().given, calibrations, options_.jobs, watch_);
+    std::array<Found, 2> all;
+    std::array<std::atomic<double>, 2> parts{};
+    std::array<long, 2> closings{};
+    run_tasks(
+        all.size(), options_.jobs,
+        [&](std::size_t i) {
+          const RobustCost cost(
+              first(), aims_.tail,
+              own_devices(first(), known[i], measured_devices, options_.seed, which_measured, options_.jobs, watch_));
+          RaceOptions own = race_options();
+          own.memory = nullptr;  // whose keys do not tell units
+          own.progress = [&, i](double part) {
+            parts[i] = part;
+            tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
+          };
+          const RaceResult found = race_alone(settings_[k], k, cost, aims_, winner.bounce_free >= ranked_by_share,
+                                              {winner.waveforms, result_drawing_waveforms()}, own);
+          closings[i] = found.closings;
+          if (!found.racers.empty()) all[i] = found.racers.front().waveforms;
+        },
+        options_.stop);
+    result_->closings += closings[0] + closings[1];
     watch_.throw_if_stopped();
-    return found.racers.empty() ? std::nullopt : std::optional(found.racers.front().waveforms);
+    return all;
   }
 
   // The candidates of which none closes sooner and more softly, on the devices of the verdict.
@@ -539,6 +558,7 @@ class DevicesStudy {
   RobustAim tail_aim_;
   RaceAims aims_;
   std::optional<RobustCost> cost_;
+  std::optional<GaugedEnsemble> gauged_by_pull_in_, gauged_by_time_;  // the devices of the verdict
   std::size_t eligible_ = 0;
   double race_end_ = 0;  // since the beginning [s]
   bool spread_assumed_ = false;

@@ -78,26 +78,39 @@ bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
 
 Vectors vectors_for(const Aim& target, Vectors vectors) { return target.is_about(Target::drive) ? Vectors::none : vectors; }
 
-BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
+GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
-  BuiltEnsemble built{.devices = std::vector<SampledDevice>(ensemble.size()), .units = std::vector<DeviceUnits>(ensemble.size())};
-  std::optional<DeviceMeter> meter;
-  if (!known.calibration().is_empty()) meter.emplace(ensemble.nominal(), Gauges::of(known.calibration()));
+  GaugedEnsemble all{.devices = std::vector<SampledDevice>(ensemble.size()), .exact = std::vector<DeviceUnits>(ensemble.size())};
+  const DeviceMeter meter(ensemble.nominal(), gauges);
   const auto task = [&](std::size_t chunk) {
     DeviceBuilder builder(ensemble);
     for (std::size_t k = chunk * together; k < std::min<std::size_t>(ensemble.size(), (chunk + 1) * together); ++k) {
       if (watch.stopped()) return;
-      SampledDevice& device = built.devices[k] = builder.device(k);
-      if (!meter || !device.model) continue;
-      built.units[k] = known.of(meter->exact(*device.model), seed, k);
-      if (std::isfinite(built.units[k].volts)) continue;
-      device.refusal = "its pull-in voltage cannot be measured";
-      device.model.reset();
+      all.devices[k] = builder.device(k);
+      if (all.devices[k].model) all.exact[k] = meter.exact(*all.devices[k].model);
     }
   };
   run_tasks((ensemble.size() + together - 1) / together, jobs, task, watch.stop);
   watch.throw_if_stopped();
+  return all;
+}
+
+BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint64_t seed) {
+  BuiltEnsemble built{.devices = std::move(gauged.devices), .units = std::vector<DeviceUnits>(gauged.exact.size())};
+  if (known.calibration().is_empty()) return built;
+  for (std::size_t k = 0; k < built.devices.size(); ++k) {
+    SampledDevice& device = built.devices[k];
+    if (!device.model) continue;
+    built.units[k] = known.of(gauged.exact[k], seed, k);
+    if (std::isfinite(built.units[k].volts)) continue;
+    device.refusal = "its pull-in voltage cannot be measured";
+    device.model.reset();
+  }
   return built;
+}
+
+BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs, const Watch& watch) {
+  return known_as(gauge_all(ensemble, Gauges::of(known.calibration()), jobs, watch), known, seed);
 }
 
 BuiltEnsemble own_devices(const SearchSetting& setting, const KnownUnits& known, std::uint64_t count, std::uint64_t seed,

@@ -49,11 +49,22 @@ struct RobustAim {
   std::vector<Criterion> conditions;
 };
 
+/// Devices and what they would measure without error, by these gauges and their frequency.
+struct GaugedEnsemble {
+  std::vector<SampledDevice> devices;
+  std::vector<DeviceUnits> exact;  ///< of a device that cannot be described: 1
+};
+/// Throws Interrupted where `watch` asks to stop.
+[[nodiscard]] GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch = {});
+
 /// Devices that are built and measured.
 struct BuiltEnsemble {
   std::vector<SampledDevice> devices;
   std::vector<DeviceUnits> units;  ///< of a device's own drive, over that of the nominal one
 };
+/// The same devices as they are known, by a calibration that needs no other gauges: the errors are functions of `seed` and the
+/// number of the device. One that cannot be measured is refused.
+[[nodiscard]] BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint64_t seed);
 /// Throws Interrupted where `watch` asks to stop.
 [[nodiscard]] BuiltEnsemble build_all(const Ensemble& ensemble, const KnownUnits& known, std::uint64_t seed, int jobs,
                                       const Watch& watch = {});
