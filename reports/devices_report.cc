@@ -38,10 +38,12 @@ constexpr double half = 0.5;
 struct Column {
   std::string_view key, heading, short_heading;
 };
-constexpr std::array columns{Column{"largest_impact_velocity_m_s", "impact speed", "impact"},
-                             Column{"major_bounce_height_m", "highest rebound", "rebound"},
-                             Column{"initial_contact_time_s", "first contact", "contact"},
-                             Column{"peak_contact_force_N", "peak force", "force"}};
+constexpr std::array columns{
+    Column{"largest_impact_velocity_m_s", "impact speed", "impact"},
+    Column{"major_bounce_height_m", "highest rebound", "rebound"}, Column{"initial_contact_time_s", "first contact", "contact"},
+    Column{"peak_contact_force_N", "peak force", "force"}, Column{"steady_force_time_s", "steady force from", "steady"}};
+
+constexpr std::string_view steady_key = columns.back().key;
 
 ResultDevices::Row row_of(const DevicesRow& row) {
   const DriveRobustness& drive = row.judged;
@@ -54,8 +56,11 @@ ResultDevices::Row row_of(const DevicesRow& row) {
                        .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
                        .collapsed = drive.collapsed.value,
                        .at_95 = {}};
-  for (std::size_t i = 0; i < drive.figures.size(); ++i)
-    r.at_95[std::string(ensemble_figures()[i].key)] = drive.figures[i].quantiles[2].value;
+  for (std::size_t i = 0; i < drive.figures.size(); ++i) {
+    const std::string_view key = ensemble_figures()[i].key;
+    const bool is_judged = key != steady_key || row.judged_whole;
+    if (is_judged) r.at_95[std::string(key)] = drive.figures[i].quantiles[2].value;
+  }
   return r;
 }
 
@@ -91,6 +96,51 @@ std::string front_words(const ResultDevices::FrontPoint& p) {
                      quantity(p.impact_speed, "m/s"), percent(p.bounce_free));
 }
 
+std::string known_words(const ResultDevices::ByError& known) {
+  const std::string speed = std::isfinite(known.impact_speed) ? quantity(known.impact_speed, "m/s") : std::string("∞");
+  return fmt::format("Vdp to {:g} %: {} land without a rebound, or 95 % touch at no more than {}", 100 * known.error,
+                     percent(known.bounce_free), speed);
+}
+
+// Share without a rebound and impact speed over the error of Vdp.
+std::string error_curve(const ResultDevices& d) {
+  if (d.by_error.size() < 2) return {};
+  CurveTables tables;
+  CurveTable& table = tables["by-error"];
+  for (const ResultDevices::ByError& known : d.by_error) {
+    table["error"].push_back(100 * known.error);
+    table["share"].push_back(100 * known.bounce_free);
+    table["speed"].push_back(known.impact_speed);
+  }
+  const std::array ends{table["error"].front(), table["error"].back()};
+  Chart share{
+      .id = "share-by-error",
+      .title = "Without a rebound, by the error of Vdp",
+      .caption =
+          "Devices that land without a rebound where Vdp is measured on each with this error, by the waveform that lands most.",
+      .x_column = "error",
+      .x_label = "Error of Vdp",
+      .x_unit = "%",
+      .y_label = "Devices",
+      .y_unit = "%",
+      .x_scale = Scale::logarithmic,
+      .x_home = ends,
+      .x_whole = ends,
+      .y_home = std::array{0.0, 100.0},
+      .height = 200,
+      .series = {{.table = "by-error", .column = "share", .label = "", .role = Role::best}}};
+  Chart speed = share;
+  speed.id = "speed-by-error";
+  speed.title = "Impact speed, by the error of Vdp";
+  speed.caption =
+      "95 % of the devices touch at no more than this where Vdp is measured on each with this error, by the softest waveform.";
+  speed.y_label = "Impact speed";
+  speed.y_unit = "m/s";
+  speed.y_home.reset();
+  speed.series.front().column = "speed";
+  return "<div class=\"multiples\">\n" + small_picture(tables, share) + small_picture(tables, speed) + "</div>\n";
+}
+
 }  // namespace
 
 ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command) {
@@ -109,6 +159,7 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
                   .measured = found.calibrated_row,
                   .next_command = std::move(next_command)};
   d.spread = spread_words(found.varied.scene.spread);
+  d.windows = found.windows;
   for (const std::string_view key : found.worse_in) d.worse_in.emplace_back(key);
   for (const DevicesRow& row : found.rows) d.rows.push_back(row_of(row));
   for (const FrontPoint& p : found.front)
@@ -116,6 +167,8 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
                        .impact_speed = p.impact_speed,
                        .bounce_free = p.bounce_free,
                        .candidate = fmt::format("{} by {}", p.waveform, p.measure)});
+  for (const KnownVdp& known : found.by_error)
+    d.by_error.push_back({.error = known.error, .bounce_free = known.bounce_free, .impact_speed = known.impact_speed});
   for (const ChosenFrom& one : found.candidates)
     d.race.push_back({.measure = one.measure,
                       .waveform = one.family,
@@ -132,7 +185,7 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
 }
 
 json internal::devices_json(const ResultDevices& d) {
-  json rows = json::array(), front = json::array(), race = json::array(), conditions = json::array();
+  json rows = json::array(), front = json::array(), by_error = json::array(), race = json::array(), conditions = json::array();
   for (const ResultDevices::Row& r : d.rows) {
     json figures = json::object();
     for (const auto& [key, value] : r.at_95) figures[key] = json_number(value);
@@ -152,6 +205,10 @@ json internal::devices_json(const ResultDevices& d) {
                      {"largest_impact_velocity_m_s", json_number(p.impact_speed)},
                      {"bounce_free", json_number(p.bounce_free)},
                      {"candidate", p.candidate}});
+  for (const ResultDevices::ByError& known : d.by_error)
+    by_error.push_back({{"error", json_number(known.error)},
+                        {"bounce_free", json_number(known.bounce_free)},
+                        {"largest_impact_velocity_m_s", json_number(known.impact_speed)}});
   for (const ResultDevices::Racer& r : d.race)
     race.push_back({{"measure", r.measure},
                     {"waveform", r.waveform},
@@ -173,6 +230,9 @@ json internal::devices_json(const ResultDevices& d) {
           {"worse_in", d.worse_in},
           {"rows", std::move(rows)},
           {"front", std::move(front)},
+          {"by_error_of_Vdp", std::move(by_error)},
+          {"hold_window_V", windows_json(d.windows)},
+          {"hold_window_devices", d.windows.devices},
           {"race", std::move(race)},
           {"conditions", std::move(conditions)},
           {"measured", d.measured},
@@ -217,8 +277,8 @@ std::string internal::devices_headline(const Result& result) {
 
 std::string internal::devices_text(const ResultDevices& d) {
   if (d.rows.empty()) return {};
-  constexpr std::size_t label = 26, width = 12;
-  std::string out = left_aligned(fmt::format("On {:.0f} devices, 95 % below", d.count), label);
+  constexpr std::size_t label = 26, width = 11;
+  std::string out = left_aligned(fmt::format("{:.0f} devices, 95 % below", d.count), label);
   std::vector<std::string> heads{"no rebound"};
   for (const Column& c : columns) heads.emplace_back(c.short_heading);
   heads.insert(heads.end(), {"stay open", "pulled in"});
@@ -238,6 +298,11 @@ std::string internal::devices_text(const ResultDevices& d) {
     out += "\nSooner or softer, of 95 % of the devices:\n";
     for (const ResultDevices::FrontPoint& p : d.front) out += "  " + front_words(p) + "\n";
   }
+  if (!d.by_error.empty()) {
+    out += "\nWhat a measured Vdp is worth, by its error, with one waveform or another:\n";
+    for (const ResultDevices::ByError& known : d.by_error) out += "  " + known_words(known) + "\n";
+  }
+  if (const std::string held = window_words(d.windows); !held.empty()) out += "\n" + wrapped(held) + "\n";
   for (const ResultRobust::Condition& c : d.conditions)
     out += "\n" +
            wrapped(fmt::format("The condition {} {}: {} of the devices fulfil it.", c.text, c.holds ? "holds" : "does not hold",
@@ -291,6 +356,8 @@ std::string internal::devices_section(const ResultDevices& d) {
     for (const ResultDevices::FrontPoint& p : d.front) body += "<li>" + escaped(front_words(p)) + "</li>\n";
     body += "</ul>\n";
   }
+  body += error_curve(d);
+  if (const std::string held = window_words(d.windows); !held.empty()) body += "<p class=\"below\">" + escaped(held) + "</p>\n";
   if (!d.next_command.empty())
     body += fmt::format("<p class=\"below\">For a device that was measured: <code>{}</code></p>\n", escaped(d.next_command));
   body += "<p>More: <a href=\"robustness.html\">how the devices do</a>, device by device and figure by figure.</p>\n";

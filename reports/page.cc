@@ -74,11 +74,17 @@ std::string key_html(std::string_view name, std::string_view value, std::string_
       value, change);
 }
 
-std::string still_picture(const CurveTables& tables, const Chart& chart) {
-  constexpr double width = 960;
-  return fmt::format("<svg class=\"still\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", width,
+namespace {
+
+std::string picture_of(const CurveTables& tables, const Chart& chart, const char* style, double width) {
+  return fmt::format("<svg class=\"{}\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", style, width,
                      chart_svg_height(chart), escaped(chart.title + ". " + chart.caption), chart_svg(tables, chart, width, 0));
 }
+
+}  // namespace
+
+std::string still_picture(const CurveTables& tables, const Chart& chart) { return picture_of(tables, chart, "still", 960); }
+std::string small_picture(const CurveTables& tables, const Chart& chart) { return picture_of(tables, chart, "small", 440); }
 
 std::string figure_html(const CurveTables& tables, const Chart& chart) {
   return fmt::format("<figure id=\"figure-{0}\"><h3>{1}</h3>\n<div class=\"live\" data-chart=\"{0}\"></div>\n", chart.id,

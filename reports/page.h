@@ -53,6 +53,8 @@ using TableRow = std::vector<Cell>;
 
 /// The chart as an <svg> element.
 [[nodiscard]] std::string still_picture(const CurveTables& tables, const Chart& chart);
+/// The same, small, as one of many beside each other in an element of the class "multiples".
+[[nodiscard]] std::string small_picture(const CurveTables& tables, const Chart& chart);
 /// The chart in a page, with its title, its caption and the place where the script draws it.
 [[nodiscard]] std::string figure_html(const CurveTables& tables, const Chart& chart);
 /// The style and the scripts that draw the charts of a page.

@@ -16,6 +16,7 @@
 #include "objectives/figures.h"
 #include "studies/certify.h"
 #include "studies/closed_state.h"
+#include "studies/hold_window.h"
 
 namespace softland {
 
@@ -138,6 +139,10 @@ struct ResultDevices {
     double first_touch = Metrics::unset, impact_speed = Metrics::unset, bounce_free = Metrics::unset;
     std::string candidate;  ///< "bspline:6 by cvar:0.9"
   };
+  /// What a measured Vdp is worth, by its error: see KnownVdp.
+  struct ByError {
+    double error = Metrics::unset, bounce_free = Metrics::unset, impact_speed = Metrics::unset;
+  };
   struct Racer {
     std::string measure, waveform;
     double closings = Metrics::unset, cost = Metrics::unset, bounce_free = Metrics::unset;
@@ -150,6 +155,8 @@ struct ResultDevices {
   std::vector<std::string> worse_in;  ///< figures of the best candidate, where the plain step wins
   std::vector<Row> rows;
   std::vector<FrontPoint> front;
+  std::vector<ByError> by_error;
+  HoldWindows windows;  ///< of hold levels
   std::vector<Racer> race;
   std::vector<ResultRobust::Condition> conditions;
   FigureValues drawing;  ///< of the drawing's waveform on the nominal device

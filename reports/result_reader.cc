@@ -225,6 +225,19 @@ ResultDevices::Row devices_row(const json& one) {
           .at_95 = members(at(one, {"quantile_95"}), or_infinite)};
 }
 
+HoldWindows windows(const json& found) {
+  HoldWindows all;
+  if (const double devices = number(found, {"hold_window_devices"}); devices >= 1 && devices <= most_held_devices)
+    all.devices = static_cast<std::size_t>(devices);
+  const json& ends = at(found, {"hold_window_V"});
+  if (!ends.is_object()) return all;
+  for (const auto& [electrode, window] : ends.items()) {
+    HoldWindow& one = all.of_electrodes[electrode];
+    if (window.is_array() && window.size() == 2) one = {.lower = number(window[0]), .upper = or_infinite(window[1])};
+  }
+  return all;
+}
+
 std::optional<ResultDevices> devices(const json& result) {
   const json& found = at(result, {"devices"});
   if (!found.is_object()) return std::nullopt;
@@ -250,6 +263,12 @@ std::optional<ResultDevices> devices(const json& result) {
                                      .bounce_free = number(one, {"bounce_free"}),
                                      .candidate = text(one, {"candidate"})};
   });
+  d.by_error = each(at(found, {"by_error_of_Vdp"}), [](const json& one) {
+    return ResultDevices::ByError{.error = number(one, {"error"}),
+                                  .bounce_free = number(one, {"bounce_free"}),
+                                  .impact_speed = or_infinite(at(one, {"largest_impact_velocity_m_s"}))};
+  });
+  d.windows = windows(found);
   d.race = each(at(found, {"race"}), [](const json& one) {
     return ResultDevices::Racer{.measure = text(one, {"measure"}),
                                 .waveform = text(one, {"waveform"}),

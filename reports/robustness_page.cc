@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "reports/derivatives_report.h"
+#include "reports/device_scatter.h"
 #include "reports/escape.h"
 #include "reports/estimates.h"
 #include "reports/made_with.h"
@@ -365,7 +366,8 @@ std::string robustness_html(const RobustnessReport& report) {
                          .keys = keys_of(found),
                          .body = section("charts", "How the devices differ", about + charts) + knowledge_table(found) +
                                  section("figures", "Figures", statistics_table(found) + window_paragraph(windows)) +
-                                 sensitivity_table(sensitivity) + internal::derivatives_html(derivatives, found.drives.back()) +
+                                 internal::device_scatter_html(report) + sensitivity_table(sensitivity) +
+                                 internal::derivatives_html(derivatives, found.drives.back()) +
                                  (ways ? internal::other_ways_html(*ways, found.drives.back(), nominal) : "") +
                                  worst_table(report) + internal::reproduce(result) + internal::scene(result),
                          .style = internal::chart_style(),

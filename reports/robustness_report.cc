@@ -124,15 +124,14 @@ json sensitivity_json(const Sensitivity& sensitivity) {
   return j;
 }
 
-// [lower, upper] by electrode; null where no level holds as many devices, or an end where there is none.
-json windows_json(const HoldWindows& windows) {
+}  // namespace
+
+json internal::windows_json(const HoldWindows& windows) {
   json all = json::object();
   for (const auto& [electrode, window] : windows.of_electrodes)
     all[electrode] = std::isfinite(window.lower) ? json::array({window.lower, json_number(window.upper)}) : json();
   return all;
 }
-
-}  // namespace
 
 json robustness_json(const RobustnessReport& report) {
   const auto& [nominal, found, options, command, sensitivity, derivatives, courses, ways, windows, interrupted] = report;
@@ -174,7 +173,7 @@ json robustness_json(const RobustnessReport& report) {
           {"duration_s", found.duration},
           {"tolerance", found.tolerance},
           {"spread", spread_json(nominal.scene.spread)},
-          {"hold_window_V", windows_json(windows)},
+          {"hold_window_V", internal::windows_json(windows)},
           {"hold_window_devices", windows.devices},
           {"drives", std::move(drives)},
           {"by_knowledge", std::move(by_knowledge)},

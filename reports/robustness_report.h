@@ -37,8 +37,15 @@ struct RobustnessReport {
 [[nodiscard]] std::string robustness_csv(const RobustnessReport& report);
 
 /// A self-contained page, as html_report(): statistics, cumulative distributions and histograms, the closings of typical devices,
+/// every figure against every quantity,
 /// what measuring is worth, where the spread comes from, derivatives at the nominal device, the other ways, the worst devices,
 /// failures.
 [[nodiscard]] std::string robustness_html(const RobustnessReport& report);
 
+namespace internal {
+
+/// [lower, upper] by electrode [V]; null where no level holds as many devices, or an end where there is none.
+[[nodiscard]] nlohmann::json windows_json(const HoldWindows& windows);
+
+}  // namespace internal
 }  // namespace softland

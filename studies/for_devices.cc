@@ -36,6 +36,8 @@ constexpr double ranked_by_share = 0.25;                      // of the devices 
 constexpr std::uint64_t measured_devices = 128;               // of a search in measured units
 constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
 constexpr double least_times_of_error = 20;
+constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative
+constexpr std::size_t judged_by_error = 512;                                      // devices
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
 constexpr double end_of_drawing = 0.3, least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
 
@@ -339,6 +341,7 @@ class DevicesStudy {
     decide();
     std::ranges::move(measured, std::back_inserter(result_->rows));
     front();
+    result_->windows = hold_windows(first().given, verdict_options(), watch_);
   }
 
   [[nodiscard]] RobustnessOptions verdict_options() const {
@@ -448,6 +451,9 @@ class DevicesStudy {
     if (found[1]) rows.push_back(row_of_measured("Vdp and period to 0.2 %", *found[1], fine, !tells_time));
     if (found[1] && tells_time) rows.push_back(row_of_measured("closing time to 50 ns", *found[1], by_time, true));
     const bool time_wins = found[1] && tells_time && is_better(rows.back(), rows.front());
+    std::vector waveforms{*found[0]};
+    if (found[1]) waveforms.push_back(*found[1]);
+    judge_by_error(waveforms);
     result_->calibrated_row = time_wins ? rows.back().name : rows.front().name;
     result_->calibrated =
         with_waveforms(result_->drawing.baseline_scene, first().space.searched(time_wins ? *found[1] : *found[0]));
@@ -473,8 +479,28 @@ class DevicesStudy {
     return {.name = name,
             .knowledge = knowledge,
             .searched_for_it = searched_for_it,
+            .judged_whole = false,
             .judged = internal::summarised({.name = name, .waveforms = all_drives(waveforms), .calibration = knowledge}, known,
                                            std::move(outcomes))};
+  }
+
+  // What the better of these waveforms reaches where Vdp is known with ever larger errors.
+  void judge_by_error(const std::vector<std::map<std::string, Waveform>>& waveforms) {
+    GaugedEnsemble few = gauged({.pull_in_error = coarse_error});
+    few.devices.resize(std::min(judged_by_error, few.devices.size()));
+    few.exact.resize(few.devices.size());
+    for (const double error : errors_of_pull_in) {
+      const Calibration knowledge{.pull_in_error = error};
+      const RobustCost fresh(first(), aims_.tail, known_as(few, KnownUnits(knowledge), options_.seed));
+      KnownVdp best{.error = error};
+      for (const auto& waveform : waveforms) {
+        const std::vector<DeviceOutcome> outcomes = closed(fresh, waveform, fresh.devices());
+        best.bounce_free = std::fmax(best.bounce_free, share_of(outcomes, is_bounce_free));
+        best.impact_speed = std::fmin(best.impact_speed, quantile_95(outcomes, judged_figures[0]));
+      }
+      watch_.throw_if_stopped();
+      result_->by_error.push_back(best);
+    }
   }
 
   // The devices of the verdict, gauged once for all that is known of them.

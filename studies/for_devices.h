@@ -26,6 +26,7 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/hold_window.h"
 #include "studies/optimize.h"
 #include "studies/race.h"
 #include "studies/robust_optimize.h"
@@ -48,7 +49,15 @@ struct DevicesRow {
   std::string name;             ///< "plain step", "for the drawing", "for the devices", "Vdp to 1 %"
   Calibration knowledge = {};   ///< what is measured on every device
   bool searched_for_it = true;  ///< else the waveform was made for another knowledge
+  bool judged_whole = true;     ///< over the whole window of a closing, else over that of a search
   DriveRobustness judged = {};
+};
+
+/// What is reached in units of a Vdp that is measured with an error, on the first of the fresh devices, each figure by the better
+/// of the waveforms that were searched in measured units.
+struct KnownVdp {
+  double error = 0;                                                    ///< of Vdp, standard deviation, relative
+  double bounce_free = Metrics::unset, impact_speed = Metrics::unset;  ///< share of the devices; 95 % quantile [m/s]
 };
 
 /// A candidate on the fresh devices.
@@ -82,6 +91,8 @@ struct ForDevicesResult {
   std::vector<DevicesRow> rows = {};
   std::vector<std::string_view> worse_in = {};   ///< of the winner: see worse_in()
   std::vector<FrontPoint> front = {};            ///< by first touch
+  std::vector<KnownVdp> by_error = {};           ///< the least error first; none where Vdp is not measured
+  HoldWindows windows = {};                      ///< of hold levels
   std::optional<SceneFile> calibrated = {};      ///< in units that are measured on every device, with its [calibration]
   std::string calibrated_row = {};               ///< the row that it is of
   double pull_in = Metrics::unset;               ///< Vdp of the nominal device, where there is a calibrated waveform [V]

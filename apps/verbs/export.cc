@@ -20,6 +20,7 @@
 #include "apps/verbs/verbs.h"
 #include "base/choice.h"
 #include "base/require.h"
+#include "config/assumed_spread.h"
 #include "config/units.h"
 #include "reports/quantity.h"
 #include "studies/choices.h"
@@ -113,9 +114,15 @@ void warn_if_strange(const Measured& measured, double ratio, double deviation, c
   const double off = std::abs(ratio - 1), sigma = std::hypot(deviation, error_of(measured, error));
   if (off <= strange * sigma) return;
   say(
-      fmt::format("warning: {}: {} % from the nominal device, {} times the standard deviation of [spread] and measurement: is "
+      fmt::format("warning: {}: {} % from the nominal device, {} times the standard deviation of devices and measurement: is "
                   "it this switch?",
                   measured.said, plain_number(100 * off, 3), plain_number(off / sigma, 2)));
+}
+
+// The scene, whose devices differ in the usual way where it does not say how.
+Prepared with_spread(const Prepared& p) {
+  SceneFile file = p.scene.file;
+  return assume_spread(file) ? prepare(file) : p;
 }
 
 // The units of the device on which this was measured.
@@ -129,15 +136,13 @@ DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watc
   const DeviceUnits told = measured.time.value ? meter.told_by(*measured.time.value) : DeviceUnits{};
   const double volts = measured.pull_in.value ? *measured.pull_in.value / meter.pull_in() : told.volts,
                time = meter.frequency() / measured.frequency.value.value_or(meter.frequency());
-  if (!p.scene.spread.empty()) {
-    const DeviceUnits deviation =
-        deviation_of_units(p, measured.pull_in.value.has_value() || measured.time.value.has_value(), job_count({}), watch);
-    if (measured.time.value)
-      warn_if_strange(measured.time, volts, deviation.volts,
-                      told.volts_by_time * calibration.time_error.value_or(usual_time_error));
-    if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error);
-    if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error);
-  }
+  const bool by_volts = measured.pull_in.value || measured.time.value;
+  const DeviceUnits deviation = deviation_of_units(with_spread(p), by_volts, job_count({}), watch);
+  if (measured.time.value)
+    warn_if_strange(measured.time, volts, deviation.volts,
+                    told.volts_by_time * calibration.time_error.value_or(usual_time_error));
+  if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error);
+  if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error);
   const KnownUnits known = known_units(p, std::array{calibration}, job_count({}), watch).front();
   return known.of({.volts = volts, .time = time, .volts_by_time = told.volts_by_time});
 }

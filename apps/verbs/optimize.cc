@@ -243,7 +243,8 @@ int run_for_devices(const Asked& asked) {
         .nominal = result.varied,
         .found = result.verdict,
         .options = {.samples = asked.search.for_devices->verdict, .seed = options.seed, .jobs = options.jobs},
-        .command = c.command};
+        .command = c.command,
+        .windows = result.windows};
     write_robustness(run.folder(), report);
     left.insert(left.end(), robustness_files.begin(), robustness_files.end());
   }

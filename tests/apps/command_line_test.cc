@@ -602,7 +602,7 @@ TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {
   const Outcome strange = run("Vdp=7 V");
   EXPECT_EQ(strange.status, 0);
   EXPECT_THAT(strange.err, HasSubstr("warning: --measured Vdp = 7 V: "));
-  EXPECT_THAT(strange.err, HasSubstr("times the standard deviation of [spread] and measurement"));
+  EXPECT_THAT(strange.err, HasSubstr("times the standard deviation of devices and measurement"));
   EXPECT_THAT(run("frequency=30 kHz").err, HasSubstr("warning: --measured frequency = 30 kHz: "));
   EXPECT_THAT(here.run({"export", "gold.toml", "--device-vdp", "7 V"}).err, HasSubstr("warning: --device-vdp 7 V: "));
   for (const auto& [measured, said] : std::vector<std::pair<std::string, std::string>>{

@@ -416,7 +416,7 @@ TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
   const Outcome o = here.run(words("optimize", for_devices("out")));
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_EQ(o.out.find("The waveform for the drawing"), 0U) << o.out;
-  EXPECT_THAT(o.out, testing::HasSubstr("On 100 devices, 95 % below"));
+  EXPECT_THAT(o.out, testing::HasSubstr("100 devices, 95 % below"));
   for (const char* name : {"best.toml", "best.csv", "drawing.toml", "drawing.csv", "report.html", "robustness.html",
                            "robustness.json", "devices.csv", "result.json"})
     EXPECT_TRUE(fs::exists(here.path() / "out" / name)) << name;

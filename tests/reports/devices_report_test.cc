@@ -47,6 +47,9 @@ Result devices_result() {
   ResultDevices::Row measured = row("Vdp to 1 %", 0.1, 0.0166, 50e-9);
   measured.pull_in_error = 0.01;
   d.rows.push_back(measured);
+  d.by_error = {{.error = 0.002, .bounce_free = 0.162, .impact_speed = 0.0146},
+                {.error = 0.01, .bounce_free = 0.104, .impact_speed = 0.0178}};
+  d.windows = {.of_electrodes = {{"main", {.lower = 16.36, .upper = 36.31}}}, .devices = 200};
   d.front = {{.first_touch = 50e-6, .impact_speed = 0.05, .bounce_free = 0, .candidate = "knots:6 by yield"},
              {.first_touch = 90e-6, .impact_speed = 0.033, .bounce_free = 0.01, .candidate = "catch by cvar:0.9"}};
   d.race = {{.measure = "cvar:0.9", .waveform = "catch", .closings = 18'000, .cost = 0.3, .bounce_free = 0.01}};
@@ -71,9 +74,11 @@ TEST(DevicesReport, SaysFirstWhatDevicesDo) {
           "touch at no more than 16.6\u00a0mm/s: calibrated.toml."));
   const std::string text = text_report(devices_result());
   EXPECT_EQ(text.find("The waveform for the drawing"), 0U);
-  for (const char* part :
-       {"plain step", "for the drawing", "for the devices", "Vdp to 1 %", "107\u00a0mm/s", "732\u00a0nm", "∞",
-        "catch by cvar:0.9: touch within 90.0\u00a0µs", "The condition t_i < 3 step holds: 97.0 % of the devices"})
+  for (const char* part : {"plain step", "for the drawing", "for the devices", "Vdp to 1 %", "107\u00a0mm/s", "732\u00a0nm", "∞",
+                           "catch by cvar:0.9: touch within 90.0\u00a0µs",
+                           "Vdp to 0.2 %: 16.2 % land without a rebound, or 95 % touch at no more than 14.6\u00a0mm/s",
+                           "99 % of 200 devices closed, from release voltage to pull-through:",
+                           "The condition t_i < 3 step holds: 97.0 % of the devices"})
     EXPECT_THAT(text, HasSubstr(part));
 }
 
@@ -114,6 +119,7 @@ TEST(DevicesReport, StandsFirstOnThePage) {
   EXPECT_LT(table, figures);
   EXPECT_THAT(page, HasSubstr("<dt>Impact speed, of 95 %</dt>"));
   EXPECT_THAT(page, HasSubstr("<td class=\"own\">33.0\u00a0mm/s</td>"));
+  EXPECT_THAT(page, HasSubstr("aria-label=\"Without a rebound, by the error of Vdp"));
   EXPECT_THAT(html_report(search_alone()), Not(HasSubstr("id=\"devices\"")));
 }
 

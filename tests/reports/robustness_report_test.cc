@@ -210,13 +210,16 @@ TEST(RobustnessReport, SaysWhatItsDerivativesAreWorth_optimized) {
 
 TEST(RobustnessReport, AsAPageHasEverySectionAndEscapesNames) {
   const std::string page = robustness_html(study().report());
-  for (const char* id : {"charts", "knowledge", "figures", "sensitivity", "derivatives", "ways", "worst", "reproduce", "scene"})
+  for (const char* id :
+       {"charts", "knowledge", "figures", "scatter", "sensitivity", "derivatives", "ways", "worst", "reproduce", "scene"})
     EXPECT_THAT(page, HasSubstr(std::string("<section id=\"") + id + "\">")) << id;
   EXPECT_THAT(page, Not(HasSubstr("<slow>")));
   EXPECT_THAT(page, HasSubstr("&lt;slow&gt;, &quot;mine&quot;"));
   EXPECT_THAT(page, HasSubstr("softland robustness &#39;a &amp; b.toml&#39;"));
   EXPECT_THAT(page, HasSubstr("data-chart=\"share-v-max\""));
   EXPECT_THAT(page, HasSubstr("data-chart=\"courses\""));
+  for (const SpreadVariable& v : study().report().nominal.scene.spread.variables)
+    EXPECT_THAT(page, HasSubstr("aria-label=\"Highest rebound by " + v.name));
   EXPECT_LT(page.size(), 1'000'000U);
 }
 
