@@ -22,6 +22,7 @@ namespace {
 
 using internal::json_number;
 using internal::left_aligned;
+using internal::percent;
 using internal::quantity;
 using internal::right_aligned;
 using nlohmann::json;
@@ -117,7 +118,7 @@ std::string remarks(const Release& r) {
       "Open for good: the contact point stays within {} of its open position ({} of the contact gap). Residual vibration: how "
       "far it "
       "still swings from there once all drives stand at 0 V.",
-      quantity(r.band, "m"), internal::percent(r.options.band));
+      quantity(r.band, "m"), percent(r.options.band));
   if (!r.best) return words + " No waveform was found that opens the switch.";
   words += fmt::format(" Searched: {} waveforms, seed {}.", r.search.evaluations, r.options.seed);
   for (const ConfirmingOpening& c : r.checks) {
@@ -155,6 +156,43 @@ double shown_until(const Release& r, double window) {
 
 }  // namespace
 
+namespace {
+
+json openings_json(const DeviceOpenings& o) {
+  return {{"open", json_number(o.open)},
+          {"in_band_with_drives", json_number(o.in_band)},
+          {"settling_time_s", json_number(o.settling_time)},
+          {"residual_vibration_m", json_number(o.residual_vibration)},
+          {"overshoot_m", json_number(o.overshoot)}};
+}
+
+json devices_json(const std::optional<ReleaseOnDevices>& found) {
+  if (!found) return nullptr;
+  return {{"count", found->devices},
+          {"spread_assumed", found->spread_assumed},
+          {"varied", found->spread},
+          {"plain", openings_json(found->plain)},
+          {"best", openings_json(found->best)}};
+}
+
+// What 95 % of the devices do under either opening.
+std::string devices_text(const ReleaseOnDevices& found) {
+  const auto value = [](double v, const char* unit) { return std::isfinite(v) ? quantity(v, unit) : std::string("∞"); };
+  const auto row = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
+    return release_row(name, value(found.plain.*figure, unit), value(found.best.*figure, unit));
+  };
+  std::string text = wrapped(fmt::format("On {} devices that differ in {}{}, all in the volts of the nominal one:", found.devices,
+                                         found.spread, found.spread_assumed ? " (assumed, the scene has no [spread])" : "")) +
+                     "\n" + release_row("", plain_words, "found");
+  text += release_row("open for good", percent(found.plain.open), percent(found.best.open));
+  text += release_row("from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band));
+  text += row("open for good, 95 % within", &DeviceOpenings::settling_time, "s");
+  text += row("residual vibration, 95 % below", &DeviceOpenings::residual_vibration, "m");
+  return text + row("beyond the open position, 95 % below", &DeviceOpenings::overshoot, "m");
+}
+
+}  // namespace
+
 json release_json(const Release& r, const Provenance& provenance) {
   json checks = json::array();
   for (const ConfirmingOpening& c : r.checks) checks.push_back({{"name", c.name}, {"figures", figures_json(c.figures)}});
@@ -172,6 +210,7 @@ json release_json(const Release& r, const Provenance& provenance) {
           {"best", r.best ? opening_json(r, *r.best) : json()},
           {"parameters", r.parameters},
           {"confirmed_by", checks},
+          {"devices", devices_json(r.on_devices)},
           {"goal_met", r.goal_met},
           {"confirmed", r.confirmed},
           {"evaluations", r.search.evaluations},
@@ -198,6 +237,7 @@ std::string release_text(const Release& r) {
     for (const auto& [name, value] : r.parameters)
       text += release_row(name, quantity(value, name.find(".level_") == std::string::npos ? "s" : "V", 4), "");
   }
+  if (r.on_devices) text += "\n" + devices_text(*r.on_devices);
   return text + "\n" + wrapped(remarks(r)) + "\n";
 }
 

@@ -10,12 +10,17 @@
 #include <utility>
 
 #include "base/engineering.h"
+#include "base/executor.h"
 #include "base/require.h"
+#include "config/assumed_spread.h"
 #include "model/closing.h"
 #include "model/constants.h"
 #include "model/pull_in.h"
+#include "sampling/statistics.h"
 #include "studies/choices.h"
 #include "studies/closed_state.h"
+#include "studies/ensemble.h"
+#include "studies/search_setting.h"
 #include "studies/simulate.h"
 #include "studies/verification.h"
 
@@ -66,8 +71,10 @@ class ReleaseSearch {
         names_(given.drive_names()),
         told_holds_(hold_levels(signals_of(given.in_drive_order(given.drives.waveforms)))) {
     add_brakes();
-    for (std::size_t k = 0; k < names_.size(); ++k)
-      plain_.push_back(driven(k, {{0, told_holds_[k]}, {fall_time(k, told_holds_[k]), 0}}));
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      told_plain_.push_back({{0, told_holds_[k]}, {fall_time(k, told_holds_[k]), 0}});
+      plain_.push_back(driven(k, told_plain_.back()));
+    }
   }
 
   /// Every drive to 0 V at once.
@@ -76,6 +83,27 @@ class ReleaseSearch {
     std::vector<Signal> all = plain_;
     for (const Brake& brake : brakes_) all[brake.drive] = driven(brake.drive, points(brake, x));
     return all;
+  }
+
+  /// The scene with what its drives are told, each from its hold level on; of no point that of the plain opening.
+  [[nodiscard]] SceneFile scene(std::span<const double> x) const {
+    std::vector<Line> told = told_plain_;
+    for (const Brake& brake : brakes_) {
+      if (!x.empty()) told[brake.drive] = points(brake, x);
+    }
+    std::map<std::string, Waveform> waveforms;
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      Table table;
+      for (const auto& [time, voltage] : told[k]) {
+        table.time.push_back(time);
+        table.voltage.push_back(voltage);
+      }
+      waveforms[names_[k]] = std::move(table);
+    }
+    SceneFile file = with_waveforms(given_, waveforms);
+    for (std::size_t k = 0; k < names_.size(); ++k)
+      file.set(fmt::format("waveform.{}.before=\"{} V\"", names_[k], told_holds_[k]));
+    return file;
   }
 
   /// An opening of a switch, which may be a richer one of the same scene.
@@ -227,6 +255,7 @@ class ReleaseSearch {
   double gap_, period_;
   std::vector<std::string> names_;  // of the drives
   std::vector<double> told_holds_;  // [V]
+  std::vector<Line> told_plain_;
   std::vector<Signal> plain_;
   std::vector<Brake> brakes_;
   std::vector<Variable> variables_;
@@ -243,6 +272,66 @@ bool better(const ReleaseFigures& a, const ReleaseFigures& b) {
   const bool a_settles = std::isfinite(a.settling_time), b_settles = std::isfinite(b.settling_time);
   if (a_settles != b_settles) return a_settles;
   return a_settles ? a.settling_time < b.settling_time : a.residual_vibration < b.residual_vibration;
+}
+
+double quantile_95(const std::vector<Opening>& openings, double ReleaseFigures::*figure) {
+  std::vector<double> values;
+  for (const Opening& o : openings) {
+    const double value = o.figures.*figure;
+    values.push_back(std::isnan(value) ? std::numeric_limits<double>::infinity() : value);
+  }
+  return sample_quantile(values, 0.95);
+}
+
+DeviceOpenings summarised(const std::vector<Opening>& openings, double band) {
+  const auto share = [&](const auto& holds) {
+    return static_cast<double>(std::ranges::count_if(openings, holds)) / static_cast<double>(openings.size());
+  };
+  return {.open = share([](const Opening& o) { return o.figures.status == Status::done; }),
+          .in_band = share([&](const Opening& o) { return is_open_with_drives(o.figures, band); }),
+          .settling_time = quantile_95(openings, &ReleaseFigures::settling_time),
+          .residual_vibration = quantile_95(openings, &ReleaseFigures::residual_vibration),
+          .overshoot = quantile_95(openings, &ReleaseFigures::overshoot)};
+}
+
+// Both openings on devices; none where no device is held closed.
+std::optional<ReleaseOnDevices> on_devices(const ReleaseSearch& search, const Release& r, const Watch& watch) {
+  SceneFile file = r.given.scene.file;
+  ReleaseOnDevices found{.spread_assumed = assume_spread(file), .spread = {}, .plain = {}, .best = {}};
+  std::optional<Prepared> varied;
+  if (found.spread_assumed) varied = prepare(file);
+  const Prepared& nominal = varied ? *varied : r.given;
+  for (const SpreadVariable& v : nominal.scene.spread.variables) found.spread += (found.spread.empty() ? "" : ", ") + v.name;
+  const Ensemble ensemble(nominal, r.options.devices, r.options.seed);
+  std::vector<std::optional<std::pair<Opening, Opening>>> of_device(ensemble.size());
+  std::atomic<std::size_t> done = 0;
+  run_tasks(
+      ensemble.size(), r.options.jobs,
+      [&](std::size_t k) {
+        const SampledDevice device = DeviceBuilder(ensemble).device(k);
+        watch.tell("devices", static_cast<double>(++done) / static_cast<double>(ensemble.size()));
+        if (!device.model || !device.model->rest()) return;
+        const std::optional<ClosedEquilibrium> closed = closed_equilibrium(*device.model, r.holds);
+        if (!keeps_closed(*device.model, closed)) return;
+        const std::span<const double> at = closed->coordinates();
+        const auto opened = [&](const std::vector<Signal>& signals) {
+          return search.open(*device.model, at, signals, opening_tolerance, r.window, watch.stop);
+        };
+        of_device[k].emplace(opened(r.plain.signals), opened(r.best->signals));
+      },
+      watch.stop);
+  if (watch.stopped()) return std::nullopt;
+  std::vector<Opening> plain, best;
+  for (auto& one : of_device) {
+    if (!one) continue;
+    plain.push_back(std::move(one->first));
+    best.push_back(std::move(one->second));
+  }
+  if (best.empty()) return std::nullopt;
+  found.devices = best.size();
+  found.plain = summarised(plain, r.band);
+  found.best = summarised(best, r.band);
+  return found;
 }
 
 }  // namespace
@@ -272,6 +361,7 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
   watch.throw_if_stopped();
   r.search = search.run(closed->coordinates(), watch);
   r.interrupted = watch.stopped();
+  r.scene = search.scene(r.search.x);
   if (r.search.x.empty()) return r;
 
   r.best = search.open(given.model, closed->coordinates(), search.signals(r.search.x), given.tolerance, r.window);
@@ -290,6 +380,7 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
   const auto meets_goal = [&](const auto& run) { return is_open_with_drives(run.figures, r.band); };
   r.goal_met = meets_goal(*r.best);
   r.confirmed = r.goal_met && std::all_of(r.checks.begin(), r.checks.end(), meets_goal);
+  if (r.options.devices > 0 && !r.interrupted) r.on_devices = on_devices(search, r, watch);
   return r;
 }
 

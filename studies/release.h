@@ -34,6 +34,7 @@ struct ReleaseOptions {
   long max_evaluations = 3000;
   std::uint64_t seed = 1;
   int jobs = 1;
+  std::uint64_t devices = 200;  ///< of the spread, that the waveform is judged on; 0: none
 };
 
 /// An opening under some signals, one per drive of the switch.
@@ -49,6 +50,20 @@ struct ConfirmingOpening {
   ReleaseFigures figures;
 };
 
+/// How devices open that differ as the scene says, or in the usual way (config/assumed_spread.h). They are held closed, and open,
+/// by the volts of the nominal one. One that does not stay open counts as infinite.
+struct DeviceOpenings {
+  double open = 0;     ///< share that is open for good at the end of the window
+  double in_band = 0;  ///< share that is in the band from the moment that the drives stand
+  double settling_time = 0, residual_vibration = 0, overshoot = 0;  ///< 95 % quantiles [s], [m], [m]
+};
+struct ReleaseOnDevices {
+  std::uint64_t devices = 0;  ///< that can be described and are held closed
+  bool spread_assumed = false;
+  std::string spread;  ///< that they are of, its keys
+  DeviceOpenings plain, best;
+};
+
 struct Release {
   Prepared given;
   ReleaseOptions options;
@@ -60,7 +75,10 @@ struct Release {
   Opening plain;
   std::optional<Opening> best;               ///< none where no waveform opens the switch
   std::map<std::string, double> parameters;  ///< of the best, by drive.name
+  /// The waveforms of the best opening, as the drives are told, from their hold levels on; in volts. Else those of the plain one.
+  std::optional<SceneFile> scene;
   std::vector<ConfirmingOpening> checks;
+  std::optional<ReleaseOnDevices> on_devices;  ///< none where that was not asked for, or no waveform opens the switch
   OptimizerResult search;
   bool better = false;     ///< than the plain opening: sooner open for good, or, where neither is, with less vibration
   bool goal_met = false;   ///< in the band from the moment that the drives stand

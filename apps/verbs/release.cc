@@ -13,6 +13,7 @@
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
+#include "apps/shell_word.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
 #include "base/require.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct ReleaseRequest {
   std::string actuator = "electrostatic", band = "5 %";
-  std::optional<std::string> budget, seed, jobs;
+  std::optional<std::string> budget, samples, seed, jobs;
 };
 
 double share_of(const std::string& text) {
@@ -47,6 +48,7 @@ ReleaseOptions options_of(const ReleaseRequest& request) {
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
   ReleaseOptions options{.actuator = actuator->value, .band = share_of(request.band)};
   if (request.budget) options.max_evaluations = whole_number<long>("--budget", *request.budget, 1);
+  if (request.samples) options.devices = whole_number<std::uint64_t>("--samples", *request.samples, 0);
   options.seed = seed_of(request.seed, options.seed);
   options.jobs = job_count(request.jobs);
   return options;
@@ -55,7 +57,7 @@ ReleaseOptions options_of(const ReleaseRequest& request) {
 int release_verb(const Common& c, const ReleaseRequest& request) {
   const ReleaseOptions options = options_of(request);
   const SceneFile file = load_scene(c);
-  const std::vector<std::string> files{"release.json", "release.svg", "release.csv"};
+  const std::vector<std::string> files{"release.json", "release.svg", "release.csv", "release.toml"};
   std::optional<ResultFolder> folder = claim_places(c, files);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
   const Release found = release(file, options, work->watch());
@@ -66,7 +68,11 @@ int release_verb(const Common& c, const ReleaseRequest& request) {
     folder->write("release.json", json_text(data, 1) + "\n");
     folder->write("release.svg", release_svg(found));
     folder->write("release.csv", release_csv(found));
-    text += left_in(folder->destination(found.interrupted), files);
+    folder->write("release.toml", found.scene->text());
+    const std::filesystem::path place = folder->destination(found.interrupted);
+    text += left_in(place, files);
+    if (!found.interrupted)
+      text += "\nFor a generator:\n  softland export " + shell_word((place / "release.toml").string()) + "\n";
     folder->publish(found.interrupted);
   }
   print_json_or(c, data, text);
@@ -85,9 +91,10 @@ void add_release(Verb& verb) {
   verb.option("--band", request->band, "SHARE",
               "of the contact gap: nearer to its open position the switch counts as open (default: 5 %)");
   verb.optional("--budget", request->budget, "N", "evaluations (default: 3000)");
+  verb.optional("--samples", request->samples, "N", "devices of [spread] that both openings are judged on (default: 200)");
   verb.with_seed(request->seed, "same waveform");
   verb.with_jobs(request->jobs);
-  verb.with_out("folder for release.json, release.svg and the drives as release.csv");
+  verb.with_out("folder for release.json, release.svg, the drives as release.csv and as release.toml, for export");
   verb.footer(
       "The switch rests on its contact under the scene's hold levels, and opens at t = 0. Dropped to 0 V at once it swings "
       "about\n"

@@ -176,7 +176,8 @@ TEST_P(EveryVerb, FindsTheLimit_slow) {
 }
 
 TEST_P(EveryVerb, OpensAgain) {
-  const std::vector<std::string> words = scene().quickly({"release", scene().name, "--budget", "300", "--quiet", "--out", "out"});
+  const std::vector<std::string> words =
+      scene().quickly({"release", scene().name, "--budget", "300", "--samples", "10", "--quiet", "--out", "out"});
   if (!scene().has("\\[contact\\]")) return refused(words, "release needs a [contact]");
   if (!scene().has("\\[electrode")) return refused(words, "needs an electrode");
   EXPECT_NE(done(words).out.find("open for good"), std::string::npos);
@@ -190,6 +191,8 @@ TEST_P(EveryVerb, OpensAgain) {
   EXPECT_EQ(csv.rfind("time_s,", 0), 0U);
   EXPECT_NE(csv.find("\n0,"), std::string::npos);
   EXPECT_TRUE(csv.ends_with(",0\n")) << csv;
+  EXPECT_LE(j["devices"]["count"], 10);
+  EXPECT_EQ(done({"export", "out/release.toml"}).out.rfind("time_s,", 0), 0U);
 }
 
 TEST_P(EveryVerb, Compares_optimized) {

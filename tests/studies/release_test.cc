@@ -102,6 +102,44 @@ TEST(Release, IsTheSameForAnyNumberOfJobs) {
   EXPECT_NE(release(other, {.seed = 1, .jobs = 2}).search.x, release(other, {.seed = 2, .jobs = 2}).search.x);
 }
 
+TEST(Release, OnDevicesThatHardlyDifferIsThatOfTheNominalOne) {
+  const auto alike = [](const std::string& cov) {
+    const std::string normal = "distribution = \"normal\", cov = \"" + cov + "\" }";
+    return gold({"spread.gaps={ keys = [\"gap.electrode\", \"gap.contact\"], " + normal,
+                 "spread.\"structure.thickness\"={ " + normal, "spread.\"structure.youngs_modulus\"={ " + normal});
+  };
+  const auto opened = [](const SceneFile& file, int jobs) {
+    return release(file, {.max_evaluations = 1000, .jobs = jobs, .devices = 24});
+  };
+  const Release close = opened(alike("0.0001 %"), 1);
+  ASSERT_TRUE(close.on_devices && close.goal_met);
+  const DeviceOpenings &plain = close.on_devices->plain, &best = close.on_devices->best;
+  EXPECT_EQ(close.on_devices->devices, 24U);
+  EXPECT_FALSE(close.on_devices->spread_assumed);
+  EXPECT_EQ(best.in_band, 1);
+  EXPECT_EQ(plain.in_band, 0);
+  EXPECT_NEAR(best.settling_time, close.best->figures.settling_time, 1e-3 * best.settling_time);
+  EXPECT_NEAR(best.residual_vibration, close.best->figures.residual_vibration, 0.02 * best.residual_vibration);
+  EXPECT_NEAR(plain.residual_vibration, close.plain.figures.residual_vibration, 1e-3 * plain.residual_vibration);
+  const Release apart = opened(alike("2 %"), 1), again = opened(alike("2 %"), 2);
+  EXPECT_GT(apart.on_devices->best.residual_vibration, 2 * best.residual_vibration);
+  EXPECT_EQ(again.on_devices->best.residual_vibration, apart.on_devices->best.residual_vibration);
+  EXPECT_FALSE(release(gold(), {.max_evaluations = 100, .devices = 0}).on_devices);
+}
+
+TEST(Release, LeavesASceneOfWhatItsDrivesAreTold) {
+  const Release r = release(gold(), {.max_evaluations = 300, .devices = 0});
+  const Prepared told = prepare(r.scene.value());
+  const Signal signal = told.signals().front();
+  for (const SignalPiece& piece : r.best->signals[0].pieces()) {
+    for (const double part : {0.0, 0.5}) {
+      const double t = piece.begin + part * 1e-9;
+      EXPECT_NEAR(signal.voltage(t), r.best->signals[0].voltage(t), 1e-9 * r.holds[0]) << t;
+    }
+  }
+  EXPECT_EQ(signal.hold_level(), 0);
+}
+
 TEST(Release, KeepsToWhatTheSourceCanDo) {
   const Release r = release(gold({"driver.main.max_voltage=20 V", "driver.main.max_slew=10 V/us", "waveform.main.rise_time=2 us",
                                   "driver.main.sample_rate=10 MHz", "driver.main.min_voltage=0 V", "driver.main.bits=8",
