@@ -93,6 +93,7 @@ class ReleaseSearch {
     }
     std::map<std::string, Waveform> waveforms;
     for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (names_[k] == dispersion_drive) continue;  // which no source drives
       Table table;
       for (const auto& [time, voltage] : told[k]) {
         table.time.push_back(time);
@@ -101,8 +102,9 @@ class ReleaseSearch {
       waveforms[names_[k]] = std::move(table);
     }
     SceneFile file = with_waveforms(given_, waveforms);
-    for (std::size_t k = 0; k < names_.size(); ++k)
-      file.set(fmt::format("waveform.{}.before=\"{} V\"", names_[k], told_holds_[k]));
+    for (std::size_t k = 0; k < names_.size(); ++k) {
+      if (waveforms.contains(names_[k])) file.set(fmt::format("waveform.{}.before=\"{} V\"", names_[k], told_holds_[k]));
+    }
     return file;
   }
 
