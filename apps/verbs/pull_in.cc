@@ -22,9 +22,11 @@
 #include "base/require.h"
 #include "config/schema.h"
 #include "config/units.h"
+#include "reports/quantity.h"
 #include "reports/sweep_report.h"
 #include "studies/choices.h"
 #include "studies/search_space.h"
+#include "studies/static_excess.h"
 #include "studies/sweep.h"
 
 namespace softland::apps {
@@ -110,6 +112,9 @@ std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one
               ? fmt::format("  {}\n", no_open_state)
               : fmt::format("  static pull-in   {}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found["static_V"]),
                             kind_words(found), deflection_words(found), dynamic_words(p, k, found));
+  if (found.contains("static_excess") && found["static_excess"] > static_excess_worth_telling)
+    text += fmt::format("  resolved         the static one is {} % above that with {} modes\n",
+                        internal::plain_number(100 * found["static_excess"].get<double>(), 2), most_static_modes);
   if (p.model.has_contact()) {
     text += fmt::format("  release          {}\n", volts(found["release_V"]));
     if (found["pulled_through_V"].is_number())
