@@ -25,7 +25,18 @@ FigureValues finite(FigureValues values) {
   return values;
 }
 
-// Straight pieces that a reader can draw: exact for steps, pulses and tables, a thousandth of the swing for sines.
+// Of a long waveform the points that draw the same picture.
+Points at_most_rows(Points all) {
+  if (all.size() <= most_curve_rows) return all;
+  std::vector<double> levels;
+  for (const auto& [time, level] : all) levels.push_back(level);
+  Points kept;
+  for (const std::size_t row : internal::thinned({&levels}, most_curve_rows)) kept.push_back(all[row]);
+  return kept;
+}
+
+// Straight pieces that a reader can draw: exact for steps, pulses and tables of up to most_curve_rows, a thousandth of the swing
+// for sines.
 std::map<std::string, Points> waveforms(const Prepared& p) {
   std::map<std::string, Points> all;
   const std::vector<std::string> names = p.drive_names();
@@ -36,6 +47,7 @@ std::map<std::string, Points> waveforms(const Prepared& p) {
     if (is_factor && signals[k].is_zero()) continue;  // nominal
     for (const auto& [t, v] : polyline(signals[k], p.duration, 1e-3 * swing, 0))
       all[names[k]].push_back({t, is_factor ? 1 + v : v});
+    all[names[k]] = at_most_rows(std::move(all[names[k]]));
   }
   return all;
 }
