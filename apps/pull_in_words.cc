@@ -10,6 +10,7 @@
 #include "model/pull_in.h"
 #include "reports/quantity.h"
 #include "studies/closed_state.h"
+#include "studies/static_excess.h"
 
 namespace softland::apps {
 
@@ -32,6 +33,8 @@ json pull_in_json(const Prepared& p, std::size_t k, const ElectrodePullIn& known
                {"dynamic_V", number(d.voltage)},
                {"release_V", number(closed.release)},
                {"pulled_through_V", number(closed.pulled_through)}}}};
+  if (const double excess = static_excess(p.scene, k, s.voltage); std::isfinite(excess))
+    found["pull_in"]["static_excess"] = excess;
   const std::vector<std::string> names = p.drive_names();
   for (std::size_t other = 0; other < names.size(); ++other) {
     if (bias[other] == 0) continue;

@@ -13,7 +13,8 @@ namespace softland::apps {
 inline constexpr const char* no_open_state = "no pull-in voltage: the switch has no open state";
 
 /// Pull-in of electrode `k` under the bias of the other drives (bias_of()): {"status", "pull_in": {"static_V", ...}}, and
-/// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force.
+/// {"bias_V": {NAME: ...}} of those that do not stand at 0, "bias_factor" of the dispersion force; of a bridge that stretches
+/// "static_excess" (studies/static_excess.h).
 [[nodiscard]] nlohmann::json pull_in_of(const Prepared& prepared, std::size_t k, const Watch& watch);
 
 /// The same of voltages that are known.

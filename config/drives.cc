@@ -195,6 +195,11 @@ DriverModel read_model(const SectionReader& in, std::string_view drive) {
   }
   in.require(!model.source_resistance || drive != piezo_drive, "source_resistance",
              "charges an electrode; the capacitance of the piezo layer is not described by a scene");
+  if (in.is_given("parallel_capacitance")) {
+    model.parallel_capacitance = in.number("parallel_capacitance");
+    in.require(model.parallel_capacitance == 0 || model.source_resistance, "parallel_capacitance",
+               "needs a source_resistance: a source without one charges it at once");
+  }
   return model;
 }
 

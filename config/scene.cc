@@ -192,6 +192,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
       const DriverModel& model = found->second;
       if (model.bandwidth) insert("bandwidth", *model.bandwidth, dimension::frequency);
       if (model.source_resistance) insert("source_resistance", *model.source_resistance, dimension::resistance);
+      if (model.parallel_capacitance > 0) insert("parallel_capacitance", model.parallel_capacitance, dimension::capacitance);
       if (model.sample_rate) insert("sample_rate", *model.sample_rate, dimension::frequency);
       if (model.bits) keys.insert("bits", *model.bits);
     }

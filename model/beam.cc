@@ -298,7 +298,8 @@ double NormalisedModes::pinned_inverse_square(double x, std::optional<double> ne
 
 BeamModes::BeamModes(const std::vector<BeamSection>& sections, int modes, const BeamSupport& support,
                      std::shared_ptr<const NormalisedModes> known) {
-  require(modes >= 1 && modes <= 40, [&] { return fmt::format("modes = {}: must be from 1 to 40", modes); });
+  require(modes >= 1 && modes <= most_static_modes,
+          [&] { return fmt::format("modes = {}: must be from 1 to {}", modes, most_static_modes); });
   require(!sections.empty() && sections.front().begin == 0, "beam sections must start at x = 0");
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const BeamSection& s = sections[i];

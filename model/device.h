@@ -15,8 +15,10 @@
 
 namespace softland {
 
-/// The most modes of a beam: the formulas of higher mode shapes lose their digits.
+/// The most modes of a beam that moves.
 inline constexpr int most_modes = 20;
+/// The most modes of a beam that stands still: see SwitchOptions::modes.
+inline constexpr int most_static_modes = 40;
 
 enum class StructureKind { cantilever, clamped_clamped, plate };
 inline constexpr auto structure_kinds = std::to_array<Named<StructureKind>>({{StructureKind::cantilever, "cantilever"},

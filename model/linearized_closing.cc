@@ -145,7 +145,8 @@ void move_to(double t, const MotionTape::Motion& from, const MotionTape::Motion&
 }  // namespace
 
 std::string LinearizedClosing::refusal(const Switch& model) {
-  return model.film_states() > 0 ? "the states of a compressible gas film have no derivatives here" : "";
+  if (model.film_states() > 0) return "the states of a compressible gas film have no derivatives here";
+  return model.modes() > most_modes ? "a closing has fewer modes" : "";
 }
 
 LinearizedClosing::LinearizedClosing(const Switch& model, std::span<const Signal> signals, const MotionTape& tape, int refinement,

@@ -1,5 +1,7 @@
 #include "model/switch.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -9,6 +11,7 @@
 
 #include "base/decompositions.h"
 #include "base/gauss.h"
+#include "base/require.h"
 #include "model/far_side.h"
 #include "model/forces/dispersion.h"
 #include "model/forces/electrostatic.h"
@@ -181,6 +184,11 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
 
 Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
   validate(device_);
+  if (options.modes && device.structure.kind != StructureKind::plate) {
+    require(*options.modes >= 1 && *options.modes <= most_static_modes,
+            [&] { return fmt::format("modes = {}: must be from 1 to {}", *options.modes, most_static_modes); });
+    device_.structure.modes = *options.modes;
+  }
   const Structure& s = device_.structure;
   if (s.kind == StructureKind::plate) {
     move_in(RigidPlate(s), 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all

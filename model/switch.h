@@ -35,6 +35,8 @@ namespace softland {
 struct SwitchOptions {
   double points_per_length = 24;  ///< quadrature points over a beam's length
   int points_per_panel = 3;       ///< at least: what is more accurate needs more of both
+  /// Of a beam, instead of those that its structure has, up to most_static_modes: beyond most_modes for statics only.
+  std::optional<int> modes = {};
 };
 
 enum class DriveKind { electrode, dispersion, piezo };

@@ -25,7 +25,18 @@ FigureValues finite(FigureValues values) {
   return values;
 }
 
-// Straight pieces that a reader can draw: exact for steps, pulses and tables, a thousandth of the swing for sines.
+// Of a long waveform the points that draw the same picture.
+Points at_most_rows(Points all) {
+  if (all.size() <= most_curve_rows) return all;
+  std::vector<double> levels;
+  for (const auto& [time, level] : all) levels.push_back(level);
+  Points kept;
+  for (const std::size_t row : internal::thinned({&levels}, most_curve_rows)) kept.push_back(all[row]);
+  return kept;
+}
+
+// Straight pieces that a reader can draw: exact for steps, pulses and tables of up to most_curve_rows, a thousandth of the swing
+// for sines.
 std::map<std::string, Points> waveforms(const Prepared& p) {
   std::map<std::string, Points> all;
   const std::vector<std::string> names = p.drive_names();
@@ -36,6 +47,7 @@ std::map<std::string, Points> waveforms(const Prepared& p) {
     if (is_factor && signals[k].is_zero()) continue;  // nominal
     for (const auto& [t, v] : polyline(signals[k], p.duration, 1e-3 * swing, 0))
       all[names[k]].push_back({t, is_factor ? 1 + v : v});
+    all[names[k]] = at_most_rows(std::move(all[names[k]]));
   }
   return all;
 }
@@ -44,7 +56,7 @@ ResultRun run(const Prepared& p, const Closing& closing, const MetricsOptions& o
   return {.status = std::string(to_string(closing.metrics.status)),
           .figures = finite(FigureValues(closing.metrics)),
           .errors = finite(closing.errors),
-          .curve = curve_of(closing.trajectory, options),
+          .curve = curve_of(closing.trajectory, closing.rebounds, closing.is_thinned, options),
           .waveforms = waveforms(p),
           .collapse_time = closing.trajectory.collapse_time};
 }
@@ -96,7 +108,10 @@ void keep_highest(std::vector<Rebound>& all) {
 
 }  // namespace
 
-ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) {
+ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) { return curve_of(t, rebounds(t), false, options); }
+
+ResultCurve curve_of(const Trajectory& t, const std::vector<Rebound>& all_rebounds, bool is_thinned,
+                     const MetricsOptions& options) {
   ResultCurve c;
   const auto add = [&](double at, double position, double velocity, double contact) {
     c.time.push_back(at);
@@ -108,7 +123,7 @@ ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) {
   for (std::size_t i = 0; i < t.points.size(); ++i) {
     const TrajectoryPoint& a = t.points[i];
     add(a.time, a.position, a.velocity, a.contact_force);
-    if (i + 1 == t.points.size()) break;
+    if (is_thinned || i + 1 == t.points.size()) continue;
     const TrajectoryPoint& b = t.points[i + 1];
     const double h = b.time - a.time;
     if (!(h > longest)) continue;
@@ -119,7 +134,7 @@ ResultCurve curve_of(const Trajectory& t, const MetricsOptions& options) {
       add(at, between.position(at), between.velocity(at), a.contact_force + (b.contact_force - a.contact_force) * k / parts);
     }
   }
-  for (const Rebound& r : rebounds(t)) {
+  for (const Rebound& r : all_rebounds) {
     if (r.height > options.significant_rebound) c.rebounds.push_back(r);
   }
   keep_most_rows(c);

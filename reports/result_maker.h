@@ -19,6 +19,9 @@ struct Provenance {
 /// The motion of a run: knots, and points of the interpolant where knots are far apart; of a long run the most_curve_rows of them
 /// that draw the same picture, with all extremes, and the most_rebounds highest rebounds.
 [[nodiscard]] ResultCurve curve_of(const Trajectory& trajectory, const MetricsOptions& options);
+/// Of a course whose rebounds are known. Between the knots of one that is thinned nothing is drawn.
+[[nodiscard]] ResultCurve curve_of(const Trajectory& trajectory, const std::vector<Rebound>& rebounds, bool is_thinned,
+                                   const MetricsOptions& options);
 
 /// The evaluations of a long search of which most_evaluations draw the same picture.
 [[nodiscard]] Points drawn_evaluations(Points all);

@@ -11,6 +11,7 @@
 #include "model/constants.h"
 #include "objectives/figures.h"
 #include "studies/prepared.h"
+#include "studies/static_excess.h"
 #include "studies/watched.h"
 
 namespace softland {
@@ -23,7 +24,12 @@ struct Judged {
   double value, scale;
 };
 
-std::vector<Judged> judged(const SceneFile& file, int modes, const Watch& watch) {
+struct Judgement {
+  std::vector<Judged> figures;
+  std::vector<double> static_pull_in;  // of every electrode [V]
+};
+
+Judgement judged(const SceneFile& file, int modes, const Watch& watch) {
   SceneFile with = file;
   with.assign("structure.modes", modes);
   with.assign("simulate.effects",
@@ -42,16 +48,18 @@ std::vector<Judged> judged(const SceneFile& file, int modes, const Watch& watch)
   scale[&Metrics::initial_contact_time] = 1 / omega;
   scale[&Metrics::impact_velocity] = gap * omega;
   scale[&Metrics::major_bounce_height] = gap;
-  std::vector<Judged> list;
+  Judgement found;
+  std::vector<Judged>& list = found.figures;
   for (const Figure& figure : compared_figures) list.push_back({figure.value(m), scale[figure]});
   for (std::size_t k = 0; k < p.scene.device.electrodes.size(); ++k) {
     const auto known = p.pull_in.find(p.scene.device.electrodes[k].name);
     const StaticPullIn statically =
         known == p.pull_in.end() ? static_pull_in(p.model, k, bias_of(p.scene, k)) : known->second.statically;
     list.push_back({statically.voltage, 0});
+    found.static_pull_in.push_back(statically.voltage);
     if (known != p.pull_in.end()) list.push_back({known->second.dynamically.voltage, 0});
   }
-  return list;
+  return found;
 }
 
 // The largest relative change of any figure; one that comes or goes has changed entirely.
@@ -61,6 +69,20 @@ double change(const std::vector<Judged>& from, const std::vector<Judged>& to) {
     const double relative = relative_difference(to[i].value, from[i].value, least_share * from[i].scale);
     most = std::max(most, std::isfinite(relative) ? relative : 1);
   }
+  return most;
+}
+
+// Of every electrode.
+std::vector<double> resolved_voltages(const Scene& scene) {
+  std::vector<double> voltages;
+  for (std::size_t k = 0; k < scene.device.electrodes.size(); ++k) voltages.push_back(resolved_pull_in(scene, k));
+  return voltages;
+}
+
+// Of voltages over those that are resolved; of none that is not known.
+double largest_excess(const std::vector<double>& voltages, const std::vector<double>& resolved) {
+  double most = 0;
+  for (std::size_t k = 0; k < resolved.size(); ++k) most = std::fmax(most, voltages[k] / resolved[k] - 1);
   return most;
 }
 
@@ -78,19 +100,22 @@ std::string AutoModes::note() const {
 }
 
 AutoModes choose_modes(const SceneFile& file, const Watch& watch) {
-  const bool both_clamped = read_scene(file).device.structure.kind == StructureKind::clamped_clamped;
+  const Scene scene = read_scene(file);
+  const bool both_clamped = scene.device.structure.kind == StructureKind::clamped_clamped;
   const int further = both_clamped ? 6 : 3;
-  std::vector<std::vector<Judged>> known;
+  const std::vector<double> resolved = resolved_voltages(scene);
+  std::vector<Judgement> known;
   AutoModes found;
   for (int modes = 1; modes + further <= most_modes; ++modes) {
     found = {.modes = modes};
     for (int more = 1; more <= further && found.settled(); ++more) {
       while (static_cast<int>(known.size()) < modes + more)
         known.push_back(judged(file, static_cast<int>(known.size()) + 1, watch));
-      found.moved = std::max(
-          found.moved, change(known[static_cast<std::size_t>(modes - 1)], known[static_cast<std::size_t>(modes + more - 1)]));
+      const auto index = static_cast<std::size_t>(modes - 1), further_index = index + static_cast<std::size_t>(more);
+      found.moved = std::max({found.moved, change(known[index].figures, known[further_index].figures),
+                              largest_excess(known[index].static_pull_in, resolved)});
     }
-    found.touches = std::isfinite(known[static_cast<std::size_t>(modes - 1)].front().value);
+    found.touches = std::isfinite(known[static_cast<std::size_t>(modes - 1)].figures.front().value);
     if (found.settled()) break;
   }
   return found;

@@ -10,6 +10,7 @@
 #include "base/engineering.h"
 #include "studies/auto_modes.h"
 #include "studies/omissions.h"
+#include "studies/static_excess.h"
 
 namespace softland {
 namespace {
@@ -51,6 +52,7 @@ Prepared without_what_does_not_matter(const Prepared& prepared, const Watch& wat
 
 Prepared choose(Prepared prepared, bool default_limits, const Watch& watch) {
   if (prepared.scene.auto_modes) prepared = with_as_many_modes_as_needed(prepared, default_limits, watch);
+  for (std::string& warning : static_excess_warnings(prepared)) prepared.scene.warnings.push_back(std::move(warning));
   if (prepared.scene.simulate.automatic_effects) prepared = without_what_does_not_matter(prepared, watch);
   return prepared;
 }

@@ -245,7 +245,7 @@ class ReleaseSearch {
     if (source.is_ideal() && errors.are_none()) return Signal::piecewise_linear(points);
     double stands = period_ + errors.delay;
     if (source.bandwidth) stands += settled_after / (2 * pi * *source.bandwidth);
-    if (source.source_resistance) stands += settled_after * *source.source_resistance * source.load;
+    stands += settled_after * source.charging_time();
     if (source.sample_rate) stands = std::ceil(stands * *source.sample_rate) / *source.sample_rate;
     for (auto& [time, voltage] : points) time += stands;
     points.insert(points.begin(), {0, points.front().second});

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/engineering.h"
+#include "objectives/course_recorder.h"
 #include "studies/closed_state.h"
 #include "studies/open_state.h"
 #include "studies/search_space.h"
@@ -38,6 +39,8 @@ FigureValues difference(const Metrics& a, const Metrics& b, double tolerance, do
 struct Run {
   Trajectory trajectory;
   Metrics metrics;
+  std::vector<Rebound> rebounds;
+  bool is_thinned = false;
   double tolerance = 0;
   SwitchOptions quadrature;
 };
@@ -45,7 +48,7 @@ struct Run {
 // Where two runs part: the first rebound above a height whose heights differ by a tenth. Infinite where they do not.
 double parting_time(const Run& a, const Run& b, double lowest) {
   constexpr double parted = 0.1;
-  const std::vector<Rebound> one = rebounds(a.trajectory), two = rebounds(b.trajectory);
+  const std::vector<Rebound>&one = a.rebounds, &two = b.rebounds;
   for (std::size_t k = 0; k < std::max(one.size(), two.size()); ++k) {
     const double own = k < one.size() ? one[k].height : 0, other = k < two.size() ? two[k].height : 0;
     const double higher = std::max(own, other);
@@ -96,7 +99,7 @@ void forget_what_is_chaotic(FigureValues& errors, const Run& best, const Run& ot
     const auto force = [](const Touch& t) { return t.peak_force; };
     if (chance_decides(run->trajectory.touches, parting, force)) errors[&Metrics::peak_contact_force] = Metrics::unset;
     const auto height = [](const Rebound& r) { return r.height; };
-    if (chance_decides(rebounds(run->trajectory), parting, height)) errors[&Metrics::major_bounce_height] = Metrics::unset;
+    if (chance_decides(run->rebounds, parting, height)) errors[&Metrics::major_bounce_height] = Metrics::unset;
   }
 }
 
@@ -160,16 +163,21 @@ class ClosingRuns {
     const std::string what =
         count_++ == 0 ? "closing" : fmt::format("closing again at tolerance {}, for its errors", engineering(tolerance, "", 1));
     const Hold hold = hold_of(model, signals_);
-    r.trajectory = simulate_closing(model, signals_,
-                                    {.duration = prepared_.duration,
-                                     .tolerance = tolerance,
-                                     .max_steps = max_steps,
-                                     .steady_force = hold.steady_force(prepared_.scene.metrics),
-                                     .stop = watch_.stop,
-                                     .observer = observer(watch_, what, prepared_.duration)});
+    CourseRecorder recorder(prepared_.scene.device.gap.contact, prepared_.scene.metrics);
+    r.trajectory = observe_closing(model, signals_,
+                                   {.duration = prepared_.duration,
+                                    .tolerance = tolerance,
+                                    .max_steps = max_steps,
+                                    .steady_force = hold.steady_force(prepared_.scene.metrics),
+                                    .stop = watch_.stop,
+                                    .observer = observer(watch_, what, prepared_.duration)},
+                                   recorder);
+    recorder.hand_over(r.trajectory);
     was_interrupted_ = was_interrupted_ || r.trajectory.status == Status::interrupted;
     set_rest(r.trajectory, model, signals_, hold);
-    r.metrics = metrics(r.trajectory, prepared_.scene.metrics);
+    r.metrics = recorder.metrics(r.trajectory);
+    r.rebounds = recorder.rebounds();
+    r.is_thinned = recorder.is_thinned();
     set_open_figures(r.metrics, r.trajectory, model, signals_);
     return r;
   }
@@ -297,6 +305,8 @@ Closing simulate(const Prepared& prepared, bool estimate_errors, const Watch& wa
     best = std::move(run.own);
   }
   c.trajectory = std::move(best.trajectory);
+  c.rebounds = std::move(best.rebounds);
+  c.is_thinned = best.is_thinned;
   c.tolerance = best.tolerance;
   c.quadrature = best.quadrature;
   c.metrics = best.metrics;

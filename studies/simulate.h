@@ -30,6 +30,8 @@ struct Judge {
 
 struct Closing {
   Trajectory trajectory;
+  bool is_thinned = false;             ///< the trajectory lacks knots: it draws the picture, and no more (CourseRecorder)
+  std::vector<Rebound> rebounds = {};  ///< of all knots
   Metrics metrics;
   /// Absolute error estimates: the difference to the judge's and what rounding leaves, that of the drive energy at least the
   /// residual of the energies, or what certify() makes of it. NaN where

@@ -239,7 +239,7 @@ Signal driven(const Signal& told, const DriverModel& model, const DriverLimits& 
   if (!errors.are_none()) output = with_errors(output, errors);
   if (model.is_ideal() || output.is_zero()) return output;
   if (model.bandwidth) output = internal::filtered(output, 1 / (2 * std::numbers::pi * *model.bandwidth));
-  if (const double rc = model.source_resistance.value_or(0) * model.load; rc > 0) output = internal::filtered(output, rc);
+  if (const double charging = model.charging_time(); charging > 0) output = internal::filtered(output, charging);
   return output;
 }
 

@@ -5,7 +5,7 @@
 //   bits n             samples are rounded to the nearest of 2^n voltages that divide [min_voltage, max_voltage] evenly
 //   max_slew           where samples are held, the output goes from one to the next no faster
 //   bandwidth f_b      T dV/dt + V = input, T = 1 / (2 pi f_b): the amplitude of a sine of this frequency falls by 3 dB
-//   source_resistance  the same with T = R C, C the load
+//   source_resistance  the same with T = R (C + Cp), C the load, Cp the parallel_capacitance beside it
 //
 // in this order, each where it is given. All of them are exact: held samples through a filter are exponentials. What changes its
 // frequency (a chirp) is filtered as cubics within 1e-6 of its amplitude. The output stays between the smallest and the largest
@@ -25,8 +25,11 @@ struct DriverModel {
   std::optional<int> bits = {};                  ///< > 0; only with a sample_rate and finite limits of the voltage
   std::optional<double> bandwidth = {};          ///< [Hz], > 0
   std::optional<double> source_resistance = {};  ///< [ohm], > 0
-  double load = 0;                               ///< capacitance that the source charges [F], >= 0
+  double parallel_capacitance = 0;               ///< of leads and instruments, behind the resistance [F], >= 0
+  double load = 0;                               ///< capacitance that the source charges beside it [F], >= 0
 
+  /// T with which it charges both through its resistance [s]; 0 without one.
+  [[nodiscard]] double charging_time() const { return source_resistance.value_or(0) * (load + parallel_capacitance); }
   /// Whether the output is what the source is told.
   [[nodiscard]] bool is_ideal() const { return !sample_rate && !bandwidth && !source_resistance; }
 };

@@ -115,6 +115,11 @@ nlohmann::json by_electrode(std::map<std::string, nlohmann::json> of) {
   return of.size() == 1 ? std::move(of.begin()->second) : nlohmann::json(std::move(of));
 }
 
+DriverModel source_of(const Prepared& p, const std::string& drive) {
+  const std::vector<std::string> names = p.drive_names();
+  return p.source(static_cast<std::size_t>(std::find(names.begin(), names.end(), drive) - names.begin()));
+}
+
 // What --json gives, besides the state of the closed switch.
 nlohmann::json check_json(const Prepared& p, const std::map<std::string, nlohmann::json>& pull_in,
                           const std::vector<std::string>& warnings, const std::string& command) {
@@ -220,6 +225,8 @@ int check_verb(const Common& c) {
       driver += fmt::format(", gain {}, offset {}, delay {}", plain_number(gain, 6), given_quantity(offset, "V"),
                             given_quantity(delay, "s"));
     }
+    if (const double charging = source_of(p, name).charging_time(); charging > 0)
+      driver += fmt::format(", charges the open switch with a time constant of {}", quantity(charging, "s", 3));
     const std::string before = signal.before() == 0 ? "" : fmt::format("{} before t = 0, ", given_quantity(signal.before(), "V"));
     add("drive " + name, fmt::format("{}hold {}, peak {}, {}", before, given_quantity(signal.hold_level(), "V"),
                                      given_quantity(signal.peak(), "V"), driver));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,9 +23,11 @@
 #include "base/require.h"
 #include "config/schema.h"
 #include "config/units.h"
+#include "reports/quantity.h"
 #include "reports/sweep_report.h"
 #include "studies/choices.h"
 #include "studies/search_space.h"
+#include "studies/static_excess.h"
 #include "studies/sweep.h"
 
 namespace softland::apps {
@@ -110,6 +113,9 @@ std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one
               ? fmt::format("  {}\n", no_open_state)
               : fmt::format("  static pull-in   {}{}\n  pull-in position {}\n  dynamic pull-in  {}\n", volts(found["static_V"]),
                             kind_words(found), deflection_words(found), dynamic_words(p, k, found));
+  if (found.contains("static_excess") && found["static_excess"] > static_excess_worth_telling)
+    text += fmt::format("  resolved         the static one is {} % above that with {} modes\n",
+                        internal::plain_number(100 * found["static_excess"].get<double>(), 2), most_static_modes);
   if (p.model.has_contact()) {
     text += fmt::format("  release          {}\n", volts(found["release_V"]));
     if (found["pulled_through_V"].is_number())
@@ -117,6 +123,16 @@ std::string words_of(const Prepared& p, std::size_t k, const nlohmann::json& one
                           volts(found["pulled_through_V"]));
   }
   return text;
+}
+
+// Everything by name; beside it the keys of one electrode, or of several `status` and their voltages as other verbs give them.
+nlohmann::json pull_in_json_of(const std::map<std::string, nlohmann::json>& by_name, const std::string& status) {
+  nlohmann::json all{{"status", status}, {"pull_in", nlohmann::json::object()}};
+  if (by_name.size() == 1) all = by_name.begin()->second;
+  if (by_name.size() > 1)
+    for (const auto& [name, one] : by_name) all["pull_in"][name] = one["pull_in"];
+  all["electrodes"] = by_name;
+  return all;
 }
 
 // The sweep of the electrode that closes the switch.
@@ -141,9 +157,10 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
   std::optional<ResultFolder> folder = claim_places(c, {"sweep.csv", "sweep.svg"});
   const auto& electrodes = prepared.scene.device.electrodes;
   require(!electrodes.empty(), fmt::format("{}: there is no electrode to pull in", c.scene));
-  nlohmann::json all = nlohmann::json::object();
+  std::map<std::string, nlohmann::json> by_name;
   std::string text;
   bool failed = false, none = false;
+  std::string status(to_string(Status::done));  // of the first electrode that pulls and has no voltage
   for (std::size_t k = 0; k < electrodes.size() && !work->watch().stopped(); ++k) {
     nlohmann::json one = pull_in_of(prepared, k, work->watch());
     text += words_of(prepared, k, one);
@@ -151,9 +168,9 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
       const bool has_none = collapsed(one) || one["status"] == to_string(Status::no_contact);
       none = none || has_none;
       failed = failed || (!has_none && one["status"] != to_string(Status::done));
-      if (electrodes.size() == 1) all = one;
+      if (status == to_string(Status::done)) status = one["status"];
     }
-    if (electrodes.size() > 1) all[electrodes[k].name] = std::move(one);
+    by_name[electrodes[k].name] = std::move(one);
   }
   const bool interrupted = work->watch().stopped();
   if (folder && !interrupted) {
@@ -162,7 +179,7 @@ int pull_in_verb(const Common& c, const PullInRequest& request) {
     folder->publish(false);
   }
   work.reset();
-  print_json_or(c, all, text);
+  print_json_or(c, pull_in_json_of(by_name, interrupted ? std::string(to_string(Status::interrupted)) : status), text);
   return interrupted ? exit_interrupted : failed ? exit_numerical_failure : none ? exit_no_success : exit_done;
 }
 

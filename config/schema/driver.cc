@@ -16,6 +16,8 @@ Section driver_section() {
                        .such_as("1 MHz"),
                    number("source_resistance", {dimension::resistance}, positive,
                           "through which it charges the open switch; absent: none"),
+                   number("parallel_capacitance", {dimension::capacitance}, not_negative,
+                          "beside the switch, behind source_resistance; default 0 F"),
                    number("sample_rate", {dimension::frequency}, positive, "samples are held; absent: none are taken")
                        .such_as("25 MHz"),
                    std::move(bits), number("gain", {dimension::none}, positive, "V(t) = gain f(t - delay) + offset; default 1"),

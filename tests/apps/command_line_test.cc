@@ -251,12 +251,30 @@ TEST(PullIn, PrintsTheAgreedJson) {
   ASSERT_EQ(o.status, 0);
   EXPECT_EQ(o.err, "");
   const json j = json::parse(o.out);
-  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in"}));
+  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes"}));
+  EXPECT_EQ(j["electrodes"], (json{{"main", {{"status", j["status"]}, {"pull_in", j["pull_in"]}}}}));
   EXPECT_EQ(keys(j["pull_in"]),
             (std::set<std::string>{"static_V", "static_kind", "deflection_m", "dynamic_V", "release_V", "pulled_through_V"}));
   EXPECT_EQ(j["status"], "done");
   EXPECT_LT(j["pull_in"]["dynamic_V"], j["pull_in"]["static_V"]);
   EXPECT_LT(j["pull_in"]["release_V"], j["pull_in"]["static_V"]);
+}
+
+TEST(PullIn, TellsSeveralElectrodesByName) {
+  const Workplace here;
+  write(here.path() / "two-electrodes.toml", shipped("two-electrodes.toml"));
+  const std::vector<std::string> words{"two-electrodes.toml", "--quiet", "--json", "-"};
+  const auto run = [&](const std::string& verb) {
+    std::vector<std::string> all = words;
+    all.insert(all.begin(), verb);
+    return json::parse(here.run(all).out);
+  };
+  const json j = run("pull-in");
+  EXPECT_EQ(keys(j), (std::set<std::string>{"status", "pull_in", "electrodes"}));
+  EXPECT_EQ(keys(j["pull_in"]), (std::set<std::string>{"main", "upper"}));
+  EXPECT_EQ(j["status"], "done") << "the far electrode need not pull in";
+  EXPECT_EQ(j["electrodes"]["upper"]["status"], "no_contact");
+  EXPECT_EQ(j["pull_in"]["main"], run("check")["pull_in"]);
 }
 
 TEST(PullIn, SaysAtWhichBiasItsVoltagesAre_optimized) {

@@ -271,6 +271,109 @@ TEST(LongRuns, LeaveFilesThatCanBeReadAgain_optimized) {
   EXPECT_NEAR(highest, metrics["major_bounce_height_m"].get<double>(), 1e-3 * highest) << "extremes stay";
 }
 
+TEST(LongRuns, HoldWaveformsOfManyPointsInABoundedResult_optimized) {
+  const Workplace here;
+  const std::string gold = edited(shipped("mem-gold.toml"), "1.5 Vdp", "30 V");
+  std::string rows = "time_s,main\n";
+  for (int k = 0; k <= 40'000; ++k)
+    rows += std::to_string(6e-3 * k) + "e-6," + (k == 30'001 ? "19" : k % 2 == 0 ? "16" : "16.5") + "\n";
+  write(here.path() / "many.csv", rows);
+  write(here.path() / "table.toml",
+        edited(gold, "family = \"step\"\nlevel = \"1.25 Vdp\"", "family = \"table\"\nfile = \"many.csv\""));
+  write(here.path() / "sine.toml", edited(gold, "family = \"step\"\nlevel = \"1.25 Vdp\"",
+                                          "family = \"harmonic\"\nbase = \"17 V\"\namplitude = \"2 V\"\nfrequency = \"20 MHz\""));
+  for (const char* name : {"table", "sine"}) {
+    const std::string scene = std::string(name) + ".toml";
+    const Outcome o = here.run(
+        {"simulate", scene, "--quiet", "--out", name, "--set", "simulate.tolerance=1e-3", "--set", "simulate.duration=240 us"});
+    EXPECT_EQ(o.status, 0) << o.err;
+    const std::string text = read(here.path() / name / "result.json");
+    EXPECT_LT(text.size(), std::size_t{8} << 20U) << name;
+    const json found = json::parse(text, nullptr, false)["best"]["waveforms"]["main"];
+    EXPECT_LE(found.size(), 20'000U) << name;
+    double highest = 0;
+    for (const json& point : found) highest = std::max(highest, point[1].get<double>());
+    EXPECT_NEAR(highest, 19, 0.01) << name << ": extremes stay";
+    EXPECT_EQ(here.run({"report", name}).status, 0) << name;
+  }
+}
+
+TEST(Check, AcceptsExactlyWhatSimulateRuns) {
+  const Workplace here;
+  write(here.path() / "bridge.toml", bridge);
+  write(here.path() / "between.toml", between_two);
+  for (const char* name : {"two-electrodes.toml", "gap-closing-actuator.toml", "nem-tin.toml", "hung-senturia.toml"})
+    write(here.path() / name, shipped(name));
+  struct Case {
+    std::string scene;
+    std::vector<std::string> changes;
+  };
+  const std::vector<Case> cases{
+      {"gold.toml", {}},
+      {"gold.toml", {"waveform.main.level=1.6 Vdp"}},
+      {"gold.toml", {"waveform.main.level=1.6 Vdp", "driver.main.max_voltage=1.7 Vdp"}},
+      {"gold.toml", {"waveform.main.level=40 V"}},
+      {"gold.toml", {"waveform.main.level=-10 V"}},
+      {"gold.toml", {"driver.main.max_slew=1 V/us"}},
+      {"gold.toml", {"driver.main.max_slew=1 V/us", "waveform.main.rise_time=30 us"}},
+      {"gold.toml", {"driver.main.max_slew=1 V/us", "waveform.main.rise_time=driver"}},
+      {"gold.toml", {"driver.main.min_voltage=1 V"}},
+      {"gold.toml", {"driver.main.sample_rate=1 GHz"}},
+      {"gold.toml", {"driver.main.bits=10"}},
+      {"gold.toml", {"driver.main.source_resistance=1 Mohm", "driver.main.parallel_capacitance=1 pF"}},
+      {"gold.toml", {"driver.main.parallel_capacitance=1 pF"}},
+      {"gold.toml", {"gap.contact=4 um"}},
+      {"gold.toml", {"electrode.main.span=[\"60 um\", \"300 um\"]"}},
+      {"gold.toml", {"contact.model=rigid"}},
+      {"gold.toml", {"contact.asperity_height=1e-300 m"}},
+      {"gold.toml", {"structure.modes=21"}},
+      {"gold.toml", {"gas.model=veijola"}},
+      {"gold.toml", {"waveform.main={family=\"harmonic\", base=\"10 V\", amplitude=\"1 V\", frequency=\"100 GHz\"}"}},
+      {"gold.toml", {"waveform.main={family=\"pulse\", levels=[\"17 V\", \"3 V\"], times=[\"20 us\"], edge=\"25 us\"}"}},
+      {"pzt.toml", {}},
+      {"pzt.toml", {"waveform.piezo={family=\"step\", level=\"2 V\"}"}},
+      {"pzt.toml", {"piezo.d31=0 pm/V"}},
+      {"bridge.toml", {"structure.residual_stress=-1 GPa"}},
+      {"bridge.toml", {"waveform.main.level=67 V"}},
+      {"between.toml", {}},
+      {"between.toml", {"electrode.main.gap=1 um", "waveform.main.level=1 Vsp"}},
+      {"two-electrodes.toml", {}},
+      {"two-electrodes.toml", {"waveform.upper.levels=[\"0 V\", \"250 V\", \"0 V\"]"}},
+      {"two-electrodes.toml", {"waveform.upper={family=\"step\", level=\"1 Vdp\"}"}},
+      {"gap-closing-actuator.toml", {}},
+      {"nem-tin.toml", {}},
+      {"nem-tin.toml", {"gap.electrode=10 nm", "gap.contact=8 nm"}},
+      {"hung-senturia.toml", {"gas.model=veijola"}},
+  };
+  int refused = 0;
+  for (const auto& [scene, changes] : cases) {
+    const auto run = [&](const char* verb) {
+      std::vector<std::string> words{verb, scene, "--quiet", "--set", "simulate.tolerance=1e-3"};
+      for (const std::string& change : changes) words.insert(words.end(), {"--set", change});
+      return here.run(words);
+    };
+    const Outcome checked = run("check"), simulated = run("simulate");
+    EXPECT_EQ(checked.status == 2, simulated.status == 2) << scene << " " << testing::PrintToString(changes) << "\n"
+                                                          << checked.err << simulated.err;
+    EXPECT_THAT(checked.status, testing::AnyOf(0, 2)) << scene << " " << testing::PrintToString(changes) << checked.err;
+    if (checked.status == 2 && simulated.status == 2) {
+      EXPECT_EQ(checked.err, simulated.err) << "for one reason";
+    }
+    refused += checked.status == 2 ? 1 : 0;
+  }
+  EXPECT_GT(refused, 9);
+  EXPECT_LT(refused, 22);
+}
+
+TEST(Check, SaysWhereFewerThanOneSummitIsInTouch) {
+  const Workplace here;
+  const auto said = [&](const std::string& density) {
+    return here.run({"check", "gold.toml", "--quiet", "--set", "contact.asperity_density=" + density + " 1/m^2"}).out;
+  };
+  EXPECT_THAT(said("1e11"), HasSubstr("summits touch under the hold levels: fewer than one"));
+  EXPECT_THAT(said("1e14"), AllOf(HasSubstr("summits touch under the hold levels"), Not(HasSubstr("fewer than one"))));
+}
+
 TEST(Export, OfASlowDeviceEndsOnTheHoldLevel) {
   const Workplace here;
   write(here.path() / "pulse.toml",

@@ -116,7 +116,9 @@ TEST(Drives, SourcesAreReadAndWrittenBack) {
     return read_scene(SceneFile::parse(std::string(small_scene) + "[driver.main]\nmax_voltage = \"60 V\"\n" + keys, "x.toml"));
   };
   EXPECT_TRUE(with_driver("").drives(pull_in).models.empty());
-  const Scene scene = with_driver("sample_rate = \"5 MHz\"\nbits = 10\nbandwidth = \"2 MHz\"\nsource_resistance = \"1 Mohm\"\n");
+  const Scene scene = with_driver(
+      "sample_rate = \"5 MHz\"\nbits = 10\nbandwidth = \"2 MHz\"\n"
+      "source_resistance = \"1 Mohm\"\nparallel_capacitance = \"3 pF\"\n");
   for (const Scene& one : {scene, read_scene(resolved(scene, pull_in))}) {
     const Drives drives = one.drives(pull_in);
     ASSERT_TRUE(drives.models.contains("main"));
@@ -125,6 +127,7 @@ TEST(Drives, SourcesAreReadAndWrittenBack) {
     EXPECT_EQ(model.bits, 10);
     EXPECT_EQ(model.bandwidth, 2e6);
     EXPECT_EQ(model.source_resistance, 1e6);
+    EXPECT_EQ(model.parallel_capacitance, 3e-12);
     EXPECT_FALSE(drives.models.contains("piezo"));
   }
   EXPECT_EQ(resolved(scene, pull_in).json()["driver"]["main"]["bits"], 10);
@@ -174,6 +177,11 @@ TEST(Drives, SourcesThatMakeNoSenseAreRefused) {
       message("piezo", "source_resistance = \"1 kohm\"\n"),
       "x.toml:36: driver.piezo.source_resistance = \"1 kohm\": charges an electrode; the capacitance of the piezo layer is not "
       "described by a scene");
+  EXPECT_EQ(
+      message("main", "parallel_capacitance = \"1 pF\"\n"),
+      "x.toml:41: driver.main.parallel_capacitance = \"1 pF\": needs a source_resistance: a source without one charges it at "
+      "once");
+  EXPECT_EQ(message("main", "parallel_capacitance = \"0 F\"\n"), "");
   EXPECT_EQ(message("main", "sample_rate = \"1 MHz\"\n"), "");
   EXPECT_THAT(message("main", "max_voltage = \"60 V\"\nbits = 25\n"), testing::HasSubstr("must be in [1, 24]"));
   EXPECT_THAT(message("main", "sample_rate = \"1 us\"\n"), testing::HasSubstr("frequency"));

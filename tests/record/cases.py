@@ -303,7 +303,8 @@ def choice_cases(program, scenes):
     yield Case("laws.fringing", [Step(["simulate", gold, "--quiet", "--json", f"{name}.json", "--set", f"electrode.main.fringing={name}",
                                        *fast, *short]) for name in fringing])
     drivers = [["driver.main.max_slew=20 V/us", "waveform.main.rise_time=2 us"], ["driver.main.max_slew=20 V/us"], ["driver.main.bandwidth=1 MHz"],
-               ["driver.main.sample_rate=20 MHz", "driver.main.bits=8"], ["driver.main.source_resistance=1e6 ohm"]]
+               ["driver.main.sample_rate=20 MHz", "driver.main.bits=8"], ["driver.main.source_resistance=1e6 ohm"],
+               ["driver.main.source_resistance=1e6 ohm", "driver.main.parallel_capacitance=2 pF"]]
     yield Case("laws.drivers", [Step(["simulate", gold, "--json", f"{i}.json", *[word for one in some for word in ("--set", one)], *fast, *short])
                                 for i, some in enumerate(drivers)])
     yield Case("laws.settings", [

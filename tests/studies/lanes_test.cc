@@ -191,6 +191,8 @@ std::vector<Case> cases() {
                  gold_at_17_volts({spline, "driver.main.sample_rate=1 MHz", "driver.main.bandwidth=200 kHz"})});
   all.push_back(
       {"pulse filtered twice", gold_at_17_volts({pulse, "driver.main.bandwidth=1 MHz", "driver.main.source_resistance=1 Mohm"})});
+  all.push_back({"pulse through a resistance into a cable",
+                 gold_at_17_volts({pulse, "driver.main.source_resistance=1 Mohm", "driver.main.parallel_capacitance=2 pF"})});
   all.push_back({"two pads", gold_at_17_volts({"electrode.main.span=[[\"60 um\", \"140 um\"], [\"160 um\", \"98 %\"]]"})});
   all.push_back({"seven pads", gold_at_17_volts({"electrode.main.span=[[\"60 um\", \"80 um\"], [\"85 um\", \"100 um\"], "
                                                  "[\"105 um\", \"120 um\"], [\"125 um\", \"140 um\"], [\"145 um\", \"160 um\"], "

@@ -104,6 +104,12 @@ TEST(Prepare, LoadsASourceWithTheCapacitanceOfTheOpenSwitch) {
   ASSERT_TRUE(p.loads.contains("main"));
   EXPECT_NEAR(p.loads.at("main"), capacitance, 1e-9 * capacitance);
   EXPECT_NEAR(p.signals()[0].voltage(10e6 * capacitance), 30 * (1 - std::exp(-1.0)), 1e-6);
+
+  SceneFile with_cable = file;
+  with_cable.set("driver.main.parallel_capacitance=0.2 pF");
+  const Prepared cabled = prepare(with_cable);
+  EXPECT_EQ(cabled.loads.at("main"), p.loads.at("main"));
+  EXPECT_NEAR(cabled.signals()[0].voltage(10e6 * (capacitance + 0.2e-12)), 30 * (1 - std::exp(-1.0)), 1e-6);
 }
 
 TEST(Prepare, RefusesMoreSamplesThanARunCanFollow) {

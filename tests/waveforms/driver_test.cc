@@ -77,6 +77,24 @@ TEST(Driver, ChargesItsLoadThroughItsResistance) {
             Signal::constant(40_V).pieces());
 }
 
+// A ramp into R and C by the trapezoidal rule, whose error is a twelfth of the square of its step.
+double charged(double slope, double resistance, double capacitance, double until) {
+  constexpr int steps = 20'000;
+  const double dt = until / steps, x = dt / (2 * resistance * capacitance);
+  double voltage = 0;
+  for (int k = 0; k < steps; ++k) voltage = ((1 - x) * voltage + x * slope * dt * (2 * k + 1)) / (1 + x);
+  return voltage;
+}
+
+TEST(Driver, ChargesWhatLiesBesideItsLoad) {
+  constexpr double resistance = 1e6, load = 14e-15, beside = 3e-12, slope = 40 / 40e-6;
+  const DriverModel model{.source_resistance = resistance, .parallel_capacitance = beside, .load = load};
+  EXPECT_DOUBLE_EQ(model.charging_time(), 3.014e-6);
+  const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 40_us}), model, limits, 1);
+  for (const double t : {0.5e-6, 3e-6, 20e-6})
+    EXPECT_NEAR(out.voltage(t), charged(slope, resistance, load + beside, t), 40 * 1e-8) << t;
+}
+
 TEST(Driver, OfABandwidthFollowsARampLateByItsTimeConstant) {
   const Signal out = driven(signal(Step{.level = 40_V, .rise_time = 40_us}), of_time_constant(tau), limits, 1);
   const double slope = 40 / 40e-6;

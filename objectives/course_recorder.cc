@@ -1,0 +1,96 @@
+#include "objectives/course_recorder.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t most_kept = 8;  // of a bucket
+
+}  // namespace
+
+CourseRecorder::CourseRecorder(double contact_gap, const MetricsOptions& options, std::size_t most_knots)
+    : contact_gap_(contact_gap), most_knots_(most_knots), figures_(contact_gap, options), finder_(contact_gap) {
+  require(most_knots >= 4 * most_kept, "a course needs 32 knots or more");
+}
+
+void CourseRecorder::knot(const TrajectoryPoint& point) {
+  figures_.knot(point);
+  finder_.knot(point, [this](const Rebound& rebound) { rebounds_.push_back(rebound); });
+  has_passed_ = has_passed_ || point.position > contact_gap_;
+  points_.push_back(point);
+  if (++in_last_ == bucket_) {
+    reduce(last_begin());
+    ends_.push_back(points_.size());
+    in_last_ = 0;
+  }
+  reduce_long_last();
+  while (has_passed_ && points_.size() > most_knots_) coarsen();
+}
+
+void CourseRecorder::touch(const Touch& touch) {
+  figures_.touch(touch);
+  touches_.push_back(touch);
+}
+
+std::vector<Rebound> CourseRecorder::rebounds() const {
+  std::vector<Rebound> all = rebounds_;
+  if (finder_.under_way()) all.push_back(*finder_.under_way());
+  return all;
+}
+
+void CourseRecorder::hand_over(Trajectory& run) {
+  run.points = std::move(points_);
+  run.touches = std::move(touches_);
+}
+
+// The bucket that is not full yet becomes the last one, or is joined with it, as if it were.
+void CourseRecorder::coarsen() {
+  const std::vector<TrajectoryPoint> all = std::exchange(points_, {});
+  const std::vector<std::size_t> ends = std::exchange(ends_, {});
+  const auto copy = [&](std::size_t begin, std::size_t end) {
+    points_.insert(points_.end(), all.begin() + static_cast<std::ptrdiff_t>(begin),
+                   all.begin() + static_cast<std::ptrdiff_t>(end));
+  };
+  std::size_t begin = 0;
+  for (std::size_t k = 1; k < ends.size(); k += 2) {
+    copy(begin, ends[k]);
+    reduce(last_begin());
+    ends_.push_back(points_.size());
+    begin = ends[k];
+  }
+  copy(begin, all.size());
+  if (ends.size() % 2 == 1) in_last_ += bucket_;
+  bucket_ *= 2;
+  reduce_long_last();
+}
+
+void CourseRecorder::reduce_long_last() {
+  if (points_.size() - last_begin() >= 2 * most_kept) reduce(last_begin());
+}
+
+void CourseRecorder::reduce(std::size_t begin) {
+  if (points_.size() - begin <= 2) return;
+  const auto first = points_.begin() + static_cast<std::ptrdiff_t>(begin), last = points_.end();
+  std::array<std::ptrdiff_t, most_kept> kept{0, std::distance(first, last) - 1};
+  std::size_t count = 2;
+  for (double TrajectoryPoint::*column :
+       {&TrajectoryPoint::position, &TrajectoryPoint::velocity, &TrajectoryPoint::contact_force}) {
+    const auto [low, high] = std::ranges::minmax_element(first, last, {}, column);
+    kept[count++] = std::distance(first, low);
+    kept[count++] = std::distance(first, high);
+  }
+  std::ranges::sort(kept);
+  const auto end = std::ranges::unique(kept).begin();
+  const auto left = std::distance(kept.begin(), end);
+  is_thinned_ = is_thinned_ || left < std::distance(first, last);
+  for (std::ptrdiff_t k = 0; k < left; ++k) first[k] = first[kept[static_cast<std::size_t>(k)]];
+  points_.erase(first + left, last);
+}
+
+}  // namespace softland
