@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `softland optimize` comes to with its defaults, over switches, actuators and seeds: the tables of results/race.md.
 
-    bench/run_race.py PROGRAM FOLDER [--seeds 1,2,3]
+    bench/run_race.py PROGRAM FOLDER [--seeds 1,2,3] [--scene FILE ...]
 
 A search that FOLDER already has the result of is not run again. One search at a time, on all cores.
 """
@@ -13,18 +13,19 @@ import subprocess
 import time
 
 SCENES = pathlib.Path(__file__).parent.parent / "scenes"
-PAIRS = [("mem-gold", "electrostatic"), ("mem-gold-pzt", "pzt"), ("mem-gold-pzt", "electrostatic"), ("mem-gold-pzt", "both"),
-         ("two-electrodes", "electrostatic"), ("nem-tin", "electrostatic"), ("gap-closing-actuator", "electrostatic")]
+PAIRS = [(SCENES / f"{name}.toml", actuator) for name, actuator in
+         (("mem-gold", "electrostatic"), ("mem-gold-pzt", "pzt"), ("mem-gold-pzt", "electrostatic"), ("mem-gold-pzt", "both"),
+          ("two-electrodes", "electrostatic"), ("nem-tin", "electrostatic"), ("gap-closing-actuator", "electrostatic"))]
 SPEED, HEIGHT, TIME, FORCE = ("largest_impact_velocity_m_s", "major_bounce_height_m", "initial_contact_time_s", "peak_contact_force_N")
 
 
 def searched(program, folder, scene, actuator, seed):
     """Result, wall time and processor time [s]."""
-    place = folder / f"{scene}-{actuator}-{seed}"
+    place = folder / f"{scene.stem}-{actuator}-{seed}"
     kept = place / "cost.json"
     if not kept.exists():
         before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        run = subprocess.run([program, "optimize", SCENES / f"{scene}.toml", "--actuator", actuator, "--seed", str(seed), "--quiet", "--out",
+        run = subprocess.run([program, "optimize", scene, "--actuator", actuator, "--seed", str(seed), "--quiet", "--out",
                               place], capture_output=True, text=True, check=False)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         if run.returncode not in (0, 4):
@@ -62,15 +63,16 @@ def main():
     parser.add_argument("program")
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--seeds", default="1,2,3")
+    parser.add_argument("--scene", type=pathlib.Path, action="append", default=[], help="one more, of electrostatic drives")
     asked = parser.parse_args()
     seeds = [int(s) for s in asked.seeds.split(",")]
     figures, measured, winners = [], [], {}
-    for scene, actuator in PAIRS:
+    for scene, actuator in PAIRS + [(scene, "electrostatic") for scene in asked.scene]:
         for seed in seeds:
             result, cost = searched(asked.program, asked.folder, scene, actuator, seed)
             devices = result["devices"]
             rows = {row["name"]: row for row in devices["rows"]}
-            name = f"{scene}, {actuator}"
+            name = f"{scene.stem}, {actuator}"
             if seed == seeds[0]:
                 figures.append([name, "plain step", ""] + cells(rows["plain step"]) + ["", ""])
             chosen = devices["chosen"]
