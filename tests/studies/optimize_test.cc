@@ -325,7 +325,7 @@ TEST(Optimize, SearchesEveryShippedSceneOrSaysWhyNot_optimized) {
   EXPECT_GE(scenes, 8);
 }
 
-TEST(Optimize, IsBetterThanAStepThatDoesNotBounceByItsCost) {
+TEST(Optimize, IsBetterThanAStepThatDoesNotBounceByItsCost_slow) {
   SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/tests/studies/soft_contact.toml");
   file.set("contact.stiffness=1e6 N/m");
   file.set("waveform.main.level=1.03 Vdp");  // from 1.05 Vdp on its closed state is unstable
