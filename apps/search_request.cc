@@ -127,6 +127,7 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request, co
   if (is_nominal && !request.budget) options.more_evaluations = options.max_evaluations / 2;
   if (request.robust == nominal_alone) options.conditions = read_conditions(request, figure_names());
   if (request.budget) read_budget(*request.budget, options);
+  options.begins_with_half = request.robust == nominal_alone && request.budget && !request.seeds;
   return options;
 }
 

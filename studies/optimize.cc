@@ -33,6 +33,7 @@ constexpr double soft_touch = 0.01;            // of the plain step's impact vel
 constexpr double distinct = 1.01;              // ratio of the costs of two candidates
 constexpr std::size_t families_sifted = 2;     // by the worst of beams
 constexpr long evaluations_of_the_worst = 50;  // of the budget so small a part, by the worst of beams
+constexpr long shortest_half = 100;            // evaluations that are not divided any more
 constexpr double opening = 0.6;                // share of the budget that several families divide before the best goes on
 
 // Of what is kept of the candidates: see Search::tried.
@@ -90,13 +91,17 @@ class Search {
       const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
       refine(setting.given.driven(setting.drives(searched)), searched, setting.scene(searched));
     }
-    for (const auto& landing : landings_at_rest()) {
-      for (FamilySearch& family : families_) family.begin_at(landing);
-    }
+    if (!is_divided(options_.max_evaluations)) begin_at_rest();
     for (const auto& swing : joint_swings(setting.given, setting.space)) {
       for (FamilySearch& family : families_) {
         if (!family.point(swing).empty()) family.begin_at(swing);
       }
+    }
+  }
+
+  void begin_at_rest() {
+    for (const auto& landing : landings_at_rest()) {
+      for (FamilySearch& family : families_) family.begin_at(landing);
     }
   }
 
@@ -114,21 +119,7 @@ class Search {
   }
 
   OptimizerResult run() {
-    const bool has_own = options_.target.has_own_cost();
-    const double all_seconds = std::max(max_seconds_ - seconds(), max_seconds_ / 4);
-    if (families_.size() == 1) {
-      go_on(0, options_.max_evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, false);
-      return all_;
-    }
-    // The whole search for bounce first: no winner of that is then better than one for another target.
-    const long own = has_own ? options_.max_evaluations / own_share : 0;
-    if (!run_families(options_.max_evaluations - own, all_seconds * (has_own ? 1 - 1.0 / own_share : 1),
-                      has_own ? Costs::leading : Costs::same) ||
-        !has_own)
-      return all_;
-    // Then the own cost, from the best points of every family, with what gradients have counted as well.
-    const long rest = options_.max_evaluations - all_.evaluations;
-    if (rest > 0) run_families(rest, max_seconds_ - seconds(), Costs::own);
+    run_halves(options_.max_evaluations);
     return all_;
   }
 
@@ -228,6 +219,34 @@ class Search {
   }
 
  private:
+  [[nodiscard]] bool is_divided(long evaluations) const {
+    return options_.begins_with_half && !std::isfinite(max_seconds_) && evaluations >= 2 * shortest_half;
+  }
+
+  // What is done with half the budget is done first, where budgets are divided. False where the search is to end.
+  bool run_halves(long evaluations) {
+    if (!is_divided(evaluations)) return run_undivided(evaluations);
+    const long half = evaluations / 2;
+    if (!run_halves(half)) return false;
+    if (half < fewest_for_landings && evaluations >= fewest_for_landings) begin_at_rest();
+    return run_undivided(evaluations - half);
+  }
+
+  bool run_undivided(long evaluations) {
+    const bool has_own = options_.target.has_own_cost();
+    const double all_seconds = std::max(max_seconds_ - seconds(), max_seconds_ / 4);
+    const long before = all_.evaluations;
+    if (families_.size() == 1)
+      return go_on(0, evaluations, all_seconds, options_.more_evaluations, has_own ? Costs::both : Costs::same, before > 0);
+    // The whole search for bounce first: no winner of that is then better than one for another target.
+    const long own = has_own ? evaluations / own_share : 0;
+    const double bounce_seconds = all_seconds * (has_own ? 1 - 1.0 / own_share : 1);
+    if (!run_families(evaluations - own, bounce_seconds, has_own ? Costs::leading : Costs::same)) return false;
+    // Then the own cost, from the best points of every family, with what gradients have counted as well.
+    const long rest = evaluations - (all_.evaluations - before);
+    return !has_own || rest <= 0 || run_families(rest, max_seconds_ - seconds(), Costs::own);
+  }
+
   // With the modes of the scene alone.
   [[nodiscard]] double own_cost(std::size_t family, const Evaluation& e) const {
     SearchSetting alone = settings_[family];
@@ -374,6 +393,7 @@ class SearchBeyondModes {
     own_.starts.clear();
     own_.memory = nullptr;
     own_.more_evaluations = 0;
+    own_.begins_with_half = false;
     own_.on_start = {};
     own_.on_progress = {};
     own_.on_improvement = {};

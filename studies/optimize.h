@@ -50,6 +50,9 @@ struct OptimizeOptions {
   long max_evaluations = 2500;  ///< see default_budget()
   /// Evaluations on top of those, from the best points so far, where they have found no landing without a significant rebound.
   long more_evaluations = 0;
+  /// The search begins with that of half the budget, to the bit, and goes on from there: it ends nowhere worse. For budgets that
+  /// are compared; an undivided one finds more. Of a number of evaluations, not of seconds.
+  bool begins_with_half = false;
   double max_seconds = std::numeric_limits<double>::infinity();  ///< [s]
   std::uint64_t seed = 1;
   int jobs = 1;
