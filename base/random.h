@@ -36,6 +36,7 @@ enum class Stream : std::uint64_t {
   practice_device = 21,  ///< the values of a device to practise on
   practice_gain = 22,    ///< the gain of its sources, and its scatter
   practice_edges = 23,   ///< errors of the times at which its contact is seen to close and open
+  tuning = 19,           ///< devices that a belief about one of them is made of
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.
