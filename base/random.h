@@ -33,10 +33,10 @@ enum class Stream : std::uint64_t {
   offspring = 16,        ///< which members of a population are parents, and how their child differs from them
   hop = 17,              ///< how far a local search begins from the best point
   race = 18,             ///< the searches of a race over devices
+  tuning = 19,           ///< devices that a belief about one of them is made of
   practice_device = 21,  ///< the values of a device to practise on
   practice_gain = 22,    ///< the gain of its sources, and its scatter
   practice_edges = 23,   ///< errors of the times at which its contact is seen to close and open
-  tuning = 19,           ///< devices that a belief about one of them is made of
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

@@ -30,7 +30,16 @@ std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(clos
 
 }  // namespace
 
-// What is not changed by what is learned, and what is.
+// What no closing changes.
+struct Tuner::Setting {
+  Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
+      : scene(file, options, watch), shapes(scene), recipes(search_recipes(scene, shapes, watch)) {}
+
+  TunedScene scene;
+  Shapes shapes;
+  std::vector<Recipe> recipes;
+};
+
 struct Tuner::State {
   struct Fired {
     LearnedShot shot;
@@ -68,9 +77,9 @@ struct Tuner::State {
     std::vector<double> surprises;  // of touch times that the belief had predicted, in standard deviations
   };
 
-  State(const SceneFile& file, const TunerOptions& options, const Watch& watch)
-      : scene(file, options, watch), shapes(scene), recipes(search_recipes(scene, shapes, watch)) {
-    Draws draws(options.seed, first_draw(0));
+  State(std::shared_ptr<const Setting> of_scene, const Watch& watch)
+      : setting(std::move(of_scene)), scene(setting->scene), shapes(setting->shapes), recipes(setting->recipes) {
+    Draws draws(scene.options().seed, first_draw(0));
     now.belief = Belief::prior(scene.size(), draws);
     const Outlook outlook(scene, now.belief.resampled(proposal_devices, draws), draws, watch);
     const Shapes limited = shapes_for(now);
@@ -93,9 +102,10 @@ struct Tuner::State {
   void keep_best(Learned& known, const Outlook& outlook, double expected) const;
   void repeat(Learned& known, const Outlook& outlook) const;
 
-  TunedScene scene;
-  Shapes shapes;
-  std::vector<Recipe> recipes;
+  std::shared_ptr<const Setting> setting;
+  const TunedScene& scene;
+  const Shapes& shapes;
+  const std::vector<Recipe>& recipes;
   Learned now;
 };
 
@@ -186,11 +196,15 @@ void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
 
 Tuner::Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch) {
   check(options);
-  state_ = std::make_unique<State>(file, options, watch);
+  state_ = std::make_unique<State>(std::make_shared<const Setting>(file, options, watch), watch);
 }
+Tuner::Tuner(std::shared_ptr<const Setting> setting, const Watch& watch)
+    : state_(std::make_unique<State>(std::move(setting), watch)) {}
 Tuner::~Tuner() = default;
 Tuner::Tuner(Tuner&&) noexcept = default;
 Tuner& Tuner::operator=(Tuner&&) noexcept = default;
+
+Tuner Tuner::restarted() const { return Tuner(state_->setting, {}); }
 
 const Prepared& Tuner::scene() const { return state_->scene.nominal(); }
 double Tuner::step_closing_time() const { return state_->scene.scales().closing_time; }

@@ -95,6 +95,9 @@ class Tuner {
   Tuner(Tuner&&) noexcept;
   Tuner& operator=(Tuner&&) noexcept;
 
+  /// A tuner of the same scene before its first closing: for the next device.
+  [[nodiscard]] Tuner restarted() const;
+
   /// The scene that the belief is about: nominal device, drives and limits.
   [[nodiscard]] const Prepared& scene() const;
   /// The first touch of the plain step on the nominal device [s].
@@ -123,7 +126,10 @@ class Tuner {
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
  private:
+  struct Setting;
   struct State;
+  Tuner(std::shared_ptr<const Setting> setting, const Watch& watch);
+
   std::unique_ptr<State> state_;
 };
 
