@@ -158,7 +158,7 @@ double open_time(const ContactRecord& record) {
   constexpr double never = 1e3;  // [s]
   if (!record.error.empty() || !first_touch(record)) return never;
   double sum = 0;
-  for (const Opening& o : openings(record)) sum += std::min(o.end, never) - o.begin;
+  for (const ContactOpening& o : openings(record)) sum += std::min(o.end, never) - o.begin;
   return sum;
 }
 

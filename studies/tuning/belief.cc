@@ -19,9 +19,9 @@ using Eigen::VectorXd;
 constexpr std::size_t sampled_devices = 160;
 
 // Time in (touch, touch + span) that the contact is open, by openings of at least `least` [s].
-double open_time(double touch, const std::vector<Opening>& openings, double span, double least) {
+double open_time(double touch, const std::vector<ContactOpening>& openings, double span, double least) {
   double sum = 0;
-  for (const Opening& o : openings) {
+  for (const ContactOpening& o : openings) {
     if (o.end - o.begin >= least && o.begin < touch + span) sum += std::min(o.end, touch + span) - o.begin;
   }
   return sum;
@@ -64,7 +64,7 @@ double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord
     constexpr std::array spans{0.09, 0.3, 0.9};
     constexpr double share = 0.2, least = 0.0045;
     const double t0 = scene_.scales().closing_time;
-    const std::vector<Opening> seen = openings(record);
+    const std::vector<ContactOpening> seen = openings(record);
     for (const double span : spans) {
       const double own = open_time(closing.touch, closing.openings, span * t0, unseen);
       const double recorded = open_time(*first_touch(record), seen, span * t0, 0);
@@ -72,8 +72,8 @@ double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord
     }
   } else if (record.bounce_count) {
     constexpr double share = 0.3;
-    const auto own =
-        static_cast<double>(std::ranges::count_if(closing.openings, [&](const Opening& o) { return o.end - o.begin >= unseen; }));
+    const auto own = static_cast<double>(
+        std::ranges::count_if(closing.openings, [&](const ContactOpening& o) { return o.end - o.begin >= unseen; }));
     const double counted = *record.bounce_count;
     sum += gentle((own - counted) / (1 + share * std::max(own, counted)));
     if ((own > 0) != (counted > 0)) sum += gentle(1);

@@ -30,8 +30,8 @@ std::optional<double> first_touch(const ContactRecord& record) {
   return record.closing_time;
 }
 
-std::vector<Opening> openings(const ContactRecord& record) {
-  std::vector<Opening> all;
+std::vector<ContactOpening> openings(const ContactRecord& record) {
+  std::vector<ContactOpening> all;
   for (const ContactEdge& edge : record.edges) {
     if (!edge.closed) {
       all.push_back({.begin = edge.time, .end = std::numeric_limits<double>::infinity()});

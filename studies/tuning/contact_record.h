@@ -24,7 +24,7 @@ struct ContactRecord {
 };
 
 /// The contact is open again.
-struct Opening {
+struct ContactOpening {
   double begin = 0, end = 0;  ///< [s]; the end is infinite where the record ends open
 };
 
@@ -35,7 +35,7 @@ struct Opening {
 /// Of the first touch [s]; none where the contact stayed open.
 [[nodiscard]] std::optional<double> first_touch(const ContactRecord& record);
 /// The openings that edges tell of, in order.
-[[nodiscard]] std::vector<Opening> openings(const ContactRecord& record);
+[[nodiscard]] std::vector<ContactOpening> openings(const ContactRecord& record);
 /// Openings as far as they are known: of edges, or as they were counted; none where neither says it.
 [[nodiscard]] std::optional<int> bounce_count(const ContactRecord& record);
 /// Whether the contact closed, and is known to have stayed closed.

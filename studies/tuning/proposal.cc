@@ -161,8 +161,8 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
     touches.push_back(closing.touch);
     speeds.push_back(closing.speed);
     heights.push_back(closing.highest);
-    bouncing +=
-        std::ranges::any_of(closing.openings, [&](const Opening& o) { return o.end - o.begin >= scene_.options().unseen; });
+    bouncing += std::ranges::any_of(closing.openings,
+                                    [&](const ContactOpening& o) { return o.end - o.begin >= scene_.options().unseen; });
   }
   PredictedRecord record{
       .touch_median = unset, .touch_low = unset, .touch_high = unset, .rebound_median = unset, .rebound_high = unset};

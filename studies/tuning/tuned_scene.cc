@@ -269,7 +269,7 @@ std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> sho
       }
       const double delay = shots[begin + places[k]].device->delay;
       closing.touch += delay;
-      for (Opening& opening : closing.openings) {
+      for (ContactOpening& opening : closing.openings) {
         opening.begin += delay;
         opening.end = std::isnan(opening.end) ? std::numeric_limits<double>::infinity() : opening.end + delay;
       }

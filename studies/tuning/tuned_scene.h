@@ -50,7 +50,7 @@ struct ImaginedClosing {
   double speed = std::numeric_limits<double>::quiet_NaN();    ///< of the first touch [m/s]
   double fastest = std::numeric_limits<double>::quiet_NaN();  ///< of all touches [m/s]
   double highest = 0;                                         ///< rebound [m]
-  std::vector<Opening> openings = {};                         ///< with the delay [s]
+  std::vector<ContactOpening> openings = {};                  ///< with the delay [s]
   [[nodiscard]] bool closes() const { return followed && touch == touch; }
 };
 

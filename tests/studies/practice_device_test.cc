@@ -111,16 +111,16 @@ TEST(PracticeDevice, ShowsNoOpeningShorterThanItsInstrumentResolves) {
   const auto seen = [&] { return PracticeDevice(gold_at_17_volts(), options).close(1, plain_step(), window).record; };
   const ContactRecord all = seen();
   std::vector<double> lengths;
-  for (const Opening& opening : openings(all)) lengths.push_back(opening.end - opening.begin);
+  for (const ContactOpening& opening : openings(all)) lengths.push_back(opening.end - opening.begin);
   std::ranges::sort(lengths);
   options.unseen = lengths[lengths.size() / 2];
   const ContactRecord coarse = seen();
   std::vector<double> expected;
-  for (const Opening& opening : openings(all)) {
+  for (const ContactOpening& opening : openings(all)) {
     if (opening.end - opening.begin > options.unseen) expected.push_back(opening.begin);
   }
   std::vector<double> begins;
-  for (const Opening& opening : openings(coarse)) begins.push_back(opening.begin);
+  for (const ContactOpening& opening : openings(coarse)) begins.push_back(opening.begin);
   EXPECT_EQ(begins, expected);
   EXPECT_GT(begins.size(), 1U);
   EXPECT_LT(begins.size(), lengths.size());
