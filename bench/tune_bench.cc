@@ -6,6 +6,7 @@
 //
 // A line for each device, with all numbers, comes before the table.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -32,7 +33,7 @@ constexpr std::array marks{1, 2, 3, 4, 6, 8, 12};
 
 struct Arguments {
   std::string scene = "mem-gold.toml", actuator = "electrostatic", method = "belief", gas;
-  int devices = 20, closings = 12, jobs = 2, modes = 1, recipes = 5;
+  int devices = 20, closings = 12, jobs = 2, modes = 1, recipes = 1;
   double first_device = 1, edge_error = 50e-9, unseen = 100e-9, shot_error = 2e-4, gain_error = 0.005, stiffness = 1;
   double drift_of_1000 = 0;  // relative, of the volts in 1000 closings: the kept waveform is then fired 1000 times
   double good = 10e-9, very_good = 1e-9;
@@ -82,6 +83,7 @@ struct Course {
   std::map<int, double> kept_touch;  // of the kept waveform [s]
   std::vector<double> seconds;       // of each learning and proposal
   std::vector<double> expected;      // cost of what comes next
+  std::vector<double> surprises;     // Tuner::surprises()
   std::string broken;
   std::vector<double> repeated;  // highest rebound of each repetition [m]
 };
@@ -142,6 +144,7 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
     course.expected.push_back(tuner.next().expected_cost);
     mark(course, lab, k, tuner.kept().waveforms);
   }
+  course.surprises = tuner.surprises();
   course.broken = tuner.broken_assumption().value_or("");
   constexpr int many = 1000;
   for (int k = 0; a.drift_of_1000 != 0 && k < many; ++k) {
@@ -375,6 +378,7 @@ int main(int count, char** words) try {
       fmt::print(" repeated {}: {} below {:g} nm, {} below {:g} nm", c.repeated.size(), below(a.good), 1e9 * a.good,
                  below(a.very_good), 1e9 * a.very_good);
     }
+    fmt::print(" surprises {:.1f}", fmt::join(c.surprises, " "));
     fmt::print("{}\n", c.broken.empty() ? "" : " BROKEN " + c.broken);
     std::fflush(stdout);
     broken += !c.broken.empty();

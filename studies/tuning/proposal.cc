@@ -202,7 +202,8 @@ struct Search {
 };
 
 std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const std::vector<double>& start, const Search& search,
-                          std::uint64_t seed, const Watch& watch, double give_up = std::numeric_limits<double>::infinity()) {
+                          double effort, std::uint64_t seed, const Watch& watch,
+                          double give_up = std::numeric_limits<double>::infinity()) {
   constexpr std::size_t first_devices = 8;
   Problem problem{.variables = shapes.variables()};
   for (std::size_t k = 0; k < start.size(); ++k) {
@@ -216,8 +217,9 @@ std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const st
     return outlook.expected(waveforms, search.devices).total();
   };
   problem.starts = {start};
+  const double evaluations = effort * static_cast<double>(search.evaluations);
   const OptimizerResult result = minimize(problem, {.optimizer = search.optimizer,
-                                                    .max_evaluations = search.evaluations,
+                                                    .max_evaluations = std::max(1L, std::lround(evaluations)),
                                                     .seed = seed,
                                                     .step = search.step,
                                                     .stop = watch.stop});
@@ -275,7 +277,7 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
       const std::vector<double> x =
           found(limited, outlook, from[k].x,
                 {.optimizer = "cma-es", .devices = devices, .evaluations = budget, .step = 0.1, .fine = false},
-                random_bits(seed, Stream::tuning, 16 * n + k), watch, hopeless);
+                scene.options().effort, random_bits(seed, Stream::tuning, 16 * n + k), watch, hopeless);
       const double cost = outlook.expected(limited.waveforms(x), devices).total();
       if (cost < best.cost) best.x = x, best.cost = cost;
     }
@@ -298,7 +300,8 @@ Proposal propose(const TunedScene& scene, const Shapes& shapes, const Outlook& o
   std::ranges::stable_sort(ranked, {}, [](const Proposal& one) { return one.cost.total(); });
   Proposal best = ranked.front();
   const auto search = [&](const std::vector<double>& start, const Search& how, std::uint64_t which) {
-    Proposal end = priced(found(shapes, outlook, start, how, random_bits(seed, Stream::tuning, which), watch));
+    Proposal end =
+        priced(found(shapes, outlook, start, how, scene.options().effort, random_bits(seed, Stream::tuning, which), watch));
     if (end.cost.total() < best.cost.total()) best = std::move(end);
   };
   const double step = best.cost.landing > far_off ? 0.0067 : 0.0027;

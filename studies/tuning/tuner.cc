@@ -23,6 +23,7 @@ void check(const TunerOptions& options) {
   require(share(options.shot_error), "the error from shot to shot must be at least 0 and below 1");
   require(options.jobs >= 1, "jobs must be at least 1");
   require(options.most_recipes >= 1, "recipes must be at least 1");
+  require(options.effort > 0 && std::isfinite(options.effort), "the effort must be above 0");
 }
 
 // Of random numbers: those of a closing.
@@ -123,12 +124,13 @@ double surprise(const PredictedRecord& predicted, const ContactRecord& record) {
 
 Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& record, const Watch& watch) const {
   constexpr int informed = 2;  // closings, after which predictions count
-  if (known.closings >= informed) known.surprises.push_back(surprise(known.next.predicted, record));
   known.fired.push_back({.shot = {.waveforms = known.next.waveforms, .record = record}, .x = known.x, .as_proposed = known.next});
   ++known.closings;
   const bool quiet = is_bounce_free(record);
+  const bool repeats = known.steering && quiet;
   known.in_a_row = quiet ? known.in_a_row + 1 : 0;
-  if (known.steering && quiet) {
+  if (known.closings > informed && !repeats) known.surprises.push_back(surprise(known.next.predicted, record));
+  if (repeats) {
     known.steering->follow(*first_touch(record));
     known.next.waveforms = known.steering->steered();
     known.next.number += 1;
@@ -212,6 +214,7 @@ bool Tuner::spread_is_assumed() const { return state_->scene.spread_is_assumed()
 const TunerShot& Tuner::next() const { return state_->now.next; }
 int Tuner::closings() const { return state_->now.closings; }
 const TunerShot& Tuner::kept() const { return state_->now.kept; }
+const std::vector<double>& Tuner::surprises() const { return state_->now.surprises; }
 int Tuner::bounce_free_in_a_row() const { return state_->now.in_a_row; }
 
 void Tuner::learn(const ContactRecord& record, const Watch& watch) {

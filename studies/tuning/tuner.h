@@ -49,7 +49,8 @@ struct TunerOptions {
   double unseen = 100e-9;     ///< openings below this are not recorded [s]
   double gain_error = 0.005;  ///< of the sources, constant but unknown, relative, one standard deviation
   double shot_error = 2e-4;   ///< of the gain from shot to shot, relative, one standard deviation
-  int most_recipes = 5;       ///< units of volts that recipes are searched for; at least one
+  int most_recipes = 1;       ///< units of volts that recipes are searched for, 1 to 5
+  double effort = 1;          ///< evaluations of every search, over the usual
   Vectors vectors = vectors_in_use();
 };
 
@@ -122,6 +123,9 @@ class Tuner {
   [[nodiscard]] int bounce_free_in_a_row() const;
   static constexpr int enough_in_a_row = 5;
   [[nodiscard]] bool is_done() const { return bounce_free_in_a_row() >= enough_in_a_row; }
+  /// How far recorded first touches were from what the belief had predicted, in standard deviations, from the third closing on;
+  /// of repeated shots only where they bounced.
+  [[nodiscard]] const std::vector<double>& surprises() const;
   /// In words, where records were not what the belief predicted before it saw them: the device does not behave like the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
