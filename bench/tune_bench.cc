@@ -269,8 +269,11 @@ Course by_nelder_mead(const Arguments& a, const Prepared& p, const std::vector<W
     mark(course, lab, ++shots, best.waveforms);
     return open_time(record);
   };
-  (void)minimize({.variables = {{"pulse", 0.5, 1.5}, {"coast", 0.5, 1.5}}, .objective = open, .starts = {{1, 1}}},
-                 {.optimizer = "nelder-mead", .max_evaluations = a.closings, .step = 0.03});
+  Problem problem;
+  problem.variables = {{"pulse", 0.5, 1.5}, {"coast", 0.5, 1.5}};
+  problem.objective = open;
+  problem.starts = {{1, 1}};
+  (void)minimize(problem, {.optimizer = "nelder-mead", .max_evaluations = a.closings, .step = 0.03});
   return course;
 }
 
@@ -382,7 +385,8 @@ int main(int count, char** words) try {
     fmt::print("{}\n", c.broken.empty() ? "" : " BROKEN " + c.broken);
     std::fflush(stdout);
     broken += !c.broken.empty();
-    seconds.insert(seconds.end(), c.seconds.begin(), c.seconds.end());
+    constexpr double repeats = 1e-3;  // [s]: where a shot is repeated, nothing is learned
+    std::ranges::copy_if(c.seconds, std::back_inserter(seconds), [](double one) { return one > repeats; });
   }
   print_table(a, all, fresh.step_closing_time());
   if (!seconds.empty())

@@ -26,7 +26,7 @@ class Beliefs : public testing::Test {
       const std::vector<ImaginedShot> one{{.device = &device[0], .waveforms = &shots.back().waveforms}};
       const ImaginedClosing closing = scene_.close(one)[0];
       shots.back().record.edges.push_back({closing.touch, true});
-      for (const Opening& o : closing.openings) {
+      for (const ContactOpening& o : closing.openings) {
         if (!std::isfinite(o.end) || o.end - o.begin < scene_.options().unseen) continue;
         shots.back().record.edges.push_back({o.begin, false});
         shots.back().record.edges.push_back({o.end, true});
