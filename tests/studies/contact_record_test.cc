@@ -22,7 +22,7 @@ TEST(ContactRecords, EdgesTellTouchAndOpenings) {
       with_edges({{3 * microsecond, true}, {4 * microsecond, false}, {6 * microsecond, true}, {9 * microsecond, false}});
   EXPECT_THAT(record_fault(record), IsEmpty());
   EXPECT_EQ(first_touch(record), 3 * microsecond);
-  const std::vector<Opening> open = openings(record);
+  const std::vector<ContactOpening> open = openings(record);
   ASSERT_EQ(open.size(), 2U);
   EXPECT_EQ(open[0].begin, 4 * microsecond);
   EXPECT_EQ(open[0].end, 6 * microsecond);
