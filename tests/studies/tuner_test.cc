@@ -14,7 +14,7 @@
 namespace softland {
 namespace {
 
-TunerOptions cheap(int jobs = 1) { return {.jobs = jobs, .most_recipes = 1, .effort = 0.1}; }
+TunerOptions cheap(int jobs = 1) { return {.jobs = jobs, .effort = 0.02}; }
 
 double last_breakpoint_of(const std::vector<Waveform>& waveforms) {
   double last = 0;
@@ -102,7 +102,7 @@ TEST(Tuners, OptionsOutOfRangeAreRefused) {
 
 // The whole of it: gold cantilevers with one mode more than the belief has, below 10 nm within three closings.
 TEST(Tuners, DevicesThatNoBeliefHasSeenLandWithinThreeClosings_slow) {
-  const Tuner fresh(gold(), {.jobs = 2, .most_recipes = 1, .effort = 0.5});
+  const Tuner fresh(gold(), {.jobs = 2, .effort = 0.5});
   constexpr int devices = 4, closings = 3, shots = 10;
   for (int n = 0; n < devices; ++n) {
     const PracticeDevice device(gold(), {.seed = 31 + static_cast<std::uint64_t>(n), .model = {.more_modes = 1}});
