@@ -35,6 +35,7 @@ struct Arguments {
   std::string scene = "mem-gold.toml", actuator = "electrostatic", method = "belief", gas;
   int devices = 20, closings = 12, jobs = 2, modes = 1, recipes = 1;
   double first_device = 1, edge_error = 50e-9, unseen = 100e-9, shot_error = 2e-4, gain_error = 0.005, stiffness = 1;
+  double effort = 1;
   double drift_of_1000 = 0;  // relative, of the volts in 1000 closings: the kept waveform is then fired 1000 times
   double good = 10e-9, very_good = 1e-9;
   std::vector<std::string> sets, model_sets;
@@ -54,6 +55,7 @@ Arguments read(std::span<char*> words) {
       {"--jobs", [&](const std::string& v) { a.jobs = std::stoi(v); }},
       {"--modes", [&](const std::string& v) { a.modes = std::stoi(v); }},
       {"--recipes", [&](const std::string& v) { a.recipes = std::stoi(v); }},
+      {"--effort", [&](const std::string& v) { a.effort = std::stod(v); }},
       {"--first-device", [&](const std::string& v) { a.first_device = std::stod(v); }},
       {"--edge-error", [&](const std::string& v) { a.edge_error = std::stod(v); }},
       {"--unseen", [&](const std::string& v) { a.unseen = std::stod(v); }},
@@ -341,7 +343,8 @@ int main(int count, char** words) try {
                            .unseen = a.unseen,
                            .gain_error = a.gain_error,
                            .shot_error = a.shot_error,
-                           .most_recipes = a.recipes});
+                           .most_recipes = a.recipes,
+                           .effort = a.effort});
   const std::vector<Waveform> recipe = fresh.next().waveforms;
   fmt::print("ready after {:.1f} s; expected cost {:.3f}; step touches at {:.2f} us\n", since(), fresh.next().expected_cost,
              1e6 * fresh.step_closing_time());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/executor.h"
 #include "base/random.h"
 #include "optimizers/problem.h"
 #include "sampling/statistics.h"
@@ -272,14 +273,15 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
     Recipe best{.x = from.empty() ? limited.in_units(shapes.starts().front(), {}, {}) : from.front().x,
                 .units = units,
                 .cost = from.empty() ? not_landed : from.front().cost.total()};
-    const std::size_t chains = n == 0 ? 3 : 1;
-    for (std::size_t k = 0; k < std::min(chains, from.size()); ++k) {
-      const std::vector<double> x =
-          found(limited, outlook, from[k].x,
-                {.optimizer = "cma-es", .devices = devices, .evaluations = budget, .step = 0.1, .fine = false},
-                scene.options().effort, random_bits(seed, Stream::tuning, 16 * n + k), watch, hopeless);
-      const double cost = outlook.expected(limited.waveforms(x), devices).total();
-      if (cost < best.cost) best.x = x, best.cost = cost;
+    from.resize(std::min<std::size_t>(from.size(), n == 0 ? 3 : 1));
+    run_tasks(from.size(), scene.options().jobs, [&](std::size_t k) {
+      from[k].x = found(limited, outlook, from[k].x,
+                        {.optimizer = "cma-es", .devices = devices, .evaluations = budget, .step = 0.1, .fine = false},
+                        scene.options().effort, random_bits(seed, Stream::tuning, 16 * n + k), watch, hopeless);
+      from[k].cost = outlook.expected(limited.waveforms(from[k].x), devices);
+    });
+    for (const Proposal& end : from) {
+      if (end.cost.total() < best.cost) best.x = end.x, best.cost = end.cost.total();
     }
     recipes.push_back(std::move(best));
   }
@@ -299,21 +301,28 @@ Proposal propose(const TunedScene& scene, const Shapes& shapes, const Outlook& o
   for (const std::vector<double>& x : candidates) ranked.push_back(priced(shapes.in_units(x, {}, {})));
   std::ranges::stable_sort(ranked, {}, [](const Proposal& one) { return one.cost.total(); });
   Proposal best = ranked.front();
-  const auto search = [&](const std::vector<double>& start, const Search& how, std::uint64_t which) {
-    Proposal end =
-        priced(found(shapes, outlook, start, how, scene.options().effort, random_bits(seed, Stream::tuning, which), watch));
+  const auto end_of = [&](const std::vector<double>& start, const Search& how, std::uint64_t which) {
+    return priced(found(shapes, outlook, start, how, scene.options().effort, random_bits(seed, Stream::tuning, which), watch));
+  };
+  const auto take = [&](Proposal end) {
     if (end.cost.total() < best.cost.total()) best = std::move(end);
   };
+  const auto search = [&](const Search& how, std::uint64_t which) { take(end_of(best.x, how, which)); };
   const double step = best.cost.landing > far_off ? 0.0067 : 0.0027;
-  search(best.x, {.optimizer = "nelder-mead", .devices = 8, .evaluations = 50, .step = step, .fine = true}, 0);
-  search(best.x, {.optimizer = "nelder-mead", .devices = all, .evaluations = 50, .step = step, .fine = true}, 1);
+  search({.optimizer = "nelder-mead", .devices = 8, .evaluations = 50, .step = step, .fine = true}, 0);
+  search({.optimizer = "nelder-mead", .devices = all, .evaluations = 50, .step = step, .fine = true}, 1);
   const auto numbers = static_cast<long>(shapes.variables().size());
   if (best.cost.landing > not_good)
-    search(best.x, {.optimizer = "nelder-mead", .devices = 12, .evaluations = 12 * numbers, .step = 0.013, .fine = false}, 2);
-  const long budget = scene.is_in_lanes() ? 250 : 100;
-  for (std::size_t k = 0; k < 2 && best.cost.landing > bad; ++k) {
-    const std::vector<double> start = k == 0 || ranked.size() < 2 ? best.x : ranked[1].x;
-    search(start, {.optimizer = "cma-es", .devices = 12, .evaluations = budget, .step = 0.025, .fine = false}, 3 + k);
+    search({.optimizer = "nelder-mead", .devices = 12, .evaluations = 12 * numbers, .step = 0.013, .fine = false}, 2);
+  if (best.cost.landing > bad) {
+    const long budget = scene.is_in_lanes() ? 250 : 100;
+    const std::vector<std::vector<double>> starts{best.x, ranked[ranked.size() > 1 ? 1 : 0].x};
+    std::vector<Proposal> ends(starts.size());
+    run_tasks(starts.size(), scene.options().jobs, [&](std::size_t k) {
+      ends[k] =
+          end_of(starts[k], {.optimizer = "cma-es", .devices = 12, .evaluations = budget, .step = 0.025, .fine = false}, 3 + k);
+    });
+    for (Proposal& end : ends) take(std::move(end));
   }
   return best;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/engineering.h"
 #include "base/executor.h"
 #include "base/require.h"
 #include "base/standard_normal.h"
@@ -186,6 +187,11 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   scales_ = {.closing_time = closing.touches.front().begin,
              .gap = nominal_.scene.device.gap.contact,
              .rebound = nominal_.scene.metrics.significant_rebound};
+  constexpr double coarsest = 0.1;  // of the closing time
+  require(options.edge_error < coarsest * scales_.closing_time, [&] {
+    return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
+                       engineering(options.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
+  });
   find_units(watch);
 }
 

@@ -107,7 +107,7 @@ TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
 }
 
 TEST(TunedScenes, ALevelThatIsSafePullsNoneOfAThousandThrough) {
-  const TunedScene scene(gold({"structure.modes=2", "contact.effective_modulus=\"1 GPa\""}), {.vectors = Vectors::none}, {});
+  const TunedScene scene(gold({"structure.modes=2", "contact.effective_modulus=1 GPa"}), {.vectors = Vectors::none}, {});
   const double safe = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Identity(scene.size(), scene.size()));
   const double known = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Zero(scene.size(), scene.size()));
   const double nominal = pull_through_voltage(scene.nominal().model, 0, std::vector{scene.nominal().signals()[0].hold_level()});

@@ -9,6 +9,7 @@
 
 #include "sampling/statistics.h"
 #include "studies/tuning/practice_device.h"
+#include "studies/tuning/tuned_scene.h"
 #include "tests/studies/scenes.h"
 
 namespace softland {
@@ -93,8 +94,20 @@ TEST(Tuners, AClosingNarrowsTheBelief_optimized) {
   EXPECT_LT(find("gaps").deviation, 0.9 * find("gaps").prior_deviation);
 }
 
+TEST(Tuners, NoLevelPullsMoreThanOneDeviceInAThousandThrough_optimized) {
+  const SceneFile file = gold({"structure.modes=2", "contact.effective_modulus=0.01 GPa", "driver.main.max_voltage=60 V"});
+  const TunedScene scene(file, cheap(), {});
+  const double safe =
+      scene.safe_level(Eigen::VectorXd::Zero(scene.size()), Eigen::MatrixXd::Identity(scene.size(), scene.size()));
+  ASSERT_LT(safe, scene.nominal().limits(0).max_voltage);
+  const Tuner tuner(file, cheap());
+  constexpr double rounding = 1e-12;
+  EXPECT_LE(signal(tuner.next().waveforms[0]).peak(), safe * (1 + rounding));
+}
+
 TEST(Tuners, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.edge_error = 0}), InvalidInput);
+  EXPECT_THROW(Tuner(gold_with_two_modes(), {.edge_error = 5e-6}), InvalidInput);
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.shot_error = -1}), InvalidInput);
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.effort = 0}), InvalidInput);
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.actuator = Actuator::pzt}), InvalidInput);
