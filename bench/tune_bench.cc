@@ -86,6 +86,7 @@ struct Course {
   std::vector<double> seconds;       // of each learning and proposal
   std::vector<double> expected;      // cost of what comes next
   std::vector<double> surprises;     // Tuner::surprises()
+  int unexpected_bounces = 0;
   std::string broken;
   std::vector<double> repeated;  // highest rebound of each repetition [m]
 };
@@ -147,6 +148,7 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
     mark(course, lab, k, tuner.kept().waveforms);
   }
   course.surprises = tuner.surprises();
+  course.unexpected_bounces = tuner.unexpected_bounces();
   course.broken = tuner.broken_assumption().value_or("");
   constexpr int many = 1000;
   for (int k = 0; a.drift_of_1000 != 0 && k < many; ++k) {
@@ -384,7 +386,7 @@ int main(int count, char** words) try {
       fmt::print(" repeated {}: {} below {:g} nm, {} below {:g} nm", c.repeated.size(), below(a.good), 1e9 * a.good,
                  below(a.very_good), 1e9 * a.very_good);
     }
-    fmt::print(" surprises {:.1f}", fmt::join(c.surprises, " "));
+    fmt::print(" surprises {:.1f}, {} bounces", fmt::join(c.surprises, " "), c.unexpected_bounces);
     fmt::print("{}\n", c.broken.empty() ? "" : " BROKEN " + c.broken);
     std::fflush(stdout);
     broken += !c.broken.empty();

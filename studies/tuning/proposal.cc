@@ -153,6 +153,20 @@ LandingCost Outlook::expected(const std::vector<Waveform>& waveforms, std::size_
   return sum;
 }
 
+namespace {
+
+// Root mean square of what lies on that side of the middle, from there: late touches scatter more than early ones.
+double scatter_of(const std::vector<double>& sample, double middle, double side) {
+  double squares = 0, count = 0;
+  for (const double one : sample) {
+    if (side * (one - middle) < 0) continue;
+    squares += (one - middle) * (one - middle), ++count;
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+}  // namespace
+
 PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const {
   constexpr double both_sides = 1.96, unset = Metrics::unset;
   std::vector<double> touches, speeds, heights;
@@ -172,10 +186,9 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
   record.touches = count / static_cast<double>(size());
   record.bounces = bouncing / count;
   record.touch_median = sample_quantile(touches, 0.5);
-  const double scatter = touches.size() > 1 ? sample_standard_deviation(touches) : 0;
-  const double deviation = std::hypot(scatter, Likelihood(scene_, {}).touch_deviation(sample_quantile(speeds, 0.5)));
-  record.touch_low = record.touch_median - both_sides * deviation;
-  record.touch_high = record.touch_median + both_sides * deviation;
+  const double error = Likelihood(scene_, {}).touch_deviation(sample_quantile(speeds, 0.5));
+  record.touch_low = record.touch_median - both_sides * std::hypot(scatter_of(touches, record.touch_median, -1), error);
+  record.touch_high = record.touch_median + both_sides * std::hypot(scatter_of(touches, record.touch_median, 1), error);
   record.rebound_median = sample_quantile(heights, 0.5);
   record.rebound_high = sample_quantile(heights, 0.95);
   return record;

@@ -4,8 +4,8 @@
 // for a while each, and the hold level), every other shaped drive pulses. Edges are as short as that family has them.
 //
 // Recipes are searched once per scene, by CMA-ES on devices that differ as little as they will once one closing is known: for the
-// nominal device, and for units of volts one and two standard deviations away. In the units of a device they are where its
-// searches begin, beside the waveforms that were fired.
+// nominal device, and where that is asked for, for units of volts one and two standard deviations away. In the units of a device
+// they are where its searches begin, beside the waveforms that were fired.
 #pragma once
 
 #include <cstdint>

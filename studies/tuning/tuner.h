@@ -12,10 +12,10 @@
 // The cost of a closing, B its highest rebound, t_i its first touch, T_0 that of the plain step on the nominal device, h the
 // significant rebound, g the contact gap, m = sqrt(h g / 20):
 //
-//   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88)       3 where it does not close and stay closed
+//   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88)       3 where it does not close
 //
 // No shot leaves the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would be
-// pulled through its contact. After two closings without a bounce, of which none was expected, the same shot is repeated; its
+// pulled through its contact. After two closings without a bounce, where none is expected, the same shot is repeated; its
 // volts then follow the touch time, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until it bounces.
 //
 // All numbers depend on scene, options and the pairs of shot and record alone: a tuner that learns a log again, shot by shot, is
@@ -58,8 +58,8 @@ struct TunerOptions {
 struct PredictedRecord {
   double touches = 0;         ///< share of the devices that touch
   double touch_median = 0;    ///< first touch [s]; NaN where none touches
-  double touch_low = 0;       ///< its 2.5 % quantile, errors of edges included [s]
-  double touch_high = 0;      ///< its 97.5 % quantile [s]
+  double touch_low = 0;       ///< early, where 2.5 % would be of normal ones, errors included [s]
+  double touch_high = 0;      ///< late, the same of 97.5 % [s]
   double bounces = 0;         ///< share of the devices with an opening that is seen
   double rebound_median = 0;  ///< highest rebound [m]
   double rebound_high = 0;    ///< its 95 % quantile [m]
@@ -123,9 +123,11 @@ class Tuner {
   [[nodiscard]] int bounce_free_in_a_row() const;
   static constexpr int enough_in_a_row = 5;
   [[nodiscard]] bool is_done() const { return bounce_free_in_a_row() >= enough_in_a_row; }
-  /// How far recorded first touches were from what the belief had predicted, in standard deviations, from the third closing on;
-  /// of repeated shots only where they bounced.
+  /// How far the recorded first touch of each closing was from what the belief had predicted, in standard deviations; shots that
+  /// are repeated are left out as long as they do not bounce.
   [[nodiscard]] const std::vector<double>& surprises() const;
+  /// Closings that bounced, where at most one in twenty devices of the belief did.
+  [[nodiscard]] int unexpected_bounces() const;
   /// In words, where records were not what the belief predicted before it saw them: the device does not behave like the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 

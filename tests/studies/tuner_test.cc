@@ -113,6 +113,18 @@ TEST(Tuners, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.actuator = Actuator::pzt}), InvalidInput);
 }
 
+TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
+  Tuner tuner(gold_with_two_modes(), cheap());
+  const PracticeDevice stiff(gold_with_two_modes(), {.seed = 8, .model = {.set = {"structure.youngs_modulus=55 GPa"}}});
+  tuner.learn(fired(stiff, tuner.next(), 1).record);
+  ASSERT_TRUE(tuner.broken_assumption()) << tuner.surprises().front();
+  EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("does not behave like the scene"));
+  Tuner other = tuner.restarted();
+  const PracticeDevice right(gold_with_two_modes(), {.seed = 8});
+  other.learn(fired(right, other.next(), 1).record);
+  EXPECT_FALSE(other.broken_assumption());
+}
+
 // The whole of it: gold cantilevers with one mode more than the belief has, below 10 nm within three closings.
 TEST(Tuners, DevicesThatNoBeliefHasSeenLandWithinThreeClosings_slow) {
   const Tuner fresh(gold(), {.jobs = 2, .effort = 0.5});
