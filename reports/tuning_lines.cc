@@ -192,4 +192,6 @@ json record_json(int shot, const ContactRecord& record) {
 
 json end_json() { return {{"done", true}}; }
 
+std::string line_text(const json& line) { return line.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"; }
+
 }  // namespace softland

@@ -55,5 +55,7 @@ inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 [[nodiscard]] nlohmann::json shot_json(const ToldShot& shot);
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
 [[nodiscard]] nlohmann::json end_json();
+/// With its line feed; what is not UTF-8 becomes U+FFFD.
+[[nodiscard]] std::string line_text(const nlohmann::json& line);
 
 }  // namespace softland

@@ -97,12 +97,19 @@ std::string record_words(const ContactRecord& record) {
 // "41.0 to 41.4 µs"
 std::string range_words(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return "—";
-  return fmt::format("{} to {}", quantity(low, "s", 4), quantity(high, "s", 4));
+  const std::string from = quantity(low, "s", 4), to = quantity(high, "s", 4);
+  const std::size_t space = from.find("\u00a0");
+  const bool same_unit = space != std::string::npos && to.ends_with(from.substr(space));
+  return fmt::format("{} to {}", same_unit ? from.substr(0, space) : from, to);
+}
+
+std::string rebound_words(const PredictedRecord& p) {
+  if (!std::isfinite(p.rebound_high)) return "rebounds not known";
+  return p.rebound_high > 0 ? fmt::format("95 % of the rebounds below {}", quantity(p.rebound_high, "m", 2)) : "no rebound";
 }
 
 std::string expected_words(const PredictedRecord& p) {
-  return fmt::format("touch at {}, and a rebound below {} with 95 %", range_words(p.touch_low, p.touch_high),
-                     quantity(p.rebound_high, "m", 2));
+  return fmt::format("touch at {}, {}", range_words(p.touch_low, p.touch_high), rebound_words(p));
 }
 
 const TunedClosing* recorded(const TuningReport& report, int shot) {
@@ -122,10 +129,11 @@ std::pair<std::string, std::string> headline_of(const TuningReport& report) {
   const std::string after = closings_words(learned(report));
   if (report.closings.empty()) return {"No closing yet.", ""};
   if (report.bounce_free_in_a_row > 0) {
+    const std::string row =
+        report.bounce_free_in_a_row == 1 ? "once so far" : fmt::format("{} times in a row", report.bounce_free_in_a_row);
     return {fmt::format("After {} the switch lands without a bounce", after),
-            fmt::format(", {} in a row; the waveform kept touches {} later than a plain step.",
-                        report.bounce_free_in_a_row == 1 ? "not yet twice" : fmt::format("{} times", report.bounce_free_in_a_row),
-                        quantity(report.kept.predicted.touch_median - report.step_closing_time, "s"))};
+            fmt::format(", {}. The waveform kept touches at {}; a plain step on the drawing touches at {}.", row,
+                        quantity(report.kept.predicted.touch_median, "s"), quantity(report.step_closing_time, "s"))};
   }
   if (report.ever_bounce_free()) return {fmt::format("After {} the last one bounced", after), ", though one before it did not."};
   return {fmt::format("After {} none has landed without a bounce yet.", after), ""};
@@ -163,7 +171,7 @@ std::string belief_bar(const BelievedQuantity& q) {
 // Factors as they change the scene's value, other quantities as they are.
 std::string believed_text(double mean, double deviation, const BelievedQuantity& q) {
   if (!q.unit.empty()) return fmt::format("{} ± {}", quantity(mean, q.unit), quantity(deviation, q.unit, 2));
-  return fmt::format("{} ± {} %", internal::relative_change(mean - 1), internal::plain_number(100 * deviation, 2));
+  return fmt::format("{} ± {}\u00a0%", internal::relative_change(mean - 1), internal::plain_number(100 * deviation, 2));
 }
 
 std::string belief_section(const BeliefSummary& belief) {
@@ -196,19 +204,16 @@ void take(Shown& shown, const PredictedRecord& p) {
   for (const double time : {p.touch_low, p.touch_high}) shown.take(time);
 }
 
+// The touches, and as much of what follows; an early prediction may reach much further.
 Shown shown_times(const TuningReport& report, std::size_t first) {
-  Shown shown;
+  constexpr double before = 0.8, after = 1.6;  // of the first and of the last touch
+  Shown touches;
+  take(touches, report.next.predicted);
   for (std::size_t i = first; i < report.closings.size(); ++i) {
-    const TunedClosing& one = report.closings[i];
-    take(shown, one.shot.predicted);
-    for (const ContactEdge& edge : one.record.edges) shown.take(edge.time);
-    if (const std::optional<double> touch = first_touch(one.record)) shown.take(*touch);
+    if (const std::optional<double> touch = first_touch(report.closings[i].record)) touches.take(*touch);
   }
-  take(shown, report.next.predicted);
-  if (!(shown.to > 0)) return {.from = 0, .to = 1};
-  constexpr double margin = 0.08;
-  const double more = margin * std::max(shown.to - shown.from, 0.05 * shown.to);
-  return {.from = std::max(0.0, shown.from - more), .to = shown.to + more};
+  if (!(touches.to > 0)) return {.from = 0, .to = 1};
+  return {.from = before * touches.from, .to = after * touches.to};
 }
 
 std::string expected_bar(const PredictedRecord& p, const Shown& shown) {
@@ -257,16 +262,13 @@ std::string records_section(const TuningReport& report) {
   rows.push_back({fmt::format("{}, next", report.next.number),
                   escaped(range_words(report.next.predicted.touch_low, report.next.predicted.touch_high)), "", "",
                   internal::Cell(strip(expected_bar(report.next.predicted, shown), "the next closing"), "picture")});
-  const std::string scale = fmt::format("<span class=\"ends\"><span>{}</span><span>{}</span></span>",
-                                        escaped(quantity(shown.from, "s")), escaped(quantity(shown.to, "s")));
   std::string below =
-      "<p class=\"below\">Grey: where the belief expected the touch before it saw the record, with 95 %. Blue: where the contact "
-      "was closed.";
+      "<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: where the contact "
+      "was closed. The pictures show " +
+      escaped(range_words(shown.from, shown.to)) + ".";
   if (first > 0) below += fmt::format(" The first {} closings are not shown.", first);
-  return internal::section(
-      "records", "Each closing under its prediction",
-      internal::table_html({"Closing", "Touch expected", "Touch", "Bounces", internal::Cell(scale, "picture")}, rows) + below +
-          "</p>\n");
+  return internal::section("records", "Each closing under its prediction",
+                           internal::table_html({"Closing", "Touch expected", "Touch", "Bounces", ""}, rows) + below + "</p>\n");
 }
 
 internal::Picture picture_of(const TuningReport& report) {
@@ -319,10 +321,12 @@ std::string keys_of(const TuningReport& report) {
              report.bounce_free_in_a_row > 0 ? fmt::format("the last {} without a bounce", report.bounce_free_in_a_row)
                                              : "the last one bounced") +
          key("Touch of the waveform kept", quantity(p.touch_median, "s"),
-             fmt::format("plain step, drawing {}", quantity(report.step_closing_time, "s"))) +
-         key("Rebound expected, 95 %", quantity(p.rebound_high, "m", 2),
-             fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))) +
-         key("Bounce expected", percent(p.bounces), "of the devices that it may be");
+             fmt::format("plain step on the drawing {}", quantity(report.step_closing_time, "s"))) +
+         key("Its rebound, 95 % below", p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
+             p.rebound_high == 0
+                 ? "as far as it is known"
+                 : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))) +
+         key("It may bounce", percent(p.bounces), "of the devices that this may be");
 }
 
 }  // namespace
