@@ -9,6 +9,7 @@ install(TARGETS softland EXPORT softland)
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/softland)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.py")
 install(FILES reports/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.uPlot)
 
 # What the program says of itself with --help is written as a manual page and as completions when it is installed.
