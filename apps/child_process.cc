@@ -86,7 +86,7 @@ ChildProcess::ChildProcess(const std::string& command, std::size_t longest_line)
     : pipes_(start(command, child_)), lines_(pipes_.out, longest_line) {}
 
 ChildProcess::~ChildProcess() {
-  constexpr milliseconds own_end{1000}, told_end{2000};
+  constexpr milliseconds own_end{500}, told_end{1000};
   close_input();
   if (!has_ended(own_end)) {
     ::kill(-child_, SIGTERM);

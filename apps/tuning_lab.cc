@@ -11,7 +11,6 @@
 
 #include "apps/child_process.h"
 #include "apps/line_reader.h"
-#include "apps/output.h"
 #include "apps/streams.h"
 #include "apps/values.h"
 #include "base/csv.h"
@@ -35,8 +34,8 @@ class CommandLab final : public TuningLab {
       : name_("--device " + shortened(command)), patience_(patience), child_(command, longest_line) {}
 
   std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals&) override {
-    const ChildProcess::Told told = child_.tell(json_text(shot_json(shot)), patience_);
-    if (told == ChildProcess::Told::closed) throw ended_before(shot.number);
+    // Where nobody reads it any more there may yet be an answer.
+    const ChildProcess::Told told = child_.tell(line_text(shot_json(shot)), patience_);
     if (told == ChildProcess::Told::late) throw late(fmt::format("did not take shot {}", shot.number));
     const LineReader::Line line = child_.next_line(patience_);
     if (line.end == LineReader::End::closed) throw ended_before(shot.number);
@@ -48,7 +47,7 @@ class CommandLab final : public TuningLab {
     }
   }
 
-  void finish() override { (void)child_.tell(json_text(end_json()), patience_); }
+  void finish() override { (void)child_.tell(line_text(end_json()), patience_); }
 
  private:
   [[nodiscard]] InvalidInput ended_before(int shot) {

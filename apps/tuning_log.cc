@@ -10,7 +10,6 @@
 #include <system_error>
 #include <utility>
 
-#include "apps/output.h"
 #include "base/output_lost.h"
 #include "base/read_file.h"
 #include "base/require.h"
@@ -94,7 +93,7 @@ void TuningLog::open(std::size_t size) {
 }
 
 void TuningLog::write(const json& line) {
-  const std::string text = json_text(line);
+  const std::string text = line_text(line);
   std::string_view rest = text;
   const auto lost = [&] {
     return OutputLost(fmt::format("{}: cannot be written: {}", file_.string(), std::generic_category().message(errno)));

@@ -14,7 +14,6 @@
 #include "apps/exit_status.h"
 #include "apps/laboratory.h"
 #include "apps/line_reader.h"
-#include "apps/output.h"
 #include "apps/scenes.h"
 #include "apps/streams.h"
 #include "apps/values.h"
@@ -123,9 +122,9 @@ int device_verb(const Common& c, const DeviceRequest& request) {
     try {
       const json told = read_line(line.text);
       if (is_end(told)) break;
-      print(json_text(answer(device, told)));
+      print(line_text(answer(device, told)));
     } catch (const InvalidInput& error) {
-      print(json_text({{"shot", nullptr}, {"error", fmt::format("the line {}", error.what())}}));
+      print(line_text({{"shot", nullptr}, {"error", fmt::format("the line {}", error.what())}}));
     }
   }
   return exit_done;

@@ -42,7 +42,7 @@ constexpr int usual_closings = 30;
 struct TuneRequest {
   std::string device, actuator = "electrostatic";
   bool by_hand = false, resume = false;
-  std::optional<std::string> closings, timeout, seed, jobs;
+  std::optional<std::string> closings, recipes, effort, timeout, seed, jobs;
   LaboratoryRequest laboratory;
 };
 
@@ -57,6 +57,8 @@ TunerOptions tuner_options(const TuneRequest& request) {
                        .gain_error = known.gain_error,
                        .shot_error = known.shot_error};
   options.seed = seed_of(request.seed, options.seed);
+  if (request.recipes) options.most_recipes = whole_number("--recipes", *request.recipes, 1);
+  if (request.effort) options.effort = quantity_of("--effort", *request.effort, dimension::none);
   return options;
 }
 
@@ -65,6 +67,8 @@ json origin_of(const SceneFile& file, const TunerOptions& options) {
   return {{"scene", content_key(canonical(file, "scene").text()).hexadecimal()},
           {"actuator", name_of(actuators, options.actuator)},
           {"seed", options.seed},
+          {"recipes", options.most_recipes},
+          {"effort", options.effort},
           {"edge_error_s", options.edge_error},
           {"unseen_s", options.unseen},
           {"gain_error", options.gain_error},
@@ -218,6 +222,13 @@ void add_tune(Verb& verb) {
             "go on with the closings in the folder of --out, none of which is fired again; scene and options as before");
   verb.option("--actuator", request->actuator, "NAME", "drives that are shaped: " + first_is_default(listed(actuators)));
   with_laboratory(verb, request->laboratory);
+  verb.optional(
+      "--recipes", request->recipes, "N",
+      fmt::format("waveforms that are searched before the first closing, each for devices of another pull-in voltage, 1 to 5 "
+                  "(default: {})",
+                  TunerOptions{}.most_recipes));
+  verb.optional("--effort", request->effort, "FACTOR",
+                "evaluations of every search, over the usual (default: 1); less of it is sooner, and lands less surely");
   verb.optional("--timeout", request->timeout, "TIME", "how long the command may take for an answer (default: 60 s)");
   verb.with_seed(request->seed, "same records, same proposals, whatever --jobs is");
   verb.with_jobs(request->jobs);
@@ -228,7 +239,7 @@ void add_tune(Verb& verb) {
       "and the waveform that lands it best is proposed next. No shot leaves the limits of [driver.*]. Status 4: no closing was\n"
       "without a bounce. docs/tune.md says how to practise, what a command reads and writes, and has one for instruments.\n"
       "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
-      "  softland tune my.toml --device \"python3 scpi_device.py scope.toml\" --out device-17\n"
+      "  softland tune my.toml --device \"python3 scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
       "  softland tune my.toml --by-hand --closings 12 --out device-17\n"
       "  softland tune my.toml --by-hand --resume --out device-17");
   verb.runs([request](const Common& common) { return tune_verb(common, *request); });
