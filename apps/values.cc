@@ -26,6 +26,20 @@ PointSet point_set(const std::string& option) {
   return row->value;
 }
 
+double quantity_of(const char* option, const std::string& text, const Dimension& due) {
+  Quantity given;
+  try {
+    given = parse_quantity(text);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{} {}: {}", option, shown(text), error.what()));
+  }
+  require(given.dimension == due && given.value >= 0, [&] {
+    return fmt::format("{} {}: must be {}, at least 0, such as \"{}\"", option, shown(text), describe(due),
+                       due == dimension::none ? "0.5 %" : example(due));
+  });
+  return given.value;
+}
+
 std::vector<std::string> parts_of(const std::string& list) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/require.h"
+#include "config/units.h"
 #include "sampling/points.h"
 
 namespace softland::apps {
@@ -41,6 +42,9 @@ template <class Number>
 [[nodiscard]] std::uint64_t seed_of(const std::optional<std::string>& option, std::uint64_t seed);
 
 [[nodiscard]] PointSet point_set(const std::string& option);
+
+/// A quantity of this dimension, at least 0 [SI unit].
+[[nodiscard]] double quantity_of(const char* option, const std::string& text, const Dimension& due);
 
 /// "a,b,c"
 [[nodiscard]] std::vector<std::string> parts_of(const std::string& list);

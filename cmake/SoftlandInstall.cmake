@@ -2,13 +2,14 @@
 # which find each other from include/softland; a CMake package and a pkg-config file. Everything is found relative to its own place.
 include(CMakePackageConfigHelpers)
 
-set(libraries base sampling store integrators waveforms model objectives config optimizers studies reports)
+set(libraries base sampling store integrators waveforms model objectives config optimizers studies tuning reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
 install(TARGETS softland EXPORT softland)
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/softland)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.py")
 install(FILES reports/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.uPlot)
 
 # What the program says of itself with --help is written as a manual page and as completions when it is installed.
@@ -28,8 +29,10 @@ endforeach()
 foreach(name ${libraries})
   set_target_properties(softland_${name} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS softland_${name} EXPORT softland INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
-  install(DIRECTORY ${name} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland
-          FILES_MATCHING PATTERN "*.h" PATTERN page EXCLUDE PATTERN uplot EXCLUDE)
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${name}) # studies/tuning comes with studies
+    install(DIRECTORY ${name} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland
+            FILES_MATCHING PATTERN "*.h" PATTERN page EXCLUDE PATTERN uplot EXCLUDE)
+  endif()
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/generated/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
 

@@ -19,6 +19,8 @@ void add_release(Verb& verb);
 void add_explore(Verb& verb);
 void add_robustness(Verb& verb);
 void add_calibrate(Verb& verb);
+void add_tune(Verb& verb);
+void add_device(Verb& verb);
 void add_table(Verb& verb);
 void add_status(Verb& verb);
 void add_merge(Verb& verb);
@@ -46,6 +48,8 @@ inline constexpr std::array all_verbs{
     VerbRow{"explore", "compute many points of a design space into a store", add_explore},
     VerbRow{"robustness", "how drives do on devices that differ as [spread] says", add_robustness},
     VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},
+    VerbRow{"tune", "tune the waveform on a device, by nothing but the state of its contact", add_tune},
+    VerbRow{"device", "a simulated device that answers as one in a laboratory, to practise on", add_device},
     VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},
     VerbRow{"status", "how far studies are, and who writes into their stores", add_status},
     VerbRow{"merge", "make one store of the parts of a study", add_merge},

@@ -235,6 +235,18 @@ TEST_P(EveryVerb, Judges_long) {
   (void)done({"simulate", "out/worst-1.toml", "--quiet"});
 }
 
+// A device answers a shot of the first drive, or says which drives there are.
+TEST_P(EveryVerb, IsPractisedOn_optimized) {
+  write(here.path() / "stdin.txt",
+        "{\"shot\":1,\"hold_s\":1e-05,\"drives\":{\"main\":{\"time_s\":[0,1e-06],\"V\":[0,0.001]}}}\n");
+  const std::vector<std::string> words = scene().quickly({"device", scene().name, "--quiet"});
+  if (!scene().has("\\[contact\\]")) return refused(words, "there is no [contact]: a lab would see nothing of a closing");
+  const json answer = data(words);
+  EXPECT_EQ(answer["shot"], 1);
+  EXPECT_NE(answer.contains("edges_s"), answer.contains("error")) << answer;
+  EXPECT_EQ(answer.contains("edges_s"), scene().has("\\[electrode\\.main\\]")) << answer;
+}
+
 TEST_P(EveryVerb, Searches_long) {
   for (const char* actuator : {"electrostatic", "pzt", "both"}) {
     const std::vector<std::string> words = scene().quickly({"optimize", scene().name, "--quiet", "--robust", "none", "--budget",

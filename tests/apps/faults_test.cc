@@ -73,6 +73,12 @@ std::map<std::string, Call> calls() {
       {"explore",
        {gold + in_volts + short_window + std::vector<std::string>{"--vary", "gap.contact=1.9 um,2 um", "--resume"},
         gold + in_volts + many + long_window + json_file + std::vector<std::string>{"--vary", "gap.contact=1.9 um:2.1 um:9"}}},
+      {"tune",
+       {gold + in_volts +
+            std::vector<std::string>{"--set", "structure.modes=1", "--effort", "0.01", "--closings", "1", "--device",
+                                     "echo '{\"shot\":1,\"edges_s\":[[3e-05,1]]}'"},
+        gold + in_volts + json_file + std::vector<std::string>{"--effort", "100", "--device", "cat"}}},
+      {"device", {gold + in_volts, {}}},
       {"table", {{"part.sqlite"}, {}}},
       {"status", {{"part.sqlite"}, {}}},
       {"merge", {{"part.sqlite", "--out", "merged.sqlite"}, {}}},
@@ -83,11 +89,12 @@ std::map<std::string, Call> calls() {
   };
 }
 
-// With the scenes of those that take no --set.
+// With the scenes of those that take no --set, and a line for those that read standard input.
 std::unique_ptr<Workplace> workplace() {
   auto place = std::make_unique<Workplace>();
   const std::string gold = shipped("mem-gold.toml");
   write(place->path() / "volts.toml", edited(edited(gold, "1.25 Vdp", "17 V"), "1.5 Vdp", "60 V"));
+  write(place->path() / "stdin.txt", "{\"shot\":1,\"hold_s\":1e-4,\"drives\":{\"main\":{\"time_s\":[0],\"V\":[17]}}}\n");
   write(place->path() / "slow.toml", edited(edited(gold, "modes = 4", "modes = 20"), "\"strip\"", "\"reynolds\""));
   return place;
 }

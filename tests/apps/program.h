@@ -109,7 +109,8 @@ class Workplace {
 
   static constexpr int to_file = -1, closed = -2;
 
-  /// `out` is what the program gets as standard output: a descriptor, `to_file`, or `closed`; `err` likewise.
+  /// `out` is what the program gets as standard output: a descriptor, `to_file`, or `closed`; `err` likewise. It reads stdin.txt,
+  /// where there is such a file.
   [[nodiscard]] pid_t start(const std::vector<std::string>& words, const std::string& program = SOFTLAND_PROGRAM,
                             int out = to_file, int err = to_file) const {
     std::vector<char*> arguments{const_cast<char*>(program.c_str())};
@@ -118,7 +119,7 @@ class Workplace {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addchdir_np(&actions, path_.c_str());
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 0, fs::exists(path_ / "stdin.txt") ? "stdin.txt" : "/dev/null", O_RDONLY, 0);
     const auto connect = [&](int stream, int to, const char* file) {
       if (to == to_file) {
         posix_spawn_file_actions_addopen(&actions, stream, file, O_WRONLY | O_CREAT | O_TRUNC, 0600);

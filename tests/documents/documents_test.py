@@ -101,7 +101,9 @@ def typed(text):
     code = blocks(text, "sh") + blocks(text, "") + re.findall(r"`([^`\n]+)`", FENCE.sub("", text))
     for line in "\n".join(code).replace("\\\n", " ").splitlines():
         line = re.sub(r"\s#\s.*", "", line)
-        for command in re.split(r"&& |\| ", line):
+        # What is quoted is an argument, or a command that another one runs.
+        quoted = [text for text in re.findall(r'"([^"]*)"', line) if text.startswith("softland ")]
+        for command in re.split(r"&& |\| ", re.sub(r'"[^"]*"', '""', line)) + quoted:
             words = re.match(r"\s*(?:\./)?softland ([a-z][a-z-]*)\b(.*)", command)
             if words:
                 yield words.group(1), re.findall(r"(?<!\S)--[a-z][a-z-]*", words.group(2)), line.strip()

@@ -18,6 +18,7 @@ LANES_OFF = {"SOFTLAND_VECTORS": "none"}
 class Step:
     words: list[str]
     environment: dict[str, str] = dataclasses.field(default_factory=dict)
+    told: str = ""  # on standard input
     needs: str = ""  # what an earlier step has left, unless it was refused: then this one is not run
 
 
@@ -58,6 +59,11 @@ class Program:
         text = next(group for group in listed.groups() if group)
         text = text.split(", or ")[0].strip()
         return [name for name in re.split(r", | or | and ", text) if name]
+
+
+SHOT = '{"shot":1,"hold_s":1e-4,"drives":{"main":{"time_s":[0,1e-6],"V":[0,12]}}}\n'
+# Stands for instruments: the same record of every shot.
+INSTRUMENTS = 'n=1; while read -r line; do echo "{\\"shot\\":$n,\\"edges_s\\":[[3.6e-05,1],[3.8e-05,0],[4e-05,1]]}"; n=$((n+1)); done'
 
 
 def quick(scene):
@@ -124,6 +130,10 @@ def scene_cases(name, text):
             *[Step(words, needs="out/best.toml") for words in (
                 ["simulate", "out/best.toml", "--quiet"], ["export", "out"], ["report", "out"],
                 ["optimize", "--resume", "--out", "out", "--budget", "240", "--jobs", "1", "--quiet"])]], weight=2)
+    yield Case(f"{name}.tune", [
+        step("device", "--seed", "3", *fast, told=SHOT),
+        step("tune", "--device", INSTRUMENTS, "--effort", "0.05", "--closings", "2", "--jobs", "1", "--out", "tuned", *fast),
+        Step(["simulate", "tuned/best.toml", "--quiet"], needs="tuned/best.toml")], weight=2)
     vary = ["--vary", "gap.contact=95 %:105 %:3"]
     yield Case(f"{name}.explore", [
         step("explore", *vary, "--jobs", "1", "--out", "map.sqlite", "--json", "map.json", *fast),

@@ -106,7 +106,7 @@ def run_case(program, case, scenes, folder, place):
             command = " ".join([*(f"{k}={v}" for k, v in step.environment.items()), shlex.join(["softland", *step.words])])
             try:
                 done = subprocess.run([program, *step.words], cwd=work, env={**environment(home), **step.environment},
-                                      stdin=subprocess.DEVNULL, capture_output=True, timeout=MOST_SECONDS)
+                                      input=step.told.encode(), capture_output=True, timeout=MOST_SECONDS)
                 status, out, err = done.returncode, done.stdout, done.stderr
             except subprocess.TimeoutExpired:
                 status, out, err = f"none after {MOST_SECONDS} s", b"", b""

@@ -30,6 +30,8 @@ inline std::vector<std::string> shipped_scenes() {
 inline SceneFile gold(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold.toml", changes); }
 inline SceneFile gold_pzt(std::initializer_list<std::string_view> changes = {}) { return scene("mem-gold-pzt.toml", changes); }
 
+inline SceneFile gold_with_two_modes() { return gold({"structure.modes=2"}); }
+
 /// A beam or a plate that moves in one mode without losses.
 inline SceneFile undamped_with_one_mode(const std::string& name) {
   SceneFile file = scene(name.c_str());

@@ -1,0 +1,160 @@
+#include "apps/tuning_lab.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "apps/child_process.h"
+#include "apps/line_reader.h"
+#include "apps/streams.h"
+#include "apps/values.h"
+#include "base/csv.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "base/shortened.h"
+#include "base/trimmed.h"
+#include "reports/files.h"
+#include "reports/quantity.h"
+#include "waveforms/export.h"
+
+namespace softland::apps {
+namespace {
+
+using internal::quantity;
+using std::chrono::milliseconds;
+
+class CommandLab final : public TuningLab {
+ public:
+  CommandLab(const std::string& command, milliseconds patience)
+      : name_("--device " + shortened(command)), patience_(patience), child_(command, longest_line) {}
+
+  std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals&) override {
+    // Where nobody reads it any more there may yet be an answer.
+    const ChildProcess::Told told = child_.tell(line_text(shot_json(shot)), patience_);
+    if (told == ChildProcess::Told::late) throw late(fmt::format("did not take shot {}", shot.number));
+    const LineReader::Line line = child_.next_line(patience_);
+    if (line.end == LineReader::End::closed) throw ended_before(shot.number);
+    if (line.end == LineReader::End::late) throw late(fmt::format("did not answer shot {}", shot.number));
+    try {
+      return read_record(read_line(line.text), shot.number);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("{}: its answer to shot {}: {}", name_, shot.number, error.what()));
+    }
+  }
+
+  void finish() override { (void)child_.tell(line_text(end_json()), patience_); }
+
+ private:
+  [[nodiscard]] InvalidInput ended_before(int shot) {
+    constexpr milliseconds to_end{500};
+    const std::string ending = child_.ending(to_end);
+    return InvalidInput(fmt::format("{}: {} before it answered shot {}", name_,
+                                    ending.empty() ? "closed its standard input or output" : ending, shot));
+  }
+  [[nodiscard]] InvalidInput late(const std::string& what) const {
+    return InvalidInput(fmt::format("{}: {} in {}; --timeout says how long to wait", name_, what,
+                                    quantity(static_cast<double>(patience_.count()) / 1000, "s")));
+  }
+
+  std::string name_;
+  milliseconds patience_;
+  ChildProcess child_;
+};
+
+// Nobody wants to go on.
+struct Stopped {};
+
+class HandLab final : public TuningLab {
+ public:
+  explicit HandLab(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals& sent) override {
+    const std::filesystem::path file = folder_ / fmt::format("shot-{}.csv", shot.number);
+    write_whole(file, csv(sent.signals, shot.duration(), sent.sample_rates));
+    say(
+        fmt::format("shot {}: load {} into the generator, close the switch by it once, and record the contact for {} from the "
+                    "start of the waveform",
+                    shot.number, file.string(), quantity(shot.duration(), "s")));
+    try {
+      return asked(shot);
+    } catch (const Stopped&) {
+      return std::nullopt;
+    }
+  }
+
+ private:
+  [[nodiscard]] ContactRecord asked(const ToldShot& shot) {
+    ContactRecord record = answer<ContactRecord>(
+        R"(when did the contact first close, from the start of the waveform? A time such as "36.1 us"; "never"; )"
+        R"("file NAME" with all edges; "failed" to fire it again; "stop" to end)",
+        [&](const std::string& text) { return closing(text, shot.duration()); });
+    if (record.closing_time) {
+      record.bounce_count = answer<std::optional<int>>(
+          R"(how often did it open again after that? A number such as 0; "?" where you do not know; "stop" to end)", count);
+    }
+    return record;
+  }
+
+  static ContactRecord closing(const std::string& text, double duration) {
+    if (text == "never") return {};
+    if (text == "failed") return {.error = "the shot failed"};
+    if (text.starts_with("file ")) return read_edges_file(std::string(trimmed(std::string_view(text).substr(5))));
+    const Quantity time = parse_quantity(text);
+    if (time.dimension != dimension::time || !(time.value >= 0))
+      throw InvalidInput(fmt::format("{} is no time; write it with its unit, such as \"36.1 us\"", shown(text)));
+    if (time.value > duration)
+      throw InvalidInput(
+          fmt::format("{} is after the end of the record, which is {} long", shown(text), quantity(duration, "s")));
+    return {.closing_time = time.value};
+  }
+
+  static std::optional<int> count(const std::string& text) {
+    if (text == "?") return std::nullopt;
+    return whole_number("bounces:", text, 0);
+  }
+
+  template <class Answer>
+  Answer answer(const std::string& question, const std::function<Answer(const std::string&)>& read) {
+    for (;;) {
+      say(question);
+      const LineReader::Line line = lines_.next();
+      const std::string text(trimmed(line.text));
+      if (line.end == LineReader::End::closed || text == "stop") throw Stopped();
+      try {
+        return read(text);
+      } catch (const InvalidInput& error) {
+        say(error.what());
+      }
+    }
+  }
+
+  std::filesystem::path folder_;
+  LineReader lines_{STDIN_FILENO, std::size_t{1} << 12};
+};
+
+}  // namespace
+
+std::unique_ptr<TuningLab> command_lab(const std::string& command, milliseconds patience) {
+  return std::make_unique<CommandLab>(command, patience);
+}
+
+std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder) { return std::make_unique<HandLab>(folder); }
+
+ContactRecord read_edges_file(const std::string& file) {
+  ContactRecord record;
+  read_csv(read_file(file), file, {"time_s", "closed"}, "time_s and closed",
+           [&](std::span<const double> row, const CsvPlace& place) {
+             require(row[1] == 0 || row[1] == 1, [&] { return fmt::format("{}: closed = {}: must be 1 or 0", place(), row[1]); });
+             record.edges.push_back({.time = row[0], .closed = row[1] == 1});
+           });
+  const std::string fault = record_fault(record);
+  require(fault.empty(), [&] { return fmt::format("{}: {}", file, fault); });
+  return record;
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,41 @@
+// Where the shots of a tuning are fired: a command that drives instruments, or a person beside an oscilloscope.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/scenes.h"
+#include "reports/tuning_lines.h"
+
+namespace softland::apps {
+
+class TuningLab {
+ public:
+  virtual ~TuningLab() = default;
+  /// Fires a shot and tells what was recorded; none where no more shots are wanted. `sent` are the signals of the shot. Throws
+  /// InvalidInput where no record comes, Interrupted where a signal asks to stop.
+  [[nodiscard]] virtual std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals& sent) = 0;
+  /// There are no more shots.
+  virtual void finish() {}
+
+ protected:
+  TuningLab() = default;
+  TuningLab(const TuningLab&) = default;
+  TuningLab& operator=(const TuningLab&) = default;
+};
+
+/// A command that the shell runs, which speaks the lines of reports/tuning_lines.h. It is given `patience` for each.
+[[nodiscard]] std::unique_ptr<TuningLab> command_lab(const std::string& command, std::chrono::milliseconds patience);
+
+/// Writes the voltages of each shot to FOLDER/shot-N.csv, and asks on standard error for what was seen, until the answer on
+/// standard input can be one.
+[[nodiscard]] std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder);
+
+/// Closing and opening of a contact in a CSV file: a header time_s,closed and a row for each edge, 1 where it closes and 0 where
+/// it opens. Throws InvalidInput with file, line and rule.
+[[nodiscard]] ContactRecord read_edges_file(const std::string& file);
+
+}  // namespace softland::apps

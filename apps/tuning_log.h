@@ -1,0 +1,48 @@
+// The closings of a tuning on disk: each is there for good before the next is fired, so that a power cut loses the one under way.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "reports/tuning_lines.h"
+
+namespace softland::apps {
+
+/// closings.jsonl: a line that says what is tuned, then one for each shot with what came of it.
+class TuningLog {
+ public:
+  struct Closing {
+    nlohmann::json shot;  ///< as the device was told
+    ContactRecord record;
+    std::size_t line = 0;  ///< in the file, counted from 1
+  };
+
+  /// Goes on with the file, or begins it anew: one that is there then gets another name, closings-1.jsonl. `origin` tells apart
+  /// what cannot go on with each other: its keys and values. Throws InvalidInput with file, line and rule where the file holds
+  /// something else, or is of another origin; OutputLost where it cannot be written.
+  TuningLog(std::filesystem::path file, const nlohmann::json& origin, bool resume);
+  ~TuningLog();
+  TuningLog(const TuningLog&) = delete;
+  TuningLog& operator=(const TuningLog&) = delete;
+
+  /// Those that the file held when it was opened.
+  [[nodiscard]] const std::vector<Closing>& closings() const { return closings_; }
+  /// Where an earlier file went that was not gone on with; empty where there was none.
+  [[nodiscard]] const std::filesystem::path& kept_aside() const { return kept_aside_; }
+  /// Throws OutputLost where the line is not on the disk.
+  void append(const ToldShot& shot, const ContactRecord& record);
+  /// "OUT/closings.jsonl:4"
+  [[nodiscard]] std::string place(const Closing& closing) const;
+
+ private:
+  [[nodiscard]] std::size_t read(const nlohmann::json& origin);
+  void open(std::size_t size);
+  void write(const nlohmann::json& line);
+
+  std::filesystem::path file_, kept_aside_;
+  std::vector<Closing> closings_;
+  int descriptor_ = -1;
+};
+
+}  // namespace softland::apps

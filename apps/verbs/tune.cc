@@ -1,0 +1,248 @@
+// Tunes a waveform on a device, closing after closing.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/exit_status.h"
+#include "apps/laboratory.h"
+#include "apps/output.h"
+#include "apps/progress.h"
+#include "apps/scenes.h"
+#include "apps/shell_word.h"
+#include "apps/streams.h"
+#include "apps/tuning_lab.h"
+#include "apps/tuning_log.h"
+#include "apps/values.h"
+#include "apps/verbs/verbs.h"
+#include "base/require.h"
+#include "config/assumed_spread.h"
+#include "reports/tuning_report.h"
+#include "store/study_store.h"
+#include "studies/search_setting.h"
+#include "studies/tuning/tuner.h"
+#include "waveforms/export.h"
+
+namespace softland::apps {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* log_file = "closings.jsonl";
+constexpr int usual_closings = 30;
+
+struct TuneRequest {
+  std::string device, actuator = "electrostatic";
+  bool by_hand = false, resume = false;
+  std::optional<std::string> closings, recipes, effort, timeout, seed, jobs;
+  LaboratoryRequest laboratory;
+};
+
+TunerOptions tuner_options(const TuneRequest& request) {
+  const auto* const actuator = find_named(actuators, request.actuator);
+  require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
+  const Laboratory known = laboratory(request.laboratory);
+  TunerOptions options{.actuator = actuator->value,
+                       .jobs = job_count(request.jobs),
+                       .edge_error = known.edge_error,
+                       .unseen = known.unseen,
+                       .gain_error = known.gain_error,
+                       .shot_error = known.shot_error};
+  options.seed = seed_of(request.seed, options.seed);
+  if (request.recipes) options.most_recipes = whole_number("--recipes", *request.recipes, 1);
+  if (request.effort) options.effort = quantity_of("--effort", *request.effort, dimension::none);
+  return options;
+}
+
+// What all closings of a log have in common.
+json origin_of(const SceneFile& file, const TunerOptions& options) {
+  return {{"scene", content_key(canonical(file, "scene").text()).hexadecimal()},
+          {"actuator", name_of(actuators, options.actuator)},
+          {"seed", options.seed},
+          {"recipes", options.most_recipes},
+          {"effort", options.effort},
+          {"edge_error_s", options.edge_error},
+          {"unseen_s", options.unseen},
+          {"gain_error", options.gain_error},
+          {"shot_error", options.shot_error}};
+}
+
+std::chrono::milliseconds patience_of(const std::optional<std::string>& timeout) {
+  constexpr double usual = 60, longest = 1e6;  // [s]
+  const double seconds = timeout ? quantity_of("--timeout", *timeout, dimension::time) : usual;
+  require(seconds > 0 && seconds <= longest,
+          [&] { return fmt::format("--timeout {}: must be above 0 s and at most {} s", *timeout, number_text(longest)); });
+  return std::chrono::milliseconds(std::max<long>(1, std::lround(1000 * seconds)));
+}
+
+/// A tuning, its closings on disk, and the files that tell of it.
+class Tuning {
+ public:
+  Tuning(const Common& common, const SceneFile& file, const TunerOptions& options, bool resume);
+
+  /// Fires shots until the switch has landed often enough, `closings` are used, or the lab wants no more.
+  TuningEnd run(TuningLab& lab, int closings);
+  /// The files as they stand.
+  void write(TuningEnd end);
+  [[nodiscard]] TuningReport report(TuningEnd end) const { return tuning_report(*tuner_, closings_, options_, end); }
+  [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
+
+ private:
+  [[nodiscard]] ToldShot told(const TunerShot& shot) const;
+  [[nodiscard]] SentSignals sent(const TunerShot& shot) const { return sent_signals(tuner_->scene(), shot.waveforms); }
+  void learn_log();
+  void learn(const TunerShot& shot, const ContactRecord& record);
+
+  Common common_;
+  TunerOptions options_;
+  std::optional<ResultFolder> folder_;
+  std::unique_ptr<TuningLog> log_;
+  std::optional<Tuner> tuner_;
+  std::vector<TunedClosing> closings_;
+};
+
+Tuning::Tuning(const Common& common, const SceneFile& file, const TunerOptions& options, bool resume)
+    : common_(common),
+      options_(options),
+      folder_(claim_places(common, {"best.toml", "best.csv", "tune.json", "tune.html", log_file}, {log_file})),
+      log_(std::make_unique<TuningLog>(folder_->path() / log_file, origin_of(file, options), resume)) {
+  if (!log_->kept_aside().empty() && !common_.quiet)
+    say(fmt::format("the closings of an earlier run are now in {}", log_->kept_aside().string()));
+  const WatchedWork work(common_.quiet, common_.stop);
+  tuner_.emplace(file, options, work.watch());
+}
+
+ToldShot Tuning::told(const TunerShot& shot) const { return told_shot(shot.number, shot.hold_time, sent(shot).signals); }
+
+void Tuning::learn(const TunerShot& shot, const ContactRecord& record) {
+  const WatchedWork work(common_.quiet, common_.stop);
+  tuner_->learn(record, work.watch());
+  closings_.push_back({.shot = shot, .record = record});
+}
+
+// What was proposed then is proposed again, or these closings are of something else.
+void Tuning::learn_log() {
+  for (const TuningLog::Closing& closing : log_->closings()) {
+    const TunerShot shot = tuner_->next();
+    require(shot_json(told(shot)) == closing.shot, [&] {
+      return fmt::format("{}: this program proposes another shot after the closings before it; name another folder with --out",
+                         log_->place(closing));
+    });
+    learn(shot, closing.record);
+  }
+}
+
+TuningEnd Tuning::run(TuningLab& lab, int closings) {
+  constexpr int most_failures = 3;  // in a row
+  learn_log();
+  for (int failures = 0; !tuner_->is_done();) {
+    if (tuner_->closings() >= closings) return TuningEnd::closings_used;
+    const TunerShot shot = tuner_->next();
+    const ToldShot line = told(shot);
+    const std::optional<ContactRecord> record = lab.fire(line, sent(shot));
+    if (!record) return TuningEnd::stopped;
+    log_->append(line, *record);
+    learn(shot, *record);
+    write(TuningEnd::under_way);
+    if (!common_.quiet) say(closing_words(report(TuningEnd::under_way)));
+    failures = record->error.empty() ? 0 : failures + 1;
+    require(failures < most_failures, [&] {
+      return fmt::format("{} shots in a row gave no record; the device said of the last one: {}", failures, record->error);
+    });
+  }
+  return TuningEnd::done;
+}
+
+void Tuning::write(TuningEnd end) {
+  const TuningReport now = report(end);
+  const Prepared& scene = tuner_->scene();
+  const SentSignals kept = sent(now.kept);
+  std::map<std::string, Waveform> waveforms;
+  const std::vector<std::string> names = scene.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (kept.signals.contains(names[k])) waveforms.emplace(names[k], now.kept.waveforms[k]);
+  }
+  folder_->write("best.toml", with_waveforms(scene, waveforms).text());
+  folder_->write("best.csv", csv(kept.signals, scene.duration, kept.sample_rates));
+  folder_->write("tune.json", json_text(tuning_json(now, {.command = common_.command}), 1));
+  folder_->write("tune.html", tuning_html(now, {.command = common_.command}));
+  folder_->publish(false);
+}
+
+int tune_verb(const Common& given, const TuneRequest& request) {
+  Common c = given;
+  if (c.out.empty()) c.out = "softland-tune";
+  require(request.by_hand == request.device.empty(),
+          "--device COMMAND or --by-hand says where the shots are fired: give one of them");
+  const std::chrono::milliseconds patience = patience_of(request.timeout);
+  const int closings = request.closings ? whole_number("--closings", *request.closings, 1) : usual_closings;
+  const TunerOptions options = tuner_options(request);
+  Tuning tuning(c, load_scene(c), options, request.resume);
+  if (tuning.report(TuningEnd::under_way).spread_assumed && !c.quiet) say(std::string(assumed_words));
+
+  TuningEnd end = TuningEnd::interrupted;
+  try {
+    const std::unique_ptr<TuningLab> lab =
+        request.by_hand ? hand_lab(tuning.folder().path()) : command_lab(request.device, patience);
+    end = tuning.run(*lab, closings);
+    lab->finish();
+  } catch (const Interrupted&) {
+    end = TuningEnd::interrupted;
+  }
+  tuning.write(end);
+  const TuningReport report = tuning.report(end);
+  print_json_or(
+      c, tuning_json(report, {.command = c.command}),
+      tuning_text(report) + left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
+  if (end == TuningEnd::interrupted) return exit_interrupted;
+  return report.ever_bounce_free() ? exit_done : exit_no_success;
+}
+
+}  // namespace
+
+void add_tune(Verb& verb) {
+  const auto request = std::make_shared<TuneRequest>();
+  verb.with_scene();
+  verb.with_json();
+  verb.option("--device", request->device, "COMMAND",
+              "what fires the shots: the shell runs it, it reads one JSON object a line and answers each by one");
+  verb.flag("--by-hand", request->by_hand, "write each waveform to a file, and ask what the oscilloscope showed");
+  verb.optional("--closings", request->closings, "N",
+                fmt::format("closings at most (default: {}); it ends before where {} in a row were without a bounce",
+                            usual_closings, Tuner::enough_in_a_row));
+  verb.flag("--resume", request->resume,
+            "go on with the closings in the folder of --out, none of which is fired again; scene and options as before");
+  verb.option("--actuator", request->actuator, "NAME", "drives that are shaped: " + first_is_default(listed(actuators)));
+  with_laboratory(verb, request->laboratory);
+  verb.optional(
+      "--recipes", request->recipes, "N",
+      fmt::format("waveforms that are searched before the first closing, each for devices of another pull-in voltage, 1 to 5 "
+                  "(default: {})",
+                  TunerOptions{}.most_recipes));
+  verb.optional("--effort", request->effort, "FACTOR",
+                "evaluations of every search, over the usual (default: 1); less of it is sooner, and lands less surely");
+  verb.optional("--timeout", request->timeout, "TIME", "how long the command may take for an answer (default: 60 s)");
+  verb.with_seed(request->seed, "same records, same proposals, whatever --jobs is");
+  verb.with_jobs(request->jobs);
+  verb.with_out("folder for the page, the waveform kept and all closings (default: softland-tune)");
+  verb.footer(
+      "Every closing is open loop, and what is seen of it is when the contact was closed. After each the device is known "
+      "better,\n"
+      "and the waveform that lands it best is proposed next. No shot leaves the limits of [driver.*]. Status 4: no closing was\n"
+      "without a bounce. docs/tune.md says how to practise, what a command reads and writes, and has one for instruments.\n"
+      "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
+      "  softland tune my.toml --device \"python3 scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
+      "  softland tune my.toml --by-hand --closings 12 --out device-17\n"
+      "  softland tune my.toml --by-hand --resume --out device-17");
+  verb.runs([request](const Common& common) { return tune_verb(common, *request); });
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,61 @@
+// The lines by which a tuning and a device talk to each other: one JSON object each, in SI units.
+//
+//   to the device     {"shot":1,"hold_s":2e-4,"drives":{"main":{"time_s":[0,1e-6],"V":[0,17.5]}}}      {"done":true}
+//   from the device   {"shot":1,"edges_s":[[3.6e-5,1],[3.8e-5,0],[4.1e-5,1]]}
+//                     {"shot":1,"closing_time_s":3.6e-5,"bounce_count":1}
+//                     {"shot":1,"error":"no trigger"}
+//
+// Voltages go straight from row to row, two rows of the same time are a jump, and the last one is held, and recorded, for hold_s
+// after the last row of any drive. An edge is a time since the drives began, and 1 where the contact closes there, 0 where it
+// opens. No edge, or a closing time that is null, says that the contact stayed open. Beside edges or closing time a device may
+// tell a loudness, any number that rises with the impact.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "studies/tuning/contact_record.h"
+#include "waveforms/signal.h"
+#include "waveforms/table.h"
+
+namespace softland {
+
+/// What a device is told.
+struct ToldShot {
+  int number = 0;                       ///< counted from 1
+  double hold_time = 0;                 ///< how long the last levels are held and recorded [s]
+  std::map<std::string, Table> drives;  ///< by name
+
+  /// When the last row of any drive comes [s].
+  [[nodiscard]] double last_row() const;
+  /// How long the closing is recorded from t = 0 on [s].
+  [[nodiscard]] double duration() const { return last_row() + hold_time; }
+};
+
+/// Signals of sources in rows: straight pieces exactly, curves within 1e-4 of their peak.
+[[nodiscard]] ToldShot told_shot(int number, double hold_time, const std::map<std::string, Signal>& signals);
+
+/// The longest line that is read [byte].
+inline constexpr std::size_t longest_line = std::size_t{16} << 20;
+
+/// One line as a JSON object. Throws InvalidInput with the rule, as all of these do: "is no JSON object: ...".
+[[nodiscard]] nlohmann::json read_line(std::string_view line);
+/// Whether this says that there are no more shots.
+[[nodiscard]] bool is_end(const nlohmann::json& line);
+/// The number of a shot: a whole number from 1 on.
+[[nodiscard]] int shot_number(const nlohmann::json& line);
+/// Messages begin with the key at fault: "drives.main.V: must be a list of numbers".
+[[nodiscard]] ToldShot read_shot(const nlohmann::json& line);
+/// What came of shot number `shot`.
+[[nodiscard]] ContactRecord read_record(const nlohmann::json& line, int shot);
+
+[[nodiscard]] nlohmann::json shot_json(const ToldShot& shot);
+[[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
+[[nodiscard]] nlohmann::json end_json();
+/// With its line feed; what is not UTF-8 becomes U+FFFD.
+[[nodiscard]] std::string line_text(const nlohmann::json& line);
+
+}  // namespace softland

@@ -1,0 +1,431 @@
+#include "reports/tuning_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "reports/escape.h"
+#include "reports/json_number.h"
+#include "reports/made_with.h"
+#include "reports/page.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
+#include "reports/tuning_lines.h"
+#include "version.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+using internal::escaped;
+using internal::json_number;
+using internal::percent;
+using internal::quantity;
+using nlohmann::json;
+
+constexpr std::array end_names{"under_way", "done", "closings_used", "stopped", "interrupted"};
+
+std::string_view name_of(TuningEnd end) { return end_names.at(static_cast<std::size_t>(end)); }
+
+// Of a shot, by drive: rows of time [s] and voltage [V]; a factor of the dispersion force is no voltage.
+std::map<std::string, std::vector<std::pair<double, double>>> rows_of(const Prepared& scene, const TunerShot& shot) {
+  std::map<std::string, std::vector<std::pair<double, double>>> all;
+  const std::vector<std::string> names = scene.drive_names();
+  for (std::size_t k = 0; k < names.size() && k < shot.waveforms.size(); ++k) {
+    if (names[k] == dispersion_drive) continue;
+    const Signal told = scene.told(k, shot.waveforms[k]);
+    all[names[k]] = polyline(told, told.pieces().back().begin, 1e-4 * told.peak(), 0);
+  }
+  return all;
+}
+
+json predicted_json(const PredictedRecord& p) {
+  return {{"touches", json_number(p.touches)},          {"touch_median_s", json_number(p.touch_median)},
+          {"touch_low_s", json_number(p.touch_low)},    {"touch_high_s", json_number(p.touch_high)},
+          {"bounces", json_number(p.bounces)},          {"rebound_median_m", json_number(p.rebound_median)},
+          {"rebound_95_m", json_number(p.rebound_high)}};
+}
+
+json shot_report(const Prepared& scene, const TunerShot& shot) {
+  return {{"shot", shot.number},
+          {"waveforms", rows_of(scene, shot)},
+          {"hold_s", json_number(shot.hold_time)},
+          {"expected_cost", json_number(shot.expected_cost)},
+          {"predicted", predicted_json(shot.predicted)}};
+}
+
+json closing_json(const Prepared& scene, const TunedClosing& closing) {
+  json one = shot_report(scene, closing.shot);
+  one["record"] = record_json(closing.shot.number, closing.record);
+  one["bounce_free"] = is_bounce_free(closing.record);
+  return one;
+}
+
+json belief_json(const BeliefSummary& belief) {
+  json quantities = json::array();
+  for (const BelievedQuantity& q : belief.quantities) {
+    quantities.push_back({{"name", q.name},
+                          {"unit", q.unit},
+                          {"prior_mean", json_number(q.prior_mean)},
+                          {"prior_deviation", json_number(q.prior_deviation)},
+                          {"mean", json_number(q.mean)},
+                          {"deviation", json_number(q.deviation)}});
+  }
+  return {{"quantities", quantities},
+          {"effective_devices", json_number(belief.effective_devices)},
+          {"correlated", belief.correlated}};
+}
+
+std::string bounces_words(int count) {
+  return count == 0 ? "without a bounce" : count == 1 ? "with one bounce" : fmt::format("with {} bounces", count);
+}
+
+// "touched at 41.2 µs with 3 bounces"
+std::string record_words(const ContactRecord& record) {
+  if (!record.error.empty()) return "gave no record: " + record.error;
+  const std::optional<double> touch = first_touch(record);
+  if (!touch) return "stayed open";
+  const std::optional<int> count = bounce_count(record);
+  return fmt::format("touched at {}{}", quantity(*touch, "s", 4), count ? " " + bounces_words(*count) : "");
+}
+
+// "41.0 to 41.4 µs"
+std::string range_words(double low, double high) {
+  if (!std::isfinite(low) || !std::isfinite(high)) return "—";
+  const std::string from = quantity(low, "s", 4), to = quantity(high, "s", 4);
+  const std::size_t space = from.find("\u00a0");
+  const bool same_unit = space != std::string::npos && to.ends_with(from.substr(space));
+  return fmt::format("{} to {}", same_unit ? from.substr(0, space) : from, to);
+}
+
+std::string rebound_words(const PredictedRecord& p) {
+  if (!std::isfinite(p.rebound_high)) return "rebounds not known";
+  return p.rebound_high > 0 ? fmt::format("95 % of the rebounds below {}", quantity(p.rebound_high, "m", 2)) : "no rebound";
+}
+
+std::string expected_words(const PredictedRecord& p) {
+  return fmt::format("touch at {}, {}", range_words(p.touch_low, p.touch_high), rebound_words(p));
+}
+
+const TunedClosing* recorded(const TuningReport& report, int shot) {
+  const auto found = std::find_if(report.closings.begin(), report.closings.end(),
+                                  [&](const TunedClosing& one) { return one.shot.number == shot; });
+  return found == report.closings.end() ? nullptr : &*found;
+}
+
+std::size_t learned(const TuningReport& report) {
+  return static_cast<std::size_t>(std::count_if(report.closings.begin(), report.closings.end(),
+                                                [](const TunedClosing& one) { return one.record.error.empty(); }));
+}
+
+std::string closings_words(std::size_t count) { return count == 1 ? "one closing" : fmt::format("{} closings", count); }
+
+std::pair<std::string, std::string> headline_of(const TuningReport& report) {
+  const std::string after = closings_words(learned(report));
+  if (report.closings.empty()) return {"No closing yet.", ""};
+  if (report.bounce_free_in_a_row > 0) {
+    const std::string row =
+        report.bounce_free_in_a_row == 1 ? "once so far" : fmt::format("{} times in a row", report.bounce_free_in_a_row);
+    return {fmt::format("After {} the switch lands without a bounce", after),
+            fmt::format(", {}. The waveform kept touches at {}; a plain step on the drawing touches at {}.", row,
+                        quantity(report.kept.predicted.touch_median, "s"), quantity(report.step_closing_time, "s"))};
+  }
+  if (report.ever_bounce_free()) return {fmt::format("After {} the last one bounced", after), ", though one before it did not."};
+  return {fmt::format("After {} none has landed without a bounce yet.", after), ""};
+}
+
+// ---- the page
+
+// A rectangle on a canvas whose width is `strip_width`, whatever the width it is shown at.
+constexpr double strip_width = 1000;
+
+std::string bar(double from, double to, double top, double height, const char* what) {
+  constexpr double least = 2;  // still to be seen
+  const double begin = std::clamp(from, 0.0, strip_width), end = std::clamp(std::max(to, from + least), 0.0, strip_width);
+  if (!(end > begin)) return {};
+  return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"{}\"/>", begin, top, end - begin,
+                     height, what);
+}
+
+std::string strip(const std::string& bars, const std::string& words) {
+  return fmt::format(
+      "<svg class=\"strip\" viewBox=\"0 0 {} 24\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{}\">{}</svg>",
+      strip_width, escaped(words), bars);
+}
+
+// Two deviations to either side, of three of the prior's.
+std::string belief_bar(const BelievedQuantity& q) {
+  constexpr double shown = 3, drawn = 2;
+  const auto place = [&](double value) { return strip_width * (0.5 + (value - q.prior_mean) / (2 * shown * q.prior_deviation)); };
+  return strip(
+      bar(place(q.prior_mean - drawn * q.prior_deviation), place(q.prior_mean + drawn * q.prior_deviation), 8, 8, "expected") +
+          bar(place(q.mean - drawn * q.deviation), place(q.mean + drawn * q.deviation), 4, 16, "seen"),
+      fmt::format("{}: now {}, before {}", q.name, q.mean, q.prior_mean));
+}
+
+// Factors as they change the scene's value, other quantities as they are.
+std::string believed_text(double mean, double deviation, const BelievedQuantity& q) {
+  if (!q.unit.empty()) return fmt::format("{} ± {}", quantity(mean, q.unit), quantity(deviation, q.unit, 2));
+  return fmt::format("{} ± {}\u00a0%", internal::relative_change(mean - 1), internal::plain_number(100 * deviation, 2));
+}
+
+std::string belief_section(const BeliefSummary& belief) {
+  std::vector<internal::TableRow> rows;
+  for (const BelievedQuantity& q : belief.quantities) {
+    rows.push_back({escaped(q.name), escaped(believed_text(q.prior_mean, q.prior_deviation, q)),
+                    internal::Cell(escaped(believed_text(q.mean, q.deviation, q)), "own"),
+                    internal::Cell(belief_bar(q), "picture")});
+  }
+  std::string notes =
+      "<p class=\"below\">From the scene's value, with one standard deviation. In the pictures: two deviations to either side, "
+      "before (grey) and now. What a landing depends on may be known far better than any of these alone: their errors go "
+      "together.</p>\n";
+  for (const std::string& sentence : belief.correlated) notes += "<p class=\"below\">" + escaped(sentence) + "</p>\n";
+  return internal::section("belief", "What is known of the device",
+                           internal::table_html({"Quantity", "Before", "Now", ""}, rows) + notes);
+}
+
+// What all strips of records show [s].
+struct Shown {
+  double from = std::numeric_limits<double>::infinity(), to = 0;
+  void take(double time) {
+    if (!std::isfinite(time)) return;
+    from = std::min(from, time), to = std::max(to, time);
+  }
+  [[nodiscard]] double place(double time) const { return strip_width * (time - from) / (to - from); }
+};
+
+void take(Shown& shown, const PredictedRecord& p) {
+  for (const double time : {p.touch_low, p.touch_high}) shown.take(time);
+}
+
+// The touches, and as much of what follows; an early prediction may reach much further.
+Shown shown_times(const TuningReport& report, std::size_t first) {
+  constexpr double before = 0.8, after = 1.6;  // of the first and of the last touch
+  Shown touches;
+  take(touches, report.next.predicted);
+  for (std::size_t i = first; i < report.closings.size(); ++i) {
+    if (const std::optional<double> touch = first_touch(report.closings[i].record)) touches.take(*touch);
+  }
+  if (!(touches.to > 0)) return {.from = 0, .to = 1};
+  return {.from = before * touches.from, .to = after * touches.to};
+}
+
+std::string expected_bar(const PredictedRecord& p, const Shown& shown) {
+  if (!std::isfinite(p.touch_low) || !std::isfinite(p.touch_high)) return {};
+  return bar(shown.place(p.touch_low), shown.place(p.touch_high), 1, 22, "expected");
+}
+
+// Closed where it is thick.
+std::string record_bars(const ContactRecord& record, const Shown& shown) {
+  std::string bars;
+  double closed_since = std::numeric_limits<double>::quiet_NaN();
+  for (const ContactEdge& edge : record.edges) {
+    if (edge.closed) {
+      closed_since = edge.time;
+    } else {
+      bars += bar(shown.place(closed_since), shown.place(edge.time), 7, 10, "seen");
+      closed_since = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  if (std::isfinite(closed_since)) bars += bar(shown.place(closed_since), strip_width, 7, 10, "seen");
+  // Of a closing time alone nothing is known of what follows.
+  if (record.edges.empty() && record.closing_time) bars += bar(shown.place(*record.closing_time), 0, 3, 18, "seen");
+  return bars;
+}
+
+internal::TableRow record_row(const TunedClosing& one, const Shown& shown) {
+  const std::optional<double> touch = first_touch(one.record);
+  const std::optional<int> count = bounce_count(one.record);
+  const std::string bounces = !one.record.error.empty() ? "no record"
+                              : !touch                  ? "stayed open"
+                              : count                   ? fmt::format("{}", *count)
+                                                        : "?";
+  return {fmt::format("{}", one.shot.number), escaped(range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high)),
+          internal::Cell(touch ? escaped(quantity(*touch, "s", 4)) : "—", "own"), bounces,
+          internal::Cell(strip(expected_bar(one.shot.predicted, shown) + record_bars(one.record, shown),
+                               "closing " + std::to_string(one.shot.number) + " " + record_words(one.record)),
+                         "picture")};
+}
+
+std::string records_section(const TuningReport& report) {
+  constexpr std::size_t most = 24;
+  const std::size_t first = report.closings.size() > most ? report.closings.size() - most : 0;
+  const Shown shown = shown_times(report, first);
+  std::vector<internal::TableRow> rows;
+  for (std::size_t i = first; i < report.closings.size(); ++i) rows.push_back(record_row(report.closings[i], shown));
+  rows.push_back({fmt::format("{}, next", report.next.number),
+                  escaped(range_words(report.next.predicted.touch_low, report.next.predicted.touch_high)), "", "",
+                  internal::Cell(strip(expected_bar(report.next.predicted, shown), "the next closing"), "picture")});
+  std::string below =
+      "<p class=\"below\">Grey: where the touch was expected before it was seen, with 95 %. Blue: where the contact "
+      "was closed. The pictures show " +
+      escaped(range_words(shown.from, shown.to)) + ".";
+  if (first > 0) below += fmt::format(" The first {} closings are not shown.", first);
+  return internal::section("records", "Each closing under its prediction",
+                           internal::table_html({"Closing", "Touch expected", "Touch", "Bounces", ""}, rows) + below + "</p>\n");
+}
+
+internal::Picture picture_of(const TuningReport& report) {
+  internal::Picture drawn;
+  const auto kept = rows_of(report.scene, report.kept), next = rows_of(report.scene, report.next);
+  const bool differ = kept != next;
+  const double hold = 0.25;  // of the time before it, shown of the hold level
+  for (const auto& [name, rows] : kept) {
+    internal::Chart chart{.id = "drive-" + std::to_string(drawn.charts.size()),
+                          .title = kept.size() == 1 ? "Voltage" : "Voltage of " + name,
+                          .caption = "Straight lines; the last level is held.",
+                          .x_column = "time_s",
+                          .x_label = "Time",
+                          .x_unit = "s",
+                          .y_label = "Voltage",
+                          .y_unit = "V",
+                          .zero_line = true,
+                          .group = "drives",
+                          .height = 220};
+    double last = 0;
+    for (const auto& shot : {kept, next}) {
+      for (const auto& one : shot) last = std::max(last, one.second.back().first);
+    }
+    const double end = last > 0 ? (1 + hold) * last : 1e-6;
+    const auto add = [&](const std::vector<std::pair<double, double>>& points, const char* label, internal::Role role) {
+      internal::CurveTable& table = drawn.tables[fmt::format("{}-{}", chart.id, chart.series.size())];
+      for (const auto& [time, voltage] : points) {
+        table["time_s"].push_back(time);
+        table["volts"].push_back(voltage);
+      }
+      table["time_s"].push_back(end);
+      table["volts"].push_back(points.back().second);
+      chart.series.push_back(
+          {.table = fmt::format("{}-{}", chart.id, chart.series.size()), .column = "volts", .label = label, .role = role});
+    };
+    if (differ) add(next.at(name), "proposed next", internal::Role::baseline);
+    add(rows, differ ? "kept so far" : "kept, and proposed next", internal::Role::best);
+    chart.x_whole = chart.x_home = {0, end};
+    drawn.charts.push_back(std::move(chart));
+  }
+  return drawn;
+}
+
+std::string keys_of(const TuningReport& report) {
+  const PredictedRecord& p = report.kept.predicted;
+  const auto key = [](const char* name, const std::string& value, const std::string& words) {
+    return internal::key_html(name, escaped(value), escaped(words));
+  };
+  return key("Closings", fmt::format("{}", learned(report)),
+             report.bounce_free_in_a_row > 0 ? fmt::format("the last {} without a bounce", report.bounce_free_in_a_row)
+                                             : "the last one bounced") +
+         key("Touch of the waveform kept", quantity(p.touch_median, "s"),
+             fmt::format("plain step on the drawing {}", quantity(report.step_closing_time, "s"))) +
+         key("Its rebound, 95 % below", p.rebound_high == 0 ? "none" : quantity(p.rebound_high, "m", 2),
+             p.rebound_high == 0
+                 ? "as far as it is known"
+                 : fmt::format("median {}", internal::quantity_beside(p.rebound_median, p.rebound_high, "m", 2))) +
+         key("It may bounce", percent(p.bounces), "of the devices that this may be");
+}
+
+}  // namespace
+
+bool TuningReport::was_bounce_free(int shot) const {
+  const TunedClosing* const one = recorded(*this, shot);
+  return one != nullptr && is_bounce_free(one->record);
+}
+
+bool TuningReport::ever_bounce_free() const {
+  return std::any_of(closings.begin(), closings.end(), [](const TunedClosing& one) { return is_bounce_free(one.record); });
+}
+
+TuningReport tuning_report(const Tuner& tuner, std::vector<TunedClosing> closings, const TunerOptions& options, TuningEnd end) {
+  return {.scene = tuner.scene(),
+          .closings = std::move(closings),
+          .next = tuner.next(),
+          .kept = tuner.kept(),
+          .belief = tuner.belief(),
+          .broken_assumption = tuner.broken_assumption(),
+          .step_closing_time = tuner.step_closing_time(),
+          .bounce_free_in_a_row = tuner.bounce_free_in_a_row(),
+          .spread_assumed = tuner.spread_is_assumed(),
+          .seed = options.seed,
+          .end = end};
+}
+
+json tuning_json(const TuningReport& report, const Provenance& provenance) {
+  json closings = json::array();
+  for (const TunedClosing& one : report.closings) closings.push_back(closing_json(report.scene, one));
+  json best = shot_report(report.scene, report.kept);
+  best["bounce_free"] = report.was_bounce_free(report.kept.number);
+  const Prepared& scene = report.scene;
+  return {{"kind", "tune"},
+          {"status", name_of(report.end)},
+          {"title", scene.scene.title},
+          {"closings", closings},
+          {"bounce_free_in_a_row", report.bounce_free_in_a_row},
+          {"best", best},
+          {"next", shot_report(scene, report.next)},
+          {"belief", belief_json(report.belief)},
+          {"broken_assumption", report.broken_assumption ? json(*report.broken_assumption) : json(nullptr)},
+          {"step_closing_time_s", json_number(report.step_closing_time)},
+          {"spread_assumed", report.spread_assumed},
+          {"seed", report.seed},
+          {"scene", resolved(scene.scene, scene.voltage_units()).json()},
+          {"version", version},
+          {"made_with", made_with_json()},
+          {"command", provenance.command}};
+}
+
+std::string closing_words(const TuningReport& report) {
+  const TunedClosing& last = report.closings.back();
+  return fmt::format("closing {} {}; expected of the next: {}", last.shot.number, record_words(last.record),
+                     expected_words(report.next.predicted));
+}
+
+std::string tuning_text(const TuningReport& report) {
+  const auto [main, rest] = headline_of(report);
+  std::string text = report.end == TuningEnd::interrupted ? "Interrupted: what follows is what there is.\n\n" : "";
+  text += wrapped(main + rest) + "\n";
+  if (report.broken_assumption) text += "\n" + wrapped(*report.broken_assumption) + "\n";
+  text += fmt::format("\n{:>8}{:>28}{:>12}{:>14}\n", "closing", "touch expected", "touch", "bounces");
+  for (const TunedClosing& one : report.closings) {
+    const std::optional<double> touch = first_touch(one.record);
+    const std::optional<int> count = bounce_count(one.record);
+    text += internal::right_aligned(std::to_string(one.shot.number), 8) +
+            internal::right_aligned(range_words(one.shot.predicted.touch_low, one.shot.predicted.touch_high), 28) +
+            internal::right_aligned(touch ? quantity(*touch, "s", 4) : "—", 12) +
+            internal::right_aligned(!one.record.error.empty() ? "no record"
+                                    : !touch                  ? "stayed open"
+                                    : count                   ? std::to_string(*count)
+                                                              : "?",
+                                    14) +
+            "\n";
+  }
+  return text + "\n" + wrapped("Expected of the waveform kept: " + expected_words(report.kept.predicted) + ".") + "\n";
+}
+
+std::string tuning_html(const TuningReport& report, const Provenance& provenance) {
+  const internal::Picture drawn = picture_of(report);
+  std::string charts;
+  for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
+  Result result{.command = provenance.command, .version = std::string(version), .made_with = made_with()};
+  result.seed = report.seed;
+  result.tolerance = report.scene.tolerance;
+  result.scene.text = resolved(report.scene.scene, report.scene.voltage_units()).text();
+  const auto [main, rest] = headline_of(report);
+  return internal::page({.title = report.scene.scene.title,
+                         .origin = "tune",
+                         .headline = main,
+                         .headline_rest = rest,
+                         .doubt = report.broken_assumption.value_or(""),
+                         .keys = keys_of(report),
+                         .body = records_section(report) + belief_section(report.belief) +
+                                 internal::section("waveforms", "What the source is told", charts) + internal::reproduce(result) +
+                                 internal::scene(result),
+                         .style = internal::chart_style(),
+                         .scripts = internal::chart_scripts(drawn)});
+}
+
+}  // namespace softland

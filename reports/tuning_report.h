@@ -1,0 +1,51 @@
+// What a tuning knows and proposes: JSON with SI units in the names, lines for a terminal, and a page.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "reports/result_maker.h"
+#include "studies/tuning/tuner.h"
+
+namespace softland {
+
+/// How a tuning stands.
+enum class TuningEnd { under_way, done, closings_used, stopped, interrupted };
+
+/// A closing that was recorded.
+struct TunedClosing {
+  TunerShot shot;
+  ContactRecord record;
+};
+
+/// What is reported, as it stands now.
+struct TuningReport {
+  Prepared scene;                      ///< that the belief is about
+  std::vector<TunedClosing> closings;  ///< in their order, those that failed included
+  TunerShot next, kept;
+  BeliefSummary belief;
+  std::optional<std::string> broken_assumption;
+  double step_closing_time = 0;  ///< first touch of the plain step on the nominal device [s]
+  int bounce_free_in_a_row = 0;
+  bool spread_assumed = false;
+  std::uint64_t seed = 1;
+  TuningEnd end = TuningEnd::under_way;
+
+  /// The shot of this number was recorded without a bounce.
+  [[nodiscard]] bool was_bounce_free(int shot) const;
+  /// Whether any was.
+  [[nodiscard]] bool ever_bounce_free() const;
+};
+[[nodiscard]] TuningReport tuning_report(const Tuner& tuner, std::vector<TunedClosing> closings, const TunerOptions& options,
+                                         TuningEnd end);
+
+[[nodiscard]] nlohmann::json tuning_json(const TuningReport& report, const Provenance& provenance);
+/// One line: what the last closing was, and what is expected of the next.
+[[nodiscard]] std::string closing_words(const TuningReport& report);
+[[nodiscard]] std::string tuning_text(const TuningReport& report);
+/// A self-contained page, as html_report() makes it: what is known of the device, every closing's record under the predicted
+/// one, and the voltages that are kept and proposed.
+[[nodiscard]] std::string tuning_html(const TuningReport& report, const Provenance& provenance);
+
+}  // namespace softland

@@ -1,0 +1,305 @@
+#include "studies/tuning/belief.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "base/decompositions.h"
+#include "base/random.h"
+
+namespace softland {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t sampled_devices = 160;
+
+// Time in (touch, touch + span) that the contact is open, by openings of at least `least` [s].
+double open_time(double touch, const std::vector<ContactOpening>& openings, double span, double least) {
+  double sum = 0;
+  for (const ContactOpening& o : openings) {
+    if (o.end - o.begin >= least && o.begin < touch + span) sum += std::min(o.end, touch + span) - o.begin;
+  }
+  return sum;
+}
+
+// Of Student's kind: a record that the model does not follow weighs little.
+double gentle(double q) { return -1.2 * std::log1p(q * q / 3); }
+
+}  // namespace
+
+double Draws::normal() { return random_normal(seed_, Stream::tuning, next_++); }
+double Draws::uniform() { return random_probability(seed_, Stream::tuning, next_++); }
+VectorXd Draws::normals(Eigen::Index size) {
+  VectorXd z(size);
+  for (double& x : z) x = normal();
+  return z;
+}
+
+double Likelihood::touch_deviation(double speed) const {
+  constexpr double height_share = 1.0 / 2000, time_share = 1.0 / 3400, least_speed = 0.017;
+  const TuningScales& s = scene_.scales();
+  const double of_height = height_share * s.gap / std::max(least_speed * s.speed(), speed);
+  return std::hypot(scene_.options().edge_error, of_height, time_share * s.closing_time);
+}
+
+double Likelihood::touch_residual(const ImaginedClosing& closing, const ContactRecord& record) const {
+  constexpr double one_alone = 30;
+  const std::optional<double> seen = first_touch(record);
+  if (!closing.closes() || !seen) return closing.closes() == seen.has_value() ? 0 : one_alone;
+  return (closing.touch - *seen) / touch_deviation(closing.speed);
+}
+
+double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord& record) const {
+  constexpr double linear_from = 6;
+  const double r = std::abs(touch_residual(closing, record));
+  double sum = r < linear_from ? -r * r / 2 : linear_from * (linear_from / 2 - r);
+  if (!closing.closes() || !first_touch(record)) return sum;
+  const double unseen = scene_.options().unseen;
+  if (!record.edges.empty()) {
+    constexpr std::array spans{0.09, 0.3, 0.9};
+    constexpr double share = 0.2, least = 0.0045;
+    const double t0 = scene_.scales().closing_time;
+    const std::vector<ContactOpening> seen = openings(record);
+    for (const double span : spans) {
+      const double own = open_time(closing.touch, closing.openings, span * t0, unseen);
+      const double recorded = open_time(*first_touch(record), seen, span * t0, 0);
+      sum += gentle((own - recorded) / (least * t0 + share * std::max(own, recorded)));
+    }
+  } else if (record.bounce_count) {
+    constexpr double share = 0.3;
+    const auto own = static_cast<double>(
+        std::ranges::count_if(closing.openings, [&](const ContactOpening& o) { return o.end - o.begin >= unseen; }));
+    const double counted = *record.bounce_count;
+    sum += gentle((own - counted) / (1 + share * std::max(own, counted)));
+    if ((own > 0) != (counted > 0)) sum += gentle(1);
+  }
+  return sum;
+}
+
+double Likelihood::of_loudness(std::span<const ImaginedClosing> closings) const {
+  constexpr double error = 0.3, flattest = 0.5, steepest = 2;
+  std::vector<double> speeds, sounds;
+  for (std::size_t i = 0; i < shots_.size(); ++i) {
+    if (!shots_[i].record.loudness || !closings[i].closes() || !(closings[i].fastest > 0)) continue;
+    speeds.push_back(std::log(closings[i].fastest));
+    sounds.push_back(std::log(*shots_[i].record.loudness));
+  }
+  if (speeds.size() < 2) return 0;
+  const Eigen::Map<const Eigen::ArrayXd> v(speeds.data(), static_cast<Eigen::Index>(speeds.size())),
+      s(sounds.data(), static_cast<Eigen::Index>(sounds.size()));
+  const Eigen::ArrayXd dv = v - v.mean(), ds = s - s.mean();
+  const double squares = dv.square().sum();
+  const double slope = squares > 0 ? std::clamp((dv * ds).sum() / squares, flattest, steepest) : flattest;
+  return -(ds - slope * dv).square().sum() / (2 * error * error);
+}
+
+double Likelihood::of(std::span<const ImaginedClosing> closings) const {
+  double sum = of_loudness(closings);
+  for (std::size_t i = 0; i < shots_.size(); ++i) sum += of_record(closings[i], shots_[i].record);
+  return sum;
+}
+
+Belief Belief::prior(Eigen::Index size, Draws& draws) {
+  Belief belief{.mean = VectorXd::Zero(size), .mode = VectorXd::Zero(size), .covariance = MatrixXd::Identity(size, size)};
+  for (std::size_t k = 0; k < sampled_devices; ++k) belief.points.push_back(draws.normals(size));
+  belief.weights.assign(sampled_devices, 1.0 / static_cast<double>(sampled_devices));
+  belief.effective_devices = static_cast<double>(sampled_devices);
+  return belief;
+}
+
+std::vector<VectorXd> Belief::resampled(std::size_t count, Draws& draws) const {
+  std::vector<VectorXd> drawn;
+  const double first = draws.uniform() / static_cast<double>(count);
+  double below = 0;
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double at = first + static_cast<double>(k) / static_cast<double>(count);
+    while (i + 1 < weights.size() && below + weights[i] < at) below += weights[i++];
+    drawn.push_back(points[i]);
+  }
+  for (std::size_t k = count; k > 1; --k)
+    std::swap(drawn[k - 1], drawn[static_cast<std::size_t>(draws.uniform() * static_cast<double>(k))]);
+  return drawn;
+}
+
+namespace {
+
+class Learner {
+ public:
+  Learner(const TunedScene& scene, std::span<const LearnedShot> shots, Draws& draws, const Watch& watch)
+      : scene_(scene), shots_(shots), likelihood_(scene, shots), draws_(draws), watch_(watch) {}
+
+  [[nodiscard]] Belief learned(const Belief& last) {
+    find_mode(last);
+    return sampled();
+  }
+
+ private:
+  // Closings of every point under every shot: those of a point stand together.
+  [[nodiscard]] std::vector<ImaginedClosing> close(std::span<const VectorXd> points) const {
+    const std::vector<ImaginedDevice> devices = scene_.devices(points, watch_);
+    std::vector<ImaginedShot> all;
+    for (const ImaginedDevice& device : devices) {
+      for (const LearnedShot& shot : shots_) all.push_back({.device = &device, .waveforms = &shot.waveforms});
+    }
+    return scene_.close(all, watch_);
+  }
+  [[nodiscard]] std::vector<double> log_posteriors(std::span<const VectorXd> points) const {
+    const std::vector<ImaginedClosing> closings = close(points);
+    std::vector<double> all;
+    for (std::size_t k = 0; k < points.size(); ++k)
+      all.push_back(likelihood_.of(std::span(closings).subspan(k * shots_.size(), shots_.size())) - points[k].squaredNorm() / 2);
+    return all;
+  }
+
+  void find_mode(const Belief& last);
+  void climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough);
+  [[nodiscard]] std::pair<VectorXd, MatrixXd> fitted(VectorXd z) const;
+  [[nodiscard]] Belief sampled();
+  [[nodiscard]] std::vector<VectorXd> fresh(std::size_t count, double width) {
+    std::vector<VectorXd> all;
+    for (std::size_t k = 0; k < count; ++k) all.push_back(width * draws_.normals(scene_.size()));
+    return all;
+  }
+
+  const TunedScene& scene_;
+  std::span<const LearnedShot> shots_;
+  Likelihood likelihood_;
+  Draws& draws_;
+  const Watch& watch_;
+  VectorXd mode_;
+  MatrixXd curvature_;
+  double best_ = -std::numeric_limits<double>::infinity();
+};
+
+// Least squares of the residuals of touch times and of z, those beyond 4 compressed, by Levenberg and Marquardt. Returns where it
+// ends, and the curvature there.
+std::pair<VectorXd, MatrixXd> Learner::fitted(VectorXd z) const {
+  constexpr double apart = 0.01, steepest = 3000, longest = 1.5, enough = 0.02, hopeless = 1e4;
+  constexpr int most_rounds = 14;
+  const auto m = static_cast<Eigen::Index>(shots_.size()), n = scene_.size();
+  const auto compressed = [](double r) {
+    constexpr double from = 4;
+    return std::abs(r) < from ? r : std::copysign(from * (1 + std::log1p(std::abs(r) / from - 1)), r);
+  };
+  VectorXd best = z, residuals(m);
+  MatrixXd slopes(m, n), curvature = MatrixXd::Identity(n, n);
+  double least = std::numeric_limits<double>::infinity(), damping = 1e-2;
+  for (int round = 0; round < most_rounds && damping < hopeless; ++round) {
+    std::vector<VectorXd> points{z};
+    for (Eigen::Index k = 0; k < n; ++k) points.push_back(z + apart * VectorXd::Unit(n, k));
+    const std::vector<ImaginedClosing> closings = close(points);
+    const auto residual = [&](Eigen::Index point, Eigen::Index i) {
+      return compressed(likelihood_.touch_residual(closings[static_cast<std::size_t>(point * m + i)],
+                                                   shots_[static_cast<std::size_t>(i)].record));
+    };
+    VectorXd own(m);
+    for (Eigen::Index i = 0; i < m; ++i) own[i] = residual(0, i);
+    const double sum = z.squaredNorm() + own.squaredNorm(), gain = least - sum;
+    const bool helps = gain > 1e-9;
+    if (helps) {
+      least = sum, best = z, residuals = own;
+      for (Eigen::Index i = 0; i < m; ++i) {
+        for (Eigen::Index k = 0; k < n; ++k)
+          slopes(i, k) = std::clamp((residual(k + 1, i) - own[i]) / apart, -steepest, steepest);
+      }
+      curvature = slopes.transpose() * slopes + MatrixXd::Identity(n, n);
+      damping = std::max(1e-6, damping / 5);
+    } else {
+      damping = std::max(8 * damping, 1e-4);
+    }
+    if (helps && gain < enough && round > 1) break;
+    MatrixXd damped = curvature;
+    damped.diagonal() *= 1 + damping;
+    VectorXd step = -solve_semidefinite(damped, slopes.transpose() * residuals + best);
+    if (step.norm() > longest) step *= longest / step.norm();
+    z = best + step;
+  }
+  return {best, curvature};
+}
+
+// From the best of these starts, and from so many at most where none of the ends is as likely as `enough`.
+void Learner::climb_from(const std::vector<VectorXd>& starts, std::size_t most, double enough) {
+  const std::vector<double> before = log_posteriors(starts);
+  std::vector<std::size_t> order(starts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return before[a] > before[b]; });
+  for (std::size_t q = 0; q < std::min(most, order.size()); ++q) {
+    const VectorXd& start = starts[order[q]];
+    auto [z, curvature] = fitted(start);
+    double value = log_posteriors(std::span(&z, 1)).front();
+    if (value < before[order[q]]) z = start, value = before[order[q]];
+    if (value > best_) best_ = value, mode_ = z, curvature_ = curvature;
+    if (best_ > enough) return;
+  }
+}
+
+void Learner::find_mode(const Belief& last) {
+  constexpr std::size_t of_last = 48, of_prior = 48, many = 400;
+  const auto shots = static_cast<double>(shots_.size());
+  std::vector<VectorXd> starts = last.resampled(of_last, draws_);
+  starts.push_back(last.mode);
+  starts.push_back(last.mean);
+  std::ranges::move(fresh(of_prior, 1.2), std::back_inserter(starts));
+  climb_from(starts, 3, -6 - 2 * shots);
+  if (best_ < -12 - 4 * shots) climb_from(fresh(many, 1.6), 6, -12 - 4 * shots);
+}
+
+// Adaptive importance sampling from normal distributions, with all of the records.
+Belief Learner::sampled() {
+  constexpr int most_rounds = 4;
+  constexpr double least_share = 0.2, cooler = 0.7, coldest = 1e-3;
+  const Eigen::Index n = scene_.size();
+  Belief belief{.mean = mode_, .mode = mode_, .log_posterior = best_};
+  belief.covariance = MatrixXd(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) belief.covariance.col(k) = solve_semidefinite(curvature_, VectorXd::Unit(n, k));
+  for (int round = 0; round < most_rounds; ++round) {
+    const double wider = round == 0 ? 1.5 : 1.2;
+    const MatrixXd factor = cholesky_factor(wider * belief.covariance + 1e-8 * MatrixXd::Identity(n, n));
+    belief.points.clear();
+    std::vector<double> drawn;
+    for (std::size_t k = 0; k < sampled_devices; ++k) {
+      const VectorXd e = round == 0 && k == 0 ? VectorXd::Zero(n) : draws_.normals(n);
+      belief.points.push_back(belief.mean + factor * e);
+      drawn.push_back(-e.squaredNorm() / 2);
+    }
+    std::vector<double> ratios = log_posteriors(belief.points);
+    for (std::size_t k = 0; k < ratios.size(); ++k) ratios[k] -= drawn[k];
+    const double largest = *std::ranges::max_element(ratios);
+    const auto weigh = [&](double power) {
+      double sum = 0, squares = 0;
+      belief.weights.clear();
+      for (const double ratio : ratios) {
+        belief.weights.push_back(std::exp(power * (ratio - largest)));
+        sum += belief.weights.back(), squares += belief.weights.back() * belief.weights.back();
+      }
+      for (double& weight : belief.weights) weight /= sum;
+      return sum * sum / squares;
+    };
+    double effective = belief.effective_devices = weigh(1), power = 1;
+    while (effective < least_share * static_cast<double>(sampled_devices) && power > coldest) effective = weigh(power *= cooler);
+    belief.mean.setZero();
+    for (std::size_t k = 0; k < sampled_devices; ++k) belief.mean += belief.weights[k] * belief.points[k];
+    belief.covariance.setZero();
+    for (std::size_t k = 0; k < sampled_devices; ++k) {
+      const VectorXd off = belief.points[k] - belief.mean;
+      belief.covariance += belief.weights[k] * off * off.transpose();
+    }
+    if (power == 1) break;
+  }
+  return belief;
+}
+
+}  // namespace
+
+Belief learned(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
+               const Watch& watch) {
+  return Learner(scene, shots, draws, watch).learned(last);
+}
+
+}  // namespace softland

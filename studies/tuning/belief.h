@@ -1,0 +1,82 @@
+// What the records of a device tell of it: devices with weights, in the standard normal coordinates z of TunedScene.
+//
+//   -ln p(z | records) = |z|^2 / 2 + sum over records L(record, closing of the device z under its shot) + const
+//
+//   first touch  r = (t - t_record) / s,  s^2 = edge_error^2 + (g / 2000 v)^2 + (T_0 / 3400)^2,  L = r^2 / 2, linear beyond 6;
+//                v speed of the first touch: g / 2000 stands for the error of the model, and the last term for its times
+//   edges        open time u within 0.09, 0.3 and 0.9 T_0 of the first touch,
+//                L = 1.2 ln(1 + q^2 / 3),  q = (u - u_record) / (0.0045 T_0 + 0.2 max(u, u_record)): the closing after its first
+//                rebounds is chaotic, and no edge of it is matched to another
+//   count        where edges are not known: the same of the openings that would be seen, (1 + 0.3 max) apart
+//   loudness     ln loudness is a + b ln v_max, one a and one b in [0.5, 2] for all records, with an error of 0.3
+//
+// T_0 closing time of the plain step, g contact gap. The errors that depend on the scene are those that were found good on
+// mem-gold, as shares of its scales.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "studies/tuning/tuned_scene.h"
+
+namespace softland {
+
+/// A shot that was fired, and what came of it.
+struct LearnedShot {
+  std::vector<Waveform> waveforms;  ///< told, in the order of Switch::drives() [V]
+  ContactRecord record;
+};
+
+/// Numbers in a row, each a function of the seed and of how many were drawn: standard normal, or uniform in (0, 1).
+class Draws {
+ public:
+  Draws(std::uint64_t seed, std::uint64_t first) : seed_(seed), next_(first) {}
+  [[nodiscard]] double normal();
+  [[nodiscard]] double uniform();
+  [[nodiscard]] Eigen::VectorXd normals(Eigen::Index size);
+
+ private:
+  std::uint64_t seed_, next_;
+};
+
+/// The terms above.
+class Likelihood {
+ public:
+  /// Keeps references.
+  Likelihood(const TunedScene& scene, std::span<const LearnedShot> shots) : scene_(scene), shots_(shots) {}
+  /// r of the first touch in one shot; +-30 where only one of the two touches, 0 where neither does.
+  [[nodiscard]] double touch_residual(const ImaginedClosing& closing, const ContactRecord& record) const;
+  /// The logarithm of the likelihood of all records, of the closings of one device under all shots in their order.
+  [[nodiscard]] double of(std::span<const ImaginedClosing> closings) const;
+  /// Standard deviation of a recorded first touch at this speed [s].
+  [[nodiscard]] double touch_deviation(double speed) const;
+
+ private:
+  [[nodiscard]] double of_record(const ImaginedClosing& closing, const ContactRecord& record) const;
+  [[nodiscard]] double of_loudness(std::span<const ImaginedClosing> closings) const;
+
+  const TunedScene& scene_;
+  std::span<const LearnedShot> shots_;
+};
+
+struct Belief {
+  std::vector<Eigen::VectorXd> points;  ///< z of the devices
+  std::vector<double> weights;          ///< their sum is 1
+  Eigen::VectorXd mean, mode;           ///< of z
+  Eigen::MatrixXd covariance;           ///< of z
+  double effective_devices = 0;         ///< 1 / (sum of the squared weights), with the weights of the likelihood itself
+  double log_posterior = 0;             ///< of the mode, without its constant
+
+  /// The prior: draws of the standard normal distribution.
+  [[nodiscard]] static Belief prior(Eigen::Index size, Draws& draws);
+  /// So many points, each as often as its weight asks for (systematic resampling, Kitagawa 1996), in random order.
+  [[nodiscard]] std::vector<Eigen::VectorXd> resampled(std::size_t count, Draws& draws) const;
+};
+
+/// What is believed after these shots; `last` is where some of the searches begin. At least one shot. Throws Interrupted.
+[[nodiscard]] Belief learned(const TunedScene& scene, std::span<const LearnedShot> shots, const Belief& last, Draws& draws,
+                             const Watch& watch = {});
+
+}  // namespace softland

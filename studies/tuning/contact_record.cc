@@ -1,0 +1,54 @@
+#include "studies/tuning/contact_record.h"
+
+#include <cmath>
+#include <limits>
+
+namespace softland {
+
+std::string record_fault(const ContactRecord& record) {
+  if (!record.error.empty()) return {};
+  if (!record.edges.empty() && record.closing_time) return "edges_s: must not stand beside closing_time_s";
+  double before = 0;
+  bool closed = false;
+  for (const ContactEdge& edge : record.edges) {
+    if (!std::isfinite(edge.time) || edge.time < before) return "edges_s: times must be finite, at least 0 and in order";
+    if (edge.closed == closed) return "edges_s: states must alternate, and the first edge closes the contact";
+    before = edge.time, closed = edge.closed;
+  }
+  if (record.closing_time && !(std::isfinite(*record.closing_time) && *record.closing_time >= 0))
+    return "closing_time_s: must be finite and at least 0";
+  if (record.bounce_count && *record.bounce_count < 0) return "bounce_count: must be at least 0";
+  if (record.bounce_count && *record.bounce_count > 0 && !first_touch(record))
+    return "bounce_count: nothing bounces that never closed";
+  if (record.loudness && !(std::isfinite(*record.loudness) && *record.loudness > 0))
+    return "loudness: must be finite and above 0";
+  return {};
+}
+
+std::optional<double> first_touch(const ContactRecord& record) {
+  if (!record.edges.empty()) return record.edges.front().time;
+  return record.closing_time;
+}
+
+std::vector<ContactOpening> openings(const ContactRecord& record) {
+  std::vector<ContactOpening> all;
+  for (const ContactEdge& edge : record.edges) {
+    if (!edge.closed) {
+      all.push_back({.begin = edge.time, .end = std::numeric_limits<double>::infinity()});
+    } else if (!all.empty()) {
+      all.back().end = edge.time;
+    }
+  }
+  return all;
+}
+
+std::optional<int> bounce_count(const ContactRecord& record) {
+  if (!record.edges.empty()) return static_cast<int>(openings(record).size());
+  return record.bounce_count;
+}
+
+bool is_bounce_free(const ContactRecord& record) {
+  return record.error.empty() && first_touch(record).has_value() && bounce_count(record) == 0;
+}
+
+}  // namespace softland

@@ -1,0 +1,44 @@
+// What a laboratory sees of one closing: when the contact was open and when it was closed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace softland {
+
+/// An edge of the contact's state.
+struct ContactEdge {
+  double time = 0;      ///< since the drives began, at t = 0 [s]
+  bool closed = false;  ///< from then on
+};
+
+/// The answer to one shot: edges, or closing time and number of bounces, or an error. One with none of them says that the contact
+/// stayed open.
+struct ContactRecord {
+  std::vector<ContactEdge> edges = {};      ///< in order of time, by turns closed and open, the first one closed
+  std::optional<double> closing_time = {};  ///< of the first touch, where there are no edges [s]
+  std::optional<int> bounce_count = {};     ///< openings after it
+  std::optional<double> loudness = {};      ///< a number above 0 that rises with the impact, in any unit
+  std::string error = {};                   ///< why the shot gave no record; nothing else counts then
+};
+
+/// The contact is open again.
+struct ContactOpening {
+  double begin = 0, end = 0;  ///< [s]; the end is infinite where the record ends open
+};
+
+/// Why a record cannot be one, as a rule about the key at fault; empty where it can. Times must be finite, at least 0 and in
+/// order, edges alternate from closed on, and a record has edges or a closing time, not both.
+[[nodiscard]] std::string record_fault(const ContactRecord& record);
+
+/// Of the first touch [s]; none where the contact stayed open.
+[[nodiscard]] std::optional<double> first_touch(const ContactRecord& record);
+/// The openings that edges tell of, in order.
+[[nodiscard]] std::vector<ContactOpening> openings(const ContactRecord& record);
+/// Openings as far as they are known: of edges, or as they were counted; none where neither says it.
+[[nodiscard]] std::optional<int> bounce_count(const ContactRecord& record);
+/// Whether the contact closed, and is known to have stayed closed.
+[[nodiscard]] bool is_bounce_free(const ContactRecord& record);
+
+}  // namespace softland

@@ -1,0 +1,170 @@
+#include "studies/tuning/practice_device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/random.h"
+#include "base/require.h"
+#include "config/assumed_spread.h"
+#include "model/closing.h"
+#include "model/gas/gas_law.h"
+#include "studies/choices.h"
+
+namespace softland {
+namespace {
+
+// Only a contact tells a lab that a switch has closed.
+void require_contact(const Prepared& nominal) {
+  require(nominal.scene.device.contact.has_value(), [&] {
+    return fmt::format("{}: there is no [contact]: a lab would see nothing of a closing", nominal.scene.file.name());
+  });
+}
+
+Prepared prepared(SceneFile file) {
+  assume_spread(file);
+  Prepared nominal = prepare_and_choose(file, true);
+  require_contact(nominal);
+  return nominal;
+}
+
+void add_modes(SceneFile& file, const Scene& scene, int more) {
+  require(scene.device.structure.kind != StructureKind::plate,
+          [&] { return fmt::format("modes=+{}: {}: a plate has one", more, scene.file.name()); });
+  file.assign("structure.modes", scene.device.structure.modes + more);
+}
+
+void change_gas(SceneFile& file, const Scene& scene, const std::string& name) {
+  require(scene.device.gas.has_value(), [&] { return fmt::format("gas={}: {}: there is no [gas]", name, scene.file.name()); });
+  const GasRow* const law = find_named(gas_laws, name);
+  require(law != nullptr, [&] { return fmt::format("gas={}: must be {}", name, listed(gas_laws)); });
+  for (const std::string& key : file.keys("gas")) {
+    if (key != "model" && !law->keys.contain(key)) file.erase("gas." + key);
+  }
+  file.assign("gas.model", name);
+}
+
+void stiffen(SceneFile& file, const Scene& scene, double factor) {
+  const Contact& c = *scene.device.contact;
+  const std::array forces{std::pair{"contact.stiffness", c.stiffness},
+                          std::pair{"contact.unloading_stiffness", c.unloading_stiffness},
+                          std::pair{"contact.effective_modulus", c.effective_modulus},
+                          std::pair{"contact.asperity_pressure", c.pressure.asperity_pressure},
+                          std::pair{"contact.wall_pressure", c.pressure.wall_pressure}};
+  bool is_stiff = false;
+  for (const auto& [key, value] : forces) {
+    if (!file.written(key)) continue;
+    file.assign(key, value * factor);
+    is_stiff = true;
+  }
+  require(is_stiff,
+          [&] { return fmt::format("stiffness={}: {}: its contact has no stiffness", number_text(factor), scene.file.name()); });
+}
+
+// In volts, so that a waveform means the same whatever the model does to the pull-in voltage.
+Prepared with_model(const Prepared& nominal, const PracticeModel& model) {
+  SceneFile file = resolved(nominal.scene, nominal.voltage_units());
+  if (model.more_modes != 0) add_modes(file, nominal.scene, model.more_modes);
+  if (!model.gas.empty()) change_gas(file, nominal.scene, model.gas);
+  if (model.stiffness != 1) stiffen(file, nominal.scene, model.stiffness);
+  for (const std::string& assignment : model.set) file.set(assignment);
+  Prepared own = prepare(file);
+  require_contact(own);
+  return own;
+}
+
+// The first device of this seed that can be described.
+SampledDevice drawn(const Prepared& own, std::uint64_t seed) {
+  constexpr std::uint64_t most = 100;
+  const Ensemble ensemble(own, 1);
+  DeviceBuilder builder(ensemble);
+  const std::size_t size = own.scene.spread.variables.size();
+  SampledDevice device;
+  for (std::uint64_t k = 0; k < most && !device.model; ++k) {
+    std::vector<double> values(size);
+    for (std::size_t i = 0; i < size; ++i) values[i] = random_probability(seed, Stream::practice_device, k * size + i);
+    own.scene.spread.to_values(values);
+    device = builder.device(std::move(values));
+  }
+  require(device.model.has_value(), [&] {
+    return fmt::format("{}: none of {} devices of [spread] can be described: {}", own.scene.file.name(), most, device.refusal);
+  });
+  return device;
+}
+
+std::string seen_failure(const Trajectory& closing) {
+  switch (closing.status) {
+    case Status::done:
+      return {};
+    case Status::collapsed_at_rest:
+      return "the switch is pulled in before the first edge of the drive";
+    case Status::collapsed_onto_electrode:
+      return "the switch was pulled through its contact onto the electrode";
+    default:
+      return fmt::format("the closing cannot be simulated: {}",
+                         closing.message.empty() ? std::string(to_string(closing.status)) : closing.message);
+  }
+}
+
+}  // namespace
+
+PracticeDevice::PracticeDevice(SceneFile file, const PracticeOptions& options)
+    : options_(options),
+      nominal_(prepared(std::move(file))),
+      own_(with_model(nominal_, options.model)),
+      device_(drawn(own_, options.seed)) {}
+
+double PracticeDevice::gain(std::size_t drive, std::uint64_t shot) const {
+  const std::uint64_t of_drive = random_bits(options_.seed, Stream::practice_gain, drive);
+  const double constant = 1 + options_.gain_error * random_normal(of_drive, Stream::practice_gain, 0),
+               scatter = 1 + options_.shot_error * random_normal(of_drive, Stream::practice_gain, shot);
+  return constant * scatter * (1 + options_.drift * static_cast<double>(shot - 1));
+}
+
+std::vector<ContactEdge> PracticeDevice::seen_edges(const Trajectory& closing, std::uint64_t shot) const {
+  const std::uint64_t of_shot = random_bits(options_.seed, Stream::practice_edges, shot);
+  std::uint64_t drawn = 0;
+  std::vector<ContactEdge> seen;
+  for (const Touch& touch : closing.touches) {
+    const double closes = touch.begin + options_.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++),
+                 opens = touch.end + options_.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
+    const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.unseen);
+    if (!stays_open) {
+      seen.pop_back();  // the opening before it
+    } else if (!(opens <= closes)) {
+      seen.push_back({.time = closes, .closed = true});
+    } else {
+      continue;  // a touch too short to be seen
+    }
+    if (std::isnan(opens)) break;
+    seen.push_back({.time = std::max(opens, seen.back().time), .closed = false});
+  }
+  return seen;
+}
+
+PracticeClosing PracticeDevice::close(std::uint64_t shot, const std::vector<Waveform>& waveforms, double duration) const {
+  require(shot > 0, "shot 0: shots are counted from 1");
+  require(duration > 0, [&] { return fmt::format("a closing of {} s: must be longer than 0 s", number_text(duration)); });
+  const std::vector<std::string> names = nominal_.drive_names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (!nominal_.drives.limits.contains(names[k])) continue;
+    const std::string broken = violation(nominal_.told(k, waveforms[k]), nominal_.limits(k));
+    require(broken.empty(), [&] { return fmt::format("drives.{}: {}", names[k], broken); });
+  }
+  std::vector<Signal> signals = DeviceDrives(own_).signals(waveforms, {}, device_.values);
+  for (std::size_t k = 0; k < signals.size(); ++k) {
+    if (own_.model.drive_kind(k) != DriveKind::dispersion) signals[k] = scaled(signals[k], gain(k, shot));
+  }
+  const Trajectory closing = simulate_closing(*device_.model, signals, {.duration = duration, .tolerance = own_.tolerance});
+  PracticeClosing seen{.record = {}, .motion = metrics(closing, own_.scene.metrics)};
+  for (const Touch& touch : closing.touches)
+    seen.largest_impact_velocity = std::fmax(seen.largest_impact_velocity, touch.impact_velocity);
+  seen.record.error = seen_failure(closing);
+  if (seen.record.error.empty()) seen.record.edges = seen_edges(closing, shot);
+  return seen;
+}
+
+}  // namespace softland

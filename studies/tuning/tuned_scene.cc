@@ -1,0 +1,357 @@
+#include "studies/tuning/tuned_scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/engineering.h"
+#include "base/executor.h"
+#include "base/require.h"
+#include "base/standard_normal.h"
+#include "config/assumed_spread.h"
+#include "objectives/rebounds.h"
+#include "studies/choices.h"
+#include "studies/plain_step.h"
+#include "studies/search_setting.h"
+
+namespace softland {
+namespace {
+
+constexpr double belief_accuracy = 1e-4;  // of closings
+constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1, gap_ratio_deviation = 0.03;
+constexpr double delay_share = 0.003;  // of the closing time of the plain step
+
+// Of a closing, in closing times of the plain step: after the first touch, without a touch, and after the last breakpoint.
+constexpr double after_touch = 1.8, longest_wait = 7.4, tail = 0.75;
+
+bool varies(const DeviceSpread& spread, const std::string& path) {
+  return std::ranges::any_of(spread.variables, [&](const SpreadVariable& variable) {
+    return std::ranges::any_of(variable.keys, [&](const VariedKey& key) { return key.path == path; });
+  });
+}
+
+void vary(SceneFile& file, const std::string& name, const std::vector<std::string>& keys, const char* kind, double deviation) {
+  file.set(
+      fmt::format("spread.\"{}\"={{keys=[\"{}\"],distribution=\"{}\",cov={}}}", name, fmt::join(keys, "\",\""), kind, deviation));
+}
+
+std::vector<std::string> shaped_drives_of(const Prepared& prepared, Actuator actuator) {
+  std::vector<std::string> names;
+  for (const auto& [name, waveform] : plain_step(prepared, actuator)) {
+    if (prepared.drives.limits.contains(name)) names.push_back(name);
+  }
+  return names;
+}
+
+// The scene in volts, with every default written out, and what the belief varies beside the spread.
+SceneFile with_nuisances(const Prepared& prepared, const TunerOptions& options) {
+  SceneFile file = resolved(prepared.scene, prepared.voltage_units());
+  const DeviceSpread& spread = prepared.scene.spread;
+  for (const std::string& drive : shaped_drives_of(prepared, options.actuator)) {
+    const std::string key = fmt::format("driver.{}.gain", drive);
+    if (!varies(spread, key) && options.gain_error > 0) vary(file, key, {key}, "normal", options.gain_error);
+  }
+  if (file.written("gas.viscosity") && !varies(spread, "gas.viscosity"))
+    vary(file, "gas.viscosity", {"gas.viscosity"}, "lognormal", viscosity_deviation);
+  std::vector<std::string> stiffness;
+  for (const char* key : {"contact.stiffness", "contact.unloading_stiffness", "contact.effective_modulus"}) {
+    if (file.written(key) && !varies(spread, key)) stiffness.emplace_back(key);
+  }
+  if (!stiffness.empty()) vary(file, "contact stiffness", stiffness, "lognormal", contact_deviation);
+  if (!varies(spread, "gap.contact")) vary(file, "gap.contact", {"gap.contact"}, "normal", gap_ratio_deviation);
+  file.assign("simulate.accuracy", belief_accuracy);
+  return file;
+}
+
+void rebuild_copula(DeviceSpread& spread) {
+  std::vector<std::string> names;
+  for (const SpreadVariable& variable : spread.variables) names.push_back(variable.name);
+  spread.copula.reset();
+  if (!spread.correlation.isIdentity(0)) spread.copula.emplace(spread.correlation, names);
+}
+
+void leave_out(DeviceSpread& spread, std::size_t variable) {
+  const Eigen::Index n = spread.correlation.rows(), k = static_cast<Eigen::Index>(variable);
+  std::vector<Eigen::Index> rest;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i != k) rest.push_back(i);
+  }
+  spread.correlation = Eigen::MatrixXd(spread.correlation(rest, rest));
+  spread.variables.erase(spread.variables.begin() + k);
+}
+
+// The contact gap leaves the factor that it shares with other gaps, and follows it but for a deviation of its own: correlated
+// normal factors.
+void loosen_contact_gap(DeviceSpread& spread) {
+  for (std::size_t i = 0; i < spread.variables.size(); ++i) {
+    SpreadVariable& shared = spread.variables[i];
+    const auto key = std::ranges::find(shared.keys, "gap.contact", &VariedKey::path);
+    const auto* normal = std::get_if<Normal>(&shared.distribution.parameters());
+    const Truncation& truncation = shared.distribution.truncation();
+    const bool is_free = !(truncation.low > -std::numeric_limits<double>::infinity()) &&
+                         !(truncation.high < std::numeric_limits<double>::infinity());
+    if (key == shared.keys.end() || shared.keys.size() < 2 || !shared.is_factor || normal == nullptr || !is_free) continue;
+    const double own = std::hypot(normal->standard_deviation, gap_ratio_deviation);
+    const double correlation = normal->standard_deviation / own;
+    SpreadVariable contact{.name = "gap.contact",
+                           .keys = {*key},
+                           .distribution = Distribution(Normal{.mean = normal->mean, .standard_deviation = own})};
+    shared.keys.erase(key);
+    const Eigen::Index n = spread.correlation.rows();
+    Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
+    all.topLeftCorner(n, n) = spread.correlation;
+    all.row(n).head(n) = correlation * spread.correlation.row(static_cast<Eigen::Index>(i));
+    all.col(n).head(n) = all.row(n).head(n).transpose();
+    spread.correlation = all;
+    spread.variables.push_back(std::move(contact));
+    return;
+  }
+}
+
+Prepared prepared_for_belief(const SceneFile& given, const TunerOptions& options, bool& spread_is_assumed, const Watch& watch) {
+  SceneFile file = given;
+  spread_is_assumed = assume_spread(file);
+  const Prepared prepared = prepare_and_choose(file, true, watch);
+  require(prepared.model.has_contact(),
+          [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
+  Prepared p = prepare(with_nuisances(prepared, options), true, watch);
+  DeviceSpread& spread = p.scene.spread;
+  for (std::size_t i = spread.variables.size(); i-- > 0;) {
+    if (spread.variables[i].is_drawn_per_edge) leave_out(spread, i);
+  }
+  loosen_contact_gap(spread);
+  rebuild_copula(spread);
+  return p;
+}
+
+// The landing of one lane.
+class LaneClosing final : public LandingObserver {
+ public:
+  void touch(const Touch& touch) override {
+    if (std::isnan(closing.touch)) closing.touch = touch.begin, closing.speed = closing.fastest = touch.impact_velocity;
+    closing.fastest = std::max(closing.fastest, touch.impact_velocity);
+  }
+  void rebound(double begin, double end, double height) override {
+    closing.openings.push_back({.begin = begin, .end = end});
+    closing.highest = std::max(closing.highest, height);
+  }
+  ImaginedClosing closing = {};
+};
+
+// The same of a closing that is run by itself.
+class SingleClosing final : public ClosingObserver {
+ public:
+  explicit SingleClosing(double gap) : finder_(gap) {}
+  void knot(const TrajectoryPoint& point) override {
+    finder_.knot(point, [&](const Rebound& rebound) { add(rebound, rebound.end); });
+  }
+  void touch(const Touch& touch) override { closing.fastest = std::fmax(closing.fastest, touch.impact_velocity); }
+  ImaginedClosing ended(const Trajectory& run) {
+    closing.followed = finder_.usable() && run.status == Status::done;
+    if (finder_.touched()) closing.touch = finder_.first_touch(), closing.speed = finder_.impact_velocity();
+    if (const auto& last = finder_.under_way()) add(*last, std::numeric_limits<double>::infinity());
+    return std::move(closing);
+  }
+  ImaginedClosing closing = {};
+
+ private:
+  void add(const Rebound& rebound, double end) {
+    closing.openings.push_back({.begin = rebound.begin, .end = end});
+    closing.highest = std::max(closing.highest, rebound.height);
+  }
+  ReboundFinder finder_;
+};
+
+}  // namespace
+
+TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const Watch& watch)
+    : options_(options), nominal_(prepared_for_belief(file, options, spread_is_assumed_, watch)) {
+  const DeviceSpread& spread = nominal_.scene.spread;
+  for (const SpreadVariable& variable : spread.variables)
+    nuisances_.push_back(variable.name == "gas.viscosity" || variable.name == "contact stiffness");
+  nuisances_.push_back(true);
+  ensemble_ = std::make_unique<const Ensemble>(nominal_, 1);
+  drives_ = std::make_unique<const DeviceDrives>(nominal_);
+  std::map<std::string, Waveform> step = nominal_.drives.waveforms;
+  for (const auto& [drive, waveform] : plain_step(nominal_, options.actuator)) step[drive] = waveform;
+  const std::vector<Signal> signals = nominal_.driven(nominal_.in_drive_order(step));
+  const double longest = periods_to_close * 2 * std::numbers::pi / nominal_.model.angular_frequencies()[0];
+  const Trajectory closing = simulate_closing(
+      nominal_.model, signals, {.duration = longest, .tolerance = nominal_.tolerance, .after_contact = 0, .stop = watch.stop});
+  watch.throw_if_stopped();
+  require(!closing.touches.empty(),
+          [&] { return fmt::format("{}: its hold levels do not close the switch: there is no closing to tune", file.name()); });
+  scales_ = {.closing_time = closing.touches.front().begin,
+             .gap = nominal_.scene.device.gap.contact,
+             .rebound = nominal_.scene.metrics.significant_rebound};
+  constexpr double coarsest = 0.1;  // of the closing time
+  require(options.edge_error < coarsest * scales_.closing_time, [&] {
+    return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
+                       engineering(options.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
+  });
+  find_units(watch);
+}
+
+double TunedScene::delay_deviation() const { return delay_share * scales_.closing_time; }
+double TunedScene::hold_time() const { return (longest_wait + after_touch) * scales_.closing_time; }
+
+std::vector<double> TunedScene::values(const Eigen::VectorXd& z) const {
+  constexpr double furthest = 8;  // standard deviations
+  std::vector<double> u(static_cast<std::size_t>(size() - 1));
+  for (std::size_t k = 0; k < u.size(); ++k)
+    u[k] = standard_normal_cdf(std::clamp(z[static_cast<Eigen::Index>(k)], -furthest, furthest));
+  nominal_.scene.spread.to_values(u);
+  return u;
+}
+
+std::vector<ImaginedDevice> TunedScene::devices(std::span<const Eigen::VectorXd> points, const Watch& watch) const {
+  constexpr std::size_t together = 16;
+  std::vector<ImaginedDevice> all(points.size());
+  run_tasks((points.size() + together - 1) / together, options_.jobs,
+            [&](std::size_t task) {
+              DeviceBuilder builder(*ensemble_);
+              for (std::size_t k = task * together; k < std::min(points.size(), (task + 1) * together); ++k)
+                all[k] = {.z = points[k],
+                          .sampled = builder.device(values(points[k])),
+                          .delay = delay_deviation() * points[k][size() - 1]};
+            },
+            watch.stop);
+  watch.throw_if_stopped();
+  return all;
+}
+
+std::vector<Signal> TunedScene::signals(const ImaginedShot& shot) const {
+  std::vector<Signal> own = drives_->signals(*shot.waveforms, {}, shot.device->sampled.values);
+  if (shot.gain != 1) {
+    for (Signal& signal : own) signal = scaled(signal, shot.gain);
+  }
+  return own;
+}
+
+std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> shots, const Watch& watch) const {
+  constexpr std::size_t together = 16;
+  std::vector<ImaginedClosing> all(shots.size());
+  const double t0 = scales_.closing_time;
+  const auto task = [&](std::size_t n) {
+    const std::size_t begin = n * together, count = std::min(shots.size(), begin + together) - begin;
+    std::vector<std::vector<Signal>> own(count);
+    std::vector<LaneClosing> landings(count);
+    std::vector<FleetClosing> fleet;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < count; ++i) {
+      const ImaginedShot& shot = shots[begin + i];
+      if (!shot.device->sampled.model) continue;
+      own[i] = signals(shot);
+      const double last = last_breakpoint(own[i]);
+      places.push_back(i);
+      fleet.push_back({.model = &*shot.device->sampled.model,
+                       .drives = own[i],
+                       .duration = last + hold_time(),
+                       .after_contact = after_touch * t0,
+                       .no_end_before = last + tail * t0,
+                       .no_contact_before = longest_wait * t0,
+                       .observer = &landings[i]});
+    }
+    std::vector<FleetEnd> ends(fleet.size());
+    if (options_.vectors != Vectors::none) ends = close_in_lanes(fleet, nominal_.tolerance, options_.vectors);
+    for (std::size_t k = 0; k < fleet.size(); ++k) {
+      ImaginedClosing& closing = all[begin + places[k]];
+      if (ends[k].followed) {
+        closing = std::move(landings[places[k]].closing);
+        closing.followed = true;
+      } else {
+        SingleClosing single(fleet[k].model->device().gap.contact);
+        const Trajectory run = observe_closing(*fleet[k].model, fleet[k].drives,
+                                               {.duration = fleet[k].duration,
+                                                .tolerance = nominal_.tolerance,
+                                                .after_contact = fleet[k].after_contact,
+                                                .no_end_before = fleet[k].no_end_before,
+                                                .no_contact_before = fleet[k].no_contact_before},
+                                               single);
+        closing = single.ended(run);
+      }
+      const double delay = shots[begin + places[k]].device->delay;
+      closing.touch += delay;
+      for (ContactOpening& opening : closing.openings) {
+        opening.begin += delay;
+        opening.end = std::isnan(opening.end) ? std::numeric_limits<double>::infinity() : opening.end + delay;
+      }
+    }
+  };
+  run_tasks((shots.size() + together - 1) / together, options_.jobs, task, watch.stop);
+  watch.throw_if_stopped();
+  return all;
+}
+
+namespace {
+
+// The gain of the source of that drive.
+double gain_of(const DeviceSpread& spread, const std::string& drive, const std::vector<double>& values) {
+  double gain = 1;
+  for (std::size_t i = 0; i < spread.variables.size(); ++i) {
+    for (const VariedKey& key : spread.variables[i].keys) {
+      if (key.drive && key.drive->name == drive && key.drive->error == DriveError::gain)
+        gain *= DeviceSpread::value(spread.variables[i], key, values[i]);
+    }
+  }
+  return gain;
+}
+
+}  // namespace
+
+void TunedScene::find_units(const Watch& watch) {
+  const Prepared& p = nominal_;
+  volts_slope_ = time_slope_ = pulled_through_slope_ = Eigen::VectorXd::Zero(size());
+  if (options_.actuator != Actuator::pzt && has_pulling_electrode(p.scene.device)) electrode_ = searched_drive(p.scene.device);
+  constexpr double apart = 0.5;  // standard deviations
+  std::vector<double> levels = hold_levels(p.signals()), bias;
+  if (electrode_) bias = bias_of(p.scene, *electrode_);
+  struct Found {
+    double volts, period, pulled_through;
+  };
+  const auto found = [&](const Eigen::VectorXd& z) -> std::optional<Found> {
+    DeviceBuilder builder(*ensemble_);
+    const SampledDevice device = builder.device(values(z));
+    if (!device.model) return {};
+    Found own{.volts = 1, .period = 1 / device.model->angular_frequencies()[0], .pulled_through = Metrics::unset};
+    if (!electrode_) return own;
+    const double gain = gain_of(p.scene.spread, p.drive_names()[*electrode_], device.values);
+    own.volts = static_pull_in(*device.model, *electrode_, bias).voltage / gain;
+    own.pulled_through = pull_through_voltage(*device.model, *electrode_, levels, 1e-4) / gain;
+    return own;
+  };
+  const std::optional<Found> nominal = found(Eigen::VectorXd::Zero(size()));
+  if (!nominal) return;
+  if (std::isfinite(nominal->pulled_through)) pulled_through_ = nominal->pulled_through;
+  std::vector<std::optional<Found>> all(static_cast<std::size_t>(size() - 1));
+  run_tasks(
+      all.size(), options_.jobs,
+      [&](std::size_t k) { all[k] = found(apart * Eigen::VectorXd::Unit(size(), static_cast<Eigen::Index>(k))); }, watch.stop);
+  watch.throw_if_stopped();
+  const auto slope = [&](double own, double of_nominal) {
+    const double change = std::log(own / of_nominal) / apart;
+    return std::isfinite(change) ? change : 0;
+  };
+  for (Eigen::Index k = 0; k + 1 < size(); ++k) {
+    const std::optional<Found>& one = all[static_cast<std::size_t>(k)];
+    if (!one) continue;
+    volts_slope_[k] = slope(one->volts, nominal->volts);
+    time_slope_[k] = slope(one->period, nominal->period);
+    pulled_through_slope_[k] = slope(one->pulled_through, nominal->pulled_through);
+  }
+}
+
+TunedScene::Units TunedScene::units(const Eigen::VectorXd& z) const {
+  return {.volts = std::exp(volts_slope_.dot(z)), .time = std::exp(time_slope_.dot(z))};
+}
+
+double TunedScene::safe_level(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) const {
+  constexpr double one_in_a_thousand = 3.0902;  // standard deviations
+  const double deviation = std::sqrt(std::max(0.0, pulled_through_slope_.dot(covariance * pulled_through_slope_)));
+  return pulled_through_ * std::exp(pulled_through_slope_.dot(mean) - one_in_a_thousand * deviation);
+}
+
+}  // namespace softland

@@ -1,0 +1,122 @@
+// A scene made ready for a belief about one device of it: the quantities that the device may differ in, as independent standard
+// normal coordinates z, and the closings of such devices.
+//
+// To the quantities of [spread], which keep their distributions, come, where a scene has such a thing and does not vary it yet:
+//
+//   gain of each shaped drive              normal, as told
+//   gas.viscosity                          lognormal, 5 %
+//   stiffness or modulus of the contact    lognormal, 10 %
+//   contact gap over electrode gap         normal, 3 %, beside the factor that both may share
+//   delay of all edges                     normal, 0.3 % of the closing time of the plain step
+//
+// What is drawn per edge (jitter) is scatter, not a quantity of the device, and is left out.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "studies/ensemble.h"
+#include "studies/tuning/tuner.h"
+
+namespace softland {
+
+/// What is large and what is small in a scene.
+struct TuningScales {
+  double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
+  double gap = 0;           ///< contact gap [m]
+  double rebound = 0;       ///< significant rebound [m]
+  [[nodiscard]] double speed() const { return gap / closing_time; }  ///< [m/s]
+};
+
+/// A device that a belief thinks of.
+struct ImaginedDevice {
+  Eigen::VectorXd z;
+  SampledDevice sampled;
+  double delay = 0;  ///< of its edges [s]
+};
+
+/// A closing of an imagined device, as exact as its model.
+struct ImaginedClosing {
+  bool followed = false;                                      ///< to the end of its window
+  double touch = std::numeric_limits<double>::quiet_NaN();    ///< first touch, with the delay of the edges [s]; NaN: none
+  double speed = std::numeric_limits<double>::quiet_NaN();    ///< of the first touch [m/s]
+  double fastest = std::numeric_limits<double>::quiet_NaN();  ///< of all touches [m/s]
+  double highest = 0;                                         ///< rebound [m]
+  std::vector<ContactOpening> openings = {};                  ///< with the delay [s]
+  [[nodiscard]] bool closes() const { return followed && touch == touch; }
+};
+
+/// One device under one waveform of every drive.
+struct ImaginedShot {
+  const ImaginedDevice* device = nullptr;
+  const std::vector<Waveform>* waveforms = nullptr;
+  double gain = 1;  ///< of all sources in this shot
+};
+
+class TunedScene {
+ public:
+  /// Throws what Tuner throws.
+  TunedScene(const SceneFile& file, const TunerOptions& options, const Watch& watch);
+  TunedScene(const TunedScene&) = delete;
+  TunedScene& operator=(const TunedScene&) = delete;
+
+  [[nodiscard]] const TunerOptions& options() const { return options_; }
+  /// With the spread of all quantities but the delay of the edges, prepared for closings of an accuracy of 1e-4.
+  [[nodiscard]] const Prepared& nominal() const { return nominal_; }
+  [[nodiscard]] const TuningScales& scales() const { return scales_; }
+  [[nodiscard]] bool spread_is_assumed() const { return spread_is_assumed_; }
+  /// Whether closings go in lanes.
+  [[nodiscard]] bool is_in_lanes() const { return why_not_in_lanes(nominal_.model).empty() && options_.vectors != Vectors::none; }
+  /// Number of coordinates, of which the delay of the edges is the last.
+  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(nominal_.scene.spread.variables.size()) + 1; }
+  /// Which coordinates are of [spread] or the gain of a source: what moves the units of volts and time.
+  [[nodiscard]] bool is_nuisance(Eigen::Index k) const { return nuisances_[static_cast<std::size_t>(k)]; }
+  /// One standard deviation of the delay [s].
+  [[nodiscard]] double delay_deviation() const;
+
+  /// Values of the varying quantities, as DeviceSpread::to_values, at z.
+  [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
+  [[nodiscard]] std::vector<ImaginedDevice> devices(std::span<const Eigen::VectorXd> points, const Watch& watch = {}) const;
+  /// What the sources of a device give.
+  [[nodiscard]] std::vector<Signal> signals(const ImaginedShot& shot) const;
+  /// The closings, in order. An outcome does not depend on what else is closed. Throws Interrupted.
+  [[nodiscard]] std::vector<ImaginedClosing> close(std::span<const ImaginedShot> shots, const Watch& watch = {}) const;
+  /// The time after the last breakpoint that a closing is followed for where it has touched [s].
+  [[nodiscard]] double hold_time() const;
+
+  /// Of a device at z over those of the nominal one, to first order in the logarithm: units of the told volts of the electrode
+  /// that closes the switch (its static pull-in voltage over the gain of its source), and of time (the period of the first mode).
+  struct Units {
+    double volts = 1, time = 1;
+  };
+  [[nodiscard]] Units units(const Eigen::VectorXd& z) const;
+  /// How ln volts and ln time change with z.
+  [[nodiscard]] const Eigen::VectorXd& volts_slope() const { return volts_slope_; }
+  /// Of the devices with this mean and covariance of z, at most one in a thousand is pulled through its contact by a level of
+  /// that electrode below this [V]; infinite where none is.
+  [[nodiscard]] double safe_level(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) const;
+
+ private:
+  void find_units(const Watch& watch);
+
+  TunerOptions options_;
+  bool spread_is_assumed_ = false;
+  Prepared nominal_;
+  std::vector<bool> nuisances_;
+  std::unique_ptr<const Ensemble> ensemble_;
+  std::unique_ptr<const DeviceDrives> drives_;
+  TuningScales scales_;
+  std::optional<std::size_t> electrode_;  // that closes the switch, among the drives
+  Eigen::VectorXd volts_slope_, time_slope_, pulled_through_slope_;
+  double pulled_through_ = std::numeric_limits<double>::infinity();  // of the nominal device [V]
+};
+
+}  // namespace softland

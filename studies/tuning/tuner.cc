@@ -1,0 +1,305 @@
+#include "studies/tuning/tuner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "studies/tuning/proposal.h"
+
+namespace softland {
+namespace {
+
+constexpr std::size_t proposal_devices = 32;
+
+void check(const TunerOptions& options) {
+  const auto share = [](double x) { return x >= 0 && x < 1; };
+  require(options.edge_error > 0 && std::isfinite(options.edge_error), "the error of edges must be above 0 s");
+  require(options.unseen >= 0 && std::isfinite(options.unseen), "the shortest opening that is seen must be at least 0 s");
+  require(share(options.gain_error), "the error of the gain must be at least 0 and below 1");
+  require(share(options.shot_error), "the error from shot to shot must be at least 0 and below 1");
+  require(options.jobs >= 1, "jobs must be at least 1");
+  require(options.most_recipes >= 1 && options.most_recipes <= 5, "recipes must be 1 to 5");
+  require(options.effort > 0 && std::isfinite(options.effort), "the effort must be above 0");
+}
+
+// Of random numbers: those of a closing.
+std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(closings) + 1) << 20; }
+
+}  // namespace
+
+// What no closing changes.
+struct Tuner::Setting {
+  Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
+      : scene(file, options, watch), shapes(scene), recipes(search_recipes(scene, shapes, watch)) {}
+
+  TunedScene scene;
+  Shapes shapes;
+  std::vector<Recipe> recipes;
+};
+
+struct Tuner::State {
+  struct Fired {
+    LearnedShot shot;
+    std::vector<double> x;  // of its shape
+    TunerShot as_proposed;
+  };
+  // Volts that follow the touch time of a shot that is repeated.
+  struct Steering {
+    std::vector<Waveform> waveforms;  // at s = 1
+    double slope = Metrics::unset, most = 1, s = 1;
+    std::vector<double> touches;  // the first ones, which say where it ought to touch [s]
+    [[nodiscard]] std::vector<Waveform> steered() const {
+      std::vector<Waveform> own = waveforms;
+      for (Waveform& waveform : own) waveform = scaled(std::move(waveform), s, 1);
+      return own;
+    }
+    void follow(double touch) {
+      constexpr std::size_t of_reference = 8;
+      constexpr double share = 0.2, longest = 1e-3;
+      if (touches.size() < of_reference) return touches.push_back(touch);
+      double due = 0;
+      for (const double one : touches) due += one / of_reference;
+      const double error = std::clamp((touch - due) / slope, -longest, longest);
+      if (std::isfinite(error)) s = std::min(most, s * (1 - share * error));
+    }
+  };
+  struct Learned {
+    std::vector<Fired> fired;
+    int closings = 0, in_a_row = 0;
+    double hold = 1;  // of the hold level, over the nominal one
+    Belief belief;
+    std::optional<Steering> steering;
+    std::vector<double> x;  // of the next shot
+    TunerShot next, kept;
+    std::vector<double> surprises;  // of touch times that the belief had predicted, in standard deviations
+    int unexpected_bounces = 0;     // closings that bounced, where hardly a device of the belief did
+  };
+
+  State(std::shared_ptr<const Setting> of_scene, const Watch& watch)
+      : setting(std::move(of_scene)), scene(setting->scene), shapes(setting->shapes), recipes(setting->recipes) {
+    Draws draws(scene.options().seed, first_draw(0));
+    now.belief = Belief::prior(scene.size(), draws);
+    const Outlook outlook(scene, now.belief.resampled(proposal_devices, draws), draws, watch);
+    const Shapes limited = shapes_for(now);
+    now.x = limited.in_units(recipes.front().x, {}, {});
+    now.next = shot(1, limited.waveforms(now.x), outlook);
+    now.kept = now.next;
+  }
+
+  [[nodiscard]] Shapes shapes_for(const Learned& known) const {
+    return shapes.within(scene.safe_level(known.belief.mean, known.belief.covariance), known.hold);
+  }
+  [[nodiscard]] TunerShot shot(int number, std::vector<Waveform> waveforms, const Outlook& outlook) const {
+    TunerShot shot{.number = number, .waveforms = std::move(waveforms), .hold_time = scene.hold_time()};
+    shot.expected_cost = outlook.expected(shot.waveforms, outlook.size()).total();
+    shot.predicted = outlook.predicted(shot.waveforms);
+    return shot;
+  }
+  [[nodiscard]] Learned learned(Learned known, const ContactRecord& record, const Watch& watch) const;
+  void propose_next(Learned& known, const Watch& watch) const;
+  void keep_best(Learned& known, const Outlook& outlook, double expected) const;
+  void repeat(Learned& known, const Outlook& outlook) const;
+
+  std::shared_ptr<const Setting> setting;
+  const TunedScene& scene;
+  const Shapes& shapes;
+  const std::vector<Recipe>& recipes;
+  Learned now;
+};
+
+namespace {
+
+// How far a recorded first touch is from the predicted one, in standard deviations.
+double surprise(const PredictedRecord& predicted, const ContactRecord& record) {
+  constexpr double both_sides = 1.96, one_alone = 30, sure = 0.97;
+  const std::optional<double> seen = first_touch(record);
+  if (!seen || predicted.touches == 0) return (seen ? 1 - predicted.touches : predicted.touches) >= sure ? one_alone : 0;
+  const double edge = *seen < predicted.touch_median ? predicted.touch_low : predicted.touch_high;
+  return both_sides * (*seen - predicted.touch_median) / (edge - predicted.touch_median);
+}
+
+}  // namespace
+
+Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& record, const Watch& watch) const {
+  const PredictedRecord predicted = known.next.predicted;
+  known.fired.push_back({.shot = {.waveforms = known.next.waveforms, .record = record}, .x = known.x, .as_proposed = known.next});
+  ++known.closings;
+  const bool quiet = is_bounce_free(record);
+  const bool repeats = known.steering && quiet;
+  known.in_a_row = quiet ? known.in_a_row + 1 : 0;
+  if (!repeats) known.surprises.push_back(surprise(predicted, record));
+  constexpr double rarely = 0.05;
+  if (bounce_count(record).value_or(0) > 0 && predicted.bounces <= rarely) ++known.unexpected_bounces;
+  if (repeats) {
+    known.steering->follow(*first_touch(record));
+    known.next.waveforms = known.steering->steered();
+    known.next.number += 1;
+    return known;
+  }
+  known.steering.reset();
+  propose_next(known, watch);
+  return known;
+}
+
+void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
+  constexpr std::size_t first_ones = 4, last_ones = 8;  // that are learned from
+  constexpr double calm = 0.05, lowest_hold = 0.85, highest_hold = 1.2;
+  constexpr int hold_is_fixed = 2;  // closings
+  Draws draws(scene.options().seed, first_draw(known.closings));
+  std::vector<LearnedShot> shots;
+  for (std::size_t k = 0; k < known.fired.size(); ++k) {
+    if (k < first_ones || k + last_ones >= known.fired.size()) shots.push_back(known.fired[k].shot);
+  }
+  known.belief = softland::learned(scene, shots, known.belief, draws, watch);
+  const TunedScene::Units units = scene.units(known.belief.mean);
+  if (known.closings <= hold_is_fixed) known.hold = std::clamp(units.volts, lowest_hold, highest_hold);
+  const Outlook outlook(scene, known.belief.resampled(proposal_devices, draws), draws, watch);
+  const Shapes limited = shapes_for(known);
+  std::vector<std::vector<double>> candidates{known.x};
+  for (const Recipe& recipe : recipes) candidates.push_back(shapes.in_units(recipe.x, recipe.units, units));
+  for (const Fired& fired : known.fired) {
+    if (std::ranges::find(candidates, fired.x) == candidates.end()) candidates.push_back(fired.x);
+  }
+  const Proposal proposal =
+      propose(scene, limited, outlook, candidates, scene.options().seed + static_cast<std::uint64_t>(known.closings), watch);
+  known.x = proposal.x;
+  known.next = shot(known.next.number + 1, limited.waveforms(known.x), outlook);
+  keep_best(known, outlook, proposal.cost.total());
+  if (known.in_a_row >= 2 && proposal.cost.landing < calm) repeat(known, outlook);
+}
+
+// Of the waveforms without a bounce the one that the belief likes best, unless the next is clearly better.
+void Tuner::State::keep_best(Learned& known, const Outlook& outlook, double expected) const {
+  constexpr double clearly = 0.15;
+  known.kept = known.next;
+  double least = expected + clearly;
+  for (const Fired& fired : known.fired) {
+    if (!is_bounce_free(fired.shot.record)) continue;
+    const double cost = outlook.expected(fired.shot.waveforms, outlook.size()).total();
+    if (!(cost < least)) continue;
+    least = cost;
+    known.kept = fired.as_proposed;
+    known.kept.expected_cost = cost;
+    known.kept.predicted = outlook.predicted(fired.shot.waveforms);
+  }
+}
+
+void Tuner::State::repeat(Learned& known, const Outlook& outlook) const {
+  const auto fired = std::ranges::find(known.fired, known.kept.number, [](const Fired& one) { return one.as_proposed.number; });
+  if (fired == known.fired.end()) return;
+  known.steering = Steering{.waveforms = fired->shot.waveforms,
+                            .slope = outlook.touch_slope(fired->shot.waveforms),
+                            .most = std::max(1.0, shapes_for(known).room(fired->shot.waveforms))};
+  known.x = fired->x;
+  const int number = known.next.number;
+  known.next = known.kept;
+  known.next.number = number;
+}
+
+Tuner::Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch) {
+  check(options);
+  state_ = std::make_unique<State>(std::make_shared<const Setting>(file, options, watch), watch);
+}
+Tuner::Tuner(std::shared_ptr<const Setting> setting, const Watch& watch)
+    : state_(std::make_unique<State>(std::move(setting), watch)) {}
+Tuner::~Tuner() = default;
+Tuner::Tuner(Tuner&&) noexcept = default;
+Tuner& Tuner::operator=(Tuner&&) noexcept = default;
+
+Tuner Tuner::restarted() const { return Tuner(state_->setting, {}); }
+
+const Prepared& Tuner::scene() const { return state_->scene.nominal(); }
+double Tuner::step_closing_time() const { return state_->scene.scales().closing_time; }
+bool Tuner::spread_is_assumed() const { return state_->scene.spread_is_assumed(); }
+const TunerShot& Tuner::next() const { return state_->now.next; }
+int Tuner::closings() const { return state_->now.closings; }
+const TunerShot& Tuner::kept() const { return state_->now.kept; }
+const std::vector<double>& Tuner::surprises() const { return state_->now.surprises; }
+int Tuner::unexpected_bounces() const { return state_->now.unexpected_bounces; }
+int Tuner::bounce_free_in_a_row() const { return state_->now.in_a_row; }
+
+void Tuner::learn(const ContactRecord& record, const Watch& watch) {
+  const std::string fault = record_fault(record);
+  require(fault.empty(), fault);
+  if (!record.error.empty()) {
+    ++state_->now.next.number;
+    return;
+  }
+  state_->now = state_->learned(state_->now, record, watch);
+}
+
+namespace {
+
+double weighted_mean(const std::vector<double>& weights, const std::vector<double>& values) {
+  double sum = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) sum += weights[k] * values[k];
+  return sum;
+}
+
+double weighted_deviation(const std::vector<double>& weights, const std::vector<double>& values, double mean) {
+  double sum = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) sum += weights[k] * (values[k] - mean) * (values[k] - mean);
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+BeliefSummary Tuner::belief() const {
+  const TunedScene& scene = state_->scene;
+  const Belief& belief = state_->now.belief;
+  const std::vector<SpreadVariable>& variables = scene.nominal().scene.spread.variables;
+  std::vector<std::vector<double>> columns(variables.size() + 1);
+  for (const Eigen::VectorXd& z : belief.points) {
+    const std::vector<double> values = scene.values(z);
+    for (std::size_t i = 0; i < values.size(); ++i) columns[i].push_back(values[i]);
+    columns.back().push_back(scene.delay_deviation() * z[scene.size() - 1]);
+  }
+  BeliefSummary summary{.quantities = {}, .effective_devices = belief.effective_devices, .correlated = {}};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const bool is_delay = i == variables.size();
+    BelievedQuantity one{.name = is_delay ? "edges.delay" : variables[i].name,
+                         .unit = is_delay ? "s" : (variables[i].is_factor ? std::string() : variables[i].keys.front().unit),
+                         .prior_mean = is_delay ? 0 : variables[i].distribution.mean(),
+                         .prior_deviation = is_delay ? scene.delay_deviation() : variables[i].distribution.standard_deviation()};
+    one.mean = weighted_mean(belief.weights, columns[i]);
+    one.deviation = weighted_deviation(belief.weights, columns[i], one.mean);
+    summary.quantities.push_back(one);
+  }
+  constexpr double alike = 0.9;
+  for (std::size_t i = 0; i < columns.size() && state_->now.closings > 0; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const BelievedQuantity &a = summary.quantities[j], &b = summary.quantities[i];
+      double covariance = 0;
+      for (std::size_t k = 0; k < belief.weights.size(); ++k)
+        covariance += belief.weights[k] * (columns[j][k] - a.mean) * (columns[i][k] - b.mean);
+      const double correlation = covariance / (a.deviation * b.deviation);
+      if (!(std::abs(correlation) > alike)) continue;
+      summary.correlated.push_back(
+          fmt::format("The records do not tell {} from {} (correlation {:.2f}).", a.name, b.name, correlation));
+    }
+  }
+  return summary;
+}
+
+// Of 40 devices like the scene none had a touch beyond 3.5 or an unexpected bounce: results/tune.md.
+std::optional<std::string> Tuner::broken_assumption() const {
+  constexpr double far_off = 5;  // standard deviations
+  constexpr int too_many = 3;
+  const State::Learned& now = state_->now;
+  const double largest = now.surprises.empty() ? 0 : *std::ranges::max_element(now.surprises);
+  if (largest >= far_off)
+    return fmt::format(
+        "The device does not behave like the scene: a first touch came {} standard deviations from what was predicted before it.",
+        engineering(largest, "", 2));
+  if (now.unexpected_bounces >= too_many)
+    return fmt::format(
+        "The device does not behave like the scene: it bounced in {} closings that were predicted to be free of bounces.",
+        now.unexpected_bounces);
+  return {};
+}
+
+}  // namespace softland

@@ -1,0 +1,142 @@
+// Tunes a waveform on one device, closing after closing, by nothing but the state of its contact. Every closing is open loop.
+//
+// What is known of the device is a belief: weighted devices of the scene's spread (or the assumed one, config/assumed_spread.h),
+// which also differ in gain of the sources, viscosity of the film, stiffness of the contact, the ratio of contact to electrode
+// gap, and a constant delay of the edges, where a scene has such a thing. After every closing
+//
+//   1. the belief is learned anew from all records: Levenberg-Marquardt on the touch times from many starts, then rounds of
+//      weighted samples with the likelihood of the whole record (belief.h);
+//   2. the waveform with the least expected cost over the belief is searched (proposal.h), its hold level in the device's own
+//      unit of volts from the second closing on.
+//
+// The cost of a closing, B its highest rebound, t_i its first touch, T_0 that of the plain step on the nominal device, h the
+// significant rebound, g the contact gap, m = sqrt(h g / 20):
+//
+//   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88)       3 where it does not close
+//
+// No shot leaves the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would be
+// pulled through its contact. After two closings without a bounce, where none is expected, the same shot is repeated; its
+// volts then follow the touch time, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until it bounces.
+//
+// All numbers depend on scene, options and the pairs of shot and record alone: a tuner that learns a log again, shot by shot, is
+// in the state that it was in, to the bit, whatever the number of jobs.
+//
+// Source for the task: M. W. Blecke, D. S. Epp, H. Sumali, G. G. Parker, "A simple learning control to eliminate RF-MEMS switch
+// bounce", J. Microelectromech. Syst. 18 (2009) 458, who learn a waveform from the state of the contact. The belief is our own
+// method.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "model/ensemble/fleet.h"
+#include "studies/prepared.h"
+#include "studies/search_space.h"
+#include "studies/tuning/contact_record.h"
+#include "waveforms/waveform.h"
+
+namespace softland {
+
+struct TunerOptions {
+  Actuator actuator = Actuator::electrostatic;  ///< which drives are shaped
+  std::uint64_t seed = 1;
+  int jobs = 1;               ///< threads; does not change the results
+  double edge_error = 50e-9;  ///< of the time of an edge, one standard deviation [s]
+  double unseen = 100e-9;     ///< openings below this are not recorded [s]
+  double gain_error = 0.005;  ///< of the sources, constant but unknown, relative, one standard deviation
+  double shot_error = 2e-4;   ///< of the gain from shot to shot, relative, one standard deviation
+  int most_recipes = 1;       ///< units of volts that recipes are searched for, 1 to 5
+  double effort = 1;          ///< evaluations of every search, over the usual
+  Vectors vectors = vectors_in_use();
+};
+
+/// What the belief expects of a shot.
+struct PredictedRecord {
+  double touches = 0;         ///< share of the devices that touch
+  double touch_median = 0;    ///< first touch [s]; NaN where none touches
+  double touch_low = 0;       ///< early, where 2.5 % would be of normal ones, errors included [s]
+  double touch_high = 0;      ///< late, the same of 97.5 % [s]
+  double bounces = 0;         ///< share of the devices with an opening that is seen
+  double rebound_median = 0;  ///< highest rebound [m]
+  double rebound_high = 0;    ///< its 95 % quantile [m]
+};
+
+struct TunerShot {
+  int number = 0;                        ///< counted from 1
+  std::vector<Waveform> waveforms = {};  ///< what the sources are told, in the order of Switch::drives() [V]
+  double hold_time = 0;                  ///< how long the last levels are to be held and recorded after the last breakpoint [s]
+  double expected_cost = 0;              ///< over the belief, see above
+  PredictedRecord predicted = {};
+};
+
+/// A quantity of the device and what is known of it.
+struct BelievedQuantity {
+  std::string name;                            ///< of its entry in the spread; "edges.delay" [s]
+  std::string unit;                            ///< SI unit; empty of a factor
+  double prior_mean = 0, prior_deviation = 0;  ///< factors of the scene's value, or in the unit
+  double mean = 0, deviation = 0;
+};
+
+struct BeliefSummary {
+  std::vector<BelievedQuantity> quantities;
+  double effective_devices = 0;         ///< of the weighted samples: 1 over the sum of the squares of the weights
+  std::vector<std::string> correlated;  ///< sentences about quantities that the records do not tell apart
+};
+
+class Tuner {
+ public:
+  /// Makes the scene ready and searches the recipes of its nominal device: seconds in lanes. Throws InvalidInput for a scene that
+  /// cannot be tuned (no contact, no drive to shape, options out of range), Interrupted where `watch` asks to stop.
+  Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch = {});
+  ~Tuner();
+  Tuner(Tuner&&) noexcept;
+  Tuner& operator=(Tuner&&) noexcept;
+
+  /// A tuner of the same scene before its first closing: for the next device.
+  [[nodiscard]] Tuner restarted() const;
+
+  /// The scene that the belief is about: nominal device, drives and limits.
+  [[nodiscard]] const Prepared& scene() const;
+  /// The first touch of the plain step on the nominal device [s].
+  [[nodiscard]] double step_closing_time() const;
+  /// Whether the scene said how devices differ, or it was assumed.
+  [[nodiscard]] bool spread_is_assumed() const;
+
+  /// The shot to be fired next. The same until a record is learned.
+  [[nodiscard]] const TunerShot& next() const;
+  /// Learns what came of next(), and proposes the shot after it. A record with an error is no closing: the same waveform is
+  /// proposed again, under the next number. Throws InvalidInput for a record that cannot be one, Interrupted where `watch` asks
+  /// to stop: nothing is learned then.
+  void learn(const ContactRecord& record, const Watch& watch = {});
+
+  /// Closings that were learned.
+  [[nodiscard]] int closings() const;
+  [[nodiscard]] BeliefSummary belief() const;
+  /// The waveform that is best known so far, with what is expected of it: one that was recorded without a bounce, unless the next
+  /// one is expected to be clearly better.
+  [[nodiscard]] const TunerShot& kept() const;
+  /// Closings without a bounce up to the last one, in a row.
+  [[nodiscard]] int bounce_free_in_a_row() const;
+  static constexpr int enough_in_a_row = 5;
+  [[nodiscard]] bool is_done() const { return bounce_free_in_a_row() >= enough_in_a_row; }
+  /// How far the recorded first touch of each closing was from what the belief had predicted, in standard deviations; shots that
+  /// are repeated are left out as long as they do not bounce.
+  [[nodiscard]] const std::vector<double>& surprises() const;
+  /// Closings that bounced, where at most one in twenty devices of the belief did.
+  [[nodiscard]] int unexpected_bounces() const;
+  /// In words, where records were not what the belief predicted before it saw them: the device does not behave like the scene.
+  [[nodiscard]] std::optional<std::string> broken_assumption() const;
+
+ private:
+  struct Setting;
+  struct State;
+  Tuner(std::shared_ptr<const Setting> setting, const Watch& watch);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace softland

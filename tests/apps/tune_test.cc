@@ -1,0 +1,273 @@
+// The verbs of a laboratory as people use them: a device to practise on, and what tunes a waveform on one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "program.h"
+
+namespace softland {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<json> lines_of(const std::string& text) {
+  std::vector<json> all;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) all.push_back(json::parse(line, nullptr, false));
+  return all;
+}
+
+const std::vector<std::string> in_volts{"--set", "waveform.main.level=17 V", "--set", "driver.main.max_voltage=21 V"};
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+class DeviceVerb : public testing::Test {
+ protected:
+  [[nodiscard]] Outcome told(const std::string& lines, const std::vector<std::string>& more = {}) const {
+    write(here.path() / "stdin.txt", lines);
+    return here.run(std::vector<std::string>{"device", "gold.toml"} + in_volts + more);
+  }
+  static std::string shot(int number, const std::string& drives = R"({"main":{"time_s":[0],"V":[17.7]}})") {
+    return "{\"shot\":" + std::to_string(number) + ",\"hold_s\":1e-4,\"drives\":" + drives + "}\n";
+  }
+  Workplace here;
+};
+
+TEST_F(DeviceVerb, AnswersEveryShotByWhatALabSees) {
+  const Outcome o = told(shot(1) + "\n" + shot(2) + "{\"done\":true}\n" + shot(3));
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(o.err, "") << "nothing of the device is told";
+  const std::vector<json> answers = lines_of(o.out);
+  ASSERT_EQ(answers.size(), 2U) << "none after the end";
+  for (const json& one : answers) {
+    EXPECT_EQ(keys(one), (std::set<std::string>{"shot", "edges_s"}));
+    EXPECT_GT(one["edges_s"].size(), 3U);
+    EXPECT_EQ(one["edges_s"][0][1], 1);
+  }
+  EXPECT_EQ(told(shot(1) + shot(2)).out, o.out) << "the end of the input ends it too";
+  EXPECT_EQ(told(shot(2) + shot(1)).out, lines_of(o.out)[1].dump() + "\n" + lines_of(o.out)[0].dump() + "\n")
+      << "shots do not depend on each other";
+  EXPECT_NE(told(shot(1) + shot(2), {"--seed", "2"}).out, o.out);
+  EXPECT_NE(told(shot(1) + shot(2), {"--model", "modes=+1|gas=veijola|stiffness=1.1"}).out, o.out);
+}
+
+TEST_F(DeviceVerb, RefusesWhatItCannotDoAndGoesOn) {
+  const std::vector<std::pair<std::string, std::string>> lines{
+      {"shoot\n", "the line is no JSON object: shoot"},
+      {"{\"shot\":2}\n", "hold_s: is missing"},
+      {"{\"shot\":1.5,\"hold_s\":1e-4,\"drives\":{}}\n", "shot = 1.5: must be a whole number from 1 on"},
+      {"{\"shot\":2,\"hold_s\":0,\"drives\":{}}\n", "hold_s = 0: must be above 0"},
+      {"{\"shot\":2,\"hold\":1,\"drives\":{}}\n", "hold: there is no such key; there are shot, hold_s, drives"},
+      {shot(2, "{}"), "drives = {}: must be"},
+      {shot(2, R"({"main":{"time_s":[0,1e-6],"V":[5]}})"), "drives.main: time_s has 2 numbers and V has 1: must be as many"},
+      {shot(2, R"({"main":{"time_s":[0,2e-6,1e-6],"V":[5,5,5]}})"), "drives.main.time_s: must begin at 0 and never decrease"},
+      {shot(2, R"({"main":{"time_s":[0],"V":["5 V"]}})"), "drives.main.V = \"5 V\": must be a number"},
+      {shot(2, R"({"pzt":{"time_s":[0],"V":[5]}})"), "drives.pzt: there is no such drive; there are main"},
+      {shot(2, R"({"main":{"time_s":[0],"V":[21.5]}})"), "drives.main: the voltage reaches 21.5 V"},
+      {shot(2, R"({"main":{"time_s":[0],"V":[-1]}})"), "drives.main: "}};
+  std::string all;
+  for (const auto& [line, rule] : lines) all += line;
+  const Outcome o = told(all + shot(7));
+  EXPECT_EQ(o.status, 0);
+  const std::vector<json> answers = lines_of(o.out);
+  ASSERT_EQ(answers.size(), lines.size() + 1);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    EXPECT_EQ(keys(answers[i]), (std::set<std::string>{"shot", "error"})) << lines[i].first;
+    EXPECT_THAT(answers[i]["error"].get<std::string>(), HasSubstr(lines[i].second)) << lines[i].first;
+  }
+  EXPECT_EQ(answers[0]["shot"], nullptr);
+  EXPECT_EQ(answers[1]["shot"], 2);
+  EXPECT_TRUE(answers.back().contains("edges_s")) << "the shot after them";
+}
+
+TEST_F(DeviceVerb, NamesTheOptionThatItCannotTake) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
+      {{"--edge-error", "50"}, "--edge-error 50: must be a time [s], at least 0, such as "},
+      {{"--unseen", "-1 ns"}, "--unseen -1 ns: must be a time [s], at least 0"},
+      {{"--gain-error", "x"}, "--gain-error x: "},
+      {{"--drift", "1 %/0"}, "--drift SHARE/ 0: must be a whole number from 1 on"},
+      {{"--model", "modes=5"}, "--model modes=5: 'modes=5' must be modes=+N, gas=NAME, stiffness=FACTOR or a key"},
+      {{"--model", "gas=air"}, "gas=air: must be "},
+      {{"--model", "gap.contact=2 V"}, "--set gap.contact"},
+      {{"--seed", "-1"}, "--seed -1: must be a whole number from 0 on"}};
+  for (const auto& [words, rule] : refused) {
+    const Outcome o = told("", words);
+    EXPECT_EQ(o.status, 2) << rule;
+    EXPECT_THAT(o.err, HasSubstr(rule));
+  }
+}
+
+// A device that is quick to tune on: a plate on a spring, of one degree of freedom.
+constexpr const char* plate = R"(
+[structure]
+kind = "plate"
+mass = "100 ng"
+stiffness = "1 N/m"
+area = "10000 um^2"
+[gap]
+electrode = "3 um"
+contact = "1.5 um"
+[electrode.main]
+fringing = "none"
+[gas]
+model = "linear"
+quality_factor = 2
+[contact]
+model = "linear"
+stiffness = "1 kN/m"
+[waveform.main]
+family = "step"
+level = "1.3 Vdp"
+[driver.main]
+max_voltage = "1.6 Vdp"
+[simulate]
+accuracy = 1e-4
+)";
+
+class TuneVerb : public testing::Test {
+ protected:
+  TuneVerb() { write(here.path() / "plate.toml", plate); }
+  static std::string device(const std::string& more = "") {
+    return std::string(SOFTLAND_PROGRAM) + " device plate.toml --seed 4 " + more;
+  }
+  static std::vector<std::string> words(const std::string& command, const std::vector<std::string>& more = {}) {
+    return std::vector<std::string>{"tune", "plate.toml", "--device", command, "--effort", "0.2", "--jobs", "1", "--out", "out"} +
+           more;
+  }
+  [[nodiscard]] json tune_json(const std::string& folder = "out") const {
+    return json::parse(read(here.path() / folder / "tune.json"), nullptr, false);
+  }
+  [[nodiscard]] std::size_t logged(const std::string& folder = "out") const {
+    return lines_of(read(here.path() / folder / "closings.jsonl")).size() - 1;
+  }
+  Workplace here;
+};
+
+TEST_F(TuneVerb, LandsADeviceAndLeavesWhatItKnows_optimized) {
+  const Outcome o = here.run(words(device(), {"--json", "told.json"}));
+  EXPECT_EQ(o.status, 0) << o.err;
+  const json j = tune_json();
+  EXPECT_EQ(json::parse(read(here.path() / "told.json")), j);
+  EXPECT_EQ(j["status"], "done");
+  EXPECT_EQ(j["bounce_free_in_a_row"], 5);
+  EXPECT_EQ(j["broken_assumption"], nullptr);
+  EXPECT_EQ(j["closings"].size(), logged());
+  EXPECT_EQ(j["best"]["bounce_free"], true);
+  EXPECT_GT(j["belief"]["quantities"].size(), 2U);
+  EXPECT_THAT(o.err, AllOf(HasSubstr("softland: closing 1 "), HasSubstr("expected of the next: touch at ")));
+  EXPECT_THAT(o.out, HasSubstr("lands without a bounce"));
+  EXPECT_THAT(read(here.path() / "out/tune.html"), HasSubstr("<section id=\"records\">"));
+  // The voltages of best.toml are those of best.csv, and within the limits.
+  const Outcome run = here.run({"simulate", "out/best.toml", "--quiet", "--json", "-"});
+  EXPECT_TRUE(run.status == 0 || run.status == 4) << run.err;
+  EXPECT_EQ(here.run({"export", "out"}).out, read(here.path() / "out/best.csv"));
+}
+
+// What a power cut leaves is gone on with, to the bits of a run that nothing interrupts.
+TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
+  ASSERT_EQ(here.run(words(device(), {"--closings", "4"})).status % 4, 0);
+  const std::string whole = read(here.path() / "out/closings.jsonl");
+  const json unbroken = tune_json();
+  fs::rename(here.path() / "out", here.path() / "whole");
+  const pid_t child = here.start(words(device(), {"--closings", "4"}));
+  for (int i = 0; i < 6000 && !fs::exists(here.path() / "out/tune.json"); ++i) std::this_thread::sleep_for(10ms);
+  kill(child, SIGKILL);
+  EXPECT_EQ(here.finish(child).status, -SIGKILL);
+  const std::size_t before = logged();
+  EXPECT_GE(before, 1U);
+  const Outcome o = here.run(words(device(), {"--closings", "4", "--resume"}));
+  EXPECT_EQ(o.status % 4, 0) << o.err;
+  EXPECT_EQ(read(here.path() / "out/closings.jsonl"), whole);
+  for (const char* part : {"closings", "best", "next", "belief", "status"}) EXPECT_EQ(tune_json()[part], unbroken[part]) << part;
+  const Outcome other = here.run(words(device(), {"--resume", "--seed", "2"}));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("out/closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
+}
+
+TEST_F(TuneVerb, LosesNothingWhereTheDeviceDies_optimized) {
+  const std::string dying = "read -r line; echo \"$line\" | " + device() + "; read -r line; exit 5";
+  const Outcome o = here.run(words(dying));
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("ended with status 5 before it answered shot 2"));
+  EXPECT_EQ(logged(), 1U);
+  EXPECT_EQ(tune_json()["closings"].size(), 1U);
+  EXPECT_EQ(tune_json()["status"], "under_way");
+  EXPECT_EQ(here.run(words(device(), {"--closings", "2", "--resume"})).status % 4, 0);
+  EXPECT_EQ(logged(), 2U);
+}
+
+TEST_F(TuneVerb, GivesUpWhereShotAfterShotGivesNoRecord_optimized) {
+  const Outcome o = here.run(
+      words("n=1; while read -r line; do echo \"{\\\"shot\\\":$n,\\\"error\\\":\\\"no trigger\\\"}\"; n=$((n+1)); done"));
+  EXPECT_EQ(o.status, 2);
+  EXPECT_THAT(o.err, HasSubstr("3 shots in a row gave no record; the device said of the last one: no trigger"));
+  EXPECT_EQ(logged(), 3U);
+}
+
+TEST_F(TuneVerb, EndsItsDeviceWhenItIsInterrupted_optimized) {
+  const pid_t child = here.start(words("echo $$ > pid; exec sleep 100"));
+  for (int i = 0; i < 6000 && read(here.path() / "pid").find('\n') == std::string::npos; ++i) std::this_thread::sleep_for(10ms);
+  const pid_t device_process = std::stoi(read(here.path() / "pid"));
+  kill(child, SIGINT);
+  const Outcome o = here.finish(child);
+  EXPECT_EQ(o.status, 130) << o.err;
+  EXPECT_EQ(kill(device_process, 0), -1);
+  EXPECT_EQ(tune_json()["status"], "interrupted");
+}
+
+// Nonsense is asked for again, in words.
+TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
+  write(here.path() / "edges.csv", "time_s,closed\n2e-05,1\n2.2e-05,0\n2.4e-05,1\n");
+  write(here.path() / "stdin.txt",
+        "soon\n36\n36 V\n-3 us\n9 s\n 21.5 us \nmany\n-1\n2\nfailed\nfile none.csv\nfile edges.csv\nnever\nstop\n");
+  const Outcome o = here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out", "--quiet"});
+  EXPECT_EQ(o.status, 4) << "no closing was without a bounce: " << o.err;
+  for (const char* said :
+       {"load out/shot-1.csv into the generator", "when did the contact first close", "36 V is no time; write it with its unit",
+        "-3 us is no time", "9 s is after the end of the record", "bounces: many: must be a whole number from 0 on",
+        "none.csv: cannot be read", "shot 4: load out/shot-4.csv"})
+    EXPECT_THAT(o.err, HasSubstr(said));
+  const json j = tune_json();
+  EXPECT_EQ(j["status"], "stopped");
+  ASSERT_EQ(j["closings"].size(), 4U);
+  EXPECT_EQ(j["closings"][0]["record"], json({{"shot", 1}, {"closing_time_s", 21.5e-6}, {"bounce_count", 2}}));
+  EXPECT_EQ(j["closings"][1]["record"]["error"], "the shot failed");
+  EXPECT_EQ(j["closings"][2]["record"]["edges_s"].size(), 3U);
+  EXPECT_EQ(j["closings"][3]["record"]["edges_s"].size(), 0U);
+  // The same voltages as a device would be told, as a waveform that softland reads.
+  write(here.path() / "shot.toml",
+        edited(plate, "family = \"step\"\nlevel = \"1.3 Vdp\"", "family = \"table\"\nfile = \"out/shot-1.csv\""));
+  EXPECT_EQ(here.run({"check", "shot.toml", "--quiet"}).status, 0);
+}
+
+TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
+      {{}, "--device COMMAND or --by-hand says where the shots are fired: give one of them"},
+      {{"--device", "x", "--by-hand"}, "give one of them"},
+      {{"--device", "x", "--closings", "0"}, "--closings 0: must be a whole number from 1 on"},
+      {{"--device", "x", "--timeout", "0 s"}, "--timeout 0 s: must be above 0 s"},
+      {{"--device", "x", "--timeout", "3"}, "--timeout 3: must be a time [s]"},
+      {{"--device", "x", "--actuator", "hand"}, "--actuator hand: must be electrostatic"},
+      {{"--device", "x", "--resume"}, "closings.jsonl: there is no such file"}};
+  for (const auto& [words, rule] : refused) {
+    const Outcome o = here.run(std::vector<std::string>{"tune", "plate.toml"} + words);
+    EXPECT_EQ(o.status, 2) << rule;
+    EXPECT_THAT(o.err, HasSubstr(rule));
+    EXPECT_THAT(o.err, Not(HasSubstr("internal")));
+  }
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,126 @@
+// What records tell of a device.
+#include "studies/tuning/belief.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "tests/studies/scenes.h"
+
+namespace softland {
+namespace {
+
+using Eigen::VectorXd;
+
+class Beliefs : public testing::Test {
+ protected:
+  [[nodiscard]] std::vector<Waveform> step(double share) const { return {Step{.level = share * hold_}}; }
+  [[nodiscard]] std::vector<LearnedShot> records_of(const VectorXd& z) const {
+    const std::vector<VectorXd> points{z};
+    const std::vector<ImaginedDevice> device = scene_.devices(points);
+    std::vector<LearnedShot> shots;
+    for (const double share : {1.0, 1.15, 0.9}) {
+      shots.push_back({.waveforms = step(share), .record = {}});
+      const std::vector<ImaginedShot> one{{.device = &device[0], .waveforms = &shots.back().waveforms}};
+      const ImaginedClosing closing = scene_.close(one)[0];
+      shots.back().record.edges.push_back({closing.touch, true});
+      for (const ContactOpening& o : closing.openings) {
+        if (!std::isfinite(o.end) || o.end - o.begin < scene_.options().unseen) continue;
+        shots.back().record.edges.push_back({o.begin, false});
+        shots.back().record.edges.push_back({o.end, true});
+      }
+    }
+    return shots;
+  }
+
+  TunedScene scene_{gold_with_two_modes(), {}, {}};
+  double hold_ = scene_.nominal().signals()[0].hold_level();
+};
+
+// The terms of belief.h, written down again from one closing's numbers.
+TEST_F(Beliefs, LikelihoodIsThatOfItsFormula) {
+  const TuningScales& s = scene_.scales();
+  const double t0 = s.closing_time;
+  const ImaginedClosing closing{.followed = true,
+                                .touch = t0,
+                                .speed = 0.1,
+                                .fastest = 0.1,
+                                .highest = 1e-9,
+                                .openings = {{1.05 * t0, 1.10 * t0}, {1.2 * t0, 1.2 * t0 + 50e-9}}};
+  const double late = 80e-9;
+  const ContactRecord record{.edges = {{t0 + late, true}, {1.06 * t0, false}, {1.08 * t0, true}}};
+  const std::vector<LearnedShot> shots{{.waveforms = step(1), .record = record}};
+  const double deviation = std::sqrt(50e-9 * 50e-9 + std::pow(2e-6 / 2000 / 0.1, 2) + std::pow(t0 / 3400, 2));
+  double expected = -late * late / (2 * deviation * deviation);
+  // Open from 1.05 to 1.09, 1.10, 1.10 T_0 in the three spans; recorded 0.02 T_0 in each; the second opening is too short to see.
+  for (const double open : {0.04, 0.05, 0.05}) {
+    const double q = (open - 0.02) / (0.0045 + 0.2 * open);
+    expected -= 1.2 * std::log(1 + q * q / 3);
+  }
+  constexpr double rounding = 1e-9;
+  EXPECT_NEAR(Likelihood(scene_, shots).of(std::vector{closing}), expected, rounding * std::abs(expected));
+}
+
+TEST_F(Beliefs, ATouchThatIsMissingWeighsMuch) {
+  const ImaginedClosing open{.followed = true};
+  const std::vector<LearnedShot> touched{{.waveforms = step(1), .record = {.closing_time = 30e-6}}},
+      none{{.waveforms = step(1), .record = {}}};
+  EXPECT_LT(Likelihood(scene_, touched).of(std::vector{open}), -100);
+  EXPECT_EQ(Likelihood(scene_, none).of(std::vector{open}), 0);
+}
+
+TEST_F(Beliefs, ALouderImpactIsAFasterOne) {
+  const auto closing = [](double speed) {
+    return ImaginedClosing{.followed = true, .touch = 30e-6, .speed = speed, .fastest = speed};
+  };
+  const auto shot = [&](double loudness) {
+    return LearnedShot{.waveforms = step(1), .record = {.closing_time = 30e-6, .loudness = loudness}};
+  };
+  const std::vector<LearnedShot> shots{shot(2), shot(20)};
+  const Likelihood likelihood(scene_, shots);
+  EXPECT_GT(likelihood.of(std::vector{closing(0.01), closing(0.1)}),
+            likelihood.of(std::vector{closing(0.1), closing(0.01)}) + 10);
+}
+
+TEST_F(Beliefs, ADeviceIsFoundBackFromItsRecords_optimized) {
+  VectorXd z = VectorXd::Zero(scene_.size());
+  z[0] = 1.3, z[1] = -0.8, z[2] = 0.6;
+  const std::vector<LearnedShot> shots = records_of(z);
+  Draws draws(7, 0);
+  const Belief prior = Belief::prior(scene_.size(), draws);
+  const Belief belief = learned(scene_, shots, prior, draws);
+  EXPECT_NEAR(std::accumulate(belief.weights.begin(), belief.weights.end(), 0.0), 1, 1e-12);
+  // What a landing depends on is known: the touch time of a waveform that was not shot.
+  const std::vector<Waveform> other = step(0.95);
+  const auto touches = [&](const std::vector<VectorXd>& points) {
+    const std::vector<ImaginedDevice> devices = scene_.devices(points);
+    std::vector<ImaginedShot> all;
+    for (const ImaginedDevice& device : devices) all.push_back({.device = &device, .waveforms = &other});
+    std::vector<double> times;
+    for (const ImaginedClosing& closing : scene_.close(all)) times.push_back(closing.touch);
+    return times;
+  };
+  const double truth = touches({z})[0], nominal = touches({VectorXd::Zero(scene_.size())})[0];
+  double mean = 0;
+  const std::vector<double> believed = touches(belief.points);
+  for (std::size_t k = 0; k < believed.size(); ++k) mean += belief.weights[k] * believed[k];
+  constexpr double three_edges = 150e-9;
+  EXPECT_GT(std::abs(truth - nominal), 4 * three_edges);
+  EXPECT_FALSE(!(std::abs(mean - truth) <= three_edges)) << mean << " " << truth;
+  // The whole of z lies within what is believed.
+  const VectorXd off = z - belief.mean;
+  for (Eigen::Index k = 0; k < z.size(); ++k) EXPECT_LT(std::abs(off[k]), 4 * std::sqrt(belief.covariance(k, k)) + 0.05) << k;
+}
+
+TEST_F(Beliefs, ResamplingKeepsShares) {
+  Belief belief{.points = {VectorXd::Constant(1, 1), VectorXd::Constant(1, 2)}, .weights = {0.25, 0.75}};
+  Draws draws(3, 0);
+  double sum = 0;
+  for (const VectorXd& z : belief.resampled(40, draws)) sum += z[0];
+  EXPECT_EQ(sum, 10 * 1 + 30 * 2);
+}
+
+}  // namespace
+}  // namespace softland

@@ -1,0 +1,127 @@
+// The devices that a belief is made of, and their closings.
+#include "studies/tuning/tuned_scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/studies/scenes.h"
+
+namespace softland {
+namespace {
+
+using Eigen::VectorXd;
+
+Eigen::Index coordinate(const TunedScene& scene, std::string_view name) {
+  const auto& all = scene.nominal().scene.spread.variables;
+  return std::ranges::find(all, name, &SpreadVariable::name) - all.begin();
+}
+
+TEST(TunedScenes, TheOriginIsTheNominalDevice) {
+  const TunedScene scene(gold_with_two_modes(), {.vectors = Vectors::none}, {});
+  const std::vector<VectorXd> origin{VectorXd::Zero(scene.size())};
+  const Device& own = scene.devices(origin)[0].sampled.model->device();
+  const Device& nominal = scene.nominal().scene.device;
+  EXPECT_DOUBLE_EQ(own.structure.thickness, nominal.structure.thickness);
+  EXPECT_DOUBLE_EQ(own.gap.contact, nominal.gap.contact);
+  constexpr double median_of_lognormal = 0.006;  // below its mean, of a deviation of 10 %
+  EXPECT_NEAR(own.contact->effective_modulus / nominal.contact->effective_modulus, 1, median_of_lognormal);
+}
+
+TEST(TunedScenes, TheGapsShareTheirFactorAndTheContactGapHasOneOfItsOwn) {
+  const TunedScene scene(gold_with_two_modes(), {.vectors = Vectors::none}, {});
+  const auto factors = [&](const VectorXd& z) {
+    const std::vector<VectorXd> points{z};
+    const Gap gap = scene.devices(points)[0].sampled.model->device().gap, nominal = scene.nominal().scene.device.gap;
+    return std::pair{gap.electrode / nominal.electrode, gap.contact / nominal.contact};
+  };
+  constexpr double rounding = 1e-9;
+  const auto [electrode, contact] = factors(VectorXd::Unit(scene.size(), coordinate(scene, "gaps")));
+  EXPECT_NEAR(electrode, 1.02, rounding);
+  EXPECT_NEAR(contact, 1.02, rounding);
+  const auto [same, alone] = factors(VectorXd::Unit(scene.size(), coordinate(scene, "gap.contact")));
+  EXPECT_NEAR(same, 1, rounding);
+  EXPECT_NEAR(alone, 1.03, rounding);
+}
+
+TEST(TunedScenes, AScenesOwnSpreadIsNotVariedTwice) {
+  const TunedScene scene(gold({"structure.modes=2", "spread.\"gas.viscosity\"={distribution=\"normal\",cov=\"1 %\"}"}),
+                         {.vectors = Vectors::none}, {});
+  const auto& all = scene.nominal().scene.spread.variables;
+  const auto film = std::ranges::find(all, "gas.viscosity", &SpreadVariable::name);
+  ASSERT_NE(film, all.end());
+  EXPECT_EQ(film->distribution.kind(), DistributionKind::normal);
+  EXPECT_EQ(std::ranges::count(all, "gas.viscosity", &SpreadVariable::name), 1);
+}
+
+TEST(TunedScenes, AClosingInLanesIsThatOfTheDeviceAlone) {
+  const TunedScene one_by_one(gold_with_two_modes(), {.vectors = Vectors::none}, {}), in_lanes(gold_with_two_modes(), {}, {});
+  if (!in_lanes.is_in_lanes()) GTEST_SKIP() << "skipped: no AVX2";
+  std::vector<VectorXd> points;
+  for (Eigen::Index k = 0; k < in_lanes.size(); ++k) points.push_back(VectorXd::Unit(in_lanes.size(), k));
+  const std::vector<Waveform> step{Step{.level = in_lanes.nominal().signals()[0].hold_level()}};
+  const auto close = [&](const TunedScene& scene) {
+    const std::vector<ImaginedDevice> devices = scene.devices(points);
+    std::vector<ImaginedShot> shots;
+    for (const ImaginedDevice& device : devices) shots.push_back({.device = &device, .waveforms = &step});
+    return scene.close(shots);
+  };
+  const std::vector<ImaginedClosing> a = close(one_by_one), b = close(in_lanes);
+  constexpr double of_tolerance = 1e-4;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    ASSERT_TRUE(a[k].closes() && b[k].closes()) << k;
+    EXPECT_FALSE(!(std::abs(a[k].touch / b[k].touch - 1) <= of_tolerance)) << k;
+    EXPECT_FALSE(!(std::abs(a[k].speed / b[k].speed - 1) <= of_tolerance)) << k;
+    ASSERT_FALSE(a[k].openings.empty() || b[k].openings.empty()) << k;
+    EXPECT_FALSE(!(std::abs(a[k].openings[0].begin / b[k].openings[0].begin - 1) <= of_tolerance)) << k;
+  }
+}
+
+TEST(TunedScenes, ADelayMovesEveryEdgeAndNothingElse) {
+  const TunedScene scene(gold_with_two_modes(), {}, {});
+  const std::vector<VectorXd> points{VectorXd::Zero(scene.size()), VectorXd::Unit(scene.size(), scene.size() - 1)};
+  const std::vector<Waveform> step{Step{.level = scene.nominal().signals()[0].hold_level()}};
+  const std::vector<ImaginedDevice> devices = scene.devices(points);
+  const std::vector<ImaginedShot> shots{{.device = &devices[0], .waveforms = &step}, {.device = &devices[1], .waveforms = &step}};
+  const std::vector<ImaginedClosing> closings = scene.close(shots);
+  EXPECT_DOUBLE_EQ(closings[1].touch, closings[0].touch + scene.delay_deviation());
+  EXPECT_EQ(closings[1].highest, closings[0].highest);
+  EXPECT_EQ(closings[1].openings.size(), closings[0].openings.size());
+}
+
+TEST(TunedScenes, UnitsFollowThePullInVoltageAndThePeriod) {
+  const TunedScene scene(gold_with_two_modes(), {.vectors = Vectors::none}, {});
+  const auto of = [&](const char* name) {
+    const VectorXd z = VectorXd::Unit(scene.size(), coordinate(scene, name));
+    const std::vector<VectorXd> points{z};
+    const Switch& own = *scene.devices(points)[0].sampled.model;
+    return std::pair{scene.units(z), own.angular_frequencies()[0]};
+  };
+  constexpr double second_order = 2e-3;
+  const auto [thicker, frequency] = of("structure.thickness");
+  EXPECT_NEAR(thicker.volts, std::pow(1.02, 1.5), second_order);  // Vdp as the root of the bending stiffness
+  EXPECT_NEAR(thicker.time, scene.nominal().model.angular_frequencies()[0] / frequency, second_order);
+  EXPECT_NEAR(of("driver.main.gain").first.volts, 1 / 1.005, second_order);
+}
+
+TEST(TunedScenes, ALevelThatIsSafePullsNoneOfAThousandThrough) {
+  const TunedScene scene(gold({"structure.modes=2", "contact.effective_modulus=1 GPa"}), {.vectors = Vectors::none}, {});
+  const double safe = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Identity(scene.size(), scene.size()));
+  const double known = scene.safe_level(VectorXd::Zero(scene.size()), Eigen::MatrixXd::Zero(scene.size(), scene.size()));
+  const double nominal = pull_through_voltage(scene.nominal().model, 0, std::vector{scene.nominal().signals()[0].hold_level()});
+  ASSERT_TRUE(std::isfinite(nominal));
+  constexpr double precision = 5e-3;  // the median of a lognormal modulus is below the scene's
+  EXPECT_NEAR(known / nominal, 1, precision);
+  EXPECT_LT(safe, known);
+}
+
+TEST(TunedScenes, AScenesWithoutAContactIsRefused) {
+  SceneFile file = gold_with_two_modes();
+  file.erase("contact");
+  EXPECT_THROW(TunedScene(file, {}, {}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace softland
