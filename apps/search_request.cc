@@ -127,7 +127,9 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request, co
   if (is_nominal && !request.budget) options.more_evaluations = options.max_evaluations / 2;
   if (request.robust == nominal_alone) options.conditions = read_conditions(request, figure_names());
   if (request.budget) read_budget(*request.budget, options);
-  options.begins_with_half = request.robust == nominal_alone && request.budget && !request.seeds;
+  // Other methods go on where they were; the plan of a search of one seed holds that number.
+  const bool has_one_seed = !request.seeds || *request.seeds == "1";
+  options.begins_with_half = request.robust == nominal_alone && request.budget && has_one_seed && request.optimizer == "auto";
   return options;
 }
 
