@@ -97,7 +97,7 @@ def main():
         lines.append(f"| {case[1]}: below 10 / 1 nm, 40 devices | " + " | ".join(
             f"{a.removesuffix(' %')} / {b}" for a, b in zip(good, very_good)) + " |")
         assert their_marks == marks
-    lines += ["", f"{seconds[0].upper()}{seconds[1:]} s. Said to be broken: {devices.group(1)}. No shot leaves the limits of the driver: the simulated laboratory would refuse it.", "",
+    lines += ["", f"{seconds[0].upper()}{seconds[1:]}. Said to be broken: {devices.group(1)}. No shot leaves the limits of the driver: the simulated laboratory would refuse it.", "",
               "## Other devices and drives", "",
               "Shares in %. The belief knows nothing of what the device does otherwise.", "",
               "| case | devices | after closings | below 10 nm | below 1 nm | third shot, 95 %, nm | first touch over the step's at last, median / 95 % | proposal, median | said to be broken |",
