@@ -286,7 +286,7 @@ BeliefSummary Tuner::belief() const {
   return summary;
 }
 
-// Of 124 devices that were like their scenes the furthest touch was 5.7, and the most unexpected bounces 2.
+// Of 92 devices that were like their scenes the furthest touch was 5.7, and the most unexpected bounces 2.
 std::optional<std::string> Tuner::broken_assumption() const {
   constexpr double far_off = 6;  // standard deviations
   constexpr int too_many = 3;
