@@ -8,12 +8,14 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "sampling/statistics.h"
 #include "studies/tuning/proposal.h"
 
 namespace softland {
 namespace {
 
 constexpr std::size_t proposal_devices = 32;
+constexpr std::size_t first_ones = 4, last_ones = 8;  // records that are learned from
 
 void check(const TunerOptions& options) {
   const auto share = [](double x) { return x >= 0 && x < 1; };
@@ -60,17 +62,16 @@ struct Tuner::State {
     void follow(double touch) {
       constexpr std::size_t of_reference = 8;
       constexpr double share = 0.2, longest = 1e-3;
-      if (touches.size() < of_reference) return touches.push_back(touch);
-      double due = 0;
-      for (const double one : touches) due += one / of_reference;
-      const double error = std::clamp((touch - due) / slope, -longest, longest);
+      if (touches.size() < of_reference) touches.push_back(touch);
+      const double due = sample_mean(touches), error = std::clamp((touch - due) / slope, -longest, longest);
       if (std::isfinite(error)) s = std::min(most, s * (1 - share * error));
     }
   };
   struct Learned {
     std::vector<Fired> fired;
     int closings = 0, in_a_row = 0;
-    double hold = 1;  // of the hold level, over the nominal one
+    std::size_t forgotten = 0;  // records that are believed no more, of those that were fired
+    double hold = 1;            // of the hold level, over the nominal one
     Belief belief;
     std::optional<Steering> steering;
     std::vector<double> x;  // of the next shot
@@ -140,19 +141,19 @@ Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& 
     known.next.number += 1;
     return known;
   }
+  if (known.steering) known.forgotten = known.fired.size() - std::min(known.fired.size(), last_ones);  // what drifted
   known.steering.reset();
   propose_next(known, watch);
   return known;
 }
 
 void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
-  constexpr std::size_t first_ones = 4, last_ones = 8;  // that are learned from
   constexpr double calm = 0.05, lowest_hold = 0.85, highest_hold = 1.2;
   constexpr int hold_is_fixed = 2;  // closings
   Draws draws(scene.options().seed, first_draw(known.closings));
   std::vector<LearnedShot> shots;
-  for (std::size_t k = 0; k < known.fired.size(); ++k) {
-    if (k < first_ones || k + last_ones >= known.fired.size()) shots.push_back(known.fired[k].shot);
+  for (std::size_t k = known.forgotten; k < known.fired.size(); ++k) {
+    if (k < known.forgotten + first_ones || k + last_ones >= known.fired.size()) shots.push_back(known.fired[k].shot);
   }
   known.belief = softland::learned(scene, shots, known.belief, draws, watch);
   const TunedScene::Units units = scene.units(known.belief.mean);
@@ -285,9 +286,9 @@ BeliefSummary Tuner::belief() const {
   return summary;
 }
 
-// Of 40 devices like the scene none had a touch beyond 3.5 or an unexpected bounce: results/tune.md.
+// Of 92 devices that were like their scenes the furthest touch was 5.7, and the most unexpected bounces 2.
 std::optional<std::string> Tuner::broken_assumption() const {
-  constexpr double far_off = 5;  // standard deviations
+  constexpr double far_off = 6;  // standard deviations
   constexpr int too_many = 3;
   const State::Learned& now = state_->now;
   const double largest = now.surprises.empty() ? 0 : *std::ranges::max_element(now.surprises);

@@ -16,7 +16,8 @@
 //
 // No shot leaves the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would be
 // pulled through its contact. After two closings without a bounce, where none is expected, the same shot is repeated; its
-// volts then follow the touch time, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until it bounces.
+// volts then follow the touch time, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until it bounces. Then all records but the
+// last eight are forgotten.
 //
 // All numbers depend on scene, options and the pairs of shot and record alone: a tuner that learns a log again, shot by shot, is
 // in the state that it was in, to the bit, whatever the number of jobs.

@@ -115,7 +115,7 @@ TEST(Tuners, OptionsOutOfRangeAreRefused) {
 
 TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
   Tuner tuner(gold_with_two_modes(), cheap());
-  const PracticeDevice stiff(gold_with_two_modes(), {.seed = 8, .model = {.set = {"structure.youngs_modulus=55 GPa"}}});
+  const PracticeDevice stiff(gold_with_two_modes(), {.seed = 8, .model = {.set = {"structure.youngs_modulus=40 GPa"}}});
   tuner.learn(fired(stiff, tuner.next(), 1).record);
   ASSERT_TRUE(tuner.broken_assumption()) << tuner.surprises().front();
   EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("does not behave like the scene"));
@@ -143,6 +143,23 @@ TEST(Tuners, DevicesThatNoBeliefHasSeenLandWithinThreeClosings_slow) {
     EXPECT_FALSE(!(sample_quantile(heights, 0.95) <= soft)) << n;
     EXPECT_FALSE(tuner.broken_assumption()) << *tuner.broken_assumption();
   }
+}
+
+TEST(Tuners, RepeatedShotsFollowADrift_slow) {
+  constexpr double drift = 1e-5;  // of all volts, from closing to closing
+  constexpr int first = 20, last = 100;
+  Tuner tuner(gold(), {.jobs = 2});
+  const PracticeDevice device(gold(), {.seed = 4001, .drift = drift, .model = {.more_modes = 1}});
+  double volts = 0;
+  for (int k = 1; k <= last; ++k) {
+    if (k == first) volts = signal(tuner.next().waveforms[0]).peak();
+    expect_within_limits(tuner, tuner.next().waveforms);
+    tuner.learn(fired(device, tuner.next(), static_cast<std::uint64_t>(k)).record);
+  }
+  EXPECT_TRUE(tuner.is_done());
+  const double followed = signal(tuner.next().waveforms[0]).peak() / volts, due = (1 + drift * first) / (1 + drift * last);
+  constexpr double scatter = 4e-4;  // of touch times, and what steering lags behind
+  EXPECT_FALSE(!(std::abs(followed - due) <= scatter)) << followed << " " << due;
 }
 
 }  // namespace
