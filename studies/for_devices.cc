@@ -37,7 +37,7 @@ constexpr std::uint64_t measured_devices = 128;               // of a search in 
 constexpr double coarse_error = 0.01, fine_error = 0.002;     // of measurements, relative
 constexpr double least_times_of_error = 20;
 constexpr std::array errors_of_pull_in{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02};  // relative
-constexpr std::size_t judged_by_error = 512;                                      // devices
+constexpr std::size_t judged_by_error = 256;                                      // devices
 constexpr std::uint64_t which_searched = 0, which_chosen = 1, which_measured = 2;
 constexpr double end_of_drawing = 0.3, least_of_race = 0.4, end_of_race = 0.75;  // of a budget of time
 
@@ -182,6 +182,7 @@ class DevicesStudy {
 
   void make_aims(const std::vector<DeviceOutcome>& step) {
     conditions_ = beside_step(devices_.conditions, step);
+    for (const std::string_view key : judged_figures) step_figures_[key] = quantile_95(step, key);
     const double step_time = quantile_95(step, "initial_contact_time_s");
     const std::vector<FigureName> figures = conditioned_figures();
     tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
@@ -511,6 +512,31 @@ class DevicesStudy {
     return *all;
   }
 
+  // Conditions that no figure is above the plain step's, in what decides whether a drive is worse.
+  [[nodiscard]] std::vector<Criterion> beside_step_figures() const {
+    std::vector<Criterion> all;
+    const std::vector<FigureName> figures = conditioned_figures();
+    for (const std::string_view key : judged_figures) {
+      const auto figure = static_cast<std::size_t>(std::ranges::find(figures, key, &FigureName::key) - figures.begin());
+      const double least = key == judged_figures[1] ? first().given.scene.metrics.significant_rebound : 0;
+      const double limit = std::max(least, step_figures_.at(key));
+      if (std::isfinite(limit)) all.push_back({.figure = figure, .comparison = Comparison::at_most, .limit = limit, .text = ""});
+    }
+    return all;
+  }
+  // On the devices of a search in measured units.
+  bool is_harder_than_step(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) const {
+    const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
+    return std::ranges::any_of(beside_step_figures(),
+                               [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value < constrained_share; });
+  }
+  [[nodiscard]] RaceAims no_harder() const {
+    RaceAims aims = aims_;
+    for (RobustAim* aim : {&aims.tail, &aims.share})
+      std::ranges::copy(beside_step_figures(), std::back_inserter(aim->conditions));
+    return aims;
+  }
+
   using Found = std::optional<std::map<std::string, Waveform>>;
   // For each of these calibrations, side by side; none where a search came to nothing.
   std::array<Found, 2> searched_in(const ChosenFrom& winner, const std::array<Calibration, 2>& calibrations) {
@@ -532,9 +558,14 @@ class DevicesStudy {
             parts[i] = part;
             tell("searching for devices that are measured", (parts[0] + parts[1]) / 2);
           };
-          const RaceResult found = race_alone(settings_[k], k, cost, aims_, winner.bounce_free >= ranked_by_share,
-                                              {winner.waveforms, result_drawing_waveforms()}, own);
-          closings[i] = found.closings;
+          const auto searched = [&](const RaceAims& aims) {
+            RaceResult found = race_alone(settings_[k], k, cost, aims, winner.bounce_free >= ranked_by_share,
+                                          {winner.waveforms, result_drawing_waveforms()}, own);
+            closings[i] += found.closings;
+            return found;
+          };
+          RaceResult found = searched(aims_);
+          if (!found.racers.empty() && is_harder_than_step(cost, found.racers.front().waveforms)) found = searched(no_harder());
           if (!found.racers.empty()) all[i] = found.racers.front().waveforms;
         },
         options_.stop);
@@ -583,6 +614,7 @@ class DevicesStudy {
   std::vector<Criterion> conditions_;  // with limits of their own
   RobustAim tail_aim_;
   RaceAims aims_;
+  std::map<std::string_view, double> step_figures_;  // the plain step's in volts, 95 % quantiles of judged_figures
   std::optional<RobustCost> cost_;
   std::optional<GaugedEnsemble> gauged_by_pull_in_, gauged_by_time_;  // the devices of the verdict
   std::size_t eligible_ = 0;

@@ -6,8 +6,8 @@
 //   3  a race over families and measures (race.h)
 //   4  choice on 512 other devices, beside the plain step
 //   5  searches in units that are measured on every device: Vdp to 1 %, and the closing time of one slow step to 50 ns (of
-//   switches
-//      for which that is no time, Vdp and period to 0.2 %)
+//      switches for which that is no time, Vdp and period to 0.2 %); again, under conditions, where one finds what is harder
+//      than the plain step
 //   6  verdict on 2000 fresh devices: plain step, drawing and winner over the whole window; measured units over that of a search,
 //      which moves 95 % quantiles by less than 0.4 %
 //
