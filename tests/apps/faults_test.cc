@@ -136,6 +136,8 @@ class Faults : public testing::Test {
     return here->run({verb, "--help"}).out.find(std::string("\n  ") + option) != std::string::npos;
   }
 
+  static void expect_each_ends(const std::vector<std::pair<std::string, int>>& told);
+
   static inline Workplace* here = nullptr;
   static inline std::vector<std::string> verbs;
 };
@@ -218,14 +220,14 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
 }
 
 // Each verb gets its signal while it waits.
-void expect_each_ends(const Workplace& here, const std::vector<std::pair<std::string, int>>& told) {
+void Faults::expect_each_ends(const std::vector<std::pair<std::string, int>>& told) {
   std::vector<std::unique_ptr<Workplace>> places;
   std::vector<pid_t> children;
   const FullPipe pipe;
   for (const auto& [verb, signal] : told) {
     const auto& place = places.emplace_back(workplace());
-    fs::copy(here.path() / "run", place->path() / "run", fs::copy_options::recursive);
-    fs::copy(here.path() / "part.sqlite", place->path() / "part.sqlite");
+    fs::copy(here->path() / "run", place->path() / "run", fs::copy_options::recursive);
+    fs::copy(here->path() / "part.sqlite", place->path() / "part.sqlite");
     children.push_back(place->start(words(verb, calls()[verb].quick), SOFTLAND_PROGRAM, pipe.end()));
   }
   for (const pid_t child : children) wait_until_it_waits(child);
@@ -237,14 +239,14 @@ void expect_each_ends(const Workplace& here, const std::vector<std::pair<std::st
 TEST_F(Faults, ASignalEndsEveryVerbThatWaitsForItsReader_optimized) {
   std::vector<std::pair<std::string, int>> told;
   for (const std::string& verb : verbs) told.emplace_back(verb, stopping_signals[told.size() % std::size(stopping_signals)]);
-  expect_each_ends(*here, told);
+  expect_each_ends(told);
 }
 
 TEST_F(Faults, EverySignalEndsEveryVerbThatWaitsForItsReader_slow) {
   for (const int signal : stopping_signals) {
     std::vector<std::pair<std::string, int>> told;
     for (const std::string& verb : verbs) told.emplace_back(verb, signal);
-    expect_each_ends(*here, told);
+    expect_each_ends(told);
   }
 }
 
