@@ -79,7 +79,7 @@ duration = "1 ms"
 
 json parsed(const Outcome& o) { return json::parse(o.out, nullptr, false); }
 
-TEST(Success, IsNotAClosedStateThatIsPulledThrough) {
+TEST(Success, IsNotAClosedStateThatIsPulledThrough_optimized) {
   const Workplace here;
   write(here.path() / "bridge.toml", bridge);
   const auto at = [&](const char* level) {
@@ -298,7 +298,7 @@ TEST(LongRuns, HoldWaveformsOfManyPointsInABoundedResult_optimized) {
   }
 }
 
-TEST(Check, AcceptsExactlyWhatSimulateRuns) {
+TEST(Check, AcceptsExactlyWhatSimulateRuns_optimized) {
   const Workplace here;
   write(here.path() / "bridge.toml", bridge);
   write(here.path() / "between.toml", between_two);
