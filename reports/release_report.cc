@@ -12,6 +12,7 @@
 #include "reports/json_number.h"
 #include "reports/made_with.h"
 #include "reports/quantity.h"
+#include "reports/robustness_words.h"
 #include "reports/svg.h"
 #include "reports/text.h"
 #include "version.h"
@@ -25,6 +26,7 @@ using internal::left_aligned;
 using internal::percent;
 using internal::quantity;
 using internal::right_aligned;
+using internal::spread_words;
 using nlohmann::json;
 
 constexpr const char* plain_words = "plain opening";
@@ -170,7 +172,7 @@ json devices_json(const std::optional<ReleaseOnDevices>& found) {
   if (!found) return nullptr;
   return {{"count", found->devices},
           {"spread_assumed", found->spread_assumed},
-          {"varied", found->spread},
+          {"spread", spread_words(found->spread)},
           {"plain", openings_json(found->plain)},
           {"best", openings_json(found->best)}};
 }
@@ -181,9 +183,10 @@ std::string devices_text(const ReleaseOnDevices& found) {
   const auto row = [&](const char* name, double DeviceOpenings::*figure, const char* unit) {
     return release_row(name, value(found.plain.*figure, unit), value(found.best.*figure, unit));
   };
-  std::string text = wrapped(fmt::format("On {} devices that differ in {}{}, all in the volts of the nominal one:", found.devices,
-                                         found.spread, found.spread_assumed ? " (assumed, the scene has no [spread])" : "")) +
-                     "\n" + release_row("", plain_words, "found");
+  std::string text =
+      wrapped(fmt::format("On {} devices, all in the volts of the nominal one: {}{}.", found.devices, spread_words(found.spread),
+                          found.spread_assumed ? " (assumed, the scene has no [spread])" : "")) +
+      "\n" + release_row("", plain_words, "found");
   text += release_row("open for good", percent(found.plain.open), percent(found.best.open));
   text += release_row("from when the drives stand on", percent(found.plain.in_band), percent(found.best.in_band));
   text += row("open for good, 95 % within", &DeviceOpenings::settling_time, "s");

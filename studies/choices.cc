@@ -52,8 +52,13 @@ Prepared without_what_does_not_matter(const Prepared& prepared, const Watch& wat
 
 Prepared choose(Prepared prepared, bool default_limits, const Watch& watch) {
   if (prepared.scene.auto_modes) prepared = with_as_many_modes_as_needed(prepared, default_limits, watch);
-  for (std::string& warning : static_excess_warnings(prepared)) prepared.scene.warnings.push_back(std::move(warning));
   if (prepared.scene.simulate.automatic_effects) prepared = without_what_does_not_matter(prepared, watch);
+  return prepared;
+}
+
+Prepared prepare_and_choose(const SceneFile& file, bool default_limits, const Watch& watch) {
+  Prepared prepared = choose(prepare(file, default_limits, watch), default_limits, watch);
+  for (std::string& warning : static_excess_warnings(prepared)) prepared.scene.warnings.push_back(std::move(warning));
   return prepared;
 }
 

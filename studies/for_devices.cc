@@ -487,9 +487,10 @@ class DevicesStudy {
 
   // What the better of these waveforms reaches where Vdp is known with ever larger errors.
   void judge_by_error(const std::vector<std::map<std::string, Waveform>>& waveforms) {
-    GaugedEnsemble few = gauged({.pull_in_error = coarse_error});
-    few.devices.resize(std::min(judged_by_error, few.devices.size()));
-    few.exact.resize(few.devices.size());
+    const GaugedEnsemble& all = gauged({.pull_in_error = coarse_error});
+    const auto end = static_cast<std::ptrdiff_t>(std::min(judged_by_error, all.devices.size()));
+    const GaugedEnsemble few{.devices = {all.devices.begin(), all.devices.begin() + end},
+                             .exact = {all.exact.begin(), all.exact.begin() + end}};
     for (const double error : errors_of_pull_in) {
       const Calibration knowledge{.pull_in_error = error};
       const RobustCost fresh(first(), aims_.tail, known_as(few, KnownUnits(knowledge), options_.seed));
@@ -584,9 +585,7 @@ class DevicesStudy {
       });
       if (!beaten && std::isfinite(one.first_touch) && kept.size() < most_of_front) kept.push_back(&one);
     }
-    const RobustCost fresh(
-        first(), aims_.tail,
-        build_all(Ensemble(first().given, devices_.verdict, options_.seed), *known_, options_.seed, options_.jobs, watch_));
+    const RobustCost fresh(first(), aims_.tail, known_as(gauged(known_->calibration()), *known_, options_.seed));
     for (const ChosenFrom* one : kept) {
       watch_.throw_if_stopped();
       const std::vector<DeviceOutcome> outcomes = closed(fresh, one->waveforms, fresh.devices());

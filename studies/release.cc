@@ -299,11 +299,9 @@ DeviceOpenings summarised(const std::vector<Opening>& openings, double band) {
 // Both openings on devices; none where no device is held closed.
 std::optional<ReleaseOnDevices> on_devices(const ReleaseSearch& search, const Release& r, const Watch& watch) {
   SceneFile file = r.given.scene.file;
-  ReleaseOnDevices found{.spread_assumed = assume_spread(file), .spread = {}, .plain = {}, .best = {}};
-  std::optional<Prepared> varied;
-  if (found.spread_assumed) varied = prepare(file);
-  const Prepared& nominal = varied ? *varied : r.given;
-  for (const SpreadVariable& v : nominal.scene.spread.variables) found.spread += (found.spread.empty() ? "" : ", ") + v.name;
+  ReleaseOnDevices found{.spread_assumed = assume_spread(file), .plain = {}, .best = {}};
+  const Prepared nominal = found.spread_assumed ? prepare(file) : r.given;
+  found.spread = nominal.scene.spread;
   const Ensemble ensemble(nominal, r.options.devices, r.options.seed);
   std::vector<std::optional<std::pair<Opening, Opening>>> of_device(ensemble.size());
   std::atomic<std::size_t> done = 0;

@@ -50,8 +50,8 @@ struct ConfirmingOpening {
   ReleaseFigures figures;
 };
 
-/// How devices open that differ as the scene says, or in the usual way (config/assumed_spread.h). They are held closed, and open,
-/// by the volts of the nominal one. One that does not stay open counts as infinite.
+/// How devices open that differ as the scene says, or in the usual way (config/assumed_spread.h), whose sources do not err. They
+/// are held closed, and open, by the volts of the nominal one. One that does not stay open counts as infinite.
 struct DeviceOpenings {
   double open = 0;     ///< share that is open for good at the end of the window
   double in_band = 0;  ///< share that is in the band from the moment that the drives stand
@@ -60,7 +60,7 @@ struct DeviceOpenings {
 struct ReleaseOnDevices {
   std::uint64_t devices = 0;  ///< that can be described and are held closed
   bool spread_assumed = false;
-  std::string spread;  ///< that they are of, its keys
+  DeviceSpread spread = {};  ///< that they are of
   DeviceOpenings plain, best;
 };
 

@@ -16,9 +16,8 @@ bool stretches(const Structure& s) { return s.kind == StructureKind::clamped_cla
 std::string warning(const Scene& scene, std::size_t electrode, double voltage, double excess) {
   constexpr int digits = 4;
   return fmt::format(
-      "structure.modes = {}: the static pull-in voltage of electrode {}, {}, is {} above that with {} modes, since a bridge that "
-      "is "
-      "bent by many thicknesses hangs like a membrane; dynamic pull-in and release are as uncertain",
+      "structure.modes = {}: the static pull-in voltage of electrode {}, {}, is {} above that with {} modes, since a bridge "
+      "that is bent by many thicknesses hangs like a membrane; dynamic pull-in and release are as uncertain",
       scene.device.structure.modes, scene.device.electrodes[electrode].name, engineering(voltage, "V", digits),
       engineering(100 * excess, "%", 2), most_static_modes);
 }
