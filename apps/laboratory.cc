@@ -15,8 +15,8 @@ void with_laboratory(Verb& verb, LaboratoryRequest& request) {
                 "scatter of the gain from shot to shot, one standard deviation (default: 0.02 %)");
 }
 
-Laboratory laboratory(const LaboratoryRequest& request) {
-  Laboratory known;
+LaboratoryErrors laboratory_errors(const LaboratoryRequest& request) {
+  LaboratoryErrors known;
   const auto take = [](double& value, const char* option, const std::optional<std::string>& text, const Dimension& due) {
     if (text) value = quantity_of(option, *text, due);
   };

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/options.h"
-#include "studies/tuning/practice_device.h"
+#include "studies/tuning/contact_record.h"
 
 namespace softland::apps {
 
@@ -17,13 +17,7 @@ struct LaboratoryRequest {
 /// --edge-error, --unseen, --gain-error and --shot-error.
 void with_laboratory(Verb& verb, LaboratoryRequest& request);
 
-struct Laboratory {
-  double edge_error = PracticeOptions{}.edge_error;  ///< of the time of an edge, one standard deviation [s]
-  double unseen = PracticeOptions{}.unseen;          ///< openings shorter than this are not seen [s]
-  double gain_error = PracticeOptions{}.gain_error;  ///< of the gain of a source, one standard deviation, relative
-  double shot_error = PracticeOptions{}.shot_error;  ///< of the gain from shot to shot, one standard deviation, relative
-};
 /// Throws InvalidInput for a quantity of another dimension or below 0.
-[[nodiscard]] Laboratory laboratory(const LaboratoryRequest& request);
+[[nodiscard]] LaboratoryErrors laboratory_errors(const LaboratoryRequest& request);
 
 }  // namespace softland::apps

@@ -34,7 +34,8 @@ constexpr std::array marks{1, 2, 3, 4, 6, 8, 12};
 struct Arguments {
   std::string scene = "mem-gold.toml", actuator = "electrostatic", method = "belief", gas;
   int devices = 20, closings = 12, jobs = 2, modes = 1, recipes = 1;
-  double first_device = 1, edge_error = 50e-9, unseen = 100e-9, shot_error = 2e-4, gain_error = 0.005, stiffness = 1;
+  double first_device = 1, stiffness = 1;
+  LaboratoryErrors laboratory = {};
   double effort = 1;
   double drift_of_1000 = 0;  // relative, of the volts in 1000 closings: the kept waveform is then fired 1000 times
   double good = 10e-9, very_good = 1e-9;
@@ -57,10 +58,10 @@ Arguments read(std::span<char*> words) {
       {"--recipes", [&](const std::string& v) { a.recipes = std::stoi(v); }},
       {"--effort", [&](const std::string& v) { a.effort = std::stod(v); }},
       {"--first-device", [&](const std::string& v) { a.first_device = std::stod(v); }},
-      {"--edge-error", [&](const std::string& v) { a.edge_error = std::stod(v); }},
-      {"--unseen", [&](const std::string& v) { a.unseen = std::stod(v); }},
-      {"--shot-error", [&](const std::string& v) { a.shot_error = std::stod(v); }},
-      {"--gain-error", [&](const std::string& v) { a.gain_error = std::stod(v); }},
+      {"--edge-error", [&](const std::string& v) { a.laboratory.edge_error = std::stod(v); }},
+      {"--unseen", [&](const std::string& v) { a.laboratory.unseen = std::stod(v); }},
+      {"--shot-error", [&](const std::string& v) { a.laboratory.shot_error = std::stod(v); }},
+      {"--gain-error", [&](const std::string& v) { a.laboratory.gain_error = std::stod(v); }},
       {"--stiffness", [&](const std::string& v) { a.stiffness = std::stod(v); }},
       {"--drift-of-1000", [&](const std::string& v) { a.drift_of_1000 = std::stod(v); }},
       {"--good", [&](const std::string& v) { a.good = std::stod(v); }},
@@ -339,14 +340,9 @@ int main(int count, char** words) try {
   require(actuator != nullptr, "--actuator: must be electrostatic, pzt or both");
   const auto begin = std::chrono::steady_clock::now();
   const auto since = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
-  const Tuner fresh(file, {.actuator = actuator->value,
-                           .jobs = a.jobs,
-                           .edge_error = a.edge_error,
-                           .unseen = a.unseen,
-                           .gain_error = a.gain_error,
-                           .shot_error = a.shot_error,
-                           .most_recipes = a.recipes,
-                           .effort = a.effort});
+  const Tuner fresh(
+      file,
+      {.actuator = actuator->value, .jobs = a.jobs, .laboratory = a.laboratory, .most_recipes = a.recipes, .effort = a.effort});
   const std::vector<Waveform> recipe = fresh.next().waveforms;
   fmt::print("ready after {:.1f} s; expected cost {:.3f}; step touches at {:.2f} us\n", since(), fresh.next().expected_cost,
              1e6 * fresh.step_closing_time());
@@ -361,10 +357,7 @@ int main(int count, char** words) try {
   for (int n = 0; n < a.devices; ++n) {
     const PracticeDevice device(file,
                                 {.seed = static_cast<std::uint64_t>(a.first_device) + static_cast<std::uint64_t>(n),
-                                 .edge_error = a.edge_error,
-                                 .unseen = a.unseen,
-                                 .gain_error = a.gain_error,
-                                 .shot_error = a.shot_error,
+                                 .laboratory = a.laboratory,
                                  .drift = (n % 2 == 0 ? 1 : -1) * a.drift_of_1000 / 1000,
                                  .model = {.more_modes = a.modes, .gas = a.gas, .stiffness = a.stiffness, .set = a.model_sets}});
     Laboratory lab(device, fresh.next().hold_time);

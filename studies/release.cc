@@ -276,21 +276,21 @@ bool better(const ReleaseFigures& a, const ReleaseFigures& b) {
   return a_settles ? a.settling_time < b.settling_time : a.residual_vibration < b.residual_vibration;
 }
 
-double quantile_95(const std::vector<Opening>& openings, double ReleaseFigures::*figure) {
+double quantile_95(const std::vector<ReleaseFigures>& openings, double ReleaseFigures::*figure) {
   std::vector<double> values;
-  for (const Opening& o : openings) {
-    const double value = o.figures.*figure;
+  for (const ReleaseFigures& of_device : openings) {
+    const double value = of_device.*figure;
     values.push_back(std::isnan(value) ? std::numeric_limits<double>::infinity() : value);
   }
   return sample_quantile(values, 0.95);
 }
 
-DeviceOpenings summarised(const std::vector<Opening>& openings, double band) {
+DeviceOpenings summarised(const std::vector<ReleaseFigures>& openings, double band) {
   const auto share = [&](const auto& holds) {
     return static_cast<double>(std::ranges::count_if(openings, holds)) / static_cast<double>(openings.size());
   };
-  return {.open = share([](const Opening& o) { return o.figures.status == Status::done; }),
-          .in_band = share([&](const Opening& o) { return is_open_with_drives(o.figures, band); }),
+  return {.open = share([](const ReleaseFigures& f) { return f.status == Status::done; }),
+          .in_band = share([&](const ReleaseFigures& f) { return is_open_with_drives(f, band); }),
           .settling_time = quantile_95(openings, &ReleaseFigures::settling_time),
           .residual_vibration = quantile_95(openings, &ReleaseFigures::residual_vibration),
           .overshoot = quantile_95(openings, &ReleaseFigures::overshoot)};
@@ -303,7 +303,7 @@ std::optional<ReleaseOnDevices> on_devices(const ReleaseSearch& search, const Re
   const Prepared nominal = found.spread_assumed ? prepare(file) : r.given;
   found.spread = nominal.scene.spread;
   const Ensemble ensemble(nominal, r.options.devices, r.options.seed);
-  std::vector<std::optional<std::pair<Opening, Opening>>> of_device(ensemble.size());
+  std::vector<std::optional<std::pair<ReleaseFigures, ReleaseFigures>>> of_device(ensemble.size());
   std::atomic<std::size_t> done = 0;
   run_tasks(
       ensemble.size(), r.options.jobs,
@@ -315,17 +315,17 @@ std::optional<ReleaseOnDevices> on_devices(const ReleaseSearch& search, const Re
         if (!keeps_closed(*device.model, closed)) return;
         const std::span<const double> at = closed->coordinates();
         const auto opened = [&](const std::vector<Signal>& signals) {
-          return search.open(*device.model, at, signals, opening_tolerance, r.window, watch.stop);
+          return search.open(*device.model, at, signals, opening_tolerance, r.window, watch.stop).figures;
         };
         of_device[k].emplace(opened(r.plain.signals), opened(r.best->signals));
       },
       watch.stop);
   if (watch.stopped()) return std::nullopt;
-  std::vector<Opening> plain, best;
-  for (auto& one : of_device) {
+  std::vector<ReleaseFigures> plain, best;
+  for (const auto& one : of_device) {
     if (!one) continue;
-    plain.push_back(std::move(one->first));
-    best.push_back(std::move(one->second));
+    plain.push_back(one->first);
+    best.push_back(one->second);
   }
   if (best.empty()) return std::nullopt;
   found.devices = best.size();
@@ -381,6 +381,7 @@ Release release(const SceneFile& file, const ReleaseOptions& options, const Watc
   r.goal_met = meets_goal(*r.best);
   r.confirmed = r.goal_met && std::all_of(r.checks.begin(), r.checks.end(), meets_goal);
   if (r.options.devices > 0 && !r.interrupted) r.on_devices = on_devices(search, r, watch);
+  r.interrupted = watch.stopped();
   return r;
 }
 

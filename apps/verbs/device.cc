@@ -107,13 +107,8 @@ json answer(const PracticeDevice& device, const json& line) {
 }
 
 int device_verb(const Common& c, const DeviceRequest& request) {
-  const Laboratory known = laboratory(request.laboratory);
-  PracticeOptions options{.edge_error = known.edge_error,
-                          .unseen = known.unseen,
-                          .gain_error = known.gain_error,
-                          .shot_error = known.shot_error,
-                          .drift = drift_of(request.drift),
-                          .model = model_of(request.model)};
+  PracticeOptions options{
+      .laboratory = laboratory_errors(request.laboratory), .drift = drift_of(request.drift), .model = model_of(request.model)};
   options.seed = seed_of(request.seed, options.seed);
   const PracticeDevice device(load_scene(c), options);
   LineReader lines(STDIN_FILENO, longest_line);

@@ -19,6 +19,7 @@
 #include "base/require.h"
 #include "config/units.h"
 #include "reports/release_report.h"
+#include "sampling/points.h"
 
 namespace softland::apps {
 namespace {
@@ -48,7 +49,7 @@ ReleaseOptions options_of(const ReleaseRequest& request) {
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
   ReleaseOptions options{.actuator = actuator->value, .band = share_of(request.band)};
   if (request.budget) options.max_evaluations = whole_number<long>("--budget", *request.budget, 1);
-  if (request.samples) options.devices = whole_number<std::uint64_t>("--samples", *request.samples, 0);
+  options.devices = sample_count(request.samples, options.devices, 0, SamplePoints::largest_size);
   options.seed = seed_of(request.seed, options.seed);
   options.jobs = job_count(request.jobs);
   return options;
@@ -91,7 +92,8 @@ void add_release(Verb& verb) {
   verb.option("--band", request->band, "SHARE",
               "of the contact gap: nearer to its open position the switch counts as open (default: 5 %)");
   verb.optional("--budget", request->budget, "N", "evaluations (default: 3000)");
-  verb.optional("--samples", request->samples, "N", "devices of [spread] that both openings are judged on (default: 200)");
+  verb.optional("--samples", request->samples, "N",
+                "devices of [spread] that both openings are judged on (default: 200; 0: none)");
   verb.with_seed(request->seed, "same waveform");
   verb.with_jobs(request->jobs);
   verb.with_out("folder for release.json, release.svg, the drives as release.csv and as release.toml, for export");

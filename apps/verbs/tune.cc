@@ -49,13 +49,8 @@ struct TuneRequest {
 TunerOptions tuner_options(const TuneRequest& request) {
   const auto* const actuator = find_named(actuators, request.actuator);
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
-  const Laboratory known = laboratory(request.laboratory);
-  TunerOptions options{.actuator = actuator->value,
-                       .jobs = job_count(request.jobs),
-                       .edge_error = known.edge_error,
-                       .unseen = known.unseen,
-                       .gain_error = known.gain_error,
-                       .shot_error = known.shot_error};
+  TunerOptions options{
+      .actuator = actuator->value, .jobs = job_count(request.jobs), .laboratory = laboratory_errors(request.laboratory)};
   options.seed = seed_of(request.seed, options.seed);
   if (request.recipes) options.most_recipes = whole_number("--recipes", *request.recipes, 1);
   if (request.effort) options.effort = quantity_of("--effort", *request.effort, dimension::none);
@@ -69,10 +64,10 @@ json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"seed", options.seed},
           {"recipes", options.most_recipes},
           {"effort", options.effort},
-          {"edge_error_s", options.edge_error},
-          {"unseen_s", options.unseen},
-          {"gain_error", options.gain_error},
-          {"shot_error", options.shot_error}};
+          {"edge_error_s", options.laboratory.edge_error},
+          {"unseen_s", options.laboratory.unseen},
+          {"gain_error", options.laboratory.gain_error},
+          {"shot_error", options.laboratory.shot_error}};
 }
 
 std::chrono::milliseconds patience_of(const std::optional<std::string>& timeout) {

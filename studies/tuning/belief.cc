@@ -44,7 +44,7 @@ double Likelihood::touch_deviation(double speed) const {
   constexpr double height_share = 1.0 / 2000, time_share = 1.0 / 3400, least_speed = 0.017;
   const TuningScales& s = scene_.scales();
   const double of_height = height_share * s.gap / std::max(least_speed * s.speed(), speed);
-  return std::hypot(scene_.options().edge_error, of_height, time_share * s.closing_time);
+  return std::hypot(scene_.options().laboratory.edge_error, of_height, time_share * s.closing_time);
 }
 
 double Likelihood::touch_residual(const ImaginedClosing& closing, const ContactRecord& record) const {
@@ -59,7 +59,7 @@ double Likelihood::of_record(const ImaginedClosing& closing, const ContactRecord
   const double r = std::abs(touch_residual(closing, record));
   double sum = r < linear_from ? -r * r / 2 : linear_from * (linear_from / 2 - r);
   if (!closing.closes() || !first_touch(record)) return sum;
-  const double unseen = scene_.options().unseen;
+  const double unseen = scene_.options().laboratory.unseen;
   if (!record.edges.empty()) {
     constexpr std::array spans{0.09, 0.3, 0.9};
     constexpr double share = 0.2, least = 0.0045;

@@ -7,6 +7,15 @@
 
 namespace softland {
 
+/// How the instruments of a laboratory err: a simulated one has these errors, a belief expects them. Standard deviations, but for
+/// `unseen`.
+struct LaboratoryErrors {
+  double edge_error = 50e-9;  ///< of the time of an edge [s]
+  double unseen = 100e-9;     ///< openings shorter than this are not seen [s]
+  double gain_error = 0.005;  ///< of the gain of a source, constant but unknown, relative
+  double shot_error = 2e-4;   ///< of the gain from shot to shot, relative
+};
+
 /// An edge of the contact's state.
 struct ContactEdge {
   double time = 0;      ///< since the drives began, at t = 0 [s]

@@ -119,8 +119,8 @@ PracticeDevice::PracticeDevice(SceneFile file, const PracticeOptions& options)
 
 double PracticeDevice::gain(std::size_t drive, std::uint64_t shot) const {
   const std::uint64_t of_drive = random_bits(options_.seed, Stream::practice_gain, drive);
-  const double constant = 1 + options_.gain_error * random_normal(of_drive, Stream::practice_gain, 0),
-               scatter = 1 + options_.shot_error * random_normal(of_drive, Stream::practice_gain, shot);
+  const double constant = 1 + options_.laboratory.gain_error * random_normal(of_drive, Stream::practice_gain, 0),
+               scatter = 1 + options_.laboratory.shot_error * random_normal(of_drive, Stream::practice_gain, shot);
   return constant * scatter * (1 + options_.drift * static_cast<double>(shot - 1));
 }
 
@@ -129,9 +129,9 @@ std::vector<ContactEdge> PracticeDevice::seen_edges(const Trajectory& closing, s
   std::uint64_t drawn = 0;
   std::vector<ContactEdge> seen;
   for (const Touch& touch : closing.touches) {
-    const double closes = touch.begin + options_.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++),
-                 opens = touch.end + options_.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
-    const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.unseen);
+    const double closes = touch.begin + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++),
+                 opens = touch.end + options_.laboratory.edge_error * random_normal(of_shot, Stream::practice_edges, drawn++);
+    const bool stays_open = seen.empty() || closes - seen.back().time > std::max(0.0, options_.laboratory.unseen);
     if (!stays_open) {
       seen.pop_back();  // the opening before it
     } else if (!(opens <= closes)) {

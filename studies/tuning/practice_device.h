@@ -34,12 +34,9 @@ struct PracticeModel {
 };
 
 struct PracticeOptions {
-  std::uint64_t seed = 1;     ///< which device, and which errors
-  double edge_error = 50e-9;  ///< of the time of an edge, one standard deviation [s]
-  double unseen = 100e-9;     ///< openings shorter than this are not seen [s]
-  double gain_error = 0.005;  ///< of the gain of a drive, one standard deviation, relative
-  double shot_error = 2e-4;   ///< of the gain from shot to shot, one standard deviation, relative
-  double drift = 0;           ///< of all volts from one shot to the next, relative
+  std::uint64_t seed = 1;  ///< which device, and which errors
+  LaboratoryErrors laboratory = {};
+  double drift = 0;  ///< of all volts from one shot to the next, relative
   PracticeModel model = {};
 };
 

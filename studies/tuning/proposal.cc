@@ -128,7 +128,7 @@ double Shapes::room(const std::vector<Waveform>& waveforms) const {
 
 Outlook::Outlook(const TunedScene& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Watch& watch)
     : scene_(scene), devices_(scene.devices(points, watch)), watch_(watch) {
-  for (std::size_t k = 0; k < devices_.size(); ++k) gains_.push_back(1 + scene.options().shot_error * draws.normal());
+  for (std::size_t k = 0; k < devices_.size(); ++k) gains_.push_back(1 + scene.options().laboratory.shot_error * draws.normal());
 }
 
 std::vector<ImaginedClosing> Outlook::close(const std::vector<Waveform>& waveforms, std::size_t count, double gain) const {
@@ -176,8 +176,8 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
     touches.push_back(closing.touch);
     speeds.push_back(closing.speed);
     heights.push_back(closing.highest);
-    bouncing += std::ranges::any_of(closing.openings,
-                                    [&](const ContactOpening& o) { return o.end - o.begin >= scene_.options().unseen; });
+    bouncing += std::ranges::any_of(
+        closing.openings, [&](const ContactOpening& o) { return o.end - o.begin >= scene_.options().laboratory.unseen; });
   }
   PredictedRecord record{
       .touch_median = unset, .touch_low = unset, .touch_high = unset, .rebound_median = unset, .rebound_high = unset};

@@ -52,7 +52,8 @@ SceneFile with_nuisances(const Prepared& prepared, const TunerOptions& options) 
   const DeviceSpread& spread = prepared.scene.spread;
   for (const std::string& drive : shaped_drives_of(prepared, options.actuator)) {
     const std::string key = fmt::format("driver.{}.gain", drive);
-    if (!varies(spread, key) && options.gain_error > 0) vary(file, key, {key}, "normal", options.gain_error);
+    if (!varies(spread, key) && options.laboratory.gain_error > 0)
+      vary(file, key, {key}, "normal", options.laboratory.gain_error);
   }
   if (file.written("gas.viscosity") && !varies(spread, "gas.viscosity"))
     vary(file, "gas.viscosity", {"gas.viscosity"}, "lognormal", viscosity_deviation);
@@ -188,9 +189,9 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
              .gap = nominal_.scene.device.gap.contact,
              .rebound = nominal_.scene.metrics.significant_rebound};
   constexpr double coarsest = 0.1;  // of the closing time
-  require(options.edge_error < coarsest * scales_.closing_time, [&] {
+  require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
-                       engineering(options.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
+                       engineering(options.laboratory.edge_error, "s", 3), engineering(scales_.closing_time, "s", 3));
   });
   find_units(watch);
 }

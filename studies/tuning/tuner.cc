@@ -19,10 +19,12 @@ constexpr std::size_t first_ones = 4, last_ones = 8;  // records that are learne
 
 void check(const TunerOptions& options) {
   const auto share = [](double x) { return x >= 0 && x < 1; };
-  require(options.edge_error > 0 && std::isfinite(options.edge_error), "the error of edges must be above 0 s");
-  require(options.unseen >= 0 && std::isfinite(options.unseen), "the shortest opening that is seen must be at least 0 s");
-  require(share(options.gain_error), "the error of the gain must be at least 0 and below 1");
-  require(share(options.shot_error), "the error from shot to shot must be at least 0 and below 1");
+  require(options.laboratory.edge_error > 0 && std::isfinite(options.laboratory.edge_error),
+          "the error of edges must be above 0 s");
+  require(options.laboratory.unseen >= 0 && std::isfinite(options.laboratory.unseen),
+          "the shortest opening that is seen must be at least 0 s");
+  require(share(options.laboratory.gain_error), "the error of the gain must be at least 0 and below 1");
+  require(share(options.laboratory.shot_error), "the error from shot to shot must be at least 0 and below 1");
   require(options.jobs >= 1, "jobs must be at least 1");
   require(options.most_recipes >= 1 && options.most_recipes <= 5, "recipes must be 1 to 5");
   require(options.effort > 0 && std::isfinite(options.effort), "the effort must be above 0");

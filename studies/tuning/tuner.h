@@ -45,13 +45,10 @@ namespace softland {
 struct TunerOptions {
   Actuator actuator = Actuator::electrostatic;  ///< which drives are shaped
   std::uint64_t seed = 1;
-  int jobs = 1;               ///< threads; does not change the results
-  double edge_error = 50e-9;  ///< of the time of an edge, one standard deviation [s]
-  double unseen = 100e-9;     ///< openings below this are not recorded [s]
-  double gain_error = 0.005;  ///< of the sources, constant but unknown, relative, one standard deviation
-  double shot_error = 2e-4;   ///< of the gain from shot to shot, relative, one standard deviation
-  int most_recipes = 1;       ///< units of volts that recipes are searched for, 1 to 5
-  double effort = 1;          ///< evaluations of every search, over the usual
+  int jobs = 1;  ///< threads; does not change the results
+  LaboratoryErrors laboratory = {};
+  int most_recipes = 1;  ///< units of volts that recipes are searched for, 1 to 5
+  double effort = 1;     ///< evaluations of every search, over the usual
   Vectors vectors = vectors_in_use();
 };
 

@@ -27,7 +27,7 @@ class Beliefs : public testing::Test {
       const ImaginedClosing closing = scene_.close(one)[0];
       shots.back().record.edges.push_back({closing.touch, true});
       for (const ContactOpening& o : closing.openings) {
-        if (!std::isfinite(o.end) || o.end - o.begin < scene_.options().unseen) continue;
+        if (!std::isfinite(o.end) || o.end - o.begin < scene_.options().laboratory.unseen) continue;
         shots.back().record.edges.push_back({o.begin, false});
         shots.back().record.edges.push_back({o.end, true});
       }

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr double window = 100e-6;  // [s]
 
-PracticeOptions exact_instruments() { return {.edge_error = 0, .unseen = 0, .gain_error = 0, .shot_error = 0}; }
+PracticeOptions exact_instruments() { return {.laboratory = {.edge_error = 0, .unseen = 0, .gain_error = 0, .shot_error = 0}}; }
 
 const std::vector<Waveform>& plain_step() {
   static const std::vector<Waveform> drives{Step{.level = 17.771}};
@@ -69,7 +69,7 @@ TEST(PracticeDevice, DependsOnItsSeedAndTheNumberOfTheShotAlone) {
 TEST(PracticeDevice, HasErrorsOfTheSizesThatWereAskedFor) {
   PracticeOptions options = exact_instruments();
   const double exact = PracticeDevice(gold_at_17_volts(), options).close(1, plain_step(), window).record.edges.front().time;
-  options.edge_error = 50e-9;
+  options.laboratory.edge_error = 50e-9;
   const PracticeDevice device(gold_at_17_volts(), options);
   constexpr int shots = 100;
   double sum = 0, squares = 0;
@@ -98,11 +98,11 @@ TEST(PracticeDevice, GetsTheVoltsTimesTheGainOfItsSources) {
   }();
   EXPECT_NEAR(closing_time(1000), higher.metrics.initial_contact_time, 1e-9 * exact);
   options = exact_instruments();
-  options.gain_error = 0.01;
+  options.laboratory.gain_error = 0.01;
   const double off = closing_time(1);
   EXPECT_NE(off, exact);
   EXPECT_EQ(closing_time(2), off) << "the gain is constant";
-  options.shot_error = 0.001;
+  options.laboratory.shot_error = 0.001;
   EXPECT_NE(closing_time(1), closing_time(2));
 }
 
@@ -113,11 +113,11 @@ TEST(PracticeDevice, ShowsNoOpeningShorterThanItsInstrumentResolves) {
   std::vector<double> lengths;
   for (const ContactOpening& opening : openings(all)) lengths.push_back(opening.end - opening.begin);
   std::ranges::sort(lengths);
-  options.unseen = lengths[lengths.size() / 2];
+  options.laboratory.unseen = lengths[lengths.size() / 2];
   const ContactRecord coarse = seen();
   std::vector<double> expected;
   for (const ContactOpening& opening : openings(all)) {
-    if (opening.end - opening.begin > options.unseen) expected.push_back(opening.begin);
+    if (opening.end - opening.begin > options.laboratory.unseen) expected.push_back(opening.begin);
   }
   std::vector<double> begins;
   for (const ContactOpening& opening : openings(coarse)) begins.push_back(opening.begin);
@@ -129,7 +129,7 @@ TEST(PracticeDevice, ShowsNoOpeningShorterThanItsInstrumentResolves) {
 // Errors as large as the openings themselves leave a record that can be one.
 TEST(PracticeDevice, KeepsItsEdgesInOrderHoweverLargeTheirErrors) {
   PracticeOptions options;
-  options.edge_error = 2e-6, options.unseen = 0;
+  options.laboratory.edge_error = 2e-6, options.laboratory.unseen = 0;
   const PracticeDevice device(gold_at_17_volts(), options);
   for (std::uint64_t shot = 1; shot <= 20; ++shot)
     EXPECT_EQ(record_fault(device.close(shot, plain_step(), window).record), "") << shot;

@@ -106,9 +106,9 @@ TEST(Tuners, NoLevelPullsMoreThanOneDeviceInAThousandThrough_optimized) {
 }
 
 TEST(Tuners, OptionsOutOfRangeAreRefused) {
-  EXPECT_THROW(Tuner(gold_with_two_modes(), {.edge_error = 0}), InvalidInput);
-  EXPECT_THROW(Tuner(gold_with_two_modes(), {.edge_error = 5e-6}), InvalidInput);
-  EXPECT_THROW(Tuner(gold_with_two_modes(), {.shot_error = -1}), InvalidInput);
+  EXPECT_THROW(Tuner(gold_with_two_modes(), {.laboratory = {.edge_error = 0}}), InvalidInput);
+  EXPECT_THROW(Tuner(gold_with_two_modes(), {.laboratory = {.edge_error = 5e-6}}), InvalidInput);
+  EXPECT_THROW(Tuner(gold_with_two_modes(), {.laboratory = {.shot_error = -1}}), InvalidInput);
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.effort = 0}), InvalidInput);
   EXPECT_THROW(Tuner(gold_with_two_modes(), {.actuator = Actuator::pzt}), InvalidInput);
 }
