@@ -182,7 +182,7 @@ class DevicesStudy {
 
   void make_aims(const std::vector<DeviceOutcome>& step) {
     conditions_ = beside_step(devices_.conditions, step);
-    for (const std::string_view key : judged_figures) step_figures_[key] = quantile_95(step, key);
+    no_harder_than_step_ = no_harder_than(step, first().given.scene.metrics.significant_rebound);
     const double step_time = quantile_95(step, "initial_contact_time_s");
     const std::vector<FigureName> figures = conditioned_figures();
     tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
@@ -200,10 +200,7 @@ class DevicesStudy {
     return std::ranges::any_of(
         conditions_, [](const Criterion& one) { return ensemble_figures()[one.figure].key == "initial_contact_time_s"; });
   }
-  [[nodiscard]] bool keeps_conditions(const std::vector<DeviceOutcome>& outcomes) const {
-    return std::ranges::all_of(
-        conditions_, [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value >= constrained_share; });
-  }
+  [[nodiscard]] bool keeps_conditions(const std::vector<DeviceOutcome>& outcomes) const { return hold(conditions_, outcomes); }
 
   // Of a budget of time the searches leave what the verdict takes, where they keep a part; `closing`: of one device [s].
   void reserve_for_verdict(double closing) {
@@ -513,28 +510,14 @@ class DevicesStudy {
     return *all;
   }
 
-  // Conditions that no figure is above the plain step's, in what decides whether a drive is worse.
-  [[nodiscard]] std::vector<Criterion> beside_step_figures() const {
-    std::vector<Criterion> all;
-    const std::vector<FigureName> figures = conditioned_figures();
-    for (const std::string_view key : judged_figures) {
-      const auto figure = static_cast<std::size_t>(std::ranges::find(figures, key, &FigureName::key) - figures.begin());
-      const double least = key == judged_figures[1] ? first().given.scene.metrics.significant_rebound : 0;
-      const double limit = std::max(least, step_figures_.at(key));
-      if (std::isfinite(limit)) all.push_back({.figure = figure, .comparison = Comparison::at_most, .limit = limit, .text = ""});
-    }
-    return all;
-  }
   // On the devices of a search in measured units.
   bool is_harder_than_step(const RobustCost& cost, const std::map<std::string, Waveform>& waveforms) const {
     const std::vector<DeviceOutcome> outcomes = cost.close(first().drives(waveforms), 0, cost.devices(), 1);
-    return std::ranges::any_of(beside_step_figures(),
-                               [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value < constrained_share; });
+    return !hold(no_harder_than_step_, outcomes);
   }
   [[nodiscard]] RaceAims no_harder() const {
     RaceAims aims = aims_;
-    for (RobustAim* aim : {&aims.tail, &aims.share})
-      std::ranges::copy(beside_step_figures(), std::back_inserter(aim->conditions));
+    for (RobustAim* aim : {&aims.tail, &aims.share}) std::ranges::copy(no_harder_than_step_, std::back_inserter(aim->conditions));
     return aims;
   }
 
@@ -613,7 +596,7 @@ class DevicesStudy {
   std::vector<Criterion> conditions_;  // with limits of their own
   RobustAim tail_aim_;
   RaceAims aims_;
-  std::map<std::string_view, double> step_figures_;  // the plain step's in volts, 95 % quantiles of judged_figures
+  std::vector<Criterion> no_harder_than_step_;  // in volts
   std::optional<RobustCost> cost_;
   std::optional<GaugedEnsemble> gauged_by_pull_in_, gauged_by_time_;  // the devices of the verdict
   std::size_t eligible_ = 0;

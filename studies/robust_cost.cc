@@ -64,6 +64,11 @@ Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterio
   return yield_of(static_cast<std::size_t>(good), outcomes.size());
 }
 
+bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> outcomes) {
+  return std::ranges::all_of(conditions,
+                             [&](const Criterion& one) { return share_that_fulfils(outcomes, one).value >= constrained_share; });
+}
+
 namespace {
 
 bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {

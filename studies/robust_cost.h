@@ -131,5 +131,7 @@ class RobustCost {
 [[nodiscard]] bool fulfils(const DeviceOutcome& outcome, const Criterion& condition);
 /// The share of devices that does.
 [[nodiscard]] Yield share_that_fulfils(std::span<const DeviceOutcome> outcomes, const Criterion& condition);
+/// Whether constrained_share of the devices fulfils each of the conditions.
+[[nodiscard]] bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> outcomes);
 
 }  // namespace softland

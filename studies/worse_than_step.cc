@@ -1,6 +1,7 @@
 #include "studies/worse_than_step.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sampling/confidence.h"
 #include "sampling/statistics.h"
@@ -47,6 +48,18 @@ std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive, 
     if (is_worse(values_of(key, drive, least), values_of(key, step, least), seed)) worse.push_back(key);
   }
   return worse;
+}
+
+std::vector<Criterion> no_harder_than(const std::vector<DeviceOutcome>& step, double significant) {
+  std::vector<Criterion> all;
+  const std::vector<FigureName> figures = conditioned_figures();
+  for (const std::string_view key : judged_figures) {
+    const auto figure = static_cast<std::size_t>(std::ranges::find(figures, key, &FigureName::key) - figures.begin());
+    const double least = key == "major_bounce_height_m" ? significant : 0;
+    const double limit = sample_quantile(values_of(key, step, least), compared_at);
+    if (std::isfinite(limit)) all.push_back({.figure = figure, .comparison = Comparison::at_most, .limit = limit, .text = ""});
+  }
+  return all;
 }
 
 }  // namespace softland

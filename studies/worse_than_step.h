@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "studies/robust_cost.h"
 #include "studies/robustness.h"
 
 namespace softland {
@@ -22,5 +23,9 @@ inline constexpr std::array judged_figures{std::string_view("largest_impact_velo
 [[nodiscard]] std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive,
                                                      const std::vector<DeviceOutcome>& step, double significant,
                                                      std::uint64_t seed);
+
+/// Conditions that no judged figure is above the 95 % quantile of the step's outcomes, or for a rebound above `significant` [m].
+/// There is none on a figure whose quantile is not finite.
+[[nodiscard]] std::vector<Criterion> no_harder_than(const std::vector<DeviceOutcome>& step, double significant);
 
 }  // namespace softland

@@ -66,7 +66,7 @@ TEST_F(BadInput, Verbs) {
   });
 }
 
-TEST_F(BadInput, LongWordsAreCut) {
+TEST_F(BadInput, LongWordsAreCut_long) {
   const std::string word(10'000, 'x');
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{word},
                                                                                      {"check", word},
@@ -86,7 +86,7 @@ TEST_F(BadInput, LongWordsAreCut) {
   EXPECT_LT(check.out.find('\n'), 200U) << check.out;
 }
 
-TEST_F(BadInput, Options) {
+TEST_F(BadInput, Options_long) {
   expect_refused({
       {{"simulate", "gold.toml", "--frob"}, "The following argument was not expected: --frob (see softland simulate --help)"},
       {{"simulate", "gold.toml", "extra"}, "The following argument was not expected: extra (see softland simulate --help)"},

@@ -52,7 +52,7 @@ TEST_F(Front, HoldsNoPointThatAnotherOneBeatsAndEachRunsAsItIs_optimized) {
   expect_simulated("front.sqlite", members.back()["point"]);
 }
 
-TEST_F(Front, HasTheSameRowsForAnyJobsAndAfterAnInterruption_optimized) {
+TEST_F(Front, HasTheSameRowsForAnyJobsAndAfterAnInterruption_slow) {
   static_cast<void>(done(search("whole.sqlite", 180, {"--jobs", "1"})));
   static_cast<void>(done(search("threads.sqlite", 180, {"--jobs", "3"})));
   expect_same_rows(rows_of(at("whole.sqlite")), rows_of(at("threads.sqlite")));

@@ -77,7 +77,7 @@ TEST_F(Resume, WithALargerBudgetIsTheSearchThatBeganWithIt_optimized) {
   EXPECT_EQ(StudyReader(at("out/evaluations.sqlite")).sessions().back().rows, 0);
 }
 
-TEST_F(Resume, OfATargetWithACostOfItsOwnEndsWithTheSameBits_optimized) {
+TEST_F(Resume, OfATargetWithACostOfItsOwnEndsWithTheSameBits_slow) {
   const std::vector<std::string> settling{"--target", "settling", "--budget", "600"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.end(), settling.begin(), settling.end());

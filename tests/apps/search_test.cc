@@ -226,7 +226,7 @@ TEST_F(Search, TellsWhatEachOfItsFamiliesCameTo) {
   EXPECT_THAT(here->run({"report", "several"}).out, testing::HasSubstr("the least cost of each: pulse ")) << "from result.json";
 }
 
-TEST_F(Search, LooksElsewhereWithAnotherSeed_optimized) {
+TEST_F(Search, LooksElsewhereWithAnotherSeed_slow) {
   const std::vector<std::string> scattered{"--optimizer", "cma-es"};
   const auto with_seed = [&](const char* seed) { return std::vector<std::string>{"--optimizer", "cma-es", "--seed", seed}; };
   search(*here, "default", scattered);
@@ -435,7 +435,7 @@ TEST(SearchForDevices, LeavesTheDrawingAndWhatDevicesGet_optimized) {
   EXPECT_THAT(read(here.path() / "again/report.html"), testing::HasSubstr("On devices that differ"));
 }
 
-TEST(SearchForDevices, GoesOnToTheSameBits_optimized) {
+TEST(SearchForDevices, GoesOnToTheSameBits_slow) {
   const Workplace here;
   write(here.path() / "gold.toml", shipped("mem-gold.toml"));
   ASSERT_EQ(here.run(words("optimize", for_devices("one"))).status, 0);
@@ -460,7 +460,7 @@ TEST(SearchForDevices, SaysThatTheSpreadIsAssumed_optimized) {
   EXPECT_TRUE(json::parse(judged.out)["spread_assumed"]) << judged.err;
 }
 
-TEST(RobustSearch, DrivesDevicesBySourcesThatErr_optimized) {
+TEST(RobustSearch, DrivesDevicesBySourcesThatErr_slow) {
   const Workplace here;
   std::string scene = edited(shipped("mem-gold.toml"), "accuracy = 1e-6", "tolerance = 1e-5");  // that of robustness
   scene +=
@@ -503,7 +503,7 @@ TEST(RobustSearch, KeepsItsBestWhenInterrupted_optimized) {
   EXPECT_EQ(here.run({"simulate", "out/best.toml", "--quiet"}).status, 0);
 }
 
-TEST(RobustSearch, OfATinyBudgetStillAnswers_optimized) {
+TEST(RobustSearch, OfATinyBudgetStillAnswers_slow) {
   const Workplace here;
   for (const char* budget : {"1", "100", "700"}) {
     std::vector<std::string> more{"--robust", "worst", "--samples", "8"};

@@ -147,7 +147,7 @@ TEST_F(Seeds, ThatFailAreNamed) {
   EXPECT_TRUE(study["cost"]["median"].is_null());
 }
 
-TEST_F(Seeds, OfARobustSearchEndWithTheSameBits_optimized) {
+TEST_F(Seeds, OfARobustSearchEndWithTheSameBits_slow) {
   const auto with = [](const char* out, std::vector<std::string> more) {
     more.insert(more.end(),
                 {"--robust", "cvar:0.9", "--samples", "8", "--seeds", "2", "--budget", "900", "--jobs", "2", "--out", out});

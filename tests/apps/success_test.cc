@@ -99,7 +99,7 @@ TEST(Success, IsNotAClosedStateThatIsPulledThrough_optimized) {
   EXPECT_EQ(opens.status, 0) << opens.err;
 }
 
-TEST(Success, OfALimitSaysFirstThatTheHoldLevelsPullTheSwitchThrough_optimized) {
+TEST(Success, OfALimitSaysFirstThatTheHoldLevelsPullTheSwitchThrough_slow) {
   const Workplace here;
   write(here.path() / "bridge.toml", bridge);
   const std::vector<std::string> words{"limit", "bridge.toml", "--no-curves", "--quiet", "--impact-velocity", "5 mm/s"};
@@ -138,7 +138,7 @@ TEST(NoStableRest, IsNotCalledOverdamped_optimized) {
 }
 
 // Numbers that are none, wherever a scene or a file of it may hold one, in every verb that takes a scene.
-TEST(NotFinite, IsRefusedByEveryVerbWithItsKey) {
+TEST(NotFinite, IsRefusedByEveryVerbWithItsKey_long) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");
   struct Written {
@@ -365,7 +365,7 @@ TEST(Check, AcceptsExactlyWhatSimulateRuns_optimized) {
   EXPECT_LT(refused, 22);
 }
 
-TEST(Check, SaysWhereFewerThanOneSummitIsInTouch) {
+TEST(Check, SaysWhereFewerThanOneSummitIsInTouch_long) {
   const Workplace here;
   const auto said = [&](const std::string& density) {
     return here.run({"check", "gold.toml", "--quiet", "--set", "contact.asperity_density=" + density + " 1/m^2"}).out;

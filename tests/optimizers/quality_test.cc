@@ -165,7 +165,7 @@ TEST(Auto, SolvesTheLandscapesAsOftenAsMeasured_slow) {
 }
 
 // Of 400 searches over 200 seeds auto lands in 177, bobyqa from one start after the other in 92.
-TEST(Auto, LandsMoreOftenThanItsPolisherAlone) {
+TEST(Auto, LandsMoreOftenThanItsPolisherAlone_slow) {
   int by_auto = 0, by_bobyqa = 0;
   for (const std::size_t pulses : {2u, 3u}) {
     const landscapes::Landscape landscape{"landing", landscapes::landing_problem(pulses), 1e-2};

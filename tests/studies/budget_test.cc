@@ -26,7 +26,7 @@ OptimizeOptions halved(const std::string& families, long budget, std::uint64_t s
   return {.family = families, .max_evaluations = budget, .begins_with_half = true, .seed = seed};
 }
 
-TEST(Budget, ThatIsTwiceAsLargeBeginsWithTheSmallerOne) {
+TEST(Budget, ThatIsTwiceAsLargeBeginsWithTheSmallerOne_slow) {
   const SceneFile file = scene("two-electrodes.toml", {"simulate.accuracy=1e-4"});
   for (const std::string& families : {std::string("pulse"), std::string(default_families(Shaped::electrode))}) {
     std::vector<std::vector<double>> values;  // of each budget

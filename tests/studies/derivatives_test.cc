@@ -223,7 +223,7 @@ TEST(Derivatives, OfAnActuatorInGas_optimized) {
                     with(plate, {"gas.viscosity", "gas.slit_height", "gas.far_gap", "electrode.main.gap", "contact.stiffness"})},
                    1);
 }
-TEST(Derivatives, OfANanometreSwitch_optimized) {
+TEST(Derivatives, OfANanometreSwitch_slow) {
   expect_agreement({"nem-tin.toml",
                     Actuator::electrostatic,
                     "pulse",

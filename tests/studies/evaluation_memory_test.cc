@@ -78,7 +78,7 @@ Found searched(OptimizeOptions options, EvaluationMemory* memory) {
   return found;
 }
 
-TEST(EvaluationMemory, LeavesEveryOptimizerTheSameBits_optimized) {
+TEST(EvaluationMemory, LeavesEveryOptimizerTheSameBits_slow) {
   for (const std::string_view optimizer : optimizer_names()) {
     const OptimizeOptions options{.optimizer = std::string(optimizer), .max_evaluations = 90};
     const std::string name(optimizer);

@@ -133,7 +133,7 @@ TEST(Gradient, OfPulsesOnTheGoldSwitch_slow) {
   expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "pulse"), 40);
 }
 TEST(Gradient, OfBothDrives_slow) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::both, "pulse"), 15); }
-TEST(Gradient, OfDithers_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "dither"), 10); }
+TEST(Gradient, OfDithers_slow) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "dither"), 10); }
 TEST(Gradient, OfSplines_optimized) { expect_agreement(setting_of("mem-gold.toml", Actuator::electrostatic, "bspline:6"), 10); }
 TEST(Gradient, OfSines_optimized) { expect_agreement(setting_of("mem-gold-pzt.toml", Actuator::pzt, "sines:6"), 5); }
 TEST(Gradient, OfTwoElectrodes_optimized) {

@@ -182,7 +182,7 @@ TEST(LeastTime, KeepsTheSlewOfTheDriver) {
 }
 
 // The nearer to rest all modes are when the contact point touches, the less it rebounds.
-TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps) {
+TEST(LandingsAtRest, BringAPiezoToRestWithoutJumps_slow) {
   const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
   const Prepared p = prepare_and_choose(file, true);
   const auto found = landings_at_rest(p, Actuator::pzt, 1.3e-3, {});

@@ -115,7 +115,7 @@ TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot_optimized) {
   EXPECT_EQ(log.result.verdict->by_knowledge.size(), 7U) << "nothing, each alone, both in 4, 8 and 16 classes, both";
 }
 
-TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats_optimized) {
+TEST(RobustOptimize, SpendsABudgetOfTimeOnAllOfItsHeats_slow) {
   // A clock that counts how often it is looked at, which is once in an evaluation: what is in time does not depend on the
   // machine.
   double looks = 0;

@@ -65,5 +65,22 @@ TEST(WorseThanStep, CountsADeviceThatDoesNotCloseAsTheWorst) {
   EXPECT_THAT(worse_in(drive, drive, 1e-9, 3), IsEmpty()) << "both are infinite";
 }
 
+TEST(NoHarderThanStep, HoldsOfTheStepAndOfWhatIsSofter) {
+  const std::vector<Criterion> conditions = no_harder_than(step, 1e-9);
+  ASSERT_EQ(conditions.size(), 3U);
+  EXPECT_TRUE(hold(conditions, step)) << "19 devices of 20 are below its own quantile";
+  EXPECT_TRUE(hold(conditions, outcomes(0.05, 0, 0.5e-6)));
+  EXPECT_FALSE(hold(conditions, outcomes(0.11, 0, 0.5e-6))) << "faster";
+  EXPECT_FALSE(hold(conditions, outcomes(0.05, 550e-9, 0.5e-6))) << "rebounds higher";
+  EXPECT_FALSE(hold(conditions, outcomes(0.05, 0, 1.1e-6))) << "presses harder";
+}
+
+TEST(NoHarderThanStep, AsksNothingWhereTheStepDoesNotCloseAndLittleOfReboundsThatAreNotSignificant) {
+  EXPECT_THAT(no_harder_than({DeviceOutcome{}}, 1e-9), IsEmpty());
+  const std::vector<Criterion> flat = no_harder_than(outcomes(0.1, 0.1e-9, 1e-6), 1e-9);
+  EXPECT_TRUE(hold(flat, outcomes(0.05, 0.8e-9, 0.5e-6)));
+  EXPECT_FALSE(hold(flat, outcomes(0.05, 2e-9, 0.5e-6)));
+}
+
 }  // namespace
 }  // namespace softland
