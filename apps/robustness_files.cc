@@ -8,7 +8,7 @@
 
 namespace softland::apps {
 
-std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", ensemble_figure(key).symbol); }
+std::string box_file(std::string_view key) { return fmt::format("box-{}.toml", figure_of(key).symbol); }
 
 void add_details(RobustnessReport& report, bool other_ways_too, const Watch& watch) {
   if (report.found.interrupted || report.found.devices == 0) return;

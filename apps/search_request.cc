@@ -39,7 +39,7 @@ auto read(const std::string& option, const Parse& parse) {
   }
 }
 
-std::vector<Criterion> read_conditions(const OptimizeRequest& request, const std::vector<FigureName>& figures) {
+std::vector<Criterion> read_conditions(const OptimizeRequest& request, std::span<const Figure> figures) {
   std::vector<Criterion> all;
   for (const std::string& text : request.conditions)
     all.push_back(read("--constrain", [&] { return parse_criterion(text, figures); }));
@@ -125,7 +125,7 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request, co
   options.max_evaluations =
       is_nominal ? default_budget(options.target, shaped_drives(scene, options.actuator)) : default_closings;
   if (is_nominal && !request.budget) options.more_evaluations = options.max_evaluations / 2;
-  if (request.robust == nominal_alone) options.conditions = read_conditions(request, figure_names());
+  if (request.robust == nominal_alone) options.conditions = read_conditions(request, conditioned_figures);
   if (request.budget) read_budget(*request.budget, options);
   // Other methods go on where they were; the plan of a search of one seed holds that number.
   const bool has_one_seed = !request.seeds || *request.seeds == "1";
@@ -137,11 +137,11 @@ OptimizeOptions read_options(const Common& c, const OptimizeRequest& request, co
 void read_shared_conditions(const OptimizeRequest& request, std::vector<Criterion>& drawing, std::vector<Criterion>& devices) {
   for (const std::string& text : request.conditions) {
     read("--constrain", [&] {
-      devices.push_back(parse_criterion(text, conditioned_figures()));
+      devices.push_back(parse_criterion(text, device_figures));
       return true;
     });
     try {
-      drawing.push_back(parse_criterion(text, figure_names()));
+      drawing.push_back(parse_criterion(text, conditioned_figures));
     } catch (const InvalidInput&) {
       continue;  // a figure of devices alone
     }
@@ -167,7 +167,7 @@ ForDevicesOptions read_race_options(const OptimizeRequest& request, OptimizeOpti
 }
 
 RobustOptions read_robust_options(const OptimizeRequest& request) {
-  const std::vector<FigureName> figures = conditioned_figures();
+  const std::span<const Figure> figures = device_figures;
   RobustOptions robust;
   robust.aim.measure = read("--robust " + request.robust, [&] { return parse_robust_measure(request.robust, figures); });
   robust.aim.conditions = read_conditions(request, figures);

@@ -65,19 +65,19 @@ void measure(const SearchSetting& s, std::size_t levels) {
   const std::vector<Signal> signals = signals_at(x);
   const ClosingOptions run = s.run_of(signals);
   const double closing = milliseconds([&] {
-    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
-    const Trajectory end = observe_closing(s.given.model, signals, run, observer);
-    require(observer.figures(end).rebound_height > 0, "the rise must land and rebound");
+    MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    const Metrics m = observer.metrics(observe_closing(s.given.model, signals, run, observer));
+    require(m.major_bounce_height > 0, "the rise must land and rebound");
   });
   const auto gradient = [&](int refinement, bool backward, double tolerance) {
-    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
     MotionTape tape(observer);
     ClosingOptions own = run;
     own.tolerance = tolerance;
     const Trajectory end = observe_closing(s.given.model, signals, own, tape);
     LinearizedClosing motion(s.given.model, signals, tape, refinement);
     const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
-    const auto slope = cost_slope(Target::bounce, end.status, observer.figures(end), s.scale, s.given.scene.metrics, slopes);
+    const auto slope = cost_slope(Target::bounce, observer.metrics(end), s.scale, s.given.scene.metrics, slopes);
     const SignalSlopes by(signals_at, x, lower, upper, groups);
     Eigen::VectorXd row = (backward ? motion.backward({*slope}, by) : motion.forward({*slope}, by)).transpose();
     for (Eigen::Index k = 0; k < row.size(); ++k)
@@ -137,21 +137,22 @@ void measure_device(const SearchSetting& s, std::size_t parameters) {
   const std::vector<double> none(parameters, 0.0);
   const SignalSlopes fixed([&](std::span<const double>) { return signals; }, none, none, none);
   const double closing = milliseconds([&] {
-    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
     (void)observe_closing(s.given.model, signals, run, observer);
   });
   const double building = milliseconds([&] { (void)slopes_by_device(s.given, parameters); });
   SwitchSlopes by = slopes_by_device(s.given, parameters);
   const auto derivatives = [&](int refinement, bool backward, double tolerance) {
-    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
     MotionTape tape(observer);
     ClosingOptions own = run;
     own.tolerance = tolerance;
     (void)observe_closing(s.given.model, signals, own, tape);
     LinearizedClosing motion(s.given.model, signals, tape, refinement, &by);
     const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
-    const std::vector<FigureSlope> figures{slopes.first_touch, slopes.touch_speed, slopes.rebound_height,
-                                           slopes.last_rebound_end};
+    const std::vector<FigureSlope> figures{slopes.of[&Metrics::initial_contact_time],
+                                           slopes.of[&Metrics::largest_impact_velocity], slopes.of[&Metrics::major_bounce_height],
+                                           slopes.of[&Metrics::last_rebound_end]};
     Eigen::MatrixXd all = backward ? motion.backward(figures, fixed) : motion.forward(figures, fixed);
     for (Eigen::Index k = 0; k < all.cols(); ++k) {
       Device device = s.given.model.device();
@@ -177,7 +178,7 @@ void measure_search(const std::string& scene, const std::string& family) {
   const std::vector<double> x = s.space.starts().front();
   const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
   const double closing = milliseconds([&] {
-    CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+    MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
     (void)observe_closing(s.given.model, signals, s.run_of(signals), observer);
   });
   const double gradient = milliseconds([&] { (void)s.gradient_at(x, Target::bounce, groups); });

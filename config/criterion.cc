@@ -33,11 +33,6 @@ std::string_view unquoted(std::string_view text) {
   return begin == std::string_view::npos ? std::string_view() : text.substr(begin, end - begin + 1);
 }
 
-/// The key without its unit: "impact_velocity".
-std::string quantity_name(const FigureName& figure) {
-  return std::string(figure.key.substr(0, figure.key.size() - (figure.unit.empty() ? 0 : figure.unit.size() + 1)));
-}
-
 double number_after(std::string_view text, std::string_view what, double least, double most, bool most_open) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -74,7 +69,7 @@ bool Criterion::holds(double value) const {
   return is_strict ? by < 0 : by <= 0;
 }
 
-Criterion parse_criterion(std::string_view text, std::span<const FigureName> figures) {
+Criterion parse_criterion(std::string_view text, std::span<const Figure> figures) {
   const std::string_view all = unquoted(text);
   const std::size_t at = all.find_first_of("<>=");
   require(at != std::string_view::npos,
@@ -82,16 +77,13 @@ Criterion parse_criterion(std::string_view text, std::span<const FigureName> fig
   const auto sign = std::find_if(signs.begin(), signs.end(), [&](const Sign& s) { return all.substr(at).starts_with(s.text); });
   const std::string_view name = unquoted(all.substr(0, at)), value = unquoted(all.substr(at + sign->text.size()));
 
-  std::vector<std::string> names;
-  for (const FigureName& f : figures) names.push_back(quantity_name(f));
+  std::vector<std::string_view> names;
+  for (const Figure& f : figures) names.push_back(f.quantity());
   std::size_t k = 0;
   while (k < figures.size() && name != names[k] && name != figures[k].key &&
          (figures[k].symbol.empty() || name != figures[k].symbol))
     ++k;
-  require(k < figures.size(), [&] {
-    return fmt::format("'{}' is no figure of merit{}", name,
-                       internal::hint(name, std::vector<std::string_view>(names.begin(), names.end())));
-  });
+  require(k < figures.size(), [&] { return fmt::format("'{}' is no figure of merit{}", name, internal::hint(name, names)); });
   constexpr std::string_view step_unit = "step";
   if (value.ends_with(step_unit)) {
     const std::string_view number = unquoted(value.substr(0, value.size() - step_unit.size()));
@@ -103,7 +95,8 @@ Criterion parse_criterion(std::string_view text, std::span<const FigureName> fig
     }
     require(times.dimension == dimension::none && times.value > 0,
             [&] { return fmt::format("'{}' in '{}' must be a number above 0 of the plain step's figure", number, all); });
-    return {.figure = k, .comparison = sign->comparison, .limit = times.value, .text = std::string(all), .of_step = true};
+    return {
+        .figure = figures[k], .comparison = sign->comparison, .limit = times.value, .text = std::string(all), .of_step = true};
   }
   Quantity limit;
   try {
@@ -115,7 +108,7 @@ Criterion parse_criterion(std::string_view text, std::span<const FigureName> fig
   require(limit.dimension == due, [&] { return fmt::format("{} in '{}' must be {}", names[k], all, describe(due)); });
   require(limit.value != 0 || figures[k].unit.empty(),
           [&] { return fmt::format("the limit of {} in '{}' must not be 0: give what is small enough", names[k], all); });
-  return {.figure = k, .comparison = sign->comparison, .limit = limit.value, .text = std::string(all)};
+  return {.figure = figures[k], .comparison = sign->comparison, .limit = limit.value, .text = std::string(all)};
 }
 
 Criterion beside_step(Criterion criterion, double of_step) {
@@ -127,7 +120,7 @@ Criterion beside_step(Criterion criterion, double of_step) {
   return criterion;
 }
 
-RobustMeasure parse_robust_measure(std::string_view text, std::span<const FigureName> figures) {
+RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure> figures) {
   const auto after = [&](std::string_view head) { return text.substr(head.size()); };
   constexpr double infinite = std::numeric_limits<double>::infinity();
   RobustMeasure measure{.risk = {}, .yield = {}, .text = std::string(text)};

@@ -8,22 +8,16 @@
 #include <string>
 #include <string_view>
 
+#include "objectives/figures.h"
 #include "sampling/risk.h"
 
 namespace softland {
-
-/// A figure that a condition may be about.
-struct FigureName {
-  std::string_view key;     ///< of results; ends with the unit
-  std::string_view symbol;  ///< "t_p"; may be empty
-  std::string_view unit;    ///< SI; empty for a count
-};
 
 enum class Comparison { below, at_most, equal, at_least, above };
 
 /// A condition on a figure of one closing.
 struct Criterion {
-  std::size_t figure = 0;  ///< its number in the list it was read with
+  Figure figure;
   Comparison comparison = Comparison::below;
   double limit = 0;      ///< [SI unit of the figure, or that figure of the plain step]
   std::string text;      ///< as it was given
@@ -36,7 +30,7 @@ struct Criterion {
 };
 
 /// "t_p < 60 us", or beside the plain step: "t_i < 3 step". Throws InvalidInput with the broken rule.
-[[nodiscard]] Criterion parse_criterion(std::string_view text, std::span<const FigureName> figures);
+[[nodiscard]] Criterion parse_criterion(std::string_view text, std::span<const Figure> figures);
 
 /// Of a condition beside the plain step the same with a limit of its own, where the step has this figure. Throws InvalidInput
 /// where the step has none, or 0.
@@ -51,6 +45,6 @@ struct RobustMeasure {
 
 /// cvar:LEVEL, quantile:LEVEL, mean+Ksigma, worst, yield:CONDITION, yield (of no significant rebound). Throws InvalidInput with
 /// the broken rule.
-[[nodiscard]] RobustMeasure parse_robust_measure(std::string_view text, std::span<const FigureName> figures);
+[[nodiscard]] RobustMeasure parse_robust_measure(std::string_view text, std::span<const Figure> figures);
 
 }  // namespace softland

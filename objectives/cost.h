@@ -31,38 +31,110 @@
 #pragma once
 
 #include <array>
-#include <limits>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/choice.h"
-#include "model/closing/observer.h"
-#include "model/trajectory.h"
+#include "objectives/figures.h"
 #include "objectives/metrics.h"
 
 namespace softland {
 
+/// A closing beside that of the plain step: what the forms of a target are made of.
+struct Shares {
+  const Metrics &own, &step;
+  double lead = 0;    ///< cost of `bounce`
+  double window = 0;  ///< after the first touch, for which it was followed [s]
+
+  /// A step that lands softly by itself must not turn the ratios into infinities.
+  [[nodiscard]] static double ratio(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
+  /// A figure over that of the step, or over another one of it.
+  [[nodiscard]] double of(double Metrics::*figure) const { return ratio(own.*figure, step.*figure); }
+  [[nodiscard]] double of(double Metrics::*figure, double Metrics::*unit) const { return ratio(own.*figure, step.*unit); }
+  /// A time over the first touch of the step. Of one that is not known all that is known is that it comes later.
+  [[nodiscard]] double of_time(double time) const {
+    const double known = std::isfinite(time) ? time : 2 * (own.initial_contact_time + window);
+    return ratio(known, step.initial_contact_time);
+  }
+};
+
 enum class Target { bounce, settling, rebound, count, impact, energy, force, drive, steady };
+/// What a search can be about. A new one is an enumerator and a row.
 struct TargetRow {
+  using Form = double (*)(const Shares&);
+
   Target value;
   std::string_view name;
-  /// Whether a search for the target goes on by a figure of its own once it has followed the cost of `bounce`. Without a
-  /// significant rebound those of the others have no more to give.
-  bool has_own_cost;
+  Figure::Member figure;         ///< its own, of winners and goals, and of the forms below where these are null
+  Figure::Member unit = figure;  ///< of the step, over which its own is taken in a sum of targets
+  /// Whether a search for the target goes on by its own figure once it has followed the cost of `bounce`. Without a significant
+  /// rebound those of the others have no more to give.
+  bool has_own_cost = true;
+  Form nominal = nullptr;             ///< in the cost of a search on the nominal device
+  Form robust = nullptr;              ///< in that of a search on devices that differ
+  std::string_view no_gradient = {};  ///< why its cost has none; empty where it has
+
+  [[nodiscard]] double in(Form form, const Shares& shares) const {
+    if (form != nullptr) return form(shares);
+    const Figure& own = figure_of(figure);
+    return Shares::ratio(own.value(shares.own), own.value(shares.step));
+  }
 };
-inline constexpr auto targets = std::to_array<TargetRow>({{Target::bounce, "bounce", false},
-                                                          {Target::settling, "settling", true},
-                                                          {Target::rebound, "rebound", false},
-                                                          {Target::count, "count", false},
-                                                          {Target::impact, "impact", true},
-                                                          {Target::energy, "energy", true},
-                                                          {Target::force, "force", true},
-                                                          {Target::drive, "drive", true},
-                                                          {Target::steady, "steady", true}});
+namespace internal {
+inline double lead(const Shares& s) { return s.lead; }
+inline double largest_speed(const Shares& s) { return s.of(&Metrics::largest_impact_velocity); }
+}  // namespace internal
+inline constexpr auto targets = std::to_array<TargetRow>({
+    {.value = Target::bounce,
+     .name = "bounce",
+     .figure = &Metrics::major_bounce_height,
+     .has_own_cost = false,
+     .nominal = internal::lead,
+     .robust = [](const Shares& s) { return (internal::largest_speed(s) + s.of(&Metrics::major_bounce_height)) / 2; }},
+    {.value = Target::settling,
+     .name = "settling",
+     .figure = &Metrics::permanent_contact_time,
+     .unit = &Metrics::initial_contact_time,  // the step may not settle at all
+     .nominal = [](const Shares& s) { return s.of(&Metrics::last_rebound_end, &Metrics::initial_contact_time); },
+     .robust = [](const Shares& s) { return s.of_time(s.own.permanent_contact_time); }},
+    {.value = Target::rebound,
+     .name = "rebound",
+     .figure = &Metrics::major_bounce_height,
+     .has_own_cost = false,
+     .nominal = internal::lead},
+    {.value = Target::count, .name = "count", .figure = &Metrics::bounce_count, .has_own_cost = false, .nominal = internal::lead},
+    {.value = Target::impact,
+     .name = "impact",
+     .figure = &Metrics::impact_velocity,
+     .nominal = internal::largest_speed,
+     .robust = internal::largest_speed},
+    {.value = Target::energy,
+     .name = "energy",
+     .figure = &Metrics::impact_energy,
+     .nominal = [](const Shares& s) { return std::sqrt(s.of(&Metrics::impact_energy)); }},
+    {.value = Target::force, .name = "force", .figure = &Metrics::peak_contact_force},
+    {.value = Target::drive,
+     .name = "drive",
+     .figure = &Metrics::drive_energy,
+     .no_gradient = "the energy of the drives has no gradient"},
+    {.value = Target::steady,
+     .name = "steady",
+     .figure = &Metrics::steady_force_time,
+     .nominal =
+         [](const Shares& s) {
+           const bool is_steady = std::isfinite(s.own.steady_force_time);
+           return s.of(is_steady ? &Metrics::steady_force_time : &Metrics::end, &Metrics::initial_contact_time);
+         },
+     .robust = [](const Shares& s) { return s.of_time(s.own.steady_force_time); },
+     .no_gradient = "the time from which on the contact force is steady has no gradient"},
+});
 static_assert(is_complete<targets>());
 [[nodiscard]] constexpr std::string_view to_string(Target target) { return name_of(targets, target); }
 [[nodiscard]] constexpr bool has_own_cost(Target target) { return row_of(targets, target).has_own_cost; }
+/// The figure that a target is about.
+[[nodiscard]] constexpr const Figure& figure_of(Target target) { return figure_of(row_of(targets, target).figure); }
 
 /// What a search minimises: one target, or a sum of several with weights.
 class Aim {
@@ -95,58 +167,14 @@ class Aim {
   std::vector<Part> parts_;
 };
 
-/// The raw figures behind the costs, over a run that ends a fixed time after first contact.
-struct CostFigures {
-  bool touched = false;
-  bool reopened = false;         ///< at the end of the run, by more than half of the contact gap
-  double closest = 0;            ///< smallest separation while nothing touched [m]
-  double first_touch = 0;        ///< [s]
-  double touch_speed = 0;        ///< largest over all touches [m/s]
-  double rebound_height = 0;     ///< [m]
-  double separated = 0;          ///< time above the first-touch plane after first touch [s]
-  double last_rebound_end = 0;   ///< of those above the significant height; first_touch if none [s]
-  double impact_energy = 0;      ///< [J]
-  double landing_excess = 0;     ///< [J]; 0 when it was not measured
-  double peak_force = 0;         ///< [N]; NaN on a rigid contact
-  double drive_energy = 0;       ///< [J]; NaN when it was not measured
-  double steady_force_time = 0;  ///< Trajectory::steady_force_time, the end of the run where that is not known [s]
-};
-[[nodiscard]] CostFigures cost_figures(const Trajectory& trajectory, const MetricsOptions& options);
-
-/// Gathers the figures while a closing runs, and keeps nothing of its course.
-class CostObserver final : public ClosingObserver {
- public:
-  /// `contact_gap` [m]
-  CostObserver(double contact_gap, const MetricsOptions& options)
-      : contact_gap_(contact_gap), significant_rebound_(options.significant_rebound), rebounds_(contact_gap) {
-    figures_.closest = contact_gap;
-  }
-  void knot(const TrajectoryPoint& point) override;
-  void touch(const Touch& touch) override;
-  /// Of the run, once it has ended.
-  [[nodiscard]] CostFigures figures(const Trajectory& end);
-
- private:
-  void take(const Rebound& rebound, double until);
-
-  double contact_gap_, significant_rebound_;  // [m]
-  ReboundFinder rebounds_;
-  CostFigures figures_;  // but for those of the rebounds
-  double separated_ = 0, rebound_height_ = 0, last_rebound_end_ = std::numeric_limits<double>::quiet_NaN();
-};
-
+/// The figures are those of a run that ends a fixed time after first contact.
 struct CostScale {
-  CostFigures step;         ///< figures of the plain step
+  Metrics step;             ///< of the plain step
   double score_window = 0;  ///< [s]
   double contact_gap = 0;   ///< [m]
   double free_touch = 0;    ///< T_free, over first touch of the step
 };
-/// Infinite for a run that is not done.
-[[nodiscard]] double cost(const Aim& aim, Status status, const CostFigures& figures, const CostScale& scale,
-                          const MetricsOptions& options);
-[[nodiscard]] inline double cost(const Aim& aim, const Trajectory& trajectory, const CostScale& scale,
-                                 const MetricsOptions& options) {
-  return cost(aim, trajectory.status, cost_figures(trajectory, options), scale, options);
-}
+/// Infinite for a run that could not be followed.
+[[nodiscard]] double cost(const Aim& aim, const Metrics& figures, const CostScale& scale, const MetricsOptions& options);
 
 }  // namespace softland

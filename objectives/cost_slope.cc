@@ -27,7 +27,7 @@ void add(FigureSlope& to, const FigureSlope& from, double factor = 1) {
   to.by_device += factor * from.by_device;
 }
 
-// Goes along the motion of the contact point as CostObserver does.
+// Goes along the motion of the contact point as MetricsObserver does.
 class SlopeFinder {
  public:
   SlopeFinder(const Switch& model, std::span<const Signal> signals, const LinearizedClosing& motion,
@@ -42,8 +42,11 @@ class SlopeFinder {
         work_(model.workspace()) {}
 
   CostSlopes find() {
-    slopes_.has_peak_force = model_.has_contact() && !model_.has_damped_contact() && !model_.has_pad_contact();
-    slopes_.has_impact_energy = !model_.has_pad_contact();
+    if (!model_.has_contact() || model_.has_damped_contact() || model_.has_pad_contact())
+      slopes_.why_none[&Metrics::peak_contact_force] =
+          "a damped contact, or one along the pad, does not press hardest at its deepest point";
+    if (model_.has_pad_contact())
+      slopes_.why_none[&Metrics::impact_energy] = "a contact along the pad stores its energy all along it";
     auto passage = motion_.passages().begin();
     for (std::size_t i = 0; i < motion_.arcs().size(); ++i) {
       consider(i);
@@ -95,7 +98,7 @@ class SlopeFinder {
     if (touches_ == 0) {
       if (plane_ - at < closest_) {
         closest_ = plane_ - at;
-        slopes_.closest = position(i, -1);
+        slopes_.of[&Metrics::closest] = position(i, -1);
       }
     } else if (touching_) {
       if (at - plane_ > (1 + 1e-9) * depth_ && (arc(i).turns || i + 1 == motion_.arcs().size())) deepen(i, at - plane_);
@@ -133,14 +136,14 @@ class SlopeFinder {
     if (first_speed_ > 0) slopes_.grazing = std::min(slopes_.grazing, std::abs(speed) / first_speed_);
     if (change.kind == Kind::leaves || (speed < 0 && touching_)) {
       end_touch();
-      if (change.kind != Kind::leaves) add(slopes_.separated, crossing_time(i), -1);
+      if (change.kind != Kind::leaves) add(slopes_.of[&Metrics::separated], crossing_time(i), -1);
       return false;
     }
     if (!(speed > 0) || touching_) return false;
     if (touches_ == 0) {
       first_speed_ = speed;
-      slopes_.first_touch_speed = crossing_speed(i);
-      slopes_.first_touch = slopes_.last_rebound_end = crossing_time(i);
+      slopes_.of[&Metrics::impact_velocity] = crossing_speed(i);
+      slopes_.of[&Metrics::initial_contact_time] = slopes_.of[&Metrics::last_rebound_end] = crossing_time(i);
     } else {
       end_rebound(i, true);
     }
@@ -149,26 +152,26 @@ class SlopeFinder {
     depth_ = force_ = 0;
     if (speed > fastest_) {
       fastest_ = speed;
-      slopes_.touch_speed = crossing_speed(i);
+      slopes_.of[&Metrics::largest_impact_velocity] = crossing_speed(i);
     }
     if (change.kind == Kind::impact || change.kind == Kind::rests) {
       FigureSlope energy = position(i, -at.v.dot(at.accelerations) / speed);
       energy.weights[0].by_v = at.v;
-      add(slopes_.impact_energy, energy);
+      add(slopes_.of[&Metrics::impact_energy], energy);
       if (change.kind == Kind::impact) {
         touching_ = false;
         height_ = 0;
-        add(slopes_.separated, crossing_time(i), -1);
+        add(slopes_.of[&Metrics::separated], crossing_time(i), -1);
       }
     }
     return true;
   }
 
   void end_touch() {
-    add(slopes_.impact_energy, energy_slope_);
+    add(slopes_.of[&Metrics::impact_energy], energy_slope_);
     if (force_ > largest_force_) {
       largest_force_ = force_;
-      slopes_.peak_force = force_slope_;
+      slopes_.of[&Metrics::peak_contact_force] = force_slope_;
     }
     energy_slope_ = force_slope_ = {};
     touching_ = false;
@@ -177,12 +180,12 @@ class SlopeFinder {
   }
 
   void end_rebound(std::size_t i, bool touches) {
-    if (touches) add(slopes_.separated, crossing_time(i));
+    if (touches) add(slopes_.of[&Metrics::separated], crossing_time(i));
     if (height_ > highest_) {
       highest_ = height_;
-      slopes_.rebound_height = height_slope_;
+      slopes_.of[&Metrics::major_bounce_height] = height_slope_;
     }
-    if (height_ > options_.significant_rebound && touches) slopes_.last_rebound_end = crossing_time(i);
+    if (height_ > options_.significant_rebound && touches) slopes_.of[&Metrics::last_rebound_end] = crossing_time(i);
   }
 
   [[nodiscard]] bool holds(const std::vector<std::size_t>& pieces) const {
@@ -210,11 +213,11 @@ class SlopeFinder {
     if (reaches_hold) {
       std::size_t k = 0;
       while (motion_.pieces(at)[k] == pieces[k]) ++k;
-      slopes_.landing_excess.moved.push_back({.drive = k, .piece = pieces[k], .rate = rate});
+      slopes_.of[&Metrics::landing_excess].moved.push_back({.drive = k, .piece = pieces[k], .rate = rate});
     } else {
       weights.by_q -= rate / shape_.dot(at.v) * shape_;
     }
-    slopes_.landing_excess.weights.push_back(std::move(weights));
+    slopes_.of[&Metrics::landing_excess].weights.push_back(std::move(weights));
   }
 
   const Switch& model_;
@@ -242,27 +245,28 @@ CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, con
   return SlopeFinder(model, signals, motion, options).find();
 }
 
-std::optional<FigureSlope> cost_slope(const Aim& aim, Status status, const CostFigures& figures, const CostScale& scale,
+std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, const CostScale& scale,
                                       const MetricsOptions& options, const CostSlopes& slopes) {
-  if (aim.is_about(Target::drive) || aim.is_about(Target::steady) || (aim.is_about(Target::force) && !slopes.has_peak_force) ||
-      (aim.is_about(Target::energy) && !slopes.has_impact_energy) || !std::isfinite(cost(aim, status, figures, scale, options)))
-    return std::nullopt;
+  const bool has_slope = std::ranges::all_of(aim.parts(), [&](const Aim::Part& part) {
+    const TargetRow& row = row_of(targets, part.target);
+    return row.no_gradient.empty() && slopes.why_none[row.figure].empty();
+  });
+  if (!has_slope || !std::isfinite(cost(aim, figures, scale, options))) return std::nullopt;
   struct Part {
-    double CostFigures::*figure;
-    const FigureSlope& slope;
+    double Metrics::*figure;
     double scale;
   };
-  const CostFigures& step = scale.step;
-  const Part parts[] = {{&CostFigures::closest, slopes.closest, scale.contact_gap},
-                        {&CostFigures::first_touch, slopes.first_touch, step.first_touch},
-                        {&CostFigures::touch_speed, slopes.touch_speed, step.touch_speed},
-                        {&CostFigures::rebound_height, slopes.rebound_height, options.significant_rebound},
-                        {&CostFigures::separated, slopes.separated, scale.score_window},
-                        {&CostFigures::last_rebound_end, slopes.last_rebound_end, step.first_touch},
-                        {&CostFigures::impact_energy, slopes.impact_energy, step.impact_energy},
-                        {&CostFigures::landing_excess, slopes.landing_excess, step.landing_excess},
-                        {&CostFigures::peak_force, slopes.peak_force, step.peak_force}};
-  FigureSlope sum;
+  const Metrics& step = scale.step;
+  const Part parts[] = {{&Metrics::closest, scale.contact_gap},
+                        {&Metrics::initial_contact_time, step.initial_contact_time},
+                        {&Metrics::largest_impact_velocity, step.largest_impact_velocity},
+                        {&Metrics::major_bounce_height, options.significant_rebound},
+                        {&Metrics::separated, scale.score_window},
+                        {&Metrics::last_rebound_end, step.initial_contact_time},
+                        {&Metrics::impact_energy, step.impact_energy},
+                        {&Metrics::landing_excess, step.landing_excess},
+                        {&Metrics::peak_contact_force, step.peak_contact_force}};
+  FigureSlope sum;  // in the order of the parts, which decides its last bits
   for (const Part& part : parts) {
     const double value = figures.*part.figure;
     if (!std::isfinite(value)) continue;
@@ -270,12 +274,12 @@ std::optional<FigureSlope> cost_slope(const Aim& aim, Status status, const CostF
     const double size = std::abs(value) > 0 ? std::abs(value) : part.scale;
     if (!(size > 0) || !std::isfinite(size)) continue;
     const double h = 1e-6 * size;
-    CostFigures above = figures, below = figures;
+    Metrics above = figures, below = figures;
     above.*part.figure = value + h;
     below.*part.figure = value > 0 ? value - h : value;
-    const double rate = (cost(aim, status, above, scale, options) - cost(aim, status, below, scale, options)) /
-                        (above.*part.figure - below.*part.figure);
-    if (rate != 0 && std::isfinite(rate)) add(sum, part.slope, rate);
+    const double rate =
+        (cost(aim, above, scale, options) - cost(aim, below, scale, options)) / (above.*part.figure - below.*part.figure);
+    if (rate != 0 && std::isfinite(rate)) add(sum, slopes.of[part.figure], rate);
   }
   return sum;
 }

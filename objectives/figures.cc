@@ -26,31 +26,8 @@ double Figure::counted(const Metrics& metrics, const MetricsOptions& options) co
   return member == Member(&Metrics::major_bounce_height) && own < options.significant_rebound ? options.significant_rebound : own;
 }
 
-const Figure& figure_of(Target target) {
-  switch (target) {
-    case Target::settling:
-      return figure_of(&Metrics::permanent_contact_time);
-    case Target::impact:
-      return figure_of(&Metrics::impact_velocity);
-    case Target::energy:
-      return figure_of(&Metrics::impact_energy);
-    case Target::count:
-      return figure_of(&Metrics::bounce_count);
-    case Target::force:
-      return figure_of(&Metrics::peak_contact_force);
-    case Target::drive:
-      return figure_of(&Metrics::drive_energy);
-    case Target::steady:
-      return figure_of(&Metrics::steady_force_time);
-    case Target::bounce:
-    case Target::rebound:
-      break;
-  }
-  return figure_of(&Metrics::major_bounce_height);
-}
-
 FigureValues::FigureValues(const Metrics& metrics) {
-  for (const Figure& figure : all_figures) (*this)[figure] = figure.value(metrics);
+  for (const Figure& figure : figure_table) (*this)[figure] = figure.value(metrics);
 }
 
 double relative_change(double value, double reference, double least) {

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <variant>
 
-#include "objectives/cost.h"
 #include "objectives/metrics.h"
 
 namespace softland {
@@ -38,6 +39,10 @@ struct Figure {
   Better better = Better::neither;
   Conditioning conditioning = Conditioning::first_touch;
   Member member;
+  /// Whose derivative is its own: that of the permanent contact is that of the last rebound's end. Null: it has none.
+  double Metrics::*slope = nullptr;
+  bool of_results = true, of_devices = false;              ///< whether results tell it of a closing; of devices that differ
+  double worst = std::numeric_limits<double>::infinity();  ///< what a device counts with that does not close
 
   [[nodiscard]] constexpr bool is_count() const { return std::holds_alternative<int Metrics::*>(member); }
   [[nodiscard]] constexpr bool is_yes_or_no() const { return std::holds_alternative<bool Metrics::*>(member); }
@@ -61,144 +66,223 @@ struct Figure {
   [[nodiscard]] double counted(const Metrics& metrics, const MetricsOptions& options) const;
 };
 
-inline constexpr std::array all_figures{Figure{.key = "initial_contact_time_s",
-                                               .name = "First contact",
-                                               .symbol = "t_i",
-                                               .unit = "s",
-                                               .conditioning = Conditioning::first_touch,
-                                               .member = &Metrics::initial_contact_time},
-                                        Figure{.key = "permanent_contact_time_s",
-                                               .name = "Permanent contact",
-                                               .also = "settling time",
-                                               .symbol = "t_p",
-                                               .unit = "s",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::last_rebound,
-                                               .member = &Metrics::permanent_contact_time},
-                                        Figure{.key = "bounce_time_s",
-                                               .name = "Bounce time",
-                                               .symbol = "t_b",
-                                               .unit = "s",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::last_rebound,
-                                               .member = &Metrics::bounce_time},
-                                        Figure{.key = "bounce_count",
-                                               .name = "Rebounds",
-                                               .symbol = "N_B",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::last_rebound,
-                                               .member = &Metrics::bounce_count},
-                                        Figure{.key = "major_bounce_height_m",
-                                               .name = "Highest rebound",
-                                               .symbol = "B_H",
-                                               .unit = "m",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::high_rebound,
-                                               .member = &Metrics::major_bounce_height},
-                                        Figure{.key = "first_rebound_time_s",
-                                               .name = "First rebound lasts",
-                                               .symbol = "t_1",
-                                               .unit = "s",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::high_rebound,
-                                               .member = &Metrics::first_rebound_time},
-                                        Figure{.key = "impact_velocity_m_s",
-                                               .name = "Impact speed",
-                                               .symbol = "v_i",
-                                               .unit = "m/s",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::first_touch,
-                                               .member = &Metrics::impact_velocity},
-                                        Figure{.key = "peak_contact_force_N",
-                                               .name = "Peak contact force",
-                                               .symbol = "peak force",
-                                               .unit = "N",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::every_touch,
-                                               .member = &Metrics::peak_contact_force},
-                                        Figure{.key = "impact_energy_J",
-                                               .name = "Impact energy",
-                                               .symbol = "impact energy",
-                                               .unit = "J",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::every_touch,
-                                               .member = &Metrics::impact_energy},
-                                        Figure{.key = "hold_force_N",
-                                               .name = "Hold force",
-                                               .symbol = "hold force",
-                                               .unit = "N",
-                                               .conditioning = Conditioning::rest,
-                                               .member = &Metrics::hold_force},
-                                        Figure{.key = "steady_force_time_s",
-                                               .name = "Steady force from",
-                                               .symbol = "t_F",
-                                               .unit = "s",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::every_touch,
-                                               .member = &Metrics::steady_force_time},
-                                        Figure{.key = "least_force_after_touch_N",
-                                               .name = "Least force after the touch",
-                                               .symbol = "least force",
-                                               .unit = "N",
-                                               .conditioning = Conditioning::every_touch,
-                                               .member = &Metrics::least_force_after_touch},
-                                        Figure{.key = "capacitance_F",
-                                               .name = "Capacitance at the hold level",
-                                               .symbol = "capacitance",
-                                               .unit = "F",
-                                               .conditioning = Conditioning::rest,
-                                               .member = &Metrics::capacitance},
-                                        Figure{.key = "static_deflection_m",
-                                               .name = "Static deflection",
-                                               .symbol = "static deflection",
-                                               .unit = "m",
-                                               .conditioning = Conditioning::open,
-                                               .member = &Metrics::static_deflection},
-                                        Figure{.key = "overshoot_m",
-                                               .name = "Overshoot",
-                                               .symbol = "overshoot",
-                                               .unit = "m",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::open,
-                                               .member = &Metrics::overshoot},
-                                        Figure{.key = "open_settling_time_s",
-                                               .name = "Settling time, open",
-                                               .symbol = "open settling time",
-                                               .unit = "s",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::open,
-                                               .member = &Metrics::open_settling_time},
-                                        Figure{.key = "drive_energy_J",
-                                               .name = "Drive energy",
-                                               .symbol = "drive energy",
-                                               .unit = "J",
-                                               .better = Better::lower,
-                                               .conditioning = Conditioning::every_touch,
-                                               .member = &Metrics::drive_energy},
-                                        Figure{.key = "peak_voltage_V",
-                                               .name = "Peak voltage",
-                                               .symbol = "peak voltage",
-                                               .unit = "V",
-                                               .conditioning = Conditioning::drives,
-                                               .member = &Metrics::peak_voltage},
-                                        Figure{.key = "peak_slew_V_s",
-                                               .name = "Peak slew",
-                                               .symbol = "peak slew",
-                                               .unit = "V/s",
-                                               .conditioning = Conditioning::drives,
-                                               .member = &Metrics::peak_slew},
-                                        Figure{.key = "settled",
-                                               .name = "Settled",
-                                               .symbol = "settled",
-                                               .conditioning = Conditioning::last_rebound,
-                                               .member = &Metrics::settled}};
+/// All there are.
+inline constexpr auto figure_table = std::to_array<Figure>({
+    {.key = "initial_contact_time_s",
+     .name = "First contact",
+     .symbol = "t_i",
+     .unit = "s",
+     .conditioning = Conditioning::first_touch,
+     .member = &Metrics::initial_contact_time,
+     .slope = &Metrics::initial_contact_time,
+     .of_devices = true},
+    {.key = "permanent_contact_time_s",
+     .name = "Permanent contact",
+     .also = "settling time",
+     .symbol = "t_p",
+     .unit = "s",
+     .better = Better::lower,
+     .conditioning = Conditioning::last_rebound,
+     .member = &Metrics::permanent_contact_time,
+     .slope = &Metrics::last_rebound_end,
+     .of_devices = true},
+    {.key = "bounce_time_s",
+     .name = "Bounce time",
+     .symbol = "t_b",
+     .unit = "s",
+     .better = Better::lower,
+     .conditioning = Conditioning::last_rebound,
+     .member = &Metrics::bounce_time},
+    {.key = "bounce_count",
+     .name = "Rebounds",
+     .symbol = "N_B",
+     .better = Better::lower,
+     .conditioning = Conditioning::last_rebound,
+     .member = &Metrics::bounce_count,
+     .of_devices = true},
+    {.key = "major_bounce_height_m",
+     .name = "Highest rebound",
+     .symbol = "B_H",
+     .unit = "m",
+     .better = Better::lower,
+     .conditioning = Conditioning::high_rebound,
+     .member = &Metrics::major_bounce_height,
+     .slope = &Metrics::major_bounce_height,
+     .of_devices = true},
+    {.key = "first_rebound_time_s",
+     .name = "First rebound lasts",
+     .symbol = "t_1",
+     .unit = "s",
+     .better = Better::lower,
+     .conditioning = Conditioning::high_rebound,
+     .member = &Metrics::first_rebound_time},
+    {.key = "impact_velocity_m_s",
+     .name = "Impact speed",
+     .symbol = "v_i",
+     .unit = "m/s",
+     .better = Better::lower,
+     .conditioning = Conditioning::first_touch,
+     .member = &Metrics::impact_velocity,
+     .slope = &Metrics::impact_velocity,
+     .of_devices = true},
+    {.key = "largest_impact_velocity_m_s",
+     .name = "Largest impact speed",
+     .symbol = "v_max",
+     .unit = "m/s",
+     .better = Better::lower,
+     .conditioning = Conditioning::every_touch,
+     .member = &Metrics::largest_impact_velocity,
+     .slope = &Metrics::largest_impact_velocity,
+     .of_results = false,
+     .of_devices = true},
+    {.key = "peak_contact_force_N",
+     .name = "Peak contact force",
+     .symbol = "peak force",
+     .unit = "N",
+     .better = Better::lower,
+     .conditioning = Conditioning::every_touch,
+     .member = &Metrics::peak_contact_force,
+     .slope = &Metrics::peak_contact_force,
+     .of_devices = true},
+    {.key = "impact_energy_J",
+     .name = "Impact energy",
+     .symbol = "impact energy",
+     .unit = "J",
+     .better = Better::lower,
+     .conditioning = Conditioning::every_touch,
+     .member = &Metrics::impact_energy,
+     .slope = &Metrics::impact_energy,
+     .of_devices = true},
+    {.key = "hold_force_N",
+     .name = "Hold force",
+     .symbol = "hold force",
+     .unit = "N",
+     .conditioning = Conditioning::rest,
+     .member = &Metrics::hold_force},
+    {.key = "steady_force_time_s",
+     .name = "Steady force from",
+     .symbol = "t_F",
+     .unit = "s",
+     .better = Better::lower,
+     .conditioning = Conditioning::every_touch,
+     .member = &Metrics::steady_force_time,
+     .of_devices = true},
+    {.key = "least_force_after_touch_N",
+     .name = "Least force after the touch",
+     .symbol = "least force",
+     .unit = "N",
+     .conditioning = Conditioning::every_touch,
+     .member = &Metrics::least_force_after_touch,
+     .of_devices = true,
+     .worst = 0},
+    {.key = "capacitance_F",
+     .name = "Capacitance at the hold level",
+     .symbol = "capacitance",
+     .unit = "F",
+     .conditioning = Conditioning::rest,
+     .member = &Metrics::capacitance},
+    {.key = "static_deflection_m",
+     .name = "Static deflection",
+     .symbol = "static deflection",
+     .unit = "m",
+     .conditioning = Conditioning::open,
+     .member = &Metrics::static_deflection},
+    {.key = "overshoot_m",
+     .name = "Overshoot",
+     .symbol = "overshoot",
+     .unit = "m",
+     .better = Better::lower,
+     .conditioning = Conditioning::open,
+     .member = &Metrics::overshoot},
+    {.key = "open_settling_time_s",
+     .name = "Settling time, open",
+     .symbol = "open settling time",
+     .unit = "s",
+     .better = Better::lower,
+     .conditioning = Conditioning::open,
+     .member = &Metrics::open_settling_time},
+    {.key = "drive_energy_J",
+     .name = "Drive energy",
+     .symbol = "drive energy",
+     .unit = "J",
+     .better = Better::lower,
+     .conditioning = Conditioning::every_touch,
+     .member = &Metrics::drive_energy},
+    {.key = "peak_voltage_V",
+     .name = "Peak voltage",
+     .symbol = "peak voltage",
+     .unit = "V",
+     .conditioning = Conditioning::drives,
+     .member = &Metrics::peak_voltage},
+    {.key = "peak_slew_V_s",
+     .name = "Peak slew",
+     .symbol = "peak slew",
+     .unit = "V/s",
+     .conditioning = Conditioning::drives,
+     .member = &Metrics::peak_slew},
+    {.key = "settled",
+     .name = "Settled",
+     .symbol = "settled",
+     .conditioning = Conditioning::last_rebound,
+     .member = &Metrics::settled},
+    {.key = "closest_m",
+     .name = "Closest approach",
+     .symbol = "closest approach",
+     .unit = "m",
+     .member = &Metrics::closest,
+     .slope = &Metrics::closest,
+     .of_results = false},
+    {.key = "separated_s",
+     .name = "Time in separation",
+     .symbol = "time in separation",
+     .unit = "s",
+     .member = &Metrics::separated,
+     .slope = &Metrics::separated,
+     .of_results = false},
+    {.key = "last_rebound_end_s",
+     .name = "End of the last rebound",
+     .symbol = "end of the last rebound",
+     .unit = "s",
+     .member = &Metrics::last_rebound_end,
+     .slope = &Metrics::last_rebound_end,
+     .of_results = false},
+    {.key = "landing_excess_J",
+     .name = "Landing excess",
+     .symbol = "landing excess",
+     .unit = "J",
+     .member = &Metrics::landing_excess,
+     .slope = &Metrics::landing_excess,
+     .of_results = false},
+});
+
+/// A selection of the table, in its order.
+template <bool (*chosen)(const Figure&)>
+[[nodiscard]] consteval auto figures_that_are() {
+  std::array<Figure, static_cast<std::size_t>(std::count_if(figure_table.begin(), figure_table.end(), chosen))> all{};
+  std::copy_if(figure_table.begin(), figure_table.end(), all.begin(), chosen);
+  return all;
+}
+namespace internal {
+constexpr bool is_of_results(const Figure& one) { return one.of_results; }
+constexpr bool is_of_devices(const Figure& one) { return one.of_devices; }
+constexpr bool is_number_of_results(const Figure& one) { return one.of_results && !one.is_yes_or_no(); }
+constexpr bool is_derived(const Figure& one) { return one.slope != nullptr && (one.of_results || one.of_devices); }
+}  // namespace internal
+/// What results tell of a closing; of devices that differ, and conditions on these may be about; what conditions on one closing
+/// may be about; what has derivatives.
+inline constexpr auto all_figures = figures_that_are<internal::is_of_results>();
+inline constexpr auto device_figures = figures_that_are<internal::is_of_devices>();
+inline constexpr auto conditioned_figures = figures_that_are<internal::is_number_of_results>();
+inline constexpr auto derived_figures = figures_that_are<internal::is_derived>();
 
 /// The row of a member of Metrics.
 [[nodiscard]] constexpr const Figure& figure_of(Figure::Member member) {
-  return *std::find_if(all_figures.begin(), all_figures.end(), [&](const Figure& one) { return one.member == member; });
+  return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.member == member; });
 }
-/// The figure that a target is about.
-[[nodiscard]] const Figure& figure_of(Target target);
+/// Of this key, which must be among them.
+[[nodiscard]] constexpr const Figure& figure_of(std::string_view key) {
+  return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.key == key; });
+}
 
 /// The figures by which a closing is compared with one of another law or number of modes.
 inline constexpr std::array compared_figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::impact_velocity),
@@ -207,21 +291,29 @@ inline constexpr std::array compared_figures{figure_of(&Metrics::initial_contact
 inline constexpr std::array studied_figures{compared_figures[0], compared_figures[1], compared_figures[2],
                                             figure_of(&Metrics::peak_contact_force)};
 
-/// A number for every figure: its value, or its error. NaN: not known.
-class FigureValues {
+/// Something for every figure.
+template <class T>
+class PerFigure {
  public:
-  constexpr FigureValues() { values_.fill(Metrics::unset); }
-  explicit FigureValues(const Metrics& metrics);
-  [[nodiscard]] constexpr double& operator[](Figure::Member member) { return values_[index(member)]; }
-  [[nodiscard]] constexpr double operator[](Figure::Member member) const { return values_[index(member)]; }
-  [[nodiscard]] constexpr double& operator[](const Figure& figure) { return (*this)[figure.member]; }
-  [[nodiscard]] constexpr double operator[](const Figure& figure) const { return (*this)[figure.member]; }
+  [[nodiscard]] constexpr T& operator[](Figure::Member member) { return values_[index(member)]; }
+  [[nodiscard]] constexpr const T& operator[](Figure::Member member) const { return values_[index(member)]; }
+  [[nodiscard]] constexpr T& operator[](const Figure& figure) { return (*this)[figure.member]; }
+  [[nodiscard]] constexpr const T& operator[](const Figure& figure) const { return (*this)[figure.member]; }
+
+ protected:
+  std::array<T, figure_table.size()> values_{};
 
  private:
   static constexpr std::size_t index(Figure::Member member) {
-    return static_cast<std::size_t>(&figure_of(member) - all_figures.data());
+    return static_cast<std::size_t>(&figure_of(member) - figure_table.data());
   }
-  std::array<double, all_figures.size()> values_;
+};
+
+/// A number for every figure: its value, or its error. NaN: not known.
+class FigureValues : public PerFigure<double> {
+ public:
+  constexpr FigureValues() { values_.fill(Metrics::unset); }
+  explicit FigureValues(const Metrics& metrics);
 };
 
 /// (value - reference) / max(|reference|, least): by which part of itself a figure changes. NaN where either is not known.

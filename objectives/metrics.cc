@@ -25,12 +25,15 @@ void LandingFigures::touch(const Touch& touch) {
 
 void LandingFigures::rebound(const Rebound& rebound) {
   highest_ = std::max(highest_, rebound.height);
+  latest_ = rebound;
+  if (std::isfinite(rebound.end)) separated_ += rebound.end - rebound.begin;
   if (!(rebound.height > options_.significant_rebound)) return;
   if (++significant_ == 1) first_duration_ = rebound.end - rebound.begin;  // NaN while it is under way
   last_end_ = rebound.end;
 }
 
 void MetricsObserver::knot(const TrajectoryPoint& point) {
+  if (!rebounds_.touched()) closest_ = std::min(closest_, contact_gap_ - point.position);
   rebounds_.knot(point, [this](const Rebound& rebound) { figures_.rebound(rebound); });
 }
 
@@ -42,7 +45,8 @@ Metrics MetricsObserver::metrics(const Trajectory& end) {
                                 .above = above,
                                 .first_touch = rebounds_.first_touch(),
                                 .impact_velocity = rebounds_.impact_velocity(),
-                                .last_time = rebounds_.last_time()});
+                                .last_time = rebounds_.last_time(),
+                                .closest = closest_});
 }
 
 Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) const {
@@ -54,11 +58,14 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
 
   result.initial_contact_time = course.first_touch;
   result.impact_velocity = course.impact_velocity;
+  if (touched_) result.largest_impact_velocity = largest_impact_velocity_;
   if (!ran_to_the_end || !sound) return result;
 
   result.drive_energy = end.energy.source_work;
   result.capacitance = end.hold_capacitance;
+  result.end = course.last_time;
   if (!course.touched) {
+    result.closest = course.closest;
     if (end.status == Status::done) result.status = Status::no_contact;
     return result;
   }
@@ -74,7 +81,11 @@ Metrics LandingFigures::metrics(const Trajectory& end, const Course& course) con
   result.major_bounce_height = highest_;
   result.first_rebound_time = first_duration_;
   result.bounce_count = significant_;
+  result.separated = separated_ + (course.above ? course.last_time - latest_.begin : 0);
+  result.reopened = course.above && latest_.height > end.contact_gap / 2;
+  if (std::isfinite(end.landing_excess)) result.landing_excess = std::max(0.0, end.landing_excess);
   const double permanent = significant_ > 0 ? last_end_ : result.initial_contact_time;
+  result.last_rebound_end = std::isnan(permanent) ? course.last_time : permanent;
   const double rest = course.last_time - permanent;
   // A period that nobody knows matters only after a rebound.
   const bool long_enough = rest >= end.in_contact_period || (result.bounce_count == 0 && std::isnan(end.in_contact_period));

@@ -2,6 +2,7 @@
 // called in results, and in which unit, stands in objectives/figures.h.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -42,7 +43,21 @@ struct Metrics {
   // Set by simulate(), which knows the drives.
   double peak_voltage =
       unset;  ///< largest |V| of the electrodes' drives in the window, of the piezo where there is no electrode [V]
-  double peak_slew = unset;  ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
+  double peak_slew = unset;                ///< largest |dV/dt| of any drive [V/s]; infinite for a jump
+  double largest_impact_velocity = unset;  ///< of all touches, which the first may not be [m/s]
+  // What costs are made of, and results do not show.
+  double closest = unset;           ///< smallest separation before the first touch [m]; of a run that never touches
+  double separated = unset;         ///< time above the first-touch plane after it [s]
+  double last_rebound_end = unset;  ///< of the significant ones, of the run where one is under way; t_i if none [s]
+  double landing_excess = unset;    ///< Trajectory::landing_excess, not below 0 [J]
+  double end = unset;               ///< of the run [s]
+  bool reopened = false;            ///< at the end of the run, by more than half of the contact gap
+
+  [[nodiscard]] bool touched() const { return std::isfinite(initial_contact_time); }
+  /// Whether the closing could be followed to the end of its window.
+  [[nodiscard]] bool is_complete() const {
+    return status == Status::done || status == Status::no_contact || status == Status::not_settled;
+  }
 };
 
 /// Gathers the figures of a landing from its touches and rebounds, whoever found them.
@@ -59,15 +74,15 @@ class LandingFigures {
     bool above = false;  ///< a rebound, which has been told, was under way at the end
     double first_touch = Metrics::unset, impact_velocity = Metrics::unset;  ///< [s], [m/s]
     double last_time = 0;                                                   ///< [s]
+    double closest = Metrics::unset;                                        ///< before the first touch [m]
   };
   /// Of the run, once it has ended: see metrics().
   [[nodiscard]] Metrics metrics(const Trajectory& end, const Course& course) const;
-  /// Of all touches, which the first may not be [m/s]; NaN where nothing touched.
-  [[nodiscard]] double largest_impact_velocity() const { return touched_ ? largest_impact_velocity_ : Metrics::unset; }
 
  private:
   MetricsOptions options_;
-  double highest_ = 0, first_duration_ = 0, last_end_ = Metrics::unset;
+  double highest_ = 0, first_duration_ = 0, last_end_ = Metrics::unset, separated_ = 0;
+  Rebound latest_ = {};
   int significant_ = 0;
   bool touched_ = false;
   double peak_force_ = 0, impact_energy_ = 0, largest_impact_velocity_ = 0;
@@ -77,16 +92,17 @@ class LandingFigures {
 class MetricsObserver final : public ClosingObserver {
  public:
   /// `contact_gap` [m]
-  explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {}) : figures_(options), rebounds_(contact_gap) {}
+  explicit MetricsObserver(double contact_gap, const MetricsOptions& options = {})
+      : figures_(options), rebounds_(contact_gap), contact_gap_(contact_gap), closest_(contact_gap) {}
   void knot(const TrajectoryPoint& point) override;
   void touch(const Touch& touch) override { figures_.touch(touch); }
   /// Of the run, once it has ended: see metrics().
   [[nodiscard]] Metrics metrics(const Trajectory& end);
-  [[nodiscard]] double largest_impact_velocity() const { return figures_.largest_impact_velocity(); }
 
  private:
   LandingFigures figures_;
   ReboundFinder rebounds_;
+  double contact_gap_, closest_;  // [m]
 };
 
 /// All rebounds, significant or not, in order, as far as the knots are finite; a separation below 1e-12 of the contact gap is

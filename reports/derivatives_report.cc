@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 const FigureStatistics& statistics_of(const DriveRobustness& drive, std::string_view key) {
-  return drive.figures[static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data())];
+  return drive.figures[figure_of(key)];
 }
 
 // Per cent of the figure for one per cent of the quantity; NaN where one of them is 0.
@@ -46,13 +46,13 @@ std::string derivative_cell(const Derivatives& derivatives, const DriveRobustnes
   if (!agrees(figure, drive) || !std::isfinite(figure.by_variable[i])) return "—";
   const Derivatives::Variable& variable = derivatives.variables[i];
   const double relative = elasticity(figure, variable, figure.by_variable[i]), step = figure.by_variable[i] * variable.deviation;
-  const std::string change = with_sign(quantity(step, ensemble_figure(figure.key).unit), step);
+  const std::string change = with_sign(quantity(step, figure_of(figure.key).unit), step);
   return std::isfinite(relative) ? with_sign(plain_number(relative), relative) + " %/%, " + change : change;
 }
 
 std::string deviation_cell(const FigureDerivatives& figure, double deviation) {
   const bool none = std::ranges::none_of(figure.by_variable, [](double slope) { return std::isfinite(slope); });
-  return figure.is_known() && !none ? quantity(deviation, ensemble_figure(figure.key).unit) : "—";
+  return figure.is_known() && !none ? quantity(deviation, figure_of(figure.key).unit) : "—";
 }
 
 // What a derivative says, and what it does not.
@@ -64,7 +64,7 @@ std::string meaning_of(const Derivatives& derivatives, const DriveRobustness& dr
       drive.name);
   std::vector<std::string> apart;
   for (const FigureDerivatives& figure : derivatives.figures) {
-    if (figure.is_known() && !agrees(figure, drive)) apart.emplace_back(ensemble_figure(figure.key).symbol);
+    if (figure.is_known() && !agrees(figure, drive)) apart.emplace_back(figure_of(figure.key).symbol);
   }
   if (!apart.empty()) {
     words +=
@@ -136,7 +136,7 @@ std::string derivatives_text(const Derivatives& derivatives, const DriveRobustne
     text += "\n";
   };
   row(derivatives.grazes() ? "To first order (grazing)" : "To first order",
-      [](const FigureDerivatives& f) { return std::string(ensemble_figure(f.key).symbol); });
+      [](const FigureDerivatives& f) { return std::string(figure_of(f.key).symbol); });
   for (std::size_t i = 0; i < derivatives.variables.size(); ++i)
     row(derivatives.variables[i].name, [&](const FigureDerivatives& f) { return derivative_cell(derivatives, drive, f, i); });
   row("standard deviation", [](const FigureDerivatives& f) { return deviation_cell(f, f.deviation); });
@@ -154,7 +154,7 @@ std::string derivatives_html(const Derivatives& derivatives, const DriveRobustne
   head.insert(head.end(), {"Standard deviation", "of the devices"});
   std::vector<TableRow> rows;
   for (const FigureDerivatives& figure : derivatives.figures) {
-    const EnsembleFigure& of = ensemble_figure(figure.key);
+    const Figure& of = figure_of(figure.key);
     TableRow& row = rows.emplace_back(TableRow{escaped(of.name), escaped(quantity(figure.value, of.unit))});
     if (!figure.is_known()) {
       row.emplace_back(escaped(figure.why_none), "missing", derivatives.variables.size() + 1);

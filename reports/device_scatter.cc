@@ -66,7 +66,7 @@ CurveTable medians(const std::vector<double>& x, const std::vector<double>& y) {
   return line;
 }
 
-std::string scatter(const VariedQuantity& quantity, const EnsembleFigure& figure, const std::vector<double>& values) {
+std::string scatter(const VariedQuantity& quantity, const Figure& figure, const std::vector<double>& values) {
   std::vector<double> finite;
   std::ranges::copy_if(values, std::back_inserter(finite), [](double v) { return std::isfinite(v); });
   if (finite.size() < fewest_of_group) return {};
@@ -106,9 +106,9 @@ std::string internal::device_scatter_html(const RobustnessReport& report) {
   const std::vector<VariedQuantity> quantities = quantities_of(report);
   std::string pictures;
   for (const std::string_view key : explained_figures) {
-    const EnsembleFigure& figure = ensemble_figure(key);
+    const Figure& figure = figure_of(key);
     std::vector<double> values;
-    for (const DeviceOutcome& o : drive.outcomes) values.push_back(figure.value(o));
+    for (const DeviceOutcome& o : drive.outcomes) values.push_back(o.of(figure));
     for (const VariedQuantity& quantity : quantities) pictures += scatter(quantity, figure, values);
   }
   if (pictures.empty()) return {};

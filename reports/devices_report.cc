@@ -56,10 +56,8 @@ ResultDevices::Row row_of(const DevicesRow& row) {
                        .open = std::max(0.0, 1 - drive.closing.value - drive.collapsed.value),
                        .collapsed = drive.collapsed.value,
                        .at_95 = {}};
-  for (std::size_t i = 0; i < drive.figures.size(); ++i) {
-    const std::string_view key = ensemble_figures()[i].key;
-    const bool is_judged = key != steady_key || row.judged_whole;
-    if (is_judged) r.at_95[std::string(key)] = drive.figures[i].quantiles[2].value;
+  for (const Figure& f : device_figures) {
+    if (f.key != steady_key || row.judged_whole) r.at_95[std::string(f.key)] = drive.figures[f].quantiles[2].value;
   }
   return r;
 }
@@ -70,7 +68,7 @@ std::string speed_of(const ResultDevices::Row& row) {
 }
 
 std::string figure_name(std::string_view key) {
-  std::string name(ensemble_figure(key).name);
+  std::string name(figure_of(key).name);
   if (!name.empty()) name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
   return name;
 }
@@ -84,7 +82,7 @@ std::vector<std::string> cells(const ResultDevices::Row& row) {
     all.push_back(std::isinf(value)                                ? "∞"
                   : std::isnan(value)                              ? "—"
                   : c.key == "major_bounce_height_m" && value == 0 ? "none"
-                                                                   : quantity(value, ensemble_figure(c.key).unit));
+                                                                   : quantity(value, figure_of(c.key).unit));
   }
   all.push_back(percent(std::max(0.0, row.open)));
   all.push_back(percent(row.collapsed));

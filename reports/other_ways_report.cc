@@ -20,12 +20,10 @@ using nlohmann::json;
 
 constexpr double predicted_well = 0.1;  // the largest part of the variance that may be missed
 
-const FigureStatistics& sampled(const DriveRobustness& drive, std::string_view key) {
-  return drive.figures[static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data())];
-}
+const FigureStatistics& sampled(const DriveRobustness& drive, std::string_view key) { return drive.figures[figure_of(key)]; }
 
 std::string figure_text(double value, std::string_view key) {
-  return std::isinf(value) ? "∞" : quantity(value, ensemble_figure(key).unit);
+  return std::isinf(value) ? "∞" : quantity(value, figure_of(key).unit);
 }
 
 // Other devices know better than those that taught.
@@ -90,7 +88,7 @@ template <class Symbol>
 std::string chaos_words(const OtherWays& ways, Symbol symbol) {
   std::vector<std::string> good, bad, none;
   for (const FigureChaos& c : ways.chaos) {
-    const std::string name = symbol(ensemble_figure(c.key).symbol);
+    const std::string name = symbol(figure_of(c.key).symbol);
     if (!std::isfinite(c.q2)) {
       none.push_back(name);
     } else if (missed(c) <= predicted_well) {
@@ -169,7 +167,7 @@ std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive,
   if (ways.ranges.empty()) return {};
   constexpr std::size_t label = 47, width = 16;
   std::string text = "\n" + left_aligned("Other ways, under " + drive.name, label);
-  for (const FigureRange& r : ways.ranges) text += right_aligned(std::string(ensemble_figure(r.key).symbol), width);
+  for (const FigureRange& r : ways.ranges) text += right_aligned(std::string(figure_of(r.key).symbol), width);
   text += "\n";
   for (const ComparedRow& row : compared(ways, drive)) {
     text += left_aligned(row.name, label);
@@ -183,7 +181,7 @@ std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive,
       const SpreadVariable& variable = nominal.scene.spread.variables[i];
       values += fmt::format("{}{} {}", i == 0 ? "" : ", ", variable.name, value_text(variable, shown[i]));
     }
-    text += wrapped(fmt::format("Worst {}: {}", ensemble_figure(r.key).symbol, values)) + "\n";
+    text += wrapped(fmt::format("Worst {}: {}", figure_of(r.key).symbol, values)) + "\n";
   }
   return text + "\n" + wrapped(box_words(ways, drive)) + "\n" +
          wrapped(chaos_words(ways, [](std::string_view symbol) { return std::string(symbol); })) + "\n";
@@ -192,7 +190,7 @@ std::string other_ways_text(const OtherWays& ways, const DriveRobustness& drive,
 std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive, const Prepared& nominal) {
   if (ways.ranges.empty()) return {};
   TableRow head{"Under " + escaped(drive.name)}, device_head{"In the box", "Found"};
-  for (const FigureRange& r : ways.ranges) head.emplace_back(symbol_html(ensemble_figure(r.key).symbol));
+  for (const FigureRange& r : ways.ranges) head.emplace_back(symbol_html(figure_of(r.key).symbol));
   std::vector<TableRow> rows, devices;
   for (const ComparedRow& row : compared(ways, drive)) {
     const bool below = row.name.starts_with("  ");
@@ -204,7 +202,7 @@ std::string other_ways_html(const OtherWays& ways, const DriveRobustness& drive,
   for (const FigureRange& r : ways.ranges) {
     for (const auto& [name, device] : {std::pair("Worst ", &r.most), std::pair("Best ", &r.least)}) {
       TableRow& line = devices.emplace_back(
-          TableRow{name + symbol_html(ensemble_figure(r.key).symbol), escaped(figure_text(device->figure, r.key))});
+          TableRow{name + symbol_html(figure_of(r.key).symbol), escaped(figure_text(device->figure, r.key))});
       const std::vector<double> shown = shown_values_in_box(*device, nominal);
       for (std::size_t i = 0; i < shown.size(); ++i) line.emplace_back(escaped(value_text(variables[i], shown[i])));
     }

@@ -133,7 +133,7 @@ struct ResultDevices {
     double time_error = Metrics::unset;                                       ///< of a closing time [s]
     bool searched_for_it = true;
     double bounce_free = Metrics::unset, open = Metrics::unset, collapsed = Metrics::unset;  ///< shares of the devices
-    std::map<std::string, double> at_95;  ///< 95 % quantiles, by key of ensemble_figures(); infinite where more do not close
+    std::map<std::string, double> at_95;  ///< 95 % quantiles, by key of device_figures; infinite where more do not close
   };
   struct FrontPoint {
     double first_touch = Metrics::unset, impact_speed = Metrics::unset, bounce_free = Metrics::unset;

@@ -54,7 +54,7 @@ std::string lower_case(std::string_view name) {
   return words;
 }
 
-std::string label_html(const EnsembleFigure& f) {
+std::string label_html(const Figure& f) {
   const bool has_index = f.symbol.find('_') != std::string_view::npos;
   return std::string(f.name) + (has_index ? ", " + symbol_html(f.symbol) : "");
 }
@@ -68,7 +68,7 @@ internal::Role role_of(std::size_t i, std::size_t count) {
 }
 
 internal::Chart distribution_chart(const RobustnessReport& report, std::string_view key, internal::CurveTables& tables) {
-  const EnsembleFigure& f = ensemble_figure(key);
+  const Figure& f = figure_of(key);
   const std::vector<DriveRobustness>& drives = report.found.drives;
   internal::Chart chart{.id = "share-" + std::string(f.symbol),
                         .title = std::string(f.name),
@@ -86,7 +86,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
   for (std::size_t i = 0; i < drives.size(); ++i) {
     std::vector<double> values;
     for (const DeviceOutcome& o : drives[i].outcomes) {
-      if (const double value = f.value(o); std::isfinite(value)) values.push_back(value);
+      if (const double value = o.of(f); std::isfinite(value)) values.push_back(value);
     }
     if (values.empty()) continue;
     std::sort(values.begin(), values.end());
@@ -112,7 +112,7 @@ internal::Chart distribution_chart(const RobustnessReport& report, std::string_v
 // closings are two heaps.
 internal::Chart histogram_chart(const RobustnessReport& report, std::string_view key, const internal::Chart& cumulative,
                                 internal::CurveTables& tables) {
-  const EnsembleFigure& f = ensemble_figure(key);
+  const Figure& f = figure_of(key);
   const std::vector<DriveRobustness>& drives = report.found.drives;
   internal::Chart chart = cumulative;
   chart.id = "count" + cumulative.id.substr(cumulative.id.find('-'));
@@ -125,7 +125,7 @@ internal::Chart histogram_chart(const RobustnessReport& report, std::string_view
   std::vector<double> all;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     for (const DeviceOutcome& o : drives[i].outcomes) {
-      if (const double value = f.value(o); value <= chart.x_home[1]) values[i].push_back(value);
+      if (const double value = o.of(f); value <= chart.x_home[1]) values[i].push_back(value);
     }
     all.insert(all.end(), values[i].begin(), values[i].end());
   }
@@ -213,12 +213,11 @@ std::string statistics_table(const Robustness& found) {
   add("Devices that close", [](const DriveRobustness& d) { return yield_text(d.closing); });
   if (some_collapse(found)) add("Pulled onto the electrode", [](const DriveRobustness& d) { return yield_text(d.collapsed); });
   add("Without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
-  for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
-    if (!is_had(found, i)) continue;
-    const EnsembleFigure& f = ensemble_figures()[i];
+  for (const Figure& f : device_figures) {
+    if (!is_had(found, f)) continue;
     for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
       add(label_html(f) + (q == 1 ? ": median" : ": 95 % below"),
-          [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
+          [&](const DriveRobustness& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
     }
   }
   return table_html(head, rows) + fmt::format("<p class=\"below\">In brackets: 95 % confidence. {}</p>\n", worst_words);
@@ -256,7 +255,7 @@ std::string sensitivity_table(const Sensitivity& sensitivity) {
   if (sensitivity.figures.empty()) return {};
   TableRow head{"Varies"};
   for (const FigureSensitivity& f : sensitivity.figures) {
-    const std::string symbol = symbol_html(ensemble_figure(f.key).symbol);
+    const std::string symbol = symbol_html(figure_of(f.key).symbol);
     head.emplace_back(symbol + ", alone");
     head.emplace_back(symbol + ", in all");
   }
@@ -301,7 +300,7 @@ std::string worst_table(const RobustnessReport& report) {
       continue;
     }
     for (const std::string_view key : {drawn_figures[1], drawn_figures[0], drawn_figures[2]})
-      row.emplace_back(quantity(ensemble_figure(key).value(o), ensemble_figure(key).unit));
+      row.emplace_back(quantity(o.of(figure_of(key)), figure_of(key).unit));
   }
   return rows.empty() ? std::string()
                       : section("worst", "The worst devices",
@@ -327,7 +326,7 @@ std::string keys_of(const Robustness& found) {
   std::string keys =
       internal::key_html("Without a rebound", percent(own.bounce_free.value), before(percent(step.bounce_free.value)));
   for (const std::string_view key : drawn_figures) {
-    const EnsembleFigure& f = ensemble_figure(key);
+    const Figure& f = figure_of(key);
     const auto value = [&](const DriveRobustness& d) {
       const double q = quantile_95(d, key).value;
       return std::isfinite(q) ? quantity(q, f.unit) : std::string("∞");

@@ -43,7 +43,7 @@ json statistics_json(const FigureStatistics& s) {
 
 json figures_json(const DeviceOutcome& outcome) {
   json all = json::object();
-  for (const EnsembleFigure& f : ensemble_figures()) all[std::string(f.key)] = json_number(f.value(outcome));
+  for (const Figure& f : device_figures) all[std::string(f.key)] = json_number(outcome.of(f));
   return all;
 }
 
@@ -138,8 +138,7 @@ json robustness_json(const RobustnessReport& report) {
   const Ensemble ensemble(nominal, options.samples, options.seed, options.points);
   const auto drive_json = [&](const DriveRobustness& d) {
     json figures = json::object(), worst = json::array(), failures = json::object();
-    for (std::size_t i = 0; i < d.figures.size(); ++i)
-      figures[std::string(ensemble_figures()[i].key)] = statistics_json(d.figures[i]);
+    for (const Figure& f : device_figures) figures[std::string(f.key)] = statistics_json(d.figures[f]);
     for (const std::size_t k : d.worst) worst.push_back(device_json(ensemble, d, k));
     std::map<std::string, std::size_t> reasons;
     for (const DeviceOutcome& o : d.outcomes) {
@@ -201,7 +200,7 @@ std::string robustness_csv(const RobustnessReport& report) {
   for (const SpreadVariable& v : nominal.scene.spread.variables) text += "," + cell(v.name);
   for (const DriveRobustness& d : found.drives) {
     text += "," + cell(d.name + ": status");
-    for (const EnsembleFigure& f : ensemble_figures()) text += "," + cell(fmt::format("{}: {}", d.name, f.key));
+    for (const Figure& f : device_figures) text += "," + cell(fmt::format("{}: {}", d.name, f.key));
   }
   text += "\n";
   for (std::size_t k = 0; k < found.devices; ++k) {
@@ -210,8 +209,8 @@ std::string robustness_csv(const RobustnessReport& report) {
     for (const DriveRobustness& d : found.drives) {
       const DeviceOutcome& o = d.outcomes[k];
       text += fmt::format(",{}", o.failure.empty() ? std::string(to_string(o.metrics.status)) : cell(o.failure));
-      for (const EnsembleFigure& f : ensemble_figures()) {
-        const double value = f.value(o);
+      for (const Figure& f : device_figures) {
+        const double value = o.of(f);
         text += std::isfinite(value) ? fmt::format(",{}", value) : std::string(",");
       }
     }

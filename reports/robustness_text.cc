@@ -35,7 +35,7 @@ std::string sensitivity_text(const Sensitivity& sensitivity) {
   if (sensitivity.figures.empty()) return {};
   std::string text = fmt::format("\n{:<34}", "Share of the variance, alone / in all");
   for (const FigureSensitivity& f : sensitivity.figures)
-    text += internal::right_aligned(std::string(ensemble_figure(f.key).symbol), 18);
+    text += internal::right_aligned(std::string(figure_of(f.key).symbol), 18);
   text += "\n";
   for (std::size_t i = 0; i < sensitivity.variables.size(); ++i) {
     text += internal::left_aligned(sensitivity.variables[i], 37);
@@ -49,8 +49,7 @@ std::string sensitivity_text(const Sensitivity& sensitivity) {
     text += "\n";
   }
   for (const FigureSensitivity& f : sensitivity.figures) {
-    if (!f.estimate.indices)
-      text += wrapped(fmt::format("{}: {}", ensemble_figure(f.key).symbol, why_no_indices(f.estimate))) + "\n";
+    if (!f.estimate.indices) text += wrapped(fmt::format("{}: {}", figure_of(f.key).symbol, why_no_indices(f.estimate))) + "\n";
   }
   return text;
 }
@@ -105,14 +104,13 @@ std::string figures_text(const Robustness& found) {
     if (internal::some_collapse(found))
       row("pulled onto the electrode", [](const DriveRobustness& d) { return yield_text(d.collapsed); });
     row("without a rebound", [](const DriveRobustness& d) { return yield_text(d.bounce_free); });
-    for (std::size_t i = 0; i < ensemble_figures().size(); ++i) {
-      if (!internal::is_had(found, i)) continue;
-      const EnsembleFigure& f = ensemble_figures()[i];
+    for (const Figure& f : device_figures) {
+      if (!internal::is_had(found, f)) continue;
       const bool has_symbol = !f.symbol.empty() && f.symbol.find(' ') == std::string_view::npos;
       text += fmt::format("{}{}{}\n", f.name, has_symbol ? ", " : "", has_symbol ? f.symbol : "");
       for (const std::size_t q : {std::size_t{1}, std::size_t{2}}) {
         row(q == 1 ? "  median" : fmt::format("  {:.0f} % of devices below", 100 * robustness_quantiles[q]),
-            [&](const DriveRobustness& d) { return quantile_text(d.figures[i].quantiles[q], f.unit); });
+            [&](const DriveRobustness& d) { return quantile_text(d.figures[f].quantiles[q], f.unit); });
       }
     }
   }

@@ -80,9 +80,9 @@ std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {
   return DeviceDrives(ensemble.nominal()).shown(ensemble.values(k));
 }
 
-bool is_had(const Robustness& found, std::size_t i) {
+bool is_had(const Robustness& found, const Figure& figure) {
   const auto some = [&](auto&& holds) { return std::any_of(found.drives.begin(), found.drives.end(), holds); };
-  return some([&](const DriveRobustness& d) { return d.figures[i].devices > 0; }) ||
+  return some([&](const DriveRobustness& d) { return d.figures[figure].devices > 0; }) ||
          !some([](const DriveRobustness& d) { return d.closing.devices > 0; });
 }
 
@@ -91,7 +91,7 @@ bool some_collapse(const Robustness& found) {
 }
 
 const EstimatedQuantile& quantile_95(const DriveRobustness& drive, std::string_view key) {
-  return drive.figures[static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data())].quantiles[2];
+  return drive.figures[figure_of(key)].quantiles[2];
 }
 
 }  // namespace softland::internal

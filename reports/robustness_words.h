@@ -27,9 +27,9 @@ namespace softland::internal {
 
 /// The varying quantities of device k, as they are shown.
 [[nodiscard]] std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k);
-/// Whether a table has a row of figure i of ensemble_figures(): not where devices close and none has it, as the peak force on a
-/// rigid contact.
-[[nodiscard]] bool is_had(const Robustness& found, std::size_t i);
+/// Whether a table has a row of the figure, one of device_figures: not where devices close and none has it, as the peak force on
+/// a rigid contact.
+[[nodiscard]] bool is_had(const Robustness& found, const Figure& figure);
 /// Whether under some drive there is a device whose beam is pulled onto the electrode.
 [[nodiscard]] bool some_collapse(const Robustness& found);
 /// What a device without a figure counts as.

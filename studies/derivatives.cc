@@ -168,21 +168,17 @@ Eigen::VectorXd changes_of(const std::vector<double>& by_variable, const std::ve
   return changes;
 }
 
-std::string why_no_derivative(const FigureWithSlope& figure, double value, const CostSlopes& slopes, const Metrics& metrics) {
-  if (figure.slope == &CostSlopes::last_rebound_end && !metrics.settled) return "the nominal device has not settled";
+std::string why_no_derivative(const Figure& figure, double value, const CostSlopes& slopes, const Metrics& metrics) {
+  if (figure.slope == &Metrics::last_rebound_end && !metrics.settled) return "the nominal device has not settled";
   if (!std::isfinite(value)) return "the nominal device does not have it";
-  if (figure.slope == &CostSlopes::peak_force && !slopes.has_peak_force)
-    return "a damped contact, or one along the pad, does not press hardest at its deepest point";
-  if (figure.slope == &CostSlopes::impact_energy && !slopes.has_impact_energy)
-    return "a contact along the pad stores its energy all along it";
-  return {};
+  return std::string(slopes.why_none[figure]);
 }
 
 // The closing of the nominal device with everything that its derivatives need.
 struct NominalClosing {
   DeviceOutcome outcome;
   CostSlopes slopes;
-  Eigen::MatrixXd gradient = {};  // a row to each of figures_with_slopes; empty where the device does not close
+  Eigen::MatrixXd gradient = {};  // a row to each of derived_figures; empty where the device does not close
 };
 
 NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>& signals, Changes& by,
@@ -191,13 +187,12 @@ NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>&
   MotionTape tape(observer);
   const Trajectory end = observe_closing(
       nominal.model, signals, {.duration = nominal.duration, .tolerance = options.tolerance, .stop = watch.stop}, tape);
-  NominalClosing closing{
-      .outcome = {.metrics = observer.metrics(end), .largest_impact_velocity = observer.largest_impact_velocity()}, .slopes = {}};
+  NominalClosing closing{.outcome = {.metrics = observer.metrics(end)}, .slopes = {}};
   if (end.status != Status::done || !closing.outcome.closed()) return closing;
   LinearizedClosing motion(nominal.model, signals, tape, options.refinement, &by.of_switch);
   closing.slopes = cost_slopes(nominal.model, signals, motion, nominal.scene.metrics);
   std::vector<FigureSlope> wanted;
-  for (const FigureWithSlope& figure : figures_with_slopes) wanted.push_back(closing.slopes.*figure.slope);
+  for (const Figure& figure : derived_figures) wanted.push_back(closing.slopes.of[figure.slope]);
   closing.gradient = motion.backward(wanted, by.of_signals);
   return closing;
 }
@@ -267,9 +262,9 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
     return found;
   }
   found.grazing = closing.slopes.grazing;
-  for (std::size_t f = 0; f < figures_with_slopes.size(); ++f) {
-    const FigureWithSlope& derived = figures_with_slopes[f];
-    FigureDerivatives figure{.key = derived.key, .value = ensemble_figure(derived.key).value(closing.outcome), .by_variable = {}};
+  for (std::size_t f = 0; f < derived_figures.size(); ++f) {
+    const Figure& derived = derived_figures[f];
+    FigureDerivatives figure{.key = derived.key, .value = closing.outcome.of(derived), .by_variable = {}};
     figure.why_none = why_no_derivative(derived, figure.value, closing.slopes, closing.outcome.metrics);
     if (figure.why_none.empty()) {
       const auto of = [&](const Eigen::MatrixXd& gradient) {

@@ -24,7 +24,7 @@
 namespace softland {
 
 struct FigureDerivatives {
-  std::string_view key;               ///< of ensemble_figures()
+  std::string_view key;               ///< of device_figures
   double value = Metrics::unset;      ///< of the nominal device
   std::vector<double> by_variable;    ///< [unit of the figure over that of the variable]; NaN where there is none
   double deviation = Metrics::unset;  ///< sigma_f, of the variables that have derivatives
@@ -42,7 +42,7 @@ struct Derivatives {
     std::string why_none = {};  ///< empty where figures have derivatives by it
   };
   std::vector<Variable> variables;         ///< as in the spread
-  std::vector<FigureDerivatives> figures;  ///< those of ensemble_figures() that have slopes
+  std::vector<FigureDerivatives> figures;  ///< those of device_figures that have slopes
   double grazing = 1;                      ///< CostSlopes::grazing
   std::string why_none = {};               ///< empty where there are derivatives
 

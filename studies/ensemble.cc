@@ -42,7 +42,7 @@ class LaneFigures final : public LandingObserver {
                          .in_contact_period = model.in_contact_period(),
                          .steady_force_time = end.steady_force_time,
                          .least_force_after_touch = end.least_force_after_touch};
-    return {.metrics = figures_.metrics(run, course_), .largest_impact_velocity = figures_.largest_impact_velocity()};
+    return {.metrics = figures_.metrics(run, course_)};
   }
 
  private:
@@ -329,12 +329,17 @@ DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int j
   return {.volts = std::sqrt(squares.volts / known), .time = std::sqrt(squares.time / known)};
 }
 
+double DeviceOutcome::of(const Figure& figure) const {
+  const double value = closed() ? figure.value(metrics) : Metrics::unset;
+  return std::isfinite(value) ? value : figure.worst;
+}
+
 DeviceOutcome close_device(const SampledDevice& device, const std::vector<Signal>& signals, const MetricsOptions& options,
                            const ClosingOptions& run) {
   if (!device.model) return {.metrics = {}, .failure = device.refusal};
   MetricsObserver observer(device.model->device().gap.contact, options);
   const Trajectory end = observe_closing(*device.model, signals, run, observer);
-  DeviceOutcome outcome{.metrics = observer.metrics(end), .largest_impact_velocity = observer.largest_impact_velocity()};
+  DeviceOutcome outcome{.metrics = observer.metrics(end)};
   if (outcome.metrics.status == Status::numerical_failure || outcome.metrics.status == Status::collapsed_at_rest)
     outcome.failure = end.message.empty() ? std::string(to_string(outcome.metrics.status)) : end.message;
   return outcome;

@@ -14,6 +14,7 @@
 #include "model/closing.h"
 #include "model/ensemble/fleet.h"
 #include "model/pull_in.h"
+#include "objectives/figures.h"
 #include "objectives/metrics.h"
 #include "sampling/classes.h"
 #include "sampling/points.h"
@@ -79,14 +80,15 @@ class DeviceBuilder {
 /// How the closing of one device ended.
 struct DeviceOutcome {
   Metrics metrics;
-  double largest_impact_velocity = Metrics::unset;  ///< of all touches [m/s]
-  std::string failure = {};                         ///< why it has no figures: refused as a device, or not to be simulated
+  std::string failure = {};  ///< why it has no figures: refused as a device, or not to be simulated
   /// Not where the hold levels do not keep it closed, as far as that was asked: by DeviceCloser of what has settled, by
   /// RobustCost of every device.
   bool is_held = true;
 
   /// Whether it closed and its closing could be followed to the end of the window.
   [[nodiscard]] bool closed() const { return failure.empty() && std::isfinite(metrics.major_bounce_height); }
+  /// As a distribution has it, where larger is worse: a device that does not close has Figure::worst.
+  [[nodiscard]] double of(const Figure& figure) const;
 };
 
 /// When a switch first touches under a step of one drive from 0 V, the others standing at a bias; NaN where it does not touch in

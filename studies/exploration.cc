@@ -128,11 +128,9 @@ std::vector<PointFigure> robustness_figures() {
   std::vector<PointFigure> figures;
   figures.push_back({"closing_yield", "Share that closes", ""});
   figures.push_back({"bounce_free_yield", "Share without a rebound", ""});
-  for (const EnsembleFigure& figure : ensemble_figures()) {
-    const std::string_view quantity =
-        figure.key.substr(0, figure.key.size() - (figure.unit.empty() ? 0 : figure.unit.size() + 1));
+  for (const Figure& figure : device_figures) {
     for (const double p : shown_quantiles)
-      figures.push_back({fmt::format("{}_q{:g}", quantity, 100 * p),
+      figures.push_back({fmt::format("{}_q{:g}", figure.quantity(), 100 * p),
                          fmt::format("{}, {:g} % of devices below", figure.name, 100 * p), std::string(figure.unit)});
   }
   return figures;
@@ -343,10 +341,10 @@ PointRow Exploration::on_devices(const SceneFile& scene, int jobs, const Watch& 
   const DriveRobustness& own = found.drives.back();
   PointRow row{
       .status = std::string(to_string(Status::done)), .reason = {}, .figures = {own.closing.value, own.bounce_free.value}};
-  for (const FigureStatistics& figure : own.figures) {
+  for (const Figure& figure : device_figures) {
     for (const double p : shown_quantiles) {
       const auto at = std::find(robustness_quantiles.begin(), robustness_quantiles.end(), p) - robustness_quantiles.begin();
-      row.figures.push_back(finite(figure.quantiles.at(static_cast<std::size_t>(at)).value));
+      row.figures.push_back(finite(own.figures[figure].quantiles.at(static_cast<std::size_t>(at)).value));
     }
   }
   return row;

@@ -45,7 +45,7 @@ constexpr const char *plain_step_row = "plain step", *for_the_drawing = "for the
 
 double quantile_95(const std::vector<DeviceOutcome>& outcomes, std::string_view key) {
   std::vector<double> values;
-  for (const DeviceOutcome& o : outcomes) values.push_back(ensemble_figure(key).value(o));
+  for (const DeviceOutcome& o : outcomes) values.push_back(o.of(figure_of(key)));
   return sample_quantile(values, 0.95);
 }
 
@@ -86,7 +86,7 @@ std::pair<std::vector<SearchSetting>, std::string> settings_of_race(const SceneF
   std::string kept = names.front();
   for (std::size_t k = 1; k < names.size(); ++k) {
     try {
-      SearchSpace space(settings.front().given, options.actuator, names[k], settings.front().scale.step.first_touch);
+      SearchSpace space(settings.front().given, options.actuator, names[k], settings.front().scale.step.initial_contact_time);
       settings.push_back(settings.front());
       settings.back().space = std::move(space);
       kept += "+" + names[k];
@@ -184,7 +184,7 @@ class DevicesStudy {
     conditions_ = beside_step(devices_.conditions, step);
     no_harder_than_step_ = no_harder_than(step, first().given.scene.metrics.significant_rebound);
     const double step_time = quantile_95(step, "initial_contact_time_s");
-    const std::vector<FigureName> figures = conditioned_figures();
+    const std::span<const Figure> figures = device_figures;
     tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
     aims_ = {.tail = tail_aim_, .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_}};
     if (!std::isfinite(step_time) || says_when_to_close()) return;
@@ -198,7 +198,7 @@ class DevicesStudy {
   // A condition of the user's takes the place of the usual bound.
   [[nodiscard]] bool says_when_to_close() const {
     return std::ranges::any_of(
-        conditions_, [](const Criterion& one) { return ensemble_figures()[one.figure].key == "initial_contact_time_s"; });
+        conditions_, [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::initial_contact_time); });
   }
   [[nodiscard]] bool keeps_conditions(const std::vector<DeviceOutcome>& outcomes) const { return hold(conditions_, outcomes); }
 

@@ -37,7 +37,7 @@ namespace softland {
 inline constexpr std::string_view raced_prefix = "devices.";
 
 struct ForDevicesOptions {
-  std::vector<Criterion> conditions = {};  ///< on figures of conditioned_figures(), that 95 % of the devices have to fulfil
+  std::vector<Criterion> conditions = {};  ///< on figures of device_figures, that 95 % of the devices have to fulfil
   std::uint64_t verdict = 2000;            ///< fresh devices
   /// Families of the race; empty: raced_families, as far as the scene has room for them.
   std::string families = {};

@@ -36,7 +36,7 @@ std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& s
     SearchSetting changed = settings[k];
     if (!make_gentle(changed)) return {};
     try {
-      changed.space = SearchSpace(changed.within_limits(), actuator, names[k], first.scale.step.first_touch);
+      changed.space = SearchSpace(changed.within_limits(), actuator, names[k], first.scale.step.initial_contact_time);
     } catch (const InvalidInput&) {
       continue;
     }

@@ -114,7 +114,8 @@ class Search {
     const std::vector<DriveSearch>& shaped = setting.space.drives();
     const bool can_rest = shaped.size() > 1 || shaped.front().drive == piezo_drive;
     if (!can_rest || options_.max_evaluations < fewest_for_landings || max_seconds_ < least_for_landings) return {};
-    return softland::landings_at_rest(setting.within_limits(), options_.actuator, soft_touch * setting.scale.step.touch_speed,
+    return softland::landings_at_rest(setting.within_limits(), options_.actuator,
+                                      soft_touch * setting.scale.step.largest_impact_velocity,
                                       {.stop = options_.stop, .progress = options_.on_preparation});
   }
 

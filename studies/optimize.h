@@ -42,7 +42,7 @@ inline constexpr long given_index = -1;
 
 struct OptimizeOptions {
   Aim target = Target::bounce;
-  /// That the winner has to fulfil, on figures of all_figures: see figure_names().
+  /// That the winner has to fulfil, on figures of all_figures: see conditioned_figures.
   std::vector<Criterion> conditions = {};
   Actuator actuator = Actuator::electrostatic;
   std::string family = "pulse";  ///< or several, see families_of(): of these the best; default_families()

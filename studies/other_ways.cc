@@ -25,13 +25,13 @@ class Box {
   Box(const Ensemble& ensemble, const EnsembleDrive& drive, const EnsembleRun& run, const std::atomic<bool>* stop)
       : ensemble_(&ensemble), drives_{drive}, closer_(ensemble.nominal(), drives_, one_at_a_time(run), stop) {}
 
-  [[nodiscard]] BoxDevice device(std::span<const double> z, const EnsembleFigure& figure) const {
+  [[nodiscard]] BoxDevice device(std::span<const double> z, const Figure& figure) const {
     BoxDevice found;
     for (const double of_quantity : z) found.values.push_back(standard_normal_cdf(of_quantity));
     ensemble_->nominal().scene.spread.to_values(found.values);
     const SampledDevice device = DeviceBuilder(*ensemble_).device(found.values);
     found.outcome = closer_({&device, 1}, 0).front().front();
-    found.figure = figure.value(found.outcome);
+    found.figure = found.outcome.of(figure);
     return found;
   }
 
@@ -101,12 +101,12 @@ struct Taught {
   Eigen::MatrixXd points;
   std::vector<double> figures;
 };
-Taught taught_by(const Ensemble& ensemble, const DriveRobustness& drive, const EnsembleFigure& figure, std::size_t first,
+Taught taught_by(const Ensemble& ensemble, const DriveRobustness& drive, const Figure& figure, std::size_t first,
                  std::size_t last) {
   std::vector<std::vector<double>> points;
   Taught taught;
   for (std::size_t k = first; k < last; ++k) {
-    const double value = figure.value(drive.outcomes[k]);
+    const double value = drive.outcomes[k].of(figure);
     if (!std::isfinite(value)) continue;
     taught.figures.push_back(value);
     points.push_back(ensemble.point(k));
@@ -122,7 +122,7 @@ Taught taught_by(const Ensemble& ensemble, const DriveRobustness& drive, const E
 
 FigureChaos chaos_of(const Ensemble& ensemble, const DriveRobustness& drive, std::string_view key, std::size_t most_taught) {
   const DeviceSpread& spread = ensemble.nominal().scene.spread;
-  const EnsembleFigure& figure = ensemble_figure(key);
+  const Figure& figure = figure_of(key);
   const std::size_t teachers = std::min(most_taught, drive.outcomes.size());
   const Taught taught = taught_by(ensemble, drive, figure, 0, teachers);
   FigureChaos found{.key = key, .taught = taught.figures.size()};
@@ -176,9 +176,9 @@ OtherWays other_ways(const Prepared& nominal, const DriveRobustness& drive, cons
   const double searches = 2.0 * explained_figures.size();
 
   for (const std::string_view key : explained_figures) {
-    const EnsembleFigure& figure = ensemble_figure(key);
+    const Figure& figure = figure_of(key);
     std::vector<double> sampled;
-    for (const std::size_t k : inside.devices) sampled.push_back(figure.value(drive.outcomes[k]));
+    for (const std::size_t k : inside.devices) sampled.push_back(drive.outcomes[k].of(figure));
     FigureRange range{.key = key, .least = {}, .most = {}, .of_sample = range_of(sampled)};
     for (const double sign : {1.0, -1.0}) {
       problem.starts = middle_and_corners;

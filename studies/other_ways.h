@@ -43,13 +43,13 @@ struct BoxDevice {
   DeviceOutcome outcome = {};
 };
 struct FigureRange {
-  std::string_view key;     ///< of ensemble_figures()
+  std::string_view key;     ///< of device_figures
   BoxDevice least, most;    ///< `least` has no values where no device in the box is known to close
   Interval of_sample = {};  ///< of the sampled devices in the box
 };
 
 struct FigureChaos {
-  std::string_view key;               ///< of ensemble_figures()
+  std::string_view key;               ///< of device_figures
   std::size_t taught = 0;             ///< devices that it was made of
   std::size_t unseen = 0;             ///< devices that it was tried on
   int degree = 0;                     ///< of the polynomials

@@ -19,12 +19,7 @@ constexpr double worst_score = RobustCost::not_closed;
 constexpr double weight_of_time = 0.02, weight_of_scores = 0.1, weight_of_violation = 10;
 constexpr double most_violation = 10;
 
-// A step that lands softly by itself must not turn the ratios into infinities.
-double over(double value, double of_step) { return of_step > 0 ? value / of_step : value > 0 ? 1 : 0; }
-
-double value_of(const DeviceOutcome& outcome, const Criterion& condition) {
-  return ensemble_figures()[condition.figure].value(outcome);
-}
+double value_of(const DeviceOutcome& outcome, const Criterion& condition) { return outcome.of(condition.figure); }
 
 // Candidates are ranked by closings of this accuracy at best; the verdict has that of the scene.
 constexpr double ranking_accuracy = 1e-4;
@@ -49,12 +44,6 @@ std::vector<Criterion> beside_step(std::vector<Criterion> conditions, std::span<
   return conditions;
 }
 
-std::vector<FigureName> conditioned_figures() {
-  std::vector<FigureName> all;
-  for (const EnsembleFigure& f : ensemble_figures()) all.push_back({.key = f.key, .symbol = f.symbol, .unit = f.unit});
-  return all;
-}
-
 bool fails(const DeviceOutcome& outcome) { return !outcome.closed() || !outcome.is_held; }
 
 bool fulfils(const DeviceOutcome& outcome, const Criterion& condition) { return condition.holds(value_of(outcome, condition)); }
@@ -72,9 +61,7 @@ bool hold(std::span<const Criterion> conditions, std::span<const DeviceOutcome> 
 namespace {
 
 bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
-  const auto is_about = [](const Criterion& one) {
-    return ensemble_figures()[one.figure].key == figure_of(&Metrics::steady_force_time).key;
-  };
+  const auto is_about = [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::steady_force_time); };
   return setting.target.is_about(Target::steady) || (aim.measure.yield && is_about(*aim.measure.yield)) ||
          std::ranges::any_of(aim.conditions, is_about);
 }
@@ -150,12 +137,13 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
   for (std::size_t k = 0; k < devices(); ++k)
     kept_closed_.push_back(!ensemble_.devices[k].model || is_kept_closed(k, signals(plain, k, ensemble_.units[k])));
   if (step_.closed()) return;
-  const CostFigures& imagined = setting.scale.step;
+  const Metrics& imagined = setting.scale.step;
   const double drive_energy = step_.metrics.drive_energy;
-  step_ = {.metrics = {}, .largest_impact_velocity = imagined.touch_speed};
+  step_ = {};
   step_.metrics.drive_energy = drive_energy;
-  step_.metrics.initial_contact_time = imagined.first_touch;
-  step_.metrics.major_bounce_height = imagined.rebound_height;
+  step_.metrics.largest_impact_velocity = imagined.largest_impact_velocity;
+  step_.metrics.initial_contact_time = imagined.initial_contact_time;
+  step_.metrics.major_bounce_height = imagined.major_bounce_height;
 }
 
 std::vector<Signal> RobustCost::signals(const std::vector<Waveform>& waveforms, std::size_t k, const DeviceUnits& units) const {
@@ -216,35 +204,10 @@ ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Si
 
 double RobustCost::score(const DeviceOutcome& outcome) const {
   if (fails(outcome)) return worst_score;
-  const Metrics &m = outcome.metrics, &step = step_.metrics;
-  const double speed = over(outcome.largest_impact_velocity, step_.largest_impact_velocity);
-  const double height = over(m.major_bounce_height, step.major_bounce_height);
+  const Shares shares{.own = outcome.metrics, .step = step_.metrics, .window = window_};
   const double score = setting_.target.mean([&](Target target) {
-    switch (target) {
-      case Target::bounce:
-        return (speed + height) / 2;
-      case Target::rebound:
-        return height;
-      case Target::count:
-        return over(m.bounce_count, step.bounce_count);
-      case Target::impact:
-        return speed;
-      case Target::settling: {
-        // Of one that bounces on, all that is known is that it comes later.
-        const double settled = m.settled ? m.permanent_contact_time : 2 * (m.initial_contact_time + window_);
-        return over(settled, step.initial_contact_time);
-      }
-      case Target::energy:
-        return over(m.impact_energy, step.impact_energy);
-      case Target::force:
-        return over(m.peak_contact_force, step.peak_contact_force);
-      case Target::drive:
-        return over(m.drive_energy, step.drive_energy);
-      case Target::steady:
-        break;
-    }
-    const bool is_steady = std::isfinite(m.steady_force_time);
-    return over(is_steady ? m.steady_force_time : 2 * (m.initial_contact_time + window_), step.initial_contact_time);
+    const TargetRow& row = row_of(targets, target);
+    return row.in(row.robust, shares);
   });
   return std::isnan(score) ? worst_score : score;
 }
@@ -278,7 +241,7 @@ double RobustCost::value(std::span<const DeviceOutcome> outcomes, const RobustAi
   const std::vector<double> scores = this->scores(outcomes);
   std::vector<double> times, of_devices;
   for (const DeviceOutcome& o : outcomes)
-    times.push_back(o.closed() ? over(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
+    times.push_back(o.closed() ? Shares::ratio(o.metrics.initial_contact_time, step_.metrics.initial_contact_time) : worst_score);
   double value = aim.measure.yield
                      ? 1 - share_that_fulfils(outcomes, *aim.measure.yield).value + weight_of_scores * sample_mean(scores)
                      : risk_of(outcomes, scores, aim.measure.risk);

@@ -41,9 +41,6 @@ namespace softland {
 /// The share of devices that has to fulfil a condition.
 inline constexpr double constrained_share = 0.95;
 
-/// The figures that conditions may be about, as ensemble_figures().
-[[nodiscard]] std::vector<FigureName> conditioned_figures();
-
 struct RobustAim {
   RobustMeasure measure;
   std::vector<Criterion> conditions;

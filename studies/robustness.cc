@@ -21,23 +21,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_worst = 10;
 constexpr std::array worth_of_classes{4, 8, 16};
 
-double or_worst(const DeviceOutcome& o, double value) { return o.closed() && std::isfinite(value) ? value : infinite; }
-
-template <auto member>
-double of(const DeviceOutcome& o) {
-  return or_worst(o, o.metrics.*member);
-}
-
-template <auto member>
-EnsembleFigure figure() {
-  const Figure& f = figure_of(member);
-  return {.key = f.key, .name = f.name, .symbol = f.symbol, .unit = f.unit, .value = of<member>};
-}
-
-FigureStatistics statistics(const EnsembleFigure& figure, const std::vector<DeviceOutcome>& outcomes) {
+FigureStatistics statistics(const Figure& figure, const std::vector<DeviceOutcome>& outcomes) {
   std::vector<double> all, finite;
   for (const DeviceOutcome& o : outcomes) {
-    all.push_back(figure.value(o));
+    all.push_back(o.of(figure));
     if (std::isfinite(all.back())) finite.push_back(all.back());
   }
   FigureStatistics s{.devices = finite.size()};
@@ -53,7 +40,7 @@ FigureStatistics statistics(const EnsembleFigure& figure, const std::vector<Devi
 void summarise(DriveRobustness& drive) {
   const std::vector<DeviceOutcome>& all = drive.outcomes;
   if (all.empty()) return;
-  for (const EnsembleFigure& f : ensemble_figures()) drive.figures.push_back(statistics(f, all));
+  for (const Figure& f : device_figures) drive.figures[f] = statistics(f, all);
   const auto count = [&](auto&& holds) { return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), holds)); };
   drive.closing = yield_of(count([](const DeviceOutcome& o) { return o.closed(); }), all.size());
   drive.collapsed =
@@ -61,7 +48,7 @@ void summarise(DriveRobustness& drive) {
   drive.bounce_free = yield_of(count(is_bounce_free), all.size());
   drive.worst.resize(all.size());
   std::iota(drive.worst.begin(), drive.worst.end(), std::size_t{0});
-  const auto height = [&](std::size_t k) { return of<&Metrics::major_bounce_height>(all[k]); };
+  const auto height = [&](std::size_t k) { return all[k].of(figure_of(&Metrics::major_bounce_height)); };
   const auto kept = static_cast<std::ptrdiff_t>(std::min(most_worst, all.size()));
   std::partial_sort(drive.worst.begin(), drive.worst.begin() + kept, drive.worst.end(),
                     [&](std::size_t a, std::size_t b) { return height(a) != height(b) ? height(a) > height(b) : a < b; });
@@ -142,31 +129,6 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
 
 }  // namespace
 
-const std::vector<EnsembleFigure>& ensemble_figures() {
-  static const std::vector<EnsembleFigure> all{
-      figure<&Metrics::initial_contact_time>(),
-      figure<&Metrics::permanent_contact_time>(),
-      figure<&Metrics::bounce_count>(),
-      figure<&Metrics::major_bounce_height>(),
-      figure<&Metrics::impact_velocity>(),
-      {.key = "largest_impact_velocity_m_s",
-       .name = "Largest impact speed",
-       .symbol = "v_max",
-       .unit = "m/s",
-       .value = [](const DeviceOutcome& o) { return or_worst(o, o.largest_impact_velocity); }},
-      figure<&Metrics::peak_contact_force>(),
-      figure<&Metrics::impact_energy>(),
-      figure<&Metrics::steady_force_time>(),
-      {.key = "least_force_after_touch_N",
-       .name = "Least force after the touch",
-       .symbol = "least force",
-       .unit = "N",
-       .value = [](const DeviceOutcome& o) {
-         return std::isinf(or_worst(o, o.metrics.least_force_after_touch)) ? 0 : o.metrics.least_force_after_touch;
-       }}};
-  return all;
-}
-
 EstimatedQuantile estimated_quantile(const std::vector<double>& sample, double probability) {
   return {.value = sample_quantile(sample, probability), .interval = quantile_interval(sample, probability)};
 }
@@ -177,11 +139,6 @@ Yield yield_of(std::size_t devices, std::size_t all) {
   return {.devices = devices,
           .value = static_cast<double>(devices) / static_cast<double>(all),
           .interval = wilson_interval(devices, all)};
-}
-
-const EnsembleFigure& ensemble_figure(std::string_view key) {
-  const auto& all = ensemble_figures();
-  return *std::find_if(all.begin(), all.end(), [&](const EnsembleFigure& f) { return f.key == key; });
 }
 
 Robustness robustness(const Prepared& nominal, const std::vector<NamedDrive>& drives, const RobustnessOptions& options,
@@ -242,7 +199,7 @@ Sensitivity sensitivity(const Prepared& nominal, const DriveRobustness& drive, s
   }
   for (const std::string_view key : explained_figures) {
     std::vector<double> figures;
-    for (const DeviceOutcome& o : outcomes) figures.push_back(ensemble_figure(key).value(o));
+    for (const DeviceOutcome& o : outcomes) figures.push_back(o.of(figure_of(key)));
     found.figures.push_back({.key = key, .estimate = sobol_indices(spread.variables.size(), figures)});
   }
   return found;
@@ -252,8 +209,8 @@ std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRob
                                          const RobustnessOptions& options) {
   std::vector<std::size_t> order(drive.outcomes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto height = [&](std::size_t k) { return of<&Metrics::major_bounce_height>(drive.outcomes[k]); };
-  const auto speed = [&](std::size_t k) { return or_worst(drive.outcomes[k], drive.outcomes[k].largest_impact_velocity); };
+  const auto height = [&](std::size_t k) { return drive.outcomes[k].of(figure_of(&Metrics::major_bounce_height)); };
+  const auto speed = [&](std::size_t k) { return drive.outcomes[k].of(figure_of(&Metrics::largest_impact_velocity)); };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return height(a) != height(b) ? height(a) < height(b) : speed(a) < speed(b);
   });

@@ -16,19 +16,6 @@
 
 namespace softland {
 
-/// A figure that is given as a distribution. Larger is worse, and a device that does not close has the worst of all, +infinity;
-/// but of the least force after the touch less is worse, and such a device has 0 N.
-struct EnsembleFigure {
-  std::string_view key;  ///< in JSON and as a column; ends with the unit
-  std::string_view name;
-  std::string_view symbol;
-  std::string_view unit;
-  double (*value)(const DeviceOutcome&);
-};
-[[nodiscard]] const std::vector<EnsembleFigure>& ensemble_figures();
-/// The one of this key, which must be among them.
-[[nodiscard]] const EnsembleFigure& ensemble_figure(std::string_view key);
-
 /// The probabilities of the quantiles that are given.
 inline constexpr std::array robustness_quantiles{0.05, 0.5, 0.95, 0.99};
 
@@ -62,7 +49,7 @@ struct DriveRobustness {
   std::map<std::string, Waveform> waveforms;  ///< of the nominal device, in volts
   KnownUnits known = {};                      ///< of the devices, whose units they are in
   std::vector<DeviceOutcome> outcomes;        ///< by device
-  std::vector<FigureStatistics> figures;      ///< as ensemble_figures()
+  PerFigure<FigureStatistics> figures;        ///< of device_figures
   Yield closing;                              ///< the contact is reached, and the run could be followed
   Yield collapsed;                            ///< the beam is pulled onto the electrode
   Yield bounce_free;                          ///< the contact is reached, and it settles without a significant rebound
@@ -96,7 +83,7 @@ inline constexpr std::array explained_figures{std::string_view("initial_contact_
 
 /// How a figure depends on what varies.
 struct FigureSensitivity {
-  std::string_view key;  ///< of ensemble_figures()
+  std::string_view key;  ///< of device_figures
   SobolEstimate estimate;
 };
 struct Sensitivity {

@@ -29,20 +29,20 @@ constexpr double hopeless = 0.25;  // by the cost of bounce, about 1 of the plai
 constexpr double golden_ratio = 1.618033988749895;
 
 // A hold level that a plain step does not close with may still close with a throw: what a closing of this beam would be like.
-CostFigures imagined_step(const Prepared& given, double period) {
+Metrics imagined_step(const Prepared& given, double period) {
   const double gap = given.scene.device.gap.contact;
-  return {.touched = true,
-          .first_touch = period / 2,
-          .touch_speed = gap * given.model.angular_frequencies()[0],
-          .rebound_height = gap,
-          .impact_energy = given.model.bending_energy(),
-          .landing_excess = given.model.bending_energy()};
+  Metrics step;
+  step.initial_contact_time = period / 2;
+  step.largest_impact_velocity = gap * given.model.angular_frequencies()[0];
+  step.major_bounce_height = gap;
+  step.impact_energy = step.landing_excess = given.model.bending_energy();
+  return step;
 }
 
 // Of a condition that a method follows: g. Searches end where it is 0, and are to fulfil it there.
 double excess(const Criterion& one, const Metrics& metrics) {
   constexpr double margin = 1e-6;
-  return std::clamp(one.violation(all_figures[one.figure].value(metrics)) + margin, -most_broken, most_broken);
+  return std::clamp(one.violation(one.figure.value(metrics)) + margin, -most_broken, most_broken);
 }
 
 // By the figure.
@@ -50,11 +50,6 @@ double excess_rate(const Criterion& one, const Metrics& metrics) {
   if (std::abs(excess(one, metrics)) >= most_broken) return 0;
   const double scale = one.limit == 0 ? 1 : std::abs(one.limit);
   return (one.comparison == Comparison::below || one.comparison == Comparison::at_most ? 1 : -1) / scale;
-}
-
-const FigureWithSlope* figure_with_slope(const Criterion& one) {
-  const auto found = std::ranges::find(figures_with_slopes, all_figures[one.figure].key, &FigureWithSlope::key);
-  return found == figures_with_slopes.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -66,51 +61,21 @@ struct RecordedClosing {
       : signals(std::move(under)), observer(setting.scale.contact_gap, setting.given.scene.metrics), tape(observer) {
     ClosingOptions run = setting.run_of(signals);
     run.closed_potential = closed_potential;
-    const Trajectory end = observe_closing(model, signals, run, tape);
-    status = end.status;
-    figures = observer.cost.figures(end);
-    metrics = observer.metrics.metrics(end);
+    metrics = observer.metrics(observe_closing(model, signals, run, tape));
   }
   RecordedClosing(const RecordedClosing&) = delete;
   RecordedClosing& operator=(const RecordedClosing&) = delete;
 
-  // One run for the cost and for the figures of merit.
-  struct Observer final : ClosingObserver {
-    Observer(double contact_gap, const MetricsOptions& options) : cost(contact_gap, options), metrics(contact_gap, options) {}
-    void knot(const TrajectoryPoint& point) override {
-      cost.knot(point);
-      metrics.knot(point);
-    }
-    void touch(const Touch& touch) override {
-      cost.touch(touch);
-      metrics.touch(touch);
-    }
-    CostObserver cost;
-    MetricsObserver metrics;
-  };
-
   std::vector<Signal> signals;
-  Observer observer;
+  MetricsObserver observer;
   MotionTape tape;
-  Status status = Status::done;
-  CostFigures figures;
   Metrics metrics;
 };
 
 double broken(const std::vector<Criterion>& conditions, const Metrics& metrics) {
   double sum = 0;
-  for (const Criterion& one : conditions)
-    sum += std::clamp(one.violation(all_figures[one.figure].value(metrics)), 0.0, most_broken);
+  for (const Criterion& one : conditions) sum += std::clamp(one.violation(one.figure.value(metrics)), 0.0, most_broken);
   return sum;
-}
-
-std::vector<FigureName> figure_names() {
-  static_assert(all_figures.back().is_yes_or_no(), "numbers of conditions are those of all_figures");
-  std::vector<FigureName> names;
-  for (const Figure& figure : all_figures) {
-    if (!figure.is_yes_or_no()) names.push_back({.key = figure.key, .symbol = figure.symbol, .unit = figure.unit});
-  }
-  return names;
 }
 
 double last_breakpoint(const std::vector<Signal>& signals) {
@@ -165,7 +130,7 @@ Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
   if (richer.empty()) return worst;
   const auto with_speed = [this](Prices prices, const RecordedClosing& run) {
     if (target.has_own_cost()) return prices;
-    prices.own = prices.leading += weight_of_speed * run.figures.touch_speed / scale.step.touch_speed;
+    prices.own = prices.leading += weight_of_speed * run.metrics.largest_impact_velocity / scale.step.largest_impact_velocity;
     return prices;
   };
   worst = with_speed(worst, closing);
@@ -181,18 +146,18 @@ Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
 }
 
 Prices SearchSetting::price_of(const RecordedClosing& closing) const {
-  const CostFigures& figures = closing.figures;
-  const auto by = [&](const Aim& one) { return cost(one, closing.status, figures, scale, given.scene.metrics); };
+  const Metrics& figures = closing.metrics;
+  const auto by = [&](const Aim& one) { return cost(one, figures, scale, given.scene.metrics); };
   Prices prices{.leading = by(Target::bounce)};
   prices.own = target.has_own_cost() ? by(target) : prices.leading;
-  prices.lands = prices.leading < never_touched && figures.rebound_height <= given.scene.metrics.significant_rebound;
+  prices.lands = prices.leading < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
   if (conditions.empty()) return prices;
   if (!(prices.leading < never_touched)) {
     prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
     prices.apart->excess.assign(followed_conditions().size(), most_broken);
     return prices;
   }
-  Metrics metrics = closing.metrics;
+  Metrics metrics = figures;
   metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
   metrics.capacitance = baseline.metrics.capacitance;
   set_drive_figures(metrics, given, closing.signals);
@@ -224,12 +189,12 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
 
 std::string SearchSetting::gradient_refusal(const Aim& aim) const {
   if (!richer.empty()) return "the worst of several beams has no gradient";
-  if (aim.is_about(Target::drive)) return "the energy of the drives has no gradient";
-  if (aim.is_about(Target::steady)) return "the time from which on the contact force is steady has no gradient";
+  for (const TargetRow& row : targets) {
+    if (aim.is_about(row.value) && !row.no_gradient.empty()) return std::string(row.no_gradient);
+  }
   for (const Criterion& one : conditions) {
-    const Figure& figure = all_figures[one.figure];
-    const bool never_slopes = figure.is_count() || figure.conditioning == Conditioning::rest;
-    if (!never_slopes && (one.comparison == Comparison::equal || figure_with_slope(one) == nullptr))
+    const bool never_slopes = one.figure.is_count() || one.figure.conditioning == Conditioning::rest;
+    if (!never_slopes && (one.comparison == Comparison::equal || one.figure.slope == nullptr))
       return fmt::format("the condition {} has no gradient", one.text);
   }
   return LinearizedClosing::refusal(given.model);
@@ -238,7 +203,7 @@ std::string SearchSetting::gradient_refusal(const Aim& aim) const {
 std::vector<Criterion> SearchSetting::followed_conditions() const {
   std::vector<Criterion> followed;
   for (const Criterion& one : conditions) {
-    if (one.comparison != Comparison::equal && figure_with_slope(one) != nullptr) followed.push_back(one);
+    if (one.comparison != Comparison::equal && one.figure.slope != nullptr) followed.push_back(one);
   }
   return followed;
 }
@@ -272,10 +237,10 @@ std::vector<double> SearchSetting::gradient_at(std::span<const double> x, const 
   }
   LinearizedClosing motion(given.model, closing->signals, closing->tape);
   const CostSlopes slopes = cost_slopes(given.model, closing->signals, motion, given.scene.metrics);
-  const auto slope = cost_slope(aim, closing->status, closing->figures, scale, given.scene.metrics, slopes);
+  const auto slope = cost_slope(aim, closing->metrics, scale, given.scene.metrics, slopes);
   if (!slope) return gradient;
   std::vector<FigureSlope> rows{*slope};
-  for (const Criterion& one : followed) rows.push_back(slopes.*figure_with_slope(one)->slope);
+  for (const Criterion& one : followed) rows.push_back(slopes.of[one.figure.slope]);
   const SignalSlopes by_parameters = signal_slopes(x, groups);
   const Eigen::MatrixXd by_x = motion.backward(rows, by_parameters);
   const Metrics& metrics = closing->metrics;
@@ -307,7 +272,7 @@ Prepared SearchSetting::within_limits() const {
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                              const Watch& watch, std::vector<Criterion> conditions) {
   for (const Criterion& one : conditions)
-    require(all_figures[one.figure].conditioning != Conditioning::open,
+    require(one.figure.conditioning != Conditioning::open,
             [&] { return fmt::format("--constrain \"{}\": a switch that closes has no such figure", one.text); });
   Prepared given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
@@ -319,7 +284,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
 
   std::vector<Criterion> beside;
   for (Criterion& one : conditions) {
-    const double of_step = all_figures[one.figure].value(baseline.metrics);
+    const double of_step = one.figure.value(baseline.metrics);
     beside.push_back(beside_step(std::move(one), of_step));
   }
 
@@ -333,18 +298,18 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   const Hold hold = hold_of(given.model, plain);
   if (hold.closed) run.closed_potential = hold.closed->potential;
   run.steady_force = hold.steady_force(given.scene.metrics);
-  const Trajectory step = simulate_closing(given.model, plain, run);
-  scale.step = cost_figures(step, given.scene.metrics);
-  if (!scale.step.touched) scale.step = imagined_step(given, period);
+  const Metrics step = metrics(simulate_closing(given.model, plain, run), given.scene.metrics);
+  scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);
   const double baseline_cost = cost(target, step, scale, given.scene.metrics);
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
-  run.no_contact_before = std::min(latest_touch * scale.step.first_touch, given.duration - 2 * given.model.in_contact_period());
+  run.no_contact_before =
+      std::min(latest_touch * scale.step.initial_contact_time, given.duration - 2 * given.model.in_contact_period());
   require(run.no_contact_before > 0, [&] {
     return fmt::format("simulate.duration = {} is too short to judge a landing: it needs more than {}",
                        engineering(given.duration, "s", 3), engineering(2 * given.model.in_contact_period(), "s", 3));
   });
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
-  SearchSpace space(given, actuator, family, scale.step.first_touch);
+  SearchSpace space(given, actuator, family, scale.step.initial_contact_time);
   std::map<std::string, DriverLimits> limits = given.drives.limits;
   return {.target = target,
           .conditions = std::move(beside),
@@ -364,7 +329,7 @@ std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& tar
   std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), watch, std::move(conditions))};
   for (std::size_t k = 1; k < names.size(); ++k) {
     all.push_back(all.front());
-    all.back().space = SearchSpace(all.front().given, actuator, names[k], all.front().scale.step.first_touch);
+    all.back().space = SearchSpace(all.front().given, actuator, names[k], all.front().scale.step.initial_contact_time);
   }
   return all;
 }

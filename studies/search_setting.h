@@ -42,7 +42,7 @@ struct RicherBeam {
 
 struct SearchSetting {
   Aim target;
-  std::vector<Criterion> conditions;  ///< that a landing has to fulfil, on figures of all_figures
+  std::vector<Criterion> conditions;  ///< that a landing has to fulfil, on conditioned_figures
   Prepared given;                     ///< the scene
   Prepared baseline_scene;            ///< under the plain step
   Closing baseline;
@@ -106,8 +106,6 @@ struct SearchSetting {
 
 /// By how much a closing breaks the conditions, added up; each by at most 10.
 [[nodiscard]] double broken(const std::vector<Criterion>& conditions, const Metrics& metrics);
-/// What conditions on the nominal device may be about: all_figures.
-[[nodiscard]] std::vector<FigureName> figure_names();
 
 /// When the last piece of any of these drives begins [s].
 [[nodiscard]] double last_breakpoint(const std::vector<Signal>& signals);

@@ -13,12 +13,12 @@
 namespace softland {
 namespace {
 
-// The target's own figure, infinite where the closing has none; of a sum, the mean of figures over those of the baseline, of
-// settling over its first touch: it may not settle at all.
+// The target's own figure, infinite where the closing has none; of a sum, the mean of figures over their units of
+// the baseline.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
   const double value = aim.mean([&](Target target) {
-    const double own = figure_of(target).value(m);
-    const double unit = target == Target::settling ? baseline.initial_contact_time : figure_of(target).value(baseline);
+    const TargetRow& row = row_of(targets, target);
+    const double own = figure_of(row.figure).value(m), unit = figure_of(row.unit).value(baseline);
     return aim.is_sum() && unit > 0 ? own / unit : own;
   });
   return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
@@ -102,7 +102,7 @@ bool Verification::met(const Metrics& m) const { return goal_met(target_, m, bas
 std::vector<Criterion> Verification::known(const Metrics& m) const {
   std::vector<Criterion> all;
   for (const Criterion& one : conditions_) {
-    if (std::isfinite(all_figures[one.figure].value(m))) all.push_back(one);
+    if (std::isfinite(one.figure.value(m))) all.push_back(one);
   }
   return all;
 }

@@ -13,9 +13,8 @@ constexpr int repetitions = 400;
 constexpr double compared_at = 0.95, confidence = 0.95;
 
 std::vector<double> values_of(std::string_view key, const std::vector<DeviceOutcome>& outcomes, double least) {
-  const EnsembleFigure& figure = ensemble_figure(key);
   std::vector<double> all;
-  for (const DeviceOutcome& o : outcomes) all.push_back(std::max(figure.value(o), least));
+  for (const DeviceOutcome& o : outcomes) all.push_back(std::max(o.of(figure_of(key)), least));
   return all;
 }
 
@@ -52,12 +51,11 @@ std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive, 
 
 std::vector<Criterion> no_harder_than(const std::vector<DeviceOutcome>& step, double significant) {
   std::vector<Criterion> all;
-  const std::vector<FigureName> figures = conditioned_figures();
   for (const std::string_view key : judged_figures) {
-    const auto figure = static_cast<std::size_t>(std::ranges::find(figures, key, &FigureName::key) - figures.begin());
     const double least = key == "major_bounce_height_m" ? significant : 0;
     const double limit = sample_quantile(values_of(key, step, least), compared_at);
-    if (std::isfinite(limit)) all.push_back({.figure = figure, .comparison = Comparison::at_most, .limit = limit, .text = ""});
+    if (std::isfinite(limit))
+      all.push_back({.figure = figure_of(key), .comparison = Comparison::at_most, .limit = limit, .text = ""});
   }
   return all;
 }

@@ -14,7 +14,7 @@
 
 namespace softland {
 
-/// Keys of ensemble_figures() that are compared.
+/// Keys of device_figures that are compared.
 inline constexpr std::array judged_figures{std::string_view("largest_impact_velocity_m_s"),
                                            std::string_view("major_bounce_height_m"), std::string_view("peak_contact_force_N")};
 

@@ -58,9 +58,8 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
                                         {.samples = devices, .jobs = jobs}, work.watch());
     if (found.interrupted || found.drives.size() < 2) return {};
     const auto at_95_percent = [](const DriveRobustness& drive, std::string_view key) {
-      const EnsembleFigure& figure = ensemble_figure(key);
-      const EstimatedQuantile& q = drive.figures[static_cast<std::size_t>(&figure - ensemble_figures().data())].quantiles[2];
-      return quantity(q.value, figure.unit);
+      const Figure& figure = figure_of(key);
+      return quantity(drive.figures[figure].quantiles[2].value, figure.unit);
     };
     const auto words = [&](const DriveRobustness& drive) {
       if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));

@@ -14,8 +14,8 @@
 namespace softland::criterion_test {
 namespace {
 
-constexpr std::array figures{FigureName{"initial_contact_time_s", "t_i", "s"}, FigureName{"impact_velocity_m_s", "v_i", "m/s"},
-                             FigureName{"bounce_count", "N_B", ""}};
+constexpr std::array figures{figure_of(&Metrics::initial_contact_time), figure_of(&Metrics::impact_velocity),
+                             figure_of(&Metrics::bounce_count)};
 
 template <class Read>
 std::string refusal(Read&& read) {
@@ -36,12 +36,12 @@ std::string refused_measure(std::string_view text) {
 
 TEST(Criterion, IsAFigureASignAndAValue) {
   const Criterion time = parse_criterion("initial_contact_time < 60 us", figures);
-  EXPECT_EQ(time.figure, 0U);
+  EXPECT_EQ(time.figure.key, "initial_contact_time_s");
   EXPECT_EQ(time.comparison, Comparison::below);
   EXPECT_EQ(time.limit, 60e-6);
   EXPECT_EQ(time.text, "initial_contact_time < 60 us");
   EXPECT_EQ(parse_criterion("v_i>=4 mm/s", figures).limit, 4e-3) << "by its symbol, without blanks";
-  EXPECT_EQ(parse_criterion("impact_velocity_m_s <= 1 m/s", figures).figure, 1U) << "by its key";
+  EXPECT_EQ(parse_criterion("impact_velocity_m_s <= 1 m/s", figures).figure.key, "impact_velocity_m_s") << "by its key";
   EXPECT_EQ(parse_criterion(" \"bounce_count == 0\" ", figures).comparison, Comparison::equal) << "quoted twice by a script";
   EXPECT_EQ(parse_criterion("N_B = 0", figures).comparison, Comparison::equal);
 }
@@ -83,7 +83,7 @@ TEST(RobustMeasure, HasANameAndALevel) {
   EXPECT_EQ(parse_robust_measure("mean+0.5sigma", figures).risk.kind, RiskKind::mean_sigma);
   EXPECT_EQ(parse_robust_measure("worst", figures).risk.kind, RiskKind::worst);
   ASSERT_TRUE(parse_robust_measure("yield:bounce_count == 0", figures).yield);
-  EXPECT_EQ(parse_robust_measure("yield:bounce_count == 0", figures).yield->figure, 2U);
+  EXPECT_EQ(parse_robust_measure("yield:bounce_count == 0", figures).yield->figure.key, "bounce_count");
 }
 
 TEST(RobustMeasure, IsRefusedWithTheReason) {

@@ -57,19 +57,23 @@ Trajectory landing(double at, double speed, double height, double flight, double
 Trajectory plain_step() { return landing(20e-6, 0.3, 100e-9, 8e-6, 1e-12); }
 
 CostScale scale() {
-  return {.step = cost_figures(plain_step(), options), .score_window = score_window, .contact_gap = gap, .free_touch = 1.5};
+  return {.step = metrics(plain_step(), options), .score_window = score_window, .contact_gap = gap, .free_touch = 1.5};
 }
 
-TEST(CostFigures, OfALandingMadeByHandAreWhatItWasMadeFrom) {
-  const CostFigures f = scale().step;
-  EXPECT_TRUE(f.touched);
-  EXPECT_DOUBLE_EQ(f.first_touch, 20e-6);
-  EXPECT_DOUBLE_EQ(f.touch_speed, 0.3);
-  EXPECT_NEAR(f.rebound_height, 100e-9, 1e-13);
-  EXPECT_NEAR(f.separated, 8e-6, 1e-11);
-  EXPECT_NEAR(f.last_rebound_end, 30e-6, 1e-11);
-  EXPECT_NEAR(f.impact_energy, 0.33e-12, 1e-20);
-  EXPECT_DOUBLE_EQ(f.landing_excess, 1e-12);
+double cost(const Aim& aim, const Trajectory& trajectory, const CostScale& scale, const MetricsOptions& options) {
+  return softland::cost(aim, metrics(trajectory, options), scale, options);
+}
+
+TEST(Metrics, OfALandingMadeByHandHaveWhatCostsAreMadeOf) {
+  const Metrics m = scale().step;
+  EXPECT_TRUE(m.touched());
+  EXPECT_DOUBLE_EQ(m.initial_contact_time, 20e-6);
+  EXPECT_DOUBLE_EQ(m.largest_impact_velocity, 0.3);
+  EXPECT_NEAR(m.major_bounce_height, 100e-9, 1e-13);
+  EXPECT_NEAR(m.separated, 8e-6, 1e-11);
+  EXPECT_NEAR(m.last_rebound_end, 30e-6, 1e-11);
+  EXPECT_NEAR(m.impact_energy, 0.33e-12, 1e-20);
+  EXPECT_DOUBLE_EQ(m.landing_excess, 1e-12);
 }
 
 TEST(Cost, OfTheStepItselfIsAboutOneAndAboutTwoByAFigureOfItsOwn) {
@@ -179,32 +183,41 @@ TEST(Cost, OfTheSameLandingLaterIsNotLower) {
 }
 
 // A search keeps no trajectory: it gathers the figures while each closing runs.
-TEST(CostObserver, GathersTheFiguresThatATrajectoryHas) {
+TEST(MetricsObserver, GathersWhatCostsAreMadeOfAsATrajectoryHasIt) {
   for (const char* level : {"17.771 V", "21 V", "13 V", "5 V"}) {
     for (const char* window : {"600 us", "60 us"}) {  // the short one ends in a rebound
       const Prepared p =
           prepare(gold({fmt::format("waveform.main.level={}", level), fmt::format("simulate.duration={}", window)}));
       const ClosingOptions run{.duration = p.duration, .tolerance = 1e-4, .closed_potential = -1e-12};
       const Trajectory t = simulate_closing(p.model, p.signals(), run);
-      const CostFigures expected = cost_figures(t, options);
-      CostObserver observer(t.contact_gap, options);
+      MetricsObserver observer(t.contact_gap, options);
       const Trajectory end = observe_closing(p.model, p.signals(), run, observer);
       EXPECT_TRUE(end.points.empty() && end.touches.empty());
       EXPECT_EQ(end.status, t.status);
-      const CostFigures own = observer.figures(end);
+      const Metrics own = observer.metrics(end);
       SCOPED_TRACE(fmt::format("{} {}", level, window));
-      EXPECT_EQ(own.touched, expected.touched);
-      EXPECT_EQ(own.closest, expected.closest);
-      EXPECT_EQ(own.first_touch, expected.first_touch);
-      EXPECT_EQ(own.touch_speed, expected.touch_speed);
-      EXPECT_EQ(own.impact_energy, expected.impact_energy);
-      EXPECT_EQ(own.landing_excess, expected.landing_excess);
+      ASSERT_TRUE(own.is_complete());
       EXPECT_EQ(own.drive_energy, t.energy.source_work);
-      double force = 0;
-      for (const Touch& touch : t.touches) force = std::max(force, touch.peak_force);
-      EXPECT_EQ(own.peak_force, force);
-      // And what a trajectory says of its own rebounds.
-      double separated = 0, height = 0, last_end = expected.first_touch;
+      EXPECT_EQ(own.end, t.points.back().time);
+      ASSERT_EQ(own.touched(), !t.touches.empty());
+      if (!own.touched()) {
+        double closest = t.contact_gap;
+        for (const TrajectoryPoint& point : t.points) closest = std::min(closest, t.contact_gap - point.position);
+        EXPECT_EQ(own.closest, closest);
+        EXPECT_TRUE(std::isnan(own.separated));
+        continue;
+      }
+      EXPECT_EQ(own.initial_contact_time, t.touches.front().begin);
+      double force = 0, energy = 0, speed = 0;
+      for (const Touch& touch : t.touches) {
+        force = std::max(force, touch.peak_force), speed = std::max(speed, touch.impact_velocity);
+        energy += touch.peak_energy;
+      }
+      EXPECT_EQ(own.peak_contact_force, force);
+      EXPECT_EQ(own.impact_energy, energy);
+      EXPECT_EQ(own.largest_impact_velocity, speed);
+      EXPECT_EQ(std::isnan(own.landing_excess), !std::isfinite(t.landing_excess));
+      double separated = 0, height = 0, last_end = own.initial_contact_time;
       for (const Rebound& r : rebounds(t)) {
         const double until = std::isfinite(r.end) ? r.end : t.points.back().time;
         separated += until - r.begin;
@@ -212,7 +225,7 @@ TEST(CostObserver, GathersTheFiguresThatATrajectoryHas) {
         if (r.height > options.significant_rebound) last_end = until;
       }
       EXPECT_EQ(own.separated, separated);
-      EXPECT_EQ(own.rebound_height, height);
+      EXPECT_EQ(own.major_bounce_height, height);
       EXPECT_EQ(own.last_rebound_end, last_end);
     }
   }
@@ -231,8 +244,8 @@ TEST(Cost, OfASwitchThatReopensIsMoreThanOfAnyThatStays) {
   reopening.touches[0].end = 22e-6;
   reopening.points.back() = {22e-6, gap, -0.02, 0, 0};
   reopening.points.push_back({20e-6 + score_window, 0.2 * gap, 0, 0, 0});
-  EXPECT_TRUE(cost_figures(reopening, options).reopened);
-  EXPECT_FALSE(cost_figures(plain_step(), options).reopened);
+  EXPECT_TRUE(metrics(reopening, options).reopened);
+  EXPECT_FALSE(metrics(plain_step(), options).reopened);
   for (const Target target : every_target) {
     for (const double speed : {0.01, 0.3, 0.6}) {
       EXPECT_GT(cost(target, reopening, scale(), options),
@@ -248,7 +261,7 @@ TEST(Cost, OfASwitchThatReopensIsMoreThanOfAnyThatStays) {
 
 TEST(Cost, IsFiniteWhereTheStepItselfLandsSoftly) {
   CostScale soft = scale();
-  soft.step = cost_figures(landing(20e-6, 0.01, 0, 0, 0), options);
+  soft.step = metrics(landing(20e-6, 0.01, 0, 0, 0), options);
   for (const Target target : every_target) {
     EXPECT_TRUE(std::isfinite(cost(target, plain_step(), soft, options))) << to_string(target);
     EXPECT_LT(cost(target, landing(20e-6, 0.01, 0, 0, 0), soft, options), cost(target, plain_step(), soft, options))

@@ -76,7 +76,7 @@ class Devices {
         close_device({.values = values, .model = model}, drives_.signals(drive_.waveforms, units, values), nominal_.scene.metrics,
                      {.duration = nominal_.duration, .tolerance = tight});
     std::vector<double> all;
-    for (const EnsembleFigure& figure : ensemble_figures()) all.push_back(figure.value(outcome));
+    for (const Figure& figure : device_figures) all.push_back(outcome.of(figure));
     return all;
   }
   // Of the figures, by value k.
@@ -104,8 +104,10 @@ struct Compared {
   double worst = 0;  // over the bound
 };
 
-// Among ensemble_figures().
-std::size_t place_of(std::string_view key) { return static_cast<std::size_t>(&ensemble_figure(key) - ensemble_figures().data()); }
+// Among device_figures.
+std::size_t place_of(std::string_view key) {
+  return static_cast<std::size_t>(std::ranges::find(device_figures, key, &Figure::key) - device_figures.begin());
+}
 
 // A case is a switch, a waveform and a parameter.
 void compare(const Prepared& nominal, const EnsembleDrive& drive, int arcs, Compared& all) {
@@ -364,8 +366,10 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
     (void)observe_closing(p.model, signals, {.duration = p.duration, .tolerance = 1e-8}, tape);
     LinearizedClosing motion(p.model, signals, tape, 1, &by);
     const CostSlopes slopes = cost_slopes(p.model, signals, motion, p.scene.metrics);
-    const std::vector<FigureSlope> figures{slopes.first_touch, slopes.first_touch_speed, slopes.rebound_height,
-                                           slopes.impact_energy, slopes.peak_force};
+    std::vector<FigureSlope> figures;
+    for (const auto figure : {&Metrics::initial_contact_time, &Metrics::impact_velocity, &Metrics::major_bounce_height,
+                              &Metrics::impact_energy, &Metrics::peak_contact_force})
+      figures.push_back(slopes.of[figure]);
     const Eigen::MatrixXd backward = motion.backward(figures, fixed), forward = motion.forward(figures, fixed);
     EXPECT_TRUE(backward.col(1).isZero(0) && forward.col(1).isZero(0)) << "nothing depends on that parameter";
     for (Eigen::Index f = 0; f < backward.rows(); ++f) {

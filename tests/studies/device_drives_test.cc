@@ -230,7 +230,7 @@ TEST(DeviceDrives, OfASearchAreThoseOfTheVerdict) {
                                "spread={\"driver.main.gain\"={distribution=\"normal\", cov=\"1 %\"}, "
                                "\"driver.main.jitter\"={distribution=\"normal\", standard_deviation=\"50 ns\"}}"});
   const SearchSetting setting = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {});
-  const RobustAim aim{.measure = parse_robust_measure("worst", conditioned_figures()), .conditions = {}};
+  const RobustAim aim{.measure = parse_robust_measure("worst", device_figures), .conditions = {}};
   const Ensemble ensemble(setting.given, 6, 5);
   const RobustCost cost(setting, aim, build_all(ensemble, {}, 5, 1));
   const std::vector<Waveform> drive = setting.drives({{"main", Pulse{.levels = {20, 5, 17}, .times = {22e-6, 30e-6}}}});

@@ -101,7 +101,7 @@ TEST(Ensemble, CountsImpossibleDevicesAsTheWorst) {
   EXPECT_EQ(refused, 64U) << "Sobol' points stand in every interval alike";
   EXPECT_EQ(step.closing.devices, closed);
   EXPECT_LT(closed, 256 - refused);
-  const FigureStatistics& t_i = step.figures[0];
+  const FigureStatistics& t_i = step.figures[&Metrics::initial_contact_time];
   EXPECT_TRUE(std::isinf(t_i.quantiles[2].value)) << "the 95 % quantile is that of a device that does not close";
   EXPECT_TRUE(std::isfinite(t_i.quantiles[0].value));
   EXPECT_EQ(t_i.devices, closed);
@@ -325,8 +325,7 @@ TEST(Robustness, JudgesEveryDriveOnTheSameDevicesBesideThePlainStep) {
     EXPECT_EQ(drive.closing.value, 1);
     EXPECT_GT(drive.closing.interval.high, drive.closing.interval.low);
   }
-  const std::size_t height = 3, time = 0;
-  EXPECT_EQ(ensemble_figures()[height].key, "major_bounce_height_m");
+  const auto height = &Metrics::major_bounce_height, time = &Metrics::initial_contact_time;
   for (const std::size_t q : {0U, 1U, 2U}) {
     EXPECT_GT(found.drives[1].figures[time].quantiles[q].value, found.drives[0].figures[time].quantiles[q].value);
   }

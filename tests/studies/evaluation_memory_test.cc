@@ -112,7 +112,7 @@ TEST(EvaluationMemory, LeavesARobustSearchTheSameBits_optimized) {
     Found found;
     OptimizeOptions options{.max_evaluations = 900, .seed = seed, .jobs = jobs, .memory = memory};
     options.on_evaluation = [&](const Evaluation& e, const OptimizeProgress&) { found.evaluations[e.index] = e; };
-    const RobustAim aim{.measure = parse_robust_measure("cvar:0.9", conditioned_figures()), .conditions = {}};
+    const RobustAim aim{.measure = parse_robust_measure("cvar:0.9", device_figures), .conditions = {}};
     RobustResult result = robust_optimize(quick(), options, {.aim = aim, .samples = 40, .verdict = 8});
     found.result.emplace(std::move(result.found));
     return found;

@@ -172,8 +172,7 @@ TEST(Exploration, OfDevicesGivesTheYieldsOfRobustness_optimized) {
       robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms}}, {.samples = 24, .seed = 5});
   EXPECT_EQ(row.figures[0], found.drives.back().closing.value);
   EXPECT_EQ(row.figures[index_of(e, "bounce_free_yield")], found.drives.back().bounce_free.value);
-  const auto& figures = ensemble_figures();
-  const auto height = static_cast<std::size_t>(&ensemble_figure("major_bounce_height_m") - figures.data());
+  const auto height = &Metrics::major_bounce_height;
   EXPECT_EQ(row.figures[index_of(e, "major_bounce_height_q95")], found.drives.back().figures[height].quantiles[2].value);
 }
 

@@ -30,9 +30,7 @@ ForDevicesResult searched(const SceneFile& file, long closings, std::uint64_t se
 double cost_of(const ForDevicesResult& found, std::string_view row) {
   const auto at = std::ranges::find(found.rows, row, &DevicesRow::name);
   EXPECT_NE(at, found.rows.end()) << row;
-  const EnsembleFigure& speed = ensemble_figure("largest_impact_velocity_m_s");
-  const auto i = static_cast<std::size_t>(&speed - ensemble_figures().data());
-  return at->judged.figures.at(i).quantiles[2].value;
+  return at->judged.figures[&Metrics::largest_impact_velocity].quantiles[2].value;
 }
 
 TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {

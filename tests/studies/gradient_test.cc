@@ -21,34 +21,18 @@ SearchSetting setting_of(const std::string& scene, Actuator actuator, const std:
 
 constexpr double tight = 1e-11;
 
-struct Figures {
-  CostFigures values;
-  Status status;
-};
-
-Figures figures_at(const SearchSetting& s, std::span<const double> x) {
+Metrics figures_at(const SearchSetting& s, std::span<const double> x) {
   const std::vector<Signal> signals = s.given.driven(signals_of(s.drives(s.space.waveforms(x))));
-  CostObserver observer(s.scale.contact_gap, s.given.scene.metrics);
+  MetricsObserver observer(s.scale.contact_gap, s.given.scene.metrics);
   ClosingOptions run = s.run_of(signals);
   run.tolerance = tight;
-  const Trajectory end = observe_closing(s.given.model, signals, run, observer);
-  return {observer.figures(end), end.status};
+  return observer.metrics(observe_closing(s.given.model, signals, run, observer));
 }
 
-struct ComparedFigure {
-  const char* name;
-  double CostFigures::*figure;
-  FigureSlope CostSlopes::*slope;
-};
 constexpr double bound = 1e-5;  // of the error, over the largest slope
-constexpr ComparedFigure compared_figures[] = {
-    {"first touch", &CostFigures::first_touch, &CostSlopes::first_touch},
-    {"touch speed", &CostFigures::touch_speed, &CostSlopes::touch_speed},
-    {"rebound height", &CostFigures::rebound_height, &CostSlopes::rebound_height},
-    {"last rebound end", &CostFigures::last_rebound_end, &CostSlopes::last_rebound_end},
-    {"impact energy", &CostFigures::impact_energy, &CostSlopes::impact_energy},
-    {"landing excess", &CostFigures::landing_excess, &CostSlopes::landing_excess},
-    {"peak force", &CostFigures::peak_force, &CostSlopes::peak_force}};
+constexpr std::array compared{&Metrics::initial_contact_time, &Metrics::largest_impact_velocity, &Metrics::major_bounce_height,
+                              &Metrics::last_rebound_end,     &Metrics::impact_energy,           &Metrics::landing_excess,
+                              &Metrics::peak_contact_force};
 
 struct Compared {
   int cases = 0, slopes = 0;
@@ -83,7 +67,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
     ++done;
     ++all.cases;
     std::vector<FigureSlope> wanted_slopes;
-    for (const ComparedFigure& n : compared_figures) wanted_slopes.push_back(slopes.*n.slope);
+    for (const auto figure : compared) wanted_slopes.push_back(slopes.of[figure]);
     const Eigen::MatrixXd backward = motion.backward(wanted_slopes, by), forward = motion.forward(wanted_slopes, by);
     const double size = backward.cwiseAbs().maxCoeff();
     for (Eigen::Index f = 0; f < backward.rows(); ++f)
@@ -93,15 +77,15 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
       const double h = share * (upper[k] - lower[k]);
       std::vector<double> up = x, down = x, all_figures;
       up[k] += h, down[k] -= h;
-      const Figures a = figures_at(s, up), b = figures_at(s, down);
-      for (const ComparedFigure& n : compared_figures) all_figures.push_back((a.values.*n.figure - b.values.*n.figure) / (2 * h));
+      const Metrics a = figures_at(s, up), b = figures_at(s, down);
+      for (const auto figure : compared) all_figures.push_back((a.*figure - b.*figure) / (2 * h));
       return all_figures;
     };
     for (std::size_t k = 0; k < x.size(); ++k) {
       const std::vector<double> coarse = differences(k, 2e-6), fine = differences(k, 1e-6);
-      for (std::size_t f = 0; f < std::size(compared_figures); ++f) {
-        if (compared_figures[f].figure == &CostFigures::peak_force && !slopes.has_peak_force) continue;
-        if (compared_figures[f].figure == &CostFigures::last_rebound_end && slopes.ends_above) continue;
+      for (std::size_t f = 0; f < compared.size(); ++f) {
+        if (!slopes.why_none[compared[f]].empty()) continue;
+        if (compared[f] == &Metrics::last_rebound_end && slopes.ends_above) continue;
         double scale = 0;  // of the gradient, by this parameter's range
         for (std::size_t i = 0; i < x.size(); ++i) {
           const double whole =
@@ -114,7 +98,7 @@ void compare(const SearchSetting& s, int wanted, std::uint64_t seed, Compared& a
         const double slope = backward(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k));
         const double error = scale > 0 ? std::abs(slope - fine[f]) / scale : std::abs(fine[f]) > 0 ? 1 : 0;
         all.worst = std::max(all.worst, error / bound);
-        EXPECT_LT(error, bound) << compared_figures[f].name << " by " << variables[k].name << ": " << slope << ", differences "
+        EXPECT_LT(error, bound) << figure_of(compared[f]).key << " by " << variables[k].name << ": " << slope << ", differences "
                                 << fine[f] << " (" << coarse[f] << ")";
       }
     }
@@ -158,15 +142,18 @@ TEST(Gradient, OfOneFigureIsThatOfAll) {
   (void)observe_closing(s.given.model, signals, s.run_of(signals), tape);
   LinearizedClosing motion(s.given.model, signals, tape);
   const CostSlopes slopes = cost_slopes(s.given.model, signals, motion, s.given.scene.metrics);
-  ASSERT_LT(slopes.first_touch.weights.front().arc, slopes.last_rebound_end.weights.front().arc);
+  ASSERT_LT(slopes.of[&Metrics::initial_contact_time].weights.front().arc,
+            slopes.of[&Metrics::last_rebound_end].weights.front().arc);
   const SignalSlopes by = s.signal_slopes(x);
-  const Eigen::MatrixXd first = motion.backward({slopes.first_touch}, by);
-  const Eigen::MatrixXd both = motion.backward({slopes.first_touch, slopes.last_rebound_end}, by);
-  const Eigen::MatrixXd again = motion.backward({slopes.first_touch}, by);
+  const Eigen::MatrixXd first = motion.backward({slopes.of[&Metrics::initial_contact_time]}, by);
+  const Eigen::MatrixXd both =
+      motion.backward({slopes.of[&Metrics::initial_contact_time], slopes.of[&Metrics::last_rebound_end]}, by);
+  const Eigen::MatrixXd again = motion.backward({slopes.of[&Metrics::initial_contact_time]}, by);
   EXPECT_GT(first.cwiseAbs().maxCoeff(), 0);
   EXPECT_TRUE(first == both.topRows(1));
   EXPECT_TRUE(first == again);
-  const Eigen::MatrixXd forward = LinearizedClosing(s.given.model, signals, tape).forward({slopes.first_touch}, by);
+  const Eigen::MatrixXd forward =
+      LinearizedClosing(s.given.model, signals, tape).forward({slopes.of[&Metrics::initial_contact_time]}, by);
   EXPECT_LT((forward - first).cwiseAbs().maxCoeff(), 1e-8 * first.cwiseAbs().maxCoeff());
 }
 TEST(Gradient, IsThatOfTheClosingThatWasPricedLast) {
@@ -194,7 +181,7 @@ TEST(Gradient, OfConditionsIsThatOfTheirFigures) {
   std::vector<Criterion> conditions;
   for (const char* text :
        {"t_i < 30 us", "v_i <= 20 mm/s", "peak force < 50 uN", "impact energy > 1 pJ", "bounce_count == 0", "B_H < 3 nm"})
-    conditions.push_back(parse_criterion(text, figure_names()));
+    conditions.push_back(parse_criterion(text, conditioned_figures));
   const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
   SearchSetting s = search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {}, conditions);
   EXPECT_EQ(s.gradient_refusal(Target::bounce), "");
@@ -230,7 +217,7 @@ TEST(Gradient, IsRefusedOfConditionsWithoutOne) {
   const auto refusal = [](const char* condition) {
     const SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold.toml");
     return search_setting(file, Target::bounce, Actuator::electrostatic, "pulse", {},
-                          {parse_criterion(condition, figure_names())})
+                          {parse_criterion(condition, conditioned_figures)})
         .gradient_refusal(Target::bounce);
   };
   EXPECT_EQ(refusal("drive energy < 1 pJ"), "the condition drive energy < 1 pJ has no gradient");

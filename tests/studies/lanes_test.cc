@@ -64,7 +64,7 @@ std::string digits(const DeviceOutcome& o) {
   const Metrics& m = o.metrics;
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", to_string(m.status), m.initial_contact_time, m.permanent_contact_time,
                      m.bounce_count, m.major_bounce_height, m.impact_velocity, m.peak_contact_force, m.impact_energy,
-                     m.steady_force_time, m.least_force_after_touch, o.largest_impact_velocity, o.failure);
+                     m.steady_force_time, m.least_force_after_touch, m.largest_impact_velocity, o.failure);
 }
 std::vector<std::string> digits(const std::vector<DeviceOutcome>& all) {
   std::vector<std::string> lines;

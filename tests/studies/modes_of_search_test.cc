@@ -119,7 +119,7 @@ TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
     const Trajectory closing = simulate_closing(setting.given.model, signals, run);
     double fastest = 0;
     for (const Touch& touch : closing.touches) fastest = std::max(fastest, touch.impact_velocity);
-    return setting.price(signals).own + 0.04 * fastest / setting.scale.step.touch_speed;
+    return setting.price(signals).own + 0.04 * fastest / setting.scale.step.largest_impact_velocity;
   };
   const double own = with_speed(plain);
   double expected = own;

@@ -104,7 +104,7 @@ TEST(Optimize, StepsAPiezoThatIsTheOnlyDriveToItsHoldLevel_optimized) {
 }
 
 TEST(Optimize, FulfilsItsConditionsOrSaysWhichItBreaks_optimized) {
-  const std::vector<FigureName> figures = figure_names();
+  const std::span<const Figure> figures = conditioned_figures;
   const auto with = [&](const char* condition, long budget) {
     return search(quick(), {.conditions = {parse_criterion(condition, figures)}}, budget).result;
   };

@@ -79,8 +79,7 @@ TEST(Box, FindsNothingBetterThanNoSampledDeviceInside) {
     EXPECT_LT(range.of_sample.low, range.of_sample.high);
     // The worst of 95 % of the devices is not below what 95 % of them stay below.
     const auto& figures = gold().drive().figures;
-    const std::size_t i = static_cast<std::size_t>(&ensemble_figure(range.key) - ensemble_figures().data());
-    EXPECT_GE(range.most.figure, figures[i].quantiles[2].value) << range.key;
+    EXPECT_GE(range.most.figure, figures[figure_of(range.key)].quantiles[2].value) << range.key;
   }
   EXPECT_LE(gold_ways().closings, 6 * 60);
   EXPECT_GT(gold_ways().closings, 6 * 30);
@@ -150,7 +149,7 @@ TEST(OtherWays, EndWhenAskedToStop) {
 
 TEST(Chaos, AgreesWithTheSampleWhereTheFigureIsSmooth) {
   const FigureChaos& chaos = gold_ways().chaos[0];
-  const FigureStatistics& sampled = gold().drive().figures[0];
+  const FigureStatistics& sampled = gold().drive().figures[&Metrics::initial_contact_time];
   EXPECT_EQ(chaos.taught, 100U);
   EXPECT_EQ(chaos.unseen, 300U);
   EXPECT_GT(chaos.q2, 0.9999);
@@ -168,7 +167,7 @@ TEST(Chaos, SaysHowMuchItMissesOfOtherDevices) {
     std::vector<double> figures;
     Eigen::MatrixXd points(400, 2);
     for (std::size_t k = 0; k < 400; ++k) {
-      figures.push_back(ensemble_figure(chaos.key).value(gold().drive().outcomes[k]));
+      figures.push_back(gold().drive().outcomes[k].of(figure_of(chaos.key)));
       for (std::size_t i = 0; i < 2; ++i) points(static_cast<long>(k), static_cast<long>(i)) = ensemble.point(k)[i];
     }
     const std::vector<double> others(figures.begin() + 100, figures.end());

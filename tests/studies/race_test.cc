@@ -37,8 +37,8 @@ class Race : public testing::Test {
     return cost_.value(cost_.close(setting.drives(racer.waveforms), 0, 32, 1), aims_.tail);
   }
 
-  RaceAims aims_{.tail = {.measure = parse_robust_measure("cvar:0.9", conditioned_figures()), .conditions = {}},
-                 .share = {.measure = parse_robust_measure("yield", conditioned_figures()), .conditions = {}}};
+  RaceAims aims_{.tail = {.measure = parse_robust_measure("cvar:0.9", device_figures), .conditions = {}},
+                 .share = {.measure = parse_robust_measure("yield", device_figures), .conditions = {}}};
   std::vector<SearchSetting> settings_;
   RobustCost cost_;
 };

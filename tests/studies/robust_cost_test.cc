@@ -25,12 +25,13 @@ class Score {
 
  private:
   SearchSetting setting_;
-  RobustAim aim_{.measure = parse_robust_measure("worst", conditioned_figures()), .conditions = {}};
+  RobustAim aim_{.measure = parse_robust_measure("worst", device_figures), .conditions = {}};
   RobustCost cost_;
 };
 
 DeviceOutcome device() {
-  DeviceOutcome o{.metrics = {}, .largest_impact_velocity = 0.05};
+  DeviceOutcome o;
+  o.metrics.largest_impact_velocity = 0.05;
   o.metrics.status = Status::done;
   o.metrics.settled = true;
   o.metrics.initial_contact_time = 40e-6;
@@ -54,7 +55,7 @@ TEST(RobustCost, IsInProportionToTheFigureThatTheTargetIsAbout) {
     DeviceOutcome other = device();
     const double own = score(other);
     EXPECT_GT(own, 0);
-    other.largest_impact_velocity *= 3;
+    other.metrics.largest_impact_velocity *= 3;
     other.metrics.bounce_count *= 3;
     EXPECT_EQ(score(other), own) << "of another target";
     other.metrics.*figure *= 2;
@@ -62,7 +63,7 @@ TEST(RobustCost, IsInProportionToTheFigureThatTheTargetIsAbout) {
   }
   DeviceOutcome more = device(), faster = device();
   more.metrics.bounce_count *= 2;
-  faster.largest_impact_velocity *= 2;
+  faster.metrics.largest_impact_velocity *= 2;
   const Score count(Target::count), impact(Target::impact), bounce(Target::bounce), rebound(Target::rebound);
   EXPECT_NEAR(count(more), 2 * count(device()), 1e-12);
   EXPECT_NEAR(impact(faster), 2 * impact(device()), 1e-12);
@@ -112,14 +113,14 @@ TEST(RobustCost, OfFewerDevicesThatFailIsLess) {
     return all;
   };
   for (const char* measure : {"cvar:0.9", "quantile:0.9", "mean+2sigma", "worst"}) {
-    const RobustAim aim{.measure = parse_robust_measure(measure, conditioned_figures()), .conditions = {}};
+    const RobustAim aim{.measure = parse_robust_measure(measure, device_figures), .conditions = {}};
     const RobustCost cost(setting, aim, {});
     EXPECT_TRUE(cost.is_told(with(0))) << measure;
     EXPECT_FALSE(cost.is_told(with(20))) << measure;
     for (std::size_t failing = 0; failing < 20; ++failing)
       EXPECT_LT(cost.value(with(failing)), cost.value(with(failing + 1))) << measure << " " << failing;
   }
-  const RobustAim yield{.measure = parse_robust_measure("yield:bounce_count == 0", conditioned_figures()), .conditions = {}};
+  const RobustAim yield{.measure = parse_robust_measure("yield:bounce_count == 0", device_figures), .conditions = {}};
   EXPECT_FALSE(RobustCost(setting, yield, {}).is_told(with(0))) << "all of these rebound";
 }
 
@@ -136,7 +137,7 @@ TEST(RobustCost, OfEveryTargetIsKnownOnEveryScene_optimized) {
       const SearchSetting setting = search_setting(file, target, Actuator::electrostatic, "pulse", {});
       const KnownUnits known;
       for (const char* measure : {"cvar:0.9", "quantile:0.9", "mean+2sigma", "worst"}) {
-        const RobustAim aim{.measure = parse_robust_measure(measure, conditioned_figures()), .conditions = {}};
+        const RobustAim aim{.measure = parse_robust_measure(measure, device_figures), .conditions = {}};
         const RobustCost cost(setting, aim, build_all(Ensemble(setting.given, 16, 1), known, 1, 1));
         const std::vector<DeviceOutcome> outcomes = cost.close(setting.drives({}), 0, cost.devices(), 1);
         EXPECT_TRUE(std::isfinite(cost.value(outcomes))) << name << " " << to_string(target) << " " << measure;

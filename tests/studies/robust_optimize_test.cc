@@ -17,7 +17,7 @@ namespace {
 SceneFile quick() { return gold({"simulate.duration=150 us"}); }
 
 RobustAim aim(std::string_view measure, std::initializer_list<std::string_view> conditions = {}) {
-  const std::vector<FigureName> figures = conditioned_figures();
+  const std::span<const Figure> figures = device_figures;
   RobustAim all{.measure = parse_robust_measure(measure, figures), .conditions = {}};
   for (const std::string_view text : conditions) all.conditions.push_back(parse_criterion(text, figures));
   return all;
@@ -100,8 +100,8 @@ TEST(RobustOptimize, OfAYieldSaysHowManyDevicesHaveIt_optimized) {
   const Log log = search(quick(), aim("yield:v_max < 50 mm/s"));
   ASSERT_TRUE(log.result.yield && log.result.verdict);
   const auto& outcomes = log.result.verdict->drives[1].outcomes;
-  const auto good =
-      std::count_if(outcomes.begin(), outcomes.end(), [](const DeviceOutcome& o) { return o.largest_impact_velocity < 0.05; });
+  const auto good = std::count_if(outcomes.begin(), outcomes.end(),
+                                  [](const DeviceOutcome& o) { return o.metrics.largest_impact_velocity < 0.05; });
   EXPECT_EQ(log.result.yield->devices, static_cast<std::size_t>(good));
   EXPECT_GT(log.result.yield->value, 0.5);
 }

@@ -18,7 +18,8 @@ std::vector<DeviceOutcome> outcomes(double speed, double height, double force) {
   std::vector<DeviceOutcome> all;
   for (std::size_t k = 0; k < devices; ++k) {
     const double factor = 0.9 + 0.2 * static_cast<double>((k * 37) % devices) / devices;
-    DeviceOutcome o{.metrics = {}, .largest_impact_velocity = factor * speed};
+    DeviceOutcome o;
+    o.metrics.largest_impact_velocity = factor * speed;
     o.metrics.status = Status::done;
     o.metrics.major_bounce_height = factor * height;
     o.metrics.peak_contact_force = factor * force;
@@ -46,7 +47,7 @@ TEST(WorseThanStep, DoesNotMindWhatMayBeChance) {
   // One device in twenty is a little faster, the others are slower: the quantile lies above, its interval does not.
   std::vector<DeviceOutcome> drive = step;
   for (std::size_t k = 0; k < devices; ++k) {
-    double& speed = drive[k].largest_impact_velocity;
+    double& speed = drive[k].metrics.largest_impact_velocity;
     speed = speed > 0.1089 ? 1.0001 * speed : 0.9 * speed;
   }
   EXPECT_THAT(worse(drive), IsEmpty());
