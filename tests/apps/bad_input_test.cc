@@ -66,7 +66,7 @@ TEST_F(BadInput, Verbs) {
   });
 }
 
-TEST_F(BadInput, LongWordsAreCut_long) {
+TEST_F(BadInput, LongWordsAreCut) {
   const std::string word(10'000, 'x');
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{word},
                                                                                      {"check", word},
@@ -86,7 +86,7 @@ TEST_F(BadInput, LongWordsAreCut_long) {
   EXPECT_LT(check.out.find('\n'), 200U) << check.out;
 }
 
-TEST_F(BadInput, Options_long) {
+TEST_F(BadInput, Options) {
   expect_refused({
       {{"simulate", "gold.toml", "--frob"}, "The following argument was not expected: --frob (see softland simulate --help)"},
       {{"simulate", "gold.toml", "extra"}, "The following argument was not expected: extra (see softland simulate --help)"},

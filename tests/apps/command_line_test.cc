@@ -152,7 +152,7 @@ TEST(Simulate, RunsItsOwnResolvedSceneToTheSameDigits_long) {
   EXPECT_EQ(first["errors"], second["errors"]);
 }
 
-TEST(Simulate, LeavesResultReportAndTrajectory_long) {
+TEST(Simulate, LeavesResultReportAndTrajectory) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--out", "a/b", "--json", "copy.json", "--quiet"});
   EXPECT_EQ(o.status, 0);
@@ -194,7 +194,7 @@ TEST(Simulate, EndsWithFourWhenTheSwitchDoesNotClose) {
   EXPECT_TRUE(j["metrics"]["bounce_count"].is_null());
 }
 
-TEST(Simulate, EndsWithZeroWhenNoClosingWasDue_long) {
+TEST(Simulate, EndsWithZeroWhenNoClosingWasDue) {
   const Workplace here;
   const Outcome o = here.run({"simulate", "gold.toml", "--set", "waveform.main.level=0.5 Vdp", "--json", "-"});
   EXPECT_EQ(o.status, 0);
@@ -394,7 +394,7 @@ TEST(New, WritesScenesThatCheckAccepts_long) {
   }
 }
 
-TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas_long) {
+TEST(Check, PrintsTheKnudsenNumberOfTheScenesOwnGas) {
   const Workplace here;
   const auto check = [&](const char* setting) { return here.run({"check", "gold.toml", "--set", setting}).out; };
   EXPECT_THAT(check("gas.mean_free_path=\"70 nm\""),

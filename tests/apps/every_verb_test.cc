@@ -177,7 +177,7 @@ TEST_P(EveryVerb, FindsTheLimit_slow) {
   EXPECT_LE(again["touch"]["least_time_s"], (1 + 1e-4) * j["touch"]["least_time_s"].get<double>());
 }
 
-TEST_P(EveryVerb, OpensAgain_long) {
+TEST_P(EveryVerb, OpensAgain) {
   const std::vector<std::string> words =
       scene().quickly({"release", scene().name, "--budget", "300", "--samples", "10", "--quiet", "--out", "out"});
   if (!scene().has("\\[contact\\]")) return refused(words, "release needs a [contact]");

@@ -138,7 +138,7 @@ TEST(NoStableRest, IsNotCalledOverdamped_optimized) {
 }
 
 // Numbers that are none, wherever a scene or a file of it may hold one, in every verb that takes a scene.
-TEST(NotFinite, IsRefusedByEveryVerbWithItsKey_long) {
+TEST(NotFinite, IsRefusedByEveryVerbWithItsKey) {
   const Workplace here;
   const std::string gold = shipped("mem-gold.toml");
   struct Written {
@@ -365,7 +365,7 @@ TEST(Check, AcceptsExactlyWhatSimulateRuns_optimized) {
   EXPECT_LT(refused, 22);
 }
 
-TEST(Check, SaysWhereFewerThanOneSummitIsInTouch_long) {
+TEST(Check, SaysWhereFewerThanOneSummitIsInTouch) {
   const Workplace here;
   const auto said = [&](const std::string& density) {
     return here.run({"check", "gold.toml", "--quiet", "--set", "contact.asperity_density=" + density + " 1/m^2"}).out;
