@@ -160,6 +160,7 @@ class ColumnReader {
   std::optional<std::size_t> named_place(const std::string& name, int number, std::string_view key) const;
   void set_times(Recording& made, std::optional<std::size_t> place);
   void set_even_times(Recording& made) const;
+  bool is_same_heading(std::size_t k, std::size_t time) const;
   void scale_codes(Recording& made) const;
   void refuse_spectrum() const;
   void refuse_logic_states(const Recording& made) const;
@@ -579,7 +580,8 @@ std::optional<std::size_t> ColumnReader::time_place() const {
     const std::optional<Unit>& unit = own ? own : heading.unit;
     if (unit && (unit->measure == Measure::time || unit->measure == Measure::samples)) return k;
   }
-  constexpr std::array usual{"time", "t", "x", "x-axis", "xpos", "times", "timestamp", "index", "sample", "n"};
+  constexpr std::array usual{"time", "t",     "x",     "x-axis", "xpos",  "times",  "timestamp",
+                             "zeit", "temps", "tempo", "tiempo", "index", "sample", "n"};
   for (std::size_t k = 0; k < count; ++k) {
     const std::string name = lower_case(heading_of(block_.names[k]).name);
     if (std::find(usual.begin(), usual.end(), name) != usual.end()) return k;
@@ -589,6 +591,12 @@ std::optional<std::size_t> ColumnReader::time_place() const {
   const std::vector<double>& first = block_.values.front();
   const bool rises = std::is_sorted(first.begin(), first.end()) && first.front() < first.back();
   return rises ? std::optional<std::size_t>(0) : std::nullopt;
+}
+
+// Whether a column is a second one of times, unless the user says which one is.
+bool ColumnReader::is_same_heading(std::size_t k, std::size_t time) const {
+  const bool is_said = !keys_.time_column.empty() || keys_.time_column_number > 0;
+  return !is_said && block_.has_headings && !block_.names[time].empty() && block_.names[k] == block_.names[time];
 }
 
 void ColumnReader::set_even_times(Recording& made) const {
@@ -653,6 +661,14 @@ void ColumnReader::set_times(Recording& made, std::optional<std::size_t> place) 
 // Codes of a converter that stand for volts.
 void ColumnReader::scale_codes(Recording& made) const {
   constexpr double largest_code = 32767, codes_per_division = 25;
+  std::size_t whole = 0, fractions = 0;
+  for (const Channel& c : made.channels) {
+    for (const double v : c.values) ++(v == std::floor(v) ? whole : fractions);
+  }
+  const bool are_codes = made.format == "GW Instek CSV" && !made.has_times && whole > fractions;
+  if (are_codes && fractions > 0) fail("codes and fractions: one of both is no sample");
+  if (are_codes && (made.channels.size() > 1 || !preamble_.vertical_scale))
+    fail("codes whose volts per division cannot be told; save one channel per file");
   if (made.channels.size() != 1) return;
   Channel& channel = made.channels.front();
   double factor = 1, offset = 0;
@@ -663,7 +679,7 @@ void ColumnReader::scale_codes(Recording& made) const {
     channel.name = channel.heading = "V";
     channel.unit = "V";
     channel.is_voltage = true;
-  } else if (made.format == "GW Instek CSV" && preamble_.vertical_scale && !made.has_times) {
+  } else if (are_codes) {
     factor = *preamble_.vertical_scale / codes_per_division;
     made.notes.push_back(
         fmt::format("numbers are codes, {} of them a division of {} V", codes_per_division, *preamble_.vertical_scale));
@@ -674,6 +690,8 @@ void ColumnReader::scale_codes(Recording& made) const {
 }
 
 void ColumnReader::refuse_spectrum() const {
+  if (preamble_.horizontal_unit && preamble_.horizontal_unit->measure == Measure::frequency)
+    fail(fmt::format("a spectrum over {}; a record over time is due", preamble_.horizontal_unit->symbol));
   for (std::size_t k = 0; k < block_.columns.size(); ++k) {
     const Heading heading = heading_of(block_.names[k]);
     std::optional<Unit> unit = unit_of(block_.units[k]);
@@ -689,7 +707,8 @@ void ColumnReader::refuse_logic_states(const Recording& made) const {
     const std::string name = lower_case(c.name);
     const bool is_named_so = name.starts_with("d") || name.starts_with("bit") || name.starts_with("logic") ||
                              name.starts_with("bus") || made.format == "sigrok CSV" ||
-                             preamble_.text.find("logic") != std::string::npos;
+                             preamble_.text.find("logic") != std::string::npos ||
+                             preamble_.text.find("digital") != std::string::npos;
     return is_named_so && c.unit.empty() &&
            std::all_of(c.values.begin(), c.values.end(), [](double v) { return v == 0 || v == 1; });
   });
@@ -702,6 +721,7 @@ Recording ColumnReader::recording() {
   const std::optional<std::size_t> place = time_place();
   made.format = format_of(preamble_.text);
   set_times(made, place);
+  const std::vector<double> times_as_written = place ? block_.values[*place] : std::vector<double>();
   made.lines = block_.lines;
   made.left_out = left_out_;
   made.notes = notes_;
@@ -714,6 +734,11 @@ Recording ColumnReader::recording() {
     if (k == place) continue;
     Channel channel;
     const Heading heading = heading_of(block_.names[k]);
+    if (place && is_same_heading(k, *place)) {
+      if (block_.values[k] == times_as_written) continue;
+      fail(fmt::format("columns {} and {} are both times, and differ; time_column says which one belongs to the channel",
+                       block_.columns[*place], block_.columns[k]));
+    }
     channel.heading = block_.names[k];
     channel.name = heading.name;
     channel.column = block_.columns[k];

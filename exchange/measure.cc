@@ -140,6 +140,10 @@ Heading heading_of(std::string_view text) {
     if (auto heading = split_heading(text, 4, text.substr(5))) return *heading;
   }
   Heading heading{.name = std::string(text), .unit = {}};
+  // "CH1V"
+  if (text.size() > 3 && same_letters(text.substr(0, 2), "ch") && text.ends_with('V') &&
+      text.find_first_not_of("0123456789", 2) == text.size() - 1)
+    return {.name = std::string(text.substr(0, text.size() - 1)), .unit = unit_of("V")};
   // Circuit simulators name voltages of nodes and currents so.
   if (text.size() > 3 && text[1] == '(' && text.back() == ')' && (text[0] == 'V' || text[0] == 'v')) heading.unit = unit_of("V");
   if (text.size() > 3 && text[1] == '(' && text.back() == ')' && (text[0] == 'I' || text[0] == 'i')) heading.unit = unit_of("A");

@@ -35,6 +35,9 @@ constexpr std::array known_keys{
     KeyRow{"tinc", Says::interval, &Preamble::interval},
     KeyRow{"horizontalinterval", Says::interval, &Preamble::interval},
     KeyRow{"horizinterval", Says::interval, &Preamble::interval},
+    KeyRow{"tincr", Says::interval, &Preamble::interval},
+    KeyRow{"horizontalresolution", Says::interval, &Preamble::interval},
+    KeyRow{"timeinterval", Says::interval, &Preamble::interval},
     KeyRow{"hresolution", Says::interval, &Preamble::interval},
     KeyRow{"resolution", Says::interval, &Preamble::interval},
     KeyRow{"samplerate", Says::rate, &Preamble::interval},
@@ -42,6 +45,7 @@ constexpr std::array known_keys{
     KeyRow{"samplefrequency", Says::rate, &Preamble::interval},
     KeyRow{"samplingfrequency", Says::rate, &Preamble::interval},
     KeyRow{"start", Says::start, &Preamble::start},
+    KeyRow{"t0", Says::start, &Preamble::start},
     KeyRow{"xorigin", Says::start, &Preamble::start},
     KeyRow{"xorg", Says::start, &Preamble::start},
     KeyRow{"xzero", Says::start, &Preamble::start},
@@ -50,6 +54,7 @@ constexpr std::array known_keys{
     KeyRow{"starttime", Says::start, &Preamble::start},
     KeyRow{"horizontalstart", Says::start, &Preamble::start},
     KeyRow{"triggerpoint", Says::trigger_sample, &Preamble::trigger_sample},
+    KeyRow{"zeroindex", Says::trigger_sample, &Preamble::trigger_sample},
     KeyRow{"triggersample", Says::trigger_sample, &Preamble::trigger_sample},
     KeyRow{"horizontalposition", Says::centre, &Preamble::centre},
     KeyRow{"recordlength", Says::samples, &Preamble::samples},
@@ -81,6 +86,8 @@ constexpr std::array formats{
     FormatRow{"Tektronix CSV", {"record length", "sample interval"}},
     FormatRow{"Tektronix CSV", {"sample interval", "horizontal scale"}},
     FormatRow{"Rigol CSV", {"increment"}},
+    FormatRow{"Rigol CSV", {"t0", "tinc"}},
+    FormatRow{"Keysight CSV", {"xinc", "xorg"}},
     FormatRow{"Keysight CSV", {"x-axis"}},
     FormatRow{"Rigol CSV", {"x,ch"}},
     FormatRow{"Rigol CSV", {"second,volt"}},
@@ -103,10 +110,13 @@ void Preamble::take(std::string_view key, std::string_view value) {
   const Heading heading = heading_of(key);
   const std::string letters = letters_of(heading.unit ? std::string_view(heading.name) : key);
   value = trimmed(value);
-  if (letters == "verticalunits" || letters == "horizontalunits") {
+  constexpr std::array vertical{"verticalunits", "verticalunit", "yunits", "yunit"};
+  constexpr std::array horizontal{"horizontalunits", "horizontalunit", "xunits", "xunit"};
+  const bool is_vertical = std::find(vertical.begin(), vertical.end(), letters) != vertical.end();
+  if (is_vertical || std::find(horizontal.begin(), horizontal.end(), letters) != horizontal.end()) {
     const std::size_t colon = value.rfind(':');
     const std::optional<Unit> unit = unit_of(colon == std::string_view::npos ? value : value.substr(colon + 1));
-    std::optional<Unit>& to = letters == "verticalunits" ? vertical_unit : horizontal_unit;
+    std::optional<Unit>& to = is_vertical ? vertical_unit : horizontal_unit;
     if (unit && !to) to = unit;
     return;
   }
@@ -129,7 +139,12 @@ void Preamble::take_line(std::string_view line, const std::vector<std::string_vi
   text += lower_case(line) + "\n";
   std::vector<std::string_view> filled;
   for (const std::string_view cell : cells) {
-    if (!cell.empty()) filled.push_back(cell);
+    const std::size_t equals = cells.size() > 1 ? cell.find('=') : std::string_view::npos;
+    if (equals != std::string_view::npos) {
+      take(cell.substr(0, equals), cell.substr(equals + 1));
+    } else if (!cell.empty()) {
+      filled.push_back(cell);
+    }
   }
   if (filled.size() >= 2) {
     for (std::size_t i = 0; i + 1 < filled.size(); i += 2) take(filled[i], filled[i + 1]);
