@@ -50,6 +50,16 @@ std::pair<double, double> extremes(const std::vector<double>& values, std::size_
   return {*least, *most};
 }
 
+// A row that rounding leaves beside t = 0 is at 0.
+void shift_times(std::vector<double>& times, double shift) {
+  constexpr double rounding = 1e-6;  // of the mean step
+  const double step = (times.back() - times.front()) / static_cast<double>(times.size());
+  for (double& time : times) {
+    time += shift;
+    if (std::abs(time) < rounding * step) time = 0;
+  }
+}
+
 // What the switch stands at before t = 0: the mean of the rows before, which must be one value but for noise.
 double level_before(const SectionReader& in, const Trace& trace, std::size_t count) {
   constexpr double noise = 0.05;  // of the range of the record
@@ -112,6 +122,7 @@ void thin(FileRows& rows, const SectionReader& driver) {
   const auto [least, most] = extremes(table.voltage, table.voltage.size());
   const std::size_t count = table.time.size();
   Thinned made = thinned(table, time_constant, relative_error * (most - least));
+  if (2 * made.table.time.size() > count) return;  // hardly any row can go
   table = std::move(made.table);
   rows.told += fmt::format("; thinned from {} to {} rows: behind {} of {} they differ by less than {}", count, table.time.size(),
                            has_bandwidth ? "the bandwidth" : "a bandwidth",
@@ -126,7 +137,7 @@ FileRows read_foreign(const SectionReader& in, std::string_view content, const s
   for (double& value : trace.values) value *= scale;
   const bool from_first = in.is_given(file_keys::shift) && in.is_word(file_keys::shift);
   const double shift = from_first ? -trace.times.front() : in.is_given(file_keys::shift) ? in.number(file_keys::shift) : 0;
-  for (double& time : trace.times) time += shift;
+  shift_times(trace.times, shift);
   FileRows rows = from_zero(in, trace);
   thin(rows, driver);
   rows.told = fmt::format("{}: {}{}", in.written(file_key), trace.told, rows.told);

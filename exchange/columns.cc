@@ -610,8 +610,14 @@ void ColumnReader::set_even_times(Recording& made) const {
   } else if (preamble_.centre) {
     start = *preamble_.centre - static_cast<double>(count / 2) * *made.interval;
   }
+  // Where the first sample is a whole number of intervals from t = 0, one sample is at 0 exactly.
+  constexpr double whole = 1e-6;
+  const double steps = start / *made.interval, rounded = std::round(steps);
   made.times.resize(count);
-  for (std::size_t i = 0; i < count; ++i) made.times[i] = start + static_cast<double>(i) * *made.interval;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto k = static_cast<double>(i);
+    made.times[i] = std::abs(steps - rounded) < whole ? (rounded + k) * *made.interval : start + k * *made.interval;
+  }
 }
 
 void ColumnReader::set_times(Recording& made, std::optional<std::size_t> place) {

@@ -114,8 +114,14 @@ class NetlistReader {
     if (line.empty()) return;
     if (is_open_) return take_numbers(without_continuation(line));
     const bool continues = line.starts_with('+');
-    if (!continues) name_ = std::string(line.substr(0, line.find_first_of(" \t")));
     const std::string small = lower_case(line);
+    if (small.starts_with(".subckt")) {
+      const std::string_view rest = trimmed(line.substr(std::min(line.find_first_of(" \t"), line.size())));
+      subcircuit_ = std::string(rest.substr(0, rest.find_first_of(" \t")));
+    }
+    if (small.starts_with(".ends")) subcircuit_.clear();
+    if (!continues)
+      name_ = (subcircuit_.empty() ? "" : subcircuit_ + ".") + std::string(line.substr(0, line.find_first_of(" \t")));
     const std::size_t at = small.find("pwl");
     if (at == std::string::npos) return;
     const std::size_t open = line.find_first_not_of(" \t", at + 3);
@@ -152,7 +158,7 @@ class NetlistReader {
   const std::string& file_;
   std::vector<Source> found_;
   std::vector<std::string> left_out_;
-  std::string name_;
+  std::string name_, subcircuit_;
   bool is_open_ = false;
 };
 

@@ -126,8 +126,8 @@ void mutate(std::uint64_t count) {
   }
 }
 
-TEST(Mutations, AFileThatIsCutIsReadUpToThereOrRefused) { truncate_everywhere(200); }
-TEST(Mutations, AChangedByteChangesNoOtherRow) { mutate(200); }
+TEST(Mutations, AFileThatIsCutIsReadUpToThereOrRefused_long) { truncate_everywhere(200); }
+TEST(Mutations, AChangedByteChangesNoOtherRow_long) { mutate(200); }
 TEST(Mutations, TwoThousandChangedBytesChangeNoOtherRow_slow) { mutate(2000); }
 
 }  // namespace

@@ -130,6 +130,11 @@ TEST(Recording, OfSeveralSourcesOneIsChosen) {
   const std::string text = "V1 a 0 PWL(0 0 1u 5)\nV2 b 0 PWL (0 1, 2u 3)\n";
   refused(text, {"2 sources", "V1, V2", "column = "});
   EXPECT_EQ(read(text, {.column = "V2"}).channels.front().values, (std::vector<double>{1, 3}));
+  const std::string circuit =
+      ".subckt a p m\nVdrive p m PWL(\n+ 0 0\n+ 1u 5\n+ )\n.ends a\n.subckt b p m\nVdrive p m PWL(\n+ 0 0\n+ 2u 7\n+ )\n.ends "
+      "b\n";
+  refused(circuit, {"a.Vdrive, b.Vdrive"});
+  EXPECT_EQ(read(circuit, {.column = "b.Vdrive"}).channels.front().values, (std::vector<double>{0, 7}));
   refused("V1 a 0 PWL(0 0 1u 5) R=0\n", {"R=0", "not read"});
   refused("V1 a 0 PWL(0 0 1u\n", {"ends inside"});
   refused("0 0\n1u 5 6\n2u 7\n", {"x.csv"});
