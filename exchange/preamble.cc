@@ -146,6 +146,10 @@ void Preamble::take_line(std::string_view line, const std::vector<std::string_vi
       filled.push_back(cell);
     }
   }
+  // Channels in different units: none of them is that of all.
+  const bool differs = filled.size() > 2 && letters_of(filled[0]).starts_with("vertical") &&
+                       std::any_of(filled.begin() + 2, filled.end(), [&](std::string_view cell) { return cell != filled[1]; });
+  if (differs) return;
   if (filled.size() >= 2) {
     for (std::size_t i = 0; i + 1 < filled.size(); i += 2) take(filled[i], filled[i + 1]);
   }

@@ -150,6 +150,8 @@ TEST(Recording, PreamblesOfOtherModelsAreUnderstood) {
       read("Revision:,0\nType:,raw\nPoints:,3\nXOrg:,-1E-06\nXInc:,1E-06\nXUnits:,second\nYUnits:,Volt\nData:,\n1.5\n2.5\n3.5\n");
   EXPECT_EQ(infiniium.times, (std::vector<double>{-1e-6, 0, 1e-6}));
   EXPECT_EQ(infiniium.channels[0].unit, "V");
+  const Recording two = read("Vertical Units,V,A\nTIME,CH1,CH2\n0,1.5,2\n1,2.5,3\n2,3.5,4\n");
+  EXPECT_EQ(two.channels[1].unit, "");
   const Recording centre = read("Sample Interval,1e-06\nTrigger Point,2\nVolts\n1.5\n2.5\n3.5\n");
   EXPECT_EQ(centre.times, (std::vector<double>{-2e-6, -1e-6, 0}));
 }
