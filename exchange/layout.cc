@@ -41,7 +41,9 @@ std::size_t numbers_in(const CellList& cells) {
 std::vector<Line> last_lines(std::string_view text, std::size_t skip) {
   constexpr std::size_t enough = 13, end_of_long_text = 1 << 20;
   if (skip == 0 && text.size() > 2 * end_of_long_text) {
-    const std::vector<Line> last = last_lines(text.substr(text.find_last_of("\r\n", text.size() - end_of_long_text) + 1), 0);
+    const std::size_t line_end = text.find_last_of("\r\n", text.size() - end_of_long_text);
+    const std::vector<Line> last =
+        line_end == std::string_view::npos ? std::vector<Line>() : last_lines(text.substr(line_end + 1), 0);
     if (last.size() == enough) return last;
   }
   std::deque<Line> kept;

@@ -178,6 +178,10 @@ TEST(Recording, NoiseIsRefusedAtOnce) {
   refused(noise, {"x.csv"});
   for (char& c : noise) c = static_cast<char>(32 + static_cast<unsigned char>(c) % 95);
   refused(noise, {"x.csv"});
+  // One long line.
+  std::string line;
+  while (line.size() < 3'000'000) line += noise;
+  refused(line, {"x.csv"});
 }
 
 TEST(Recording, ASummaryIsOneLine) {
