@@ -90,7 +90,12 @@ bool BlockReader::begins_block(const CellList& cells) const {
     if (!may_be_value(cells[i])) return false;
     has_number |= looks_like_number(cells[i]);
   }
-  return has_number;
+  // A key before the only column of numbers has its value there.
+  const std::size_t last = is_numeric_.size() - 1;
+  const bool is_only = std::count(is_numeric_.begin(), is_numeric_.end(), true) == 1;
+  const bool has_key = is_only && std::any_of(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(last),
+                                              [](std::string_view cell) { return !cell.empty(); });
+  return has_number && !has_key;
 }
 
 // Two cells each are the whole and the fraction of one number.
@@ -237,6 +242,7 @@ void BlockReader::take_headings(const std::vector<Line>& above) {
   }
   std::size_t next = above.size();
   CellList units;
+  if (next > 0 && is_setting(cells[next - 1])) next = 0;
   if (next > 0 && may_be_headings(cells[next - 1])) units = units_in(cells[next - 1]);
   if (!units.empty()) --next;
   CellList names;

@@ -163,9 +163,12 @@ bool RecordingMaker::is_sample_count(std::size_t place, const std::optional<Unit
 void RecordingMaker::set_times(std::optional<std::size_t> place) {
   made_.interval = preamble_.interval;
   const std::size_t count = block_.lines.size();
-  const bool is_period = place && block_.names[*place] == "xpos" && preamble_.frequency.value_or(0) > 0 &&
-                         preamble_.samples == static_cast<double>(count);
-  if (is_period) made_.interval = 1 / (*preamble_.frequency * static_cast<double>(count));
+  // The samples of a generator are one period.
+  const bool is_period = (!place || block_.names[*place] == "xpos") && preamble_.samples == static_cast<double>(count);
+  if (is_period && !made_.interval && preamble_.period.value_or(0) > 0)
+    made_.interval = *preamble_.period / static_cast<double>(count);
+  if (is_period && !made_.interval && preamble_.frequency.value_or(0) > 0)
+    made_.interval = 1 / (*preamble_.frequency * static_cast<double>(count));
   if (!place) return set_even_times();
   const std::vector<double>& raw = block_.values[*place];
   const Missing& missing = block_.missing[*place];
@@ -236,12 +239,22 @@ void RecordingMaker::refuse_spectrum() const {
   }
 }
 
+// "d0", "dio 3", "channel 0"
+bool is_logic_name(std::string_view name) {
+  constexpr std::array words{"dio", "d", "bit", "logic", "bus", "channel", "probe"};
+  for (const std::string_view word : words) {
+    if (!name.starts_with(word)) continue;
+    const std::string_view rest = trimmed(name.substr(word.size()));
+    if (!rest.empty() && rest.find_first_not_of("0123456789") == std::string_view::npos) return true;
+  }
+  return false;
+}
+
 void RecordingMaker::refuse_logic_states() const {
   const bool is_logic =
       !made_.channels.empty() && std::all_of(made_.channels.begin(), made_.channels.end(), [&](const Channel& c) {
         const std::string name = lower_case(c.name);
-        const bool is_named_so = name.starts_with("d") || name.starts_with("bit") || name.starts_with("logic") ||
-                                 name.starts_with("bus") || made_.format == "sigrok CSV" ||
+        const bool is_named_so = is_logic_name(name) || made_.format == "sigrok CSV" ||
                                  preamble_.text.find("logic") != std::string::npos ||
                                  preamble_.text.find("digital") != std::string::npos;
         return is_named_so && c.unit.empty() &&

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
 
 #include "base/choice.h"
 #include "base/trimmed.h"
@@ -11,7 +12,7 @@
 namespace softland::internal {
 namespace {
 
-enum class Says { interval, rate, start, trigger_sample, centre, samples, frequency, vertical_scale, high, low };
+enum class Says { interval, rate, start, trigger_sample, centre, samples, frequency, period, vertical_scale, high, low };
 
 /// A key of a preamble in lower case, letters and digits alone.
 struct KeyRow {
@@ -38,6 +39,7 @@ constexpr std::array known_keys{
     KeyRow{"tincr", Says::interval, &Preamble::interval},
     KeyRow{"horizontalresolution", Says::interval, &Preamble::interval},
     KeyRow{"timeinterval", Says::interval, &Preamble::interval},
+    KeyRow{"deltax", Says::interval, &Preamble::interval},
     KeyRow{"hresolution", Says::interval, &Preamble::interval},
     KeyRow{"resolution", Says::interval, &Preamble::interval},
     KeyRow{"samplerate", Says::rate, &Preamble::interval},
@@ -46,6 +48,8 @@ constexpr std::array known_keys{
     KeyRow{"samplingfrequency", Says::rate, &Preamble::interval},
     KeyRow{"start", Says::start, &Preamble::start},
     KeyRow{"t0", Says::start, &Preamble::start},
+    KeyRow{"x0", Says::start, &Preamble::start},
+    KeyRow{"hoffset", Says::start, &Preamble::start},
     KeyRow{"xorigin", Says::start, &Preamble::start},
     KeyRow{"xorg", Says::start, &Preamble::start},
     KeyRow{"xzero", Says::start, &Preamble::start},
@@ -61,12 +65,22 @@ constexpr std::array known_keys{
     KeyRow{"memorylength", Says::samples, &Preamble::samples},
     KeyRow{"datalength", Says::samples, &Preamble::samples},
     KeyRow{"datapoints", Says::samples, &Preamble::samples},
+    KeyRow{"dots", Says::samples, &Preamble::samples},
     KeyRow{"samples", Says::samples, &Preamble::samples},
+    KeyRow{"period", Says::period, &Preamble::period},
     KeyRow{"frequency", Says::frequency, &Preamble::frequency},
     KeyRow{"verticalscale", Says::vertical_scale, &Preamble::vertical_scale},
     KeyRow{"highlevel", Says::high, &Preamble::high},
     KeyRow{"lowlevel", Says::low, &Preamble::low},
 };
+
+/// Keys of units.
+constexpr std::array<std::string_view, 5> vertical_keys{"verticalunits", "verticalunit", "yunits", "yunit", "vunit"};
+constexpr std::array<std::string_view, 5> horizontal_keys{"horizontalunits", "horizontalunit", "xunits", "xunit", "hunit"};
+
+bool names_unit(const std::array<std::string_view, 5>& keys, std::string_view letters) {
+  return std::find(keys.begin(), keys.end(), letters) != keys.end();
+}
 
 /// A format by words that all stand in its preamble and headings, lower case. The first one that fits is taken.
 struct FormatRow {
@@ -91,6 +105,8 @@ constexpr std::array formats{
     FormatRow{"Keysight CSV", {"x-axis"}},
     FormatRow{"Rigol CSV", {"x,ch"}},
     FormatRow{"Rigol CSV", {"second,volt"}},
+    FormatRow{"Rigol CSV", {"rigol"}},
+    FormatRow{"Yokogawa CSV", {"hresolution", "hoffset"}},
     FormatRow{"PicoScope CSV", {"channel a"}},
     FormatRow{"Rohde & Schwarz CSV", {"in s", "in v"}},
 };
@@ -110,10 +126,8 @@ void Preamble::take(std::string_view key, std::string_view value) {
   const Heading heading = heading_of(key);
   const std::string letters = letters_of(heading.unit ? std::string_view(heading.name) : key);
   value = trimmed(value);
-  constexpr std::array vertical{"verticalunits", "verticalunit", "yunits", "yunit"};
-  constexpr std::array horizontal{"horizontalunits", "horizontalunit", "xunits", "xunit"};
-  const bool is_vertical = std::find(vertical.begin(), vertical.end(), letters) != vertical.end();
-  if (is_vertical || std::find(horizontal.begin(), horizontal.end(), letters) != horizontal.end()) {
+  const bool is_vertical = names_unit(vertical_keys, letters);
+  if (is_vertical || names_unit(horizontal_keys, letters)) {
     const std::size_t colon = value.rfind(':');
     const std::optional<Unit> unit = unit_of(colon == std::string_view::npos ? value : value.substr(colon + 1));
     std::optional<Unit>& to = is_vertical ? vertical_unit : horizontal_unit;
@@ -157,6 +171,15 @@ void Preamble::take_line(std::string_view line, const std::vector<std::string_vi
   while (!words.empty() && std::string_view("#;%*/\" ").find(words.front()) != std::string_view::npos) words.remove_prefix(1);
   if (const std::size_t at = words.find_first_of(":=\t;,"); at != std::string_view::npos)
     take(words.substr(0, at), words.substr(at + 1));
+}
+
+bool is_setting(const std::vector<std::string_view>& cells) {
+  std::vector<std::string_view> filled;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(filled), [](std::string_view cell) { return !cell.empty(); });
+  if (filled.size() != 2 || !(looks_like_number(filled[1]) || unit_of(filled[1]))) return false;
+  const std::string letters = letters_of(filled[0]);
+  return names_unit(vertical_keys, letters) || names_unit(horizontal_keys, letters) ||
+         std::any_of(known_keys.begin(), known_keys.end(), [&](const KeyRow& row) { return row.key == letters; });
 }
 
 std::string_view format_of(std::string_view text) {

@@ -17,6 +17,7 @@ struct Preamble {
   std::optional<double> trigger_sample = {};  ///< number of the sample at t = 0
   std::optional<double> centre = {};          ///< time of the middle of the record [s]
   std::optional<double> samples = {};         ///< how many there should be
+  std::optional<double> period = {};          ///< that the samples are [s]
   std::optional<double> frequency = {};       ///< of the period that the samples are [Hz]
   std::optional<double> vertical_scale = {};  ///< per division
   std::optional<double> high = {}, low = {};  ///< that the largest and the smallest code stand for [V]
@@ -30,6 +31,9 @@ struct Preamble {
   /// Takes a key and its value. What it does not know says nothing.
   void take(std::string_view key, std::string_view value);
 };
+
+/// Whether a line of cells is a key that is known, and a number or a unit as its value.
+[[nodiscard]] bool is_setting(const std::vector<std::string_view>& cells);
 
 /// The name of the format that a preamble and headings belong to, "Rigol CSV"; "columns" where it is none that is known.
 [[nodiscard]] std::string_view format_of(std::string_view text);

@@ -69,7 +69,7 @@ TEST(Recording, WhatIsNoRecordOverTimeIsRefusedByName) {
   refused("", {"empty"});
   refused("\n\n", {"no lines"});
   refused("some words\nand more of them\n", {"no columns of numbers"});
-  refused("Record Length,2500\nSample Interval,4e-5\nVertical Scale,2\n", {"no columns of numbers"});
+  refused("Record Length,2500\nSample Interval,4e-5\nVertical Scale,2\n", {"no row of numbers"});
 }
 
 TEST(Recording, WhatCanBeReadInTwoWaysIsRefusedWithTheKey) {
@@ -154,6 +154,32 @@ TEST(Recording, PreamblesOfOtherModelsAreUnderstood) {
   EXPECT_EQ(two.channels[1].unit, "");
   const Recording centre = read("Sample Interval,1e-06\nTrigger Point,2\nVolts\n1.5\n2.5\n3.5\n");
   EXPECT_EQ(centre.times, (std::vector<double>{-2e-6, -1e-6, 0}));
+}
+
+TEST(Recording, OthersThatAreReadByTheirStructure) {
+  const Recording generator = read(
+      "RIGOL:DG8:CSV DATA FILE\nTYPE:Arb\nAMP:10.0000 Vpp\nPERIOD:4.00E-6 "
+      "S\nDOTS:4\nMODE:Normal\n\nx,y[V]\n,5.0000\n,2.5000\n,0.0000\n,-5.0000\n");
+  EXPECT_EQ(generator.format, "Rigol CSV");
+  EXPECT_EQ(generator.times, (std::vector<double>{0, 1e-6, 2e-6, 3e-6}));
+  EXPECT_EQ(generator.channels[0].unit, "V");
+  const Recording yokogawa = read(
+      "\"Model\",\"DLM0000\"\n\"TraceName\",\"CH1\"\n\"VUnit\",\"V\"\n\"HResolution\",\"1.0E-06\"\n\"HOffset\",\"-1.0E-"
+      "06\"\n\"HUnit\",\"s\"\n\n,1.5\n,2.5\n,3.5\n");
+  EXPECT_EQ(yokogawa.times, (std::vector<double>{-1e-6, 0, 1e-6}));
+  const Recording excel = read("sep=;\nZeit in ms;Spannung in V\n-1,0;1,5\n0,0;2,5\n1,0;3,5\n");
+  EXPECT_EQ(excel.times, (std::vector<double>{-1e-3, 0, 1e-3}));
+  EXPECT_EQ(excel.channels[0].name, "Spannung");
+  const Recording spice = read("time\tV(n001)\tI(R1)\n0.0e+00\t1.5\t0.1\n1.0e-06\t2.5\t0.2\n3.0e-06\t3.5\t0.3\n");
+  EXPECT_EQ(spice.channels[0].unit, "V");
+  EXPECT_EQ(spice.channels[1].unit, "A");
+  const Recording overrange = read("Time,Channel A\n(\xC2\xB5s),(V)\n\n-1.0,0.5\n0.0,\xE2\x88\x9E\n1.0,2.5\n");
+  EXPECT_TRUE(overrange.channels[0].missing.is_overrange);
+  EXPECT_EQ(overrange.times.front(), -1e-6);
+  const Recording old = read("s,Volts\n-1e-6,0.5\n0,1.5\n1e-6,2.5\n");
+  EXPECT_EQ(old.channels[0].unit, "V");
+  refused("Time [s],Channel 0\n0.0,0\n0.5,1\n0.75,0\n", {"logic states"});
+  EXPECT_EQ(read("t,drive\n0,0\n1,1\n2,1\n").rows(), 3U);
 }
 
 TEST(Recording, SecondColumnsOfTimesMustBeTheSame) {
