@@ -40,7 +40,12 @@ ReadKeys read_keys(const SectionReader& in) {
 ReadKeys read_keys(const std::vector<std::string>& assignments) {
   SceneFile file = SceneFile::parse("[waveform.main]\nfamily = \"table\"\nfile = \"-\"\n", "--set");
   for (const std::string& assignment : assignments) file.set("waveform.main." + assignment);
-  return internal::read_keys(internal::SectionReader(file.impl(), "waveform", "main"));
+  const internal::SectionReader in(file.impl(), "waveform", "main");
+  for (const std::string_view key :
+       {internal::file_keys::unit, internal::file_keys::scale, internal::file_keys::shift, internal::before_key})
+    in.require(!in.is_given(key), key,
+               "says what a scene makes of a file; a file is read by column, time_column, interval, skip, time_unit and decimal");
+  return internal::read_keys(in);
 }
 
 }  // namespace softland

@@ -8,7 +8,8 @@
 
 namespace softland {
 
-/// Of assignments KEY=VALUE as --set has them, such as `column=CH1`. Throws InvalidInput with the option, the value and the rule.
+/// Of assignments KEY=VALUE as --set has them, such as `column=CH1`: those that say how a file is read, not what a scene makes of
+/// it. Throws InvalidInput with the option, the value and the rule.
 [[nodiscard]] ReadKeys read_keys(const std::vector<std::string>& assignments);
 
 namespace internal {

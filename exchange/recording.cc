@@ -13,6 +13,24 @@
 #include "exchange/parsers.h"
 
 namespace softland {
+namespace {
+
+std::string names_of(const Recording& recording) {
+  std::string names;
+  for (const Channel& channel : recording.channels)
+    names += fmt::format("{}\"{}\" ({})", names.empty() ? "" : ", ", printable_line(channel.name), channel.column);
+  return names;
+}
+
+/// Times that a user says are even, from the first one of the file on.
+void take_even_times(Recording& made, double interval) {
+  const double first = made.times.empty() ? 0 : made.times.front();
+  made.interval = interval;
+  made.times.resize(made.rows());
+  for (std::size_t i = 0; i < made.times.size(); ++i) made.times[i] = first + static_cast<double>(i) * interval;
+}
+
+}  // namespace
 
 std::string Recording::place(std::size_t row) const { return row < lines.size() ? fmt::format("{}:{}", file, lines[row]) : file; }
 
@@ -20,7 +38,11 @@ Recording read_recording(const std::string& file, const ReadKeys& keys) { return
 
 Recording parse_recording(std::string_view content, const std::string& file, const ReadKeys& keys) {
   require(!content.empty(), [&] { return file + ": the file is empty"; });
-  if (internal::is_uff(content)) return internal::read_uff(content, file);
+  if (internal::is_uff(content)) {
+    Recording made = internal::read_uff(content, file);
+    if (keys.interval) take_even_times(made, *keys.interval);
+    return made;
+  }
   std::string storage;
   std::vector<std::string> left_out;
   const std::string_view text = internal::decoded(content, storage, left_out);
@@ -32,7 +54,45 @@ Recording parse_recording(std::string_view content, const std::string& file, con
   Recording made =
       internal::is_spice_pwl(text) ? internal::read_spice_pwl(text, file, keys) : internal::read_columns(text, file, keys);
   made.left_out.insert(made.left_out.begin(), left_out.begin(), left_out.end());
+  if (keys.interval) take_even_times(made, *keys.interval);
   return made;
+}
+
+const Channel& channel_of(const Recording& recording, const ReadKeys& keys, const std::string& usual) {
+  const auto named = [&](const std::string& name) -> const Channel* {
+    const Channel* found = nullptr;
+    for (const Channel& channel : recording.channels) {
+      if (channel.name != name && channel.heading != name) continue;
+      require(found == nullptr, [&] {
+        return fmt::format("{}: two channels are called \"{}\"; column = {} takes one by its place", recording.file,
+                           printable_line(name), channel.column);
+      });
+      found = &channel;
+    }
+    return found;
+  };
+  if (keys.column_number > 0) {
+    for (const Channel& channel : recording.channels) {
+      if (channel.column == keys.column_number) return channel;
+    }
+    throw InvalidInput(fmt::format("{}: column = {}: there is no channel in that place; there are {}", recording.file,
+                                   keys.column_number, names_of(recording)));
+  }
+  if (!keys.column.empty()) {
+    const Channel* const found = named(keys.column);
+    require(found != nullptr || recording.format == "SPICE PWL", [&] {
+      return fmt::format("{}: column = \"{}\": there is no such channel; there are {}", recording.file,
+                         printable_line(keys.column), names_of(recording));
+    });
+    if (found != nullptr) return *found;
+  }
+  if (recording.channels.size() == 1) return recording.channels.front();
+  const Channel* const found = named(usual);
+  require(found != nullptr, [&] {
+    return fmt::format("{}: there are {} channels, {}; column = \"{}\" takes one", recording.file, recording.channels.size(),
+                       names_of(recording), printable_line(recording.channels.front().name));
+  });
+  return *found;
 }
 
 TimeAxis time_axis(const Recording& recording) {

@@ -67,6 +67,10 @@ struct Recording {
   [[nodiscard]] std::string place(std::size_t row) const;
 };
 
+/// The channel that the keys name; or else the only one; or else the one called `usual`. Throws InvalidInput with the names there
+/// are.
+[[nodiscard]] const Channel& channel_of(const Recording& recording, const ReadKeys& keys, const std::string& usual);
+
 /// Reads a file. Throws InvalidInput with file, line, column and rule for what cannot be read, for what is no record over time (a
 /// spectrum, a capture of logic states, a mesh), and for what can be read in two ways.
 [[nodiscard]] Recording read_recording(const std::string& file, const ReadKeys& keys = {});

@@ -25,50 +25,6 @@ constexpr double single_precision = 1.2e-7;
 
 std::string seconds(double time) { return engineering(time, "s", digits); }
 
-std::string names_of(const Recording& recording) {
-  std::string names;
-  for (const Channel& channel : recording.channels)
-    names += fmt::format("{}\"{}\" ({})", names.empty() ? "" : ", ", printable_line(channel.name), channel.column);
-  return names;
-}
-
-const Channel& chosen(const Recording& recording, const ReadKeys& keys, const std::string& usual) {
-  const auto named = [&](const std::string& name) -> const Channel* {
-    const Channel* found = nullptr;
-    for (const Channel& channel : recording.channels) {
-      if (channel.name != name && channel.heading != name) continue;
-      require(found == nullptr, [&] {
-        return fmt::format("{}: two channels are called \"{}\"; column = {} takes one by its place", recording.file,
-                           printable_line(name), channel.column);
-      });
-      found = &channel;
-    }
-    return found;
-  };
-  if (keys.column_number > 0) {
-    for (const Channel& channel : recording.channels) {
-      if (channel.column == keys.column_number) return channel;
-    }
-    throw InvalidInput(fmt::format("{}: column = {}: there is no channel in that place; there are {}", recording.file,
-                                   keys.column_number, names_of(recording)));
-  }
-  if (!keys.column.empty()) {
-    const Channel* const found = named(keys.column);
-    require(found != nullptr || recording.format == "SPICE PWL", [&] {
-      return fmt::format("{}: column = \"{}\": there is no such channel; there are {}", recording.file,
-                         printable_line(keys.column), names_of(recording));
-    });
-    if (found != nullptr) return *found;
-  }
-  if (recording.channels.size() == 1) return recording.channels.front();
-  const Channel* const found = named(usual);
-  require(found != nullptr, [&] {
-    return fmt::format("{}: there are {} channels, {}; column = \"{}\" takes one", recording.file, recording.channels.size(),
-                       names_of(recording), printable_line(recording.channels.front().name));
-  });
-  return *found;
-}
-
 double volts_divisor(const Recording& recording, const Channel& channel, const ReadKeys& keys, bool any_unit, std::string& told) {
   if (!keys.unit.empty()) {
     const std::optional<Unit> unit = unit_of(keys.unit);
@@ -155,13 +111,13 @@ void require_no_repeats(const Recording& recording, const TimeAxis& axis) {
 // Times of the rows, where the file has some, as the keys and the file say.
 std::vector<double> resolved_times(const Recording& recording, const ReadKeys& keys, std::string& told) {
   const std::size_t count = recording.rows();
-  if (keys.interval) return even(recording.times.empty() ? 0 : recording.times.front(), *keys.interval, count);
   require(!recording.times.empty(), [&] {
     return fmt::format(
         "{}: the file has no times and says no interval; interval = \"...\" gives the time between rows, or time_column "
         "the column of times",
         recording.file);
   });
+  if (keys.interval) return recording.times;  // even already
   const TimeAxis axis = time_axis(recording);
   if (keys.uneven || recording.is_breakpoints) {
     require_not_back(recording, axis);
@@ -227,7 +183,7 @@ void drop_missing(const Recording& recording, const Channel& channel, Trace& tra
 }  // namespace
 
 Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::string& usual, bool any_unit) {
-  const Channel& channel = chosen(recording, keys, usual);
+  const Channel& channel = channel_of(recording, keys, usual);
   std::string told;
   const double divisor = volts_divisor(recording, channel, keys, any_unit, told);
   if (recording.has_times && !recording.times_have_unit && keys.time_unit.empty())

@@ -14,9 +14,10 @@ struct Trace {
   std::string told;            ///< one line: what was taken, and what was left out
 };
 
-/// The channel that the keys name; or else the only one; or else the one called `usual`. Throws InvalidInput with file, line and
-/// the key that decides where there is no such channel, where times repeat, go back or drift from the interval of the file, where
-/// there are none, where a value is not finite between finite ones, and where the unit is no voltage unless `any_unit`.
+/// The channel of channel_of() over the times that `keys`, with which it was read, and the file say. Throws InvalidInput with
+/// file, line and the key that decides where there is no such channel, where times repeat, go back or drift from the interval of
+/// the file, where there are none, where a value is not finite between finite ones, and where the unit is no voltage unless
+/// `any_unit`.
 [[nodiscard]] Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::string& usual, bool any_unit = false);
 
 }  // namespace softland

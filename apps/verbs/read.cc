@@ -21,7 +21,9 @@ struct ReadRequest {
 
 int read_verb(const Common& c, const ReadRequest& request) {
   require(!request.plot || c.json != "-", "--plot --json -: both would be written to standard output; give --json a file");
-  const Recording recording = read_recording(request.file, read_keys(c.set));
+  const ReadKeys keys = read_keys(c.set);
+  Recording recording = read_recording(request.file, keys);
+  if (!keys.column.empty() || keys.column_number > 0) recording.channels = {channel_of(recording, keys, "")};
   static_cast<void>(claim_places(c, {}));
   if (request.plot) {
     if (!c.json.empty()) print_json_or(c, recording_json(recording), "");
@@ -39,7 +41,8 @@ void add_read(Verb& verb) {
   verb.positional("FILE", request->file,
                   "of an oscilloscope, a logger or a simulator: columns of numbers, SPICE PWL, UFF 58 and 58b (docs/files.md)");
   verb.flag("--plot", request->plot, "print a picture of the channels against time, as SVG");
-  verb.with_set("a key of [waveform.NAME] that says what the file does not, such as decimal=\",\" or interval=\"8 ns\"");
+  verb.with_set(
+      "a key of [waveform.NAME] that says how the file is read: column, time_column, interval, skip, time_unit or decimal");
   verb.with_json();
   verb.footer(
       "Examples:\n  softland read scope.csv\n  softland read scope.csv --plot > scope.svg\n"

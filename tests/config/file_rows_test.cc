@@ -130,16 +130,15 @@ TEST(FileRows, ALongRecordIsThinnedToWhatTheSourceCanPass) {
 }
 
 TEST(ReadKeys, AreThoseOfAWaveform) {
-  const ReadKeys keys =
-      read_keys({"column=CH2", "time_column=1", "interval=8 ns", "skip=3", "unit=mV", "time_unit=ms", "decimal=,"});
+  const ReadKeys keys = read_keys({"column=CH2", "time_column=1", "interval=8 ns", "skip=3", "time_unit=ms", "decimal=,"});
   EXPECT_EQ(keys.column, "CH2");
   EXPECT_EQ(keys.time_column_number, 1);
   EXPECT_EQ(keys.interval, 8e-9);
   EXPECT_EQ(keys.skip, 3);
-  EXPECT_EQ(keys.unit, "mV");
   EXPECT_EQ(keys.time_unit, "ms");
   EXPECT_EQ(keys.decimal, ',');
   EXPECT_TRUE(read_keys({"interval=uneven"}).uneven);
+  EXPECT_THROW((void)read_keys({"scale=2"}), InvalidInput);
   try {
     (void)read_keys({"colum=1"});
     ADD_FAILURE() << "accepted";

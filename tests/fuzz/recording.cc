@@ -19,7 +19,7 @@ void recording(std::string_view input) {
                                ReadKeys{.column_number = read.channels.front().column, .uneven = true},
                                ReadKeys{.column_number = read.channels.front().column, .interval = 1e-6}}) {
     Trace trace;
-    if (!accepted([&] { trace = trace_of(read, keys, "main", true); })) continue;
+    if (!accepted([&] { trace = trace_of(parse_recording(input, "fuzz.csv", keys), keys, "main", true); })) continue;
     for (std::size_t i = 0; i < trace.times.size(); ++i) {
       check(std::isfinite(trace.times[i]) && std::isfinite(trace.values[i]), "a trace has a number that is not finite");
       check(i == 0 || trace.times[i] >= trace.times[i - 1], "the times of a trace go back");
