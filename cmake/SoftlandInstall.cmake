@@ -2,7 +2,7 @@
 # which find each other from include/softland; a CMake package and a pkg-config file. Everything is found relative to its own place.
 include(CMakePackageConfigHelpers)
 
-set(libraries base sampling store integrators waveforms model objectives config optimizers studies tuning reports)
+set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies tuning reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
 install(TARGETS softland EXPORT softland)

@@ -3,7 +3,7 @@
 # preset `clang` compiles them. Prints every finding once. Needs clang-16 and clang-tidy-16. Exit status: 0 nothing found, 1 findings.
 set -u
 cd "$(dirname "$0")/.." || exit 5
-[ $# -gt 0 ] || set -- base sampling store integrators waveforms model objectives config optimizers studies reports apps
+[ $# -gt 0 ] || set -- base sampling store integrators waveforms exchange model objectives config optimizers studies reports apps
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT

@@ -10,6 +10,7 @@
 
 #include "base/engineering.h"
 #include "base/require.h"
+#include "config/file_rows.h"
 #include "config/section_reader.h"
 #include "config/units.h"
 
@@ -87,17 +88,6 @@ double swing(const SectionReader& in, std::string_view key, const Quantity& give
   return given.value * *to.main_hold;
 }
 
-/// The waveform whose rows stand in a file.
-Waveform read_rows(const SectionReader& in, std::string_view drive) {
-  const std::string& name = in.text(file_key);
-  in.require(!name.empty() && name.find('\0') == std::string::npos, file_key, "must be the name of a file");
-  try {
-    return read_table((in.file().directory / name).string(), std::string(drive));
-  } catch (const InvalidInput& error) {
-    in.file().fail(in.path(file_key), error.what());
-  }
-}
-
 void read_list(const SectionReader& in, std::string_view key, Meaning meaning, const References& to, double base,
                std::vector<double>& list) {
   if (meaning == Meaning::swing) {
@@ -134,7 +124,8 @@ Waveform read_parameters(const SectionReader& in, const References& to) {
 }
 
 Waveform read_waveform(const SectionReader& in, const References& to) {
-  if (in.is_given(file_key)) return read_rows(in, to.drive);
+  for (const std::string_view key : file_keys::all)
+    in.require(!in.is_given(key), key, "says something about a file, and there is no file");
   std::optional<Waveform> waveform;
   for_each_family([&]<class Family>(const Family&) {
     if (in.text("family") == FamilyOf<Family>::name) waveform = read_parameters<Family>(in, to);
@@ -263,11 +254,19 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
     if (in.is_given(before_key)) {
       before = drives.before[name] = offset + volts(in.quantities(before_key).front(), known);
     }
-    Waveform waveform = read_waveform(in, {.drive = drive,
-                                           .pull_in = known,
-                                           .main_hold = main_hold,
-                                           .max_slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity(),
-                                           .before = before});
+    Waveform waveform;
+    if (in.is_given(file_key)) {
+      FileRows rows = read_file_rows(in, drive, driver);
+      if (rows.before && !in.is_given(before_key)) before = drives.before[name] = offset + *rows.before;
+      if (!rows.told.empty()) drives.notes.push_back(std::move(rows.told));
+      waveform = std::move(rows.table);
+    } else {
+      waveform = read_waveform(in, {.drive = drive,
+                                    .pull_in = known,
+                                    .main_hold = main_hold,
+                                    .max_slew = limits ? limits->max_slew : std::numeric_limits<double>::infinity(),
+                                    .before = before});
+    }
     if (offset != 0) waveform = raised(std::move(waveform), offset);
     const Signal compiled = compile(in, waveform, before);
     if (const double peak = compiled.peak(); drive != dispersion_drive && !any_voltage().contains(peak)) {
@@ -290,11 +289,13 @@ Drives read_all(const SceneFile::Impl& file, const Device& device, const std::ma
   return drives;
 }
 
-/// The hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V].
-std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt) {
+/// The hold levels of all drives, in order, where every pull-in voltage that a scene needs is `volt` [V]. Of files that were read
+/// it is told into `notes`, unless that is null.
+std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene, double volt, std::vector<std::string>* notes) {
   std::map<std::string, PullInVoltages> pull_in;
   for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
   const Drives drives = read_all(file, scene.device, pull_in, LimitChecks::without_pull_in);
+  if (notes != nullptr) *notes = drives.notes;
   std::vector<double> levels;
   for (const std::string_view drive : drive_names(scene.device)) {
     const auto found = drives.waveforms.find(std::string(drive));
@@ -379,9 +380,9 @@ void check_drives(const SceneFile::Impl& file, Scene& scene) {
   }
   // The rules of a family do not depend on how large a volt is: any pull-in voltage will do for them. What another one changes is
   // not given in volts.
-  scene.standing = levels_held(file, scene, 1);
+  scene.standing = levels_held(file, scene, 1, &scene.file_notes);
   if (scene.need_pull_in.empty()) return;
-  const std::vector<double> of_half = levels_held(file, scene, 0.5);
+  const std::vector<double> of_half = levels_held(file, scene, 0.5, nullptr);
   for (std::size_t k = 0; k < of_half.size(); ++k) {
     if (scene.standing[k] != of_half[k]) scene.standing[k] = 0;
   }

@@ -1,6 +1,7 @@
 // Waveforms and driver limits of a scene: from text to volts. Internal to config/.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,7 +19,15 @@ inline constexpr std::string_view dispersion_drive = "dispersion";
 /// Keys that a parameter's own may be replaced by.
 inline constexpr std::string_view frequency_key = "frequency";  ///< of an angular frequency
 inline constexpr std::string_view file_key = "file";            ///< of the rows of a table
-inline constexpr std::string_view before_key = "before";        ///< of every family: the value before t = 0
+/// Keys beside `file`: what a file of an instrument does not say.
+namespace file_keys {
+inline constexpr std::string_view column = "column", time_column = "time_column", interval = "interval", skip = "skip",
+                                  unit = "unit", time_unit = "time_unit", decimal = "decimal", scale = "scale", shift = "shift";
+inline constexpr std::string_view uneven = "uneven";  ///< interval: times as they stand
+inline constexpr std::string_view first = "first";    ///< shift: the first row is at t = 0
+inline constexpr std::array all{column, time_column, interval, skip, unit, time_unit, decimal, scale, shift};
+}  // namespace file_keys
+inline constexpr std::string_view before_key = "before";  ///< of every family: the value before t = 0
 /// What may stand as the rise time of a step: that of the driver's max_slew.
 inline constexpr std::string_view steepest_rise = "driver";
 

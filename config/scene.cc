@@ -7,6 +7,7 @@
 
 #include "base/require.h"
 #include "config/drives.h"
+#include "config/file_rows.h"
 #include "config/section_reader.h"
 #include "config/spread_reader.h"
 
@@ -154,6 +155,7 @@ Scene read_scene(const SceneFile& file) {
   internal::read_spread(scene, impl);
   scene.calibration = read_calibration(impl);
   scene.warnings = find_warnings(impl, scene.device);
+  scene.warnings.insert(scene.warnings.begin(), scene.file_notes.begin(), scene.file_notes.end());
   try {
     validate(scene.device);
   } catch (const InvalidInput& error) {
@@ -226,8 +228,13 @@ SceneFile canonical(const SceneFile& file, const std::string& name) {
   for (const std::string& drive : impl.names_in("waveform")) {
     const SectionReader in(impl, "waveform", drive);
     if (!in.is_given(internal::file_key)) continue;
-    Waveform rows = read_table((impl.directory / in.text(internal::file_key)).string(), drive);
-    same.set_waveform(drive, drive == internal::dispersion_drive ? internal::raised(std::move(rows), -1) : std::move(rows));
+    internal::FileRows read = internal::read_file_rows(in, drive, SectionReader(impl, "driver", drive));
+    const bool is_factor = drive == internal::dispersion_drive;
+    Waveform rows = std::move(read.table);
+    same.set_waveform(drive, is_factor ? internal::raised(std::move(rows), -1) : std::move(rows));
+    if (read.before && !in.is_given(internal::before_key))
+      same.assign(internal::join_path(internal::join_path("waveform", drive), internal::before_key),
+                  Quantity{.value = *read.before, .dimension = is_factor ? dimension::none : dimension::voltage});
   }
   same.forget_places();
   return same;

@@ -56,6 +56,7 @@ struct Key {
   std::vector<Dimension> dimensions = {};
   Range range = {};        ///< see range_of()
   std::size_t count = 0;   ///< quantities: how many; 0: any number
+  bool any_word = false;   ///< integer: any text may stand instead of a number
   bool is_nested = false;  ///< quantities: may be a list of such lists, read one after the other
   std::vector<std::string_view> choices = {};
   std::vector<std::string_view> words = {};  ///< integer, quantity, an element of quantities: what may stand instead of a number

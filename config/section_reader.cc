@@ -23,6 +23,7 @@ std::string wanted(const Key& key) {
     case KeyType::flag:
       return "true or false";
     case KeyType::integer:
+      if (key.any_word) return "a name in quotes or a whole number";
       return std::accumulate(key.words.begin(), key.words.end(), std::string("a whole number"),
                              [](const std::string& all, std::string_view word) { return all + " or " + toml_string(word); });
     case KeyType::choice:
@@ -227,6 +228,7 @@ SectionReader::Value SectionReader::parse(const Key& key, const toml::node& node
         if (!key.range.contains(static_cast<double>(integer->get()))) throw InvalidInput(key.range.rule(""));
         return integer->get();
       }
+      if (text && key.any_word) return text->get();
       if (text && std::find(key.words.begin(), key.words.end(), text->get()) != key.words.end()) return text->get();
       break;
     case KeyType::quantity:

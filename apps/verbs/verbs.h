@@ -28,6 +28,7 @@ void add_slurm(Verb& verb);
 void add_new(Verb& verb);
 void add_export(Verb& verb);
 void add_report(Verb& verb);
+void add_read(Verb& verb);
 
 struct VerbRow {
   const char* name;
@@ -57,6 +58,7 @@ inline constexpr std::array all_verbs{
     VerbRow{"new", "print a commented scene to start from", add_new},
     VerbRow{"export", "print the waveforms of a result for a generator or a circuit simulator", add_export},
     VerbRow{"report", "make the report of a result.json again, or the page of an exploration", add_report},
+    VerbRow{"read", "what a file of an oscilloscope or another instrument holds", add_read},
 };
 
 }  // namespace softland::apps

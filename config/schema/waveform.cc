@@ -49,6 +49,39 @@ std::vector<Key> keys_of(const Parameter<Family>& parameter, const std::vector<D
   return {std::move(key)};
 }
 
+/// What a file of an instrument does not say.
+std::vector<Key> keys_beside_file() {
+  Key column{.name = file_keys::column,
+             .type = KeyType::integer,
+             .range = {.least = 1, .most = 1e6},
+             .any_word = true,
+             .about = "name or number of the channel; absent: the only one, or the one named after the drive"};
+  Key time_column = column;
+  time_column.name = file_keys::time_column;
+  time_column.about = "name or number of the column of times; absent: found by its heading";
+  Key interval =
+      number(file_keys::interval, {dimension::time}, positive, "between rows that are even, whatever the times of the file are")
+          .such_as("8 ns");
+  interval.words = {file_keys::uneven};
+  Key shift =
+      number(file_keys::shift, {dimension::time}, any, "added to the times of the file; first: the first row is at t = 0");
+  shift.words = {file_keys::first};
+  std::vector<Key> keys;
+  keys.push_back(std::move(column));
+  keys.push_back(std::move(time_column));
+  keys.push_back(std::move(interval));
+  keys.push_back({.name = file_keys::skip,
+                  .type = KeyType::integer,
+                  .range = {.least = 0, .most = 1e9},
+                  .about = "lines at the beginning that are left out; default 0"});
+  keys.push_back(words(file_keys::unit, "of the channel, where the file names none or a wrong one; absent: V"));
+  keys.push_back(words(file_keys::time_unit, "of the times, likewise; absent: s"));
+  keys.push_back(one_of(file_keys::decimal, {".", ","}, "decimal sign; absent: found"));
+  keys.push_back(number(file_keys::scale, {dimension::none}, any, "volts per volt of the file, as of a probe; default 1"));
+  keys.push_back(std::move(shift));
+  return keys;
+}
+
 /// Waveforms of the drive `entry`, or of all without a section of their own, with levels of these dimensions.
 Section section_of(std::string_view entry, const std::vector<Dimension>& level, std::string_view about) {
   std::vector<std::string_view> names;
@@ -63,13 +96,19 @@ Section section_of(std::string_view entry, const std::vector<Dimension>& level, 
       for (Key& key : keys_of(parameter, level, !entry.empty())) own.push_back(std::move(key));
     }
     if constexpr (requires { FamilyOf<Family>::from_file; }) {
-      Key file = words(file_key, "CSV with time_s and a column named after the drive, relative to the scene").needed();
+      Key file =
+          words(file_key, "of an instrument or of softland (time_s and a column named after the drive), relative to the scene")
+              .needed();
       file.only_for = {FamilyOf<Family>::name};
       for (Key& key : own) {
         file.instead_of.push_back(key.name);
         key.instead_of.push_back(file_key);
       }
       own.insert(own.begin(), std::move(file));
+      for (Key& key : keys_beside_file()) {
+        key.only_for = {FamilyOf<Family>::name};
+        own.push_back(std::move(key));
+      }
     }
     for (Key& key : own) keys.push_back(std::move(key));
   });

@@ -58,7 +58,7 @@ TEST_F(BadInput, Verbs) {
       "calibrate, tune, device, "
       "table, "
       "status, merge, slurm, new, "
-      "export or report (see softland --help)";
+      "export, report or read (see softland --help)";
   expect_refused({
       {{}, missing},
       {{"frobnicate"}, "there is no verb 'frobnicate' (see softland --help)"},

@@ -520,6 +520,44 @@ TEST(Export, RefusesAForceFactorBecauseItIsNoVoltage) {
   EXPECT_THAT(bad.err, HasSubstr("there is no waveform to export"));
 }
 
+TEST(Read, ShowsWhatAFileHolds) {
+  const Workplace here;
+  write(here.path() / "scope.csv", "x-axis,1\nsecond,Volt\n-1E-06,+0.5\n0E-06,+1.5\n1E-06,+2.5\n");
+  const Outcome text = here.run({"read", "scope.csv"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("Keysight CSV: 1 [V], 3 samples, every 1 us, from -1 us to 1 us"));
+  const json data = json::parse(here.run({"read", "scope.csv", "--json", "-"}).out);
+  EXPECT_EQ(data["time"], (json{{"first_s", -1e-6}, {"last_s", 1e-6}, {"interval_s", 1e-6}, {"repeated", 0}}));
+  EXPECT_EQ(
+      data["channels"],
+      json::array(
+          {{{"name", "1"}, {"unit", "V"}, {"samples", 3}, {"first", 0.5}, {"last", 2.5}, {"minimum", 0.5}, {"maximum", 2.5}}}));
+  EXPECT_EQ(data["left_out"], json::array());
+  const Outcome plot = here.run({"read", "scope.csv", "--plot", "--json", "scope.json"});
+  EXPECT_THAT(plot.out, HasSubstr("<svg"));
+  EXPECT_EQ(json::parse(read(here.path() / "scope.json")), data);
+}
+
+TEST(Read, NamesWhatItCannotRead) {
+  const Workplace here;
+  write(here.path() / "fft.csv", "Frequency (Hz),CH1 (dBV)\n0,1\n1,2\n");
+  write(here.path() / "comma.csv", "0,5\n1,7\n");
+  const auto said = [&](const std::vector<std::string>& words) {
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.status, 2) << o.out;
+    return o.err;
+  };
+  EXPECT_THAT(said({"read", "fft.csv"}), HasSubstr("fft.csv: a spectrum"));
+  EXPECT_THAT(said({"read", "comma.csv"}), HasSubstr("decimal = "));
+  EXPECT_EQ(here.run({"read", "comma.csv", "--set", "decimal=,"}).status, 0);
+  EXPECT_THAT(here.run({"read", "comma.csv", "--set", "decimal=,", "--set", "interval=2 us"}).out,
+              HasSubstr("every 2 us, from 0 s to 2 us"));
+  EXPECT_THAT(said({"read", "comma.csv", "--set", "scale=2"}), HasSubstr("what a scene makes of a file"));
+  EXPECT_THAT(said({"read", "comma.csv", "--set", "decimals=,"}), HasSubstr("did you mean 'decimal'?"));
+  EXPECT_THAT(said({"read", "comma.csv", "--plot", "--json", "-"}), HasSubstr("standard output"));
+  EXPECT_THAT(said({"read", "absent.csv"}), HasSubstr("absent.csv: cannot be read"));
+}
+
 TEST(Export, PrintsTheWaveformsOfAScene) {
   const Workplace here;
   const Outcome csv = here.run({"export", "gold.toml"}), pwl = here.run({"export", "gold.toml", "--format", "spice-pwl"});

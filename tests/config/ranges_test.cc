@@ -171,6 +171,7 @@ TEST(Ranges, WhatIsNoSuchNumberIsRefusedWithWhatIsExpected) {
   with_every_number([](const Key& key, const Dimension&, const Example& example) {
     for (const std::string& value :
          std::vector<std::string>{"true", "{}", "2020-01-01", "'nan m'", "'inf'", "''", "'1 furlong'", "[[]]", "'1 m^9 A^9'"}) {
+      if (key.any_word && value.starts_with('\'')) continue;                                           // a name
       if (value == "'1 m^9 A^9'" && key.dimensions.empty() && key.type != KeyType::integer) continue;  // decided by another key
       const std::string answer = example.answer(value);
       EXPECT_THAT(answer, HasSubstr("x.toml:")) << value;

@@ -290,6 +290,18 @@ def choice_cases(program, scenes):
         Step(["slurm", "plan.toml", "--tasks", "3"]), Step(["slurm", "whole.sqlite", "--tasks", "2", "--cpus", "4", "--out", "x.sqlite"])],
         inputs={"plan.toml": plan})
 
+    scope = "x-axis,1,2\nsecond,Volt,Volt\n" + "".join(f"{(i - 5) * 1e-6:+.3E},{0 if i < 5 else 20:+.2E},{i * 0.01:+.2E}\n" for i in range(60))
+    driven = ["file=scope.csv|column=2", "file=scope.csv", "file=scope.csv|column=2|shift=first|scale=1.1", "file=samples.csv|interval=1 us", "file=drive.cir"]
+    yield Case("files", [
+        Step(["read", "scope.csv"]), Step(["read", "scope.csv", "--plot"]), Step(["read", "scope.csv", "--json", "read.json"]),
+        Step(["read", "samples.csv"]), Step(["read", "samples.csv", "--set", "interval=1 us", "--json", "-"]), Step(["read", "drive.cir"]),
+        Step(["read", "two.csv"]), Step(["read", "two.csv", "--set", "decimal=,"]), Step(["read", "spectrum.csv"]),
+        *[Step(["simulate", f"by-file-{i}.toml", "--quiet", "--json", f"{i}.json", *fast, *short]) for i in range(len(driven))]],
+        inputs={"scope.csv": scope, "samples.csv": "0.5\n1.5\n2.5\n", "two.csv": "0,5\n1,7\n", "drive.cir": "* drive\n0 0\n+1u 20 ; up\n+40u 20\n",
+                "spectrum.csv": "Frequency (Hz),CH1 (dBV)\n0,1\n1,2\n",
+                **{f"by-file-{i}.toml": without(text, "waveform.main") + "\n" + section_text("waveform.main", "family", "table", keys)
+                   for i, keys in enumerate(driven)}})
+
     for kind in program.choices("new", "?"):
         yield Case(f"new.{kind}", [Step(["new", kind])])
     yield Case("new", [Step(["new"])])

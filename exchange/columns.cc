@@ -1,0 +1,320 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/printable.h"
+#include "base/trimmed.h"
+#include "exchange/block.h"
+#include "exchange/cells.h"
+#include "exchange/measure.h"
+#include "exchange/parsers.h"
+
+namespace softland::internal {
+namespace {
+
+constexpr std::string_view own_format = "softland CSV";
+
+/// Makes a recording of columns of numbers and what is known of them.
+class RecordingMaker {
+ public:
+  RecordingMaker(Block block, const Refusals& refusals, const ReadKeys& keys)
+      : block_(std::move(block)), preamble_(block_.preamble), refusals_(refusals), keys_(keys) {}
+  Recording make();
+
+ private:
+  [[noreturn]] void fail(std::size_t line, std::size_t column, const std::string& rule) const {
+    refusals_.fail(line, column, rule);
+  }
+  [[noreturn]] void fail(const std::string& rule) const { refusals_.fail(rule); }
+
+  [[nodiscard]] std::optional<Unit> unit_of_column(std::size_t k) const;
+  void drop_rows_without_numbers();
+  [[nodiscard]] std::optional<std::size_t> time_place() const;
+  [[nodiscard]] std::optional<std::size_t> named_place(const std::string& name, int number, std::string_view key) const;
+  [[nodiscard]] std::optional<Unit> time_unit(std::size_t place) const;
+  [[nodiscard]] bool is_sample_count(std::size_t place, const std::optional<Unit>& unit) const;
+  void set_times(std::optional<std::size_t> place);
+  void set_even_times();
+  [[nodiscard]] bool is_second_time(std::size_t k, std::size_t time) const;
+  void add_channel(std::size_t k, bool is_only);
+  void scale_codes();
+  void refuse_spectrum() const;
+  void refuse_logic_states() const;
+
+  Block block_;
+  const Preamble& preamble_;
+  const Refusals& refusals_;
+  const ReadKeys& keys_;
+  Recording made_;
+};
+
+// What the row of units says, or else the heading.
+std::optional<Unit> RecordingMaker::unit_of_column(std::size_t k) const {
+  std::optional<Unit> unit = unit_of(block_.units[k]);
+  return unit ? unit : heading_of(block_.names[k]).unit;
+}
+
+void RecordingMaker::drop_rows_without_numbers() {
+  std::size_t count = block_.lines.size();
+  const std::optional<std::size_t> time = time_place();
+  const auto is_empty = [&](std::size_t row) {
+    for (std::size_t k = 0; k < block_.values.size(); ++k) {
+      if (k != time && std::isfinite(block_.values[k][row])) return false;
+    }
+    return block_.values.size() > 1;
+  };
+  std::size_t dropped = 0;
+  while (count > 0 && is_empty(count - 1)) {
+    --count;
+    ++dropped;
+    for (std::size_t k = 0; k < block_.values.size(); ++k) {
+      if (!std::isfinite(block_.values[k].back())) --block_.missing[k].count;
+      block_.values[k].pop_back();
+    }
+    block_.lines.pop_back();
+  }
+  if (dropped > 0) made_.left_out.push_back(fmt::format("{} rows at the end without numbers", dropped));
+}
+
+std::optional<std::size_t> RecordingMaker::named_place(const std::string& name, int number, std::string_view key) const {
+  if (name.empty() && number == 0) return std::nullopt;
+  for (std::size_t k = 0; k < block_.columns.size(); ++k) {
+    if (number != 0 ? block_.columns[k] == number : block_.names[k] == name || heading_of(block_.names[k]).name == name) return k;
+  }
+  fail(number != 0 ? fmt::format("{} = {}: there is no column of numbers in that place", key, number)
+                   : fmt::format("{} = \"{}\": no column of numbers has this name", key, printable_line(name)));
+}
+
+std::optional<std::size_t> RecordingMaker::time_place() const {
+  if (const auto named = named_place(keys_.time_column, keys_.time_column_number, "time_column")) return named;
+  const std::size_t count = block_.columns.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::optional<Unit> unit = unit_of_column(k);
+    if (unit && (unit->measure == Measure::time || unit->measure == Measure::samples)) return k;
+  }
+  constexpr std::array usual{"time", "t",     "x",     "x-axis", "xpos",  "times",  "timestamp",
+                             "zeit", "temps", "tempo", "tiempo", "index", "sample", "n"};
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string name = lower_case(heading_of(block_.names[k]).name);
+    if (std::find(usual.begin(), usual.end(), name) != usual.end()) return k;
+  }
+  if (block_.has_headings || count < 2) return std::nullopt;
+  // Without names: the first column where it never falls, and does not stand still.
+  const std::vector<double>& first = block_.values.front();
+  const bool rises = std::is_sorted(first.begin(), first.end()) && first.front() < first.back();
+  return rises ? std::optional<std::size_t>(0) : std::nullopt;
+}
+
+// Whether a column is a second one of times, which must be the same, unless the user says which one is meant.
+bool RecordingMaker::is_second_time(std::size_t k, std::size_t time) const {
+  const bool is_said = !keys_.time_column.empty() || keys_.time_column_number > 0;
+  if (is_said || !block_.has_headings || block_.names[time].empty() || block_.names[k] != block_.names[time]) return false;
+  if (block_.values[k] != block_.values[time])
+    fail(fmt::format("columns {} and {} are both times, and differ; time_column says which one belongs to the channel",
+                     block_.columns[time], block_.columns[k]));
+  return true;
+}
+
+void RecordingMaker::set_even_times() {
+  if (!made_.interval) return;
+  const std::size_t count = block_.lines.size();
+  double start = 0;
+  if (preamble_.start) {
+    start = *preamble_.start;
+  } else if (preamble_.trigger_sample) {
+    start = -*preamble_.trigger_sample * *made_.interval;
+  } else if (preamble_.centre) {
+    start = *preamble_.centre - static_cast<double>(count / 2) * *made_.interval;
+  }
+  // Where the first sample is a whole number of intervals from t = 0, one sample is at 0 exactly.
+  constexpr double whole = 1e-6;
+  const double steps = start / *made_.interval, rounded = std::round(steps);
+  made_.times.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto k = static_cast<double>(i);
+    made_.times[i] = std::abs(steps - rounded) < whole ? (rounded + k) * *made_.interval : start + k * *made_.interval;
+  }
+}
+
+// The unit of the times that the keys or the file say.
+std::optional<Unit> RecordingMaker::time_unit(std::size_t place) const {
+  if (keys_.time_unit.empty()) return unit_of_column(place);
+  const std::optional<Unit> unit = unit_of(keys_.time_unit);
+  if (!unit || unit->measure != Measure::time)
+    fail(fmt::format("time_unit = \"{}\" is no unit of time; there are s, ms, us, ns and ps", printable_line(keys_.time_unit)));
+  return unit;
+}
+
+// Whether the column of times numbers the samples, whose interval the preamble says.
+bool RecordingMaker::is_sample_count(std::size_t place, const std::optional<Unit>& unit) const {
+  if (unit) return unit->measure == Measure::samples;
+  const std::string name = lower_case(heading_of(block_.names[place]).name);
+  const std::vector<double>& raw = block_.values[place];
+  return !name.starts_with('t') && made_.interval &&
+         std::all_of(raw.begin(), raw.end(), [](double value) { return value == std::floor(value); });
+}
+
+void RecordingMaker::set_times(std::optional<std::size_t> place) {
+  made_.interval = preamble_.interval;
+  const std::size_t count = block_.lines.size();
+  // The samples of a generator are one period.
+  const bool is_period = (!place || block_.names[*place] == "xpos") && preamble_.samples == static_cast<double>(count);
+  if (is_period && !made_.interval && preamble_.period.value_or(0) > 0)
+    made_.interval = *preamble_.period / static_cast<double>(count);
+  if (is_period && !made_.interval && preamble_.frequency.value_or(0) > 0)
+    made_.interval = 1 / (*preamble_.frequency * static_cast<double>(count));
+  if (!place) return set_even_times();
+  const std::vector<double>& raw = block_.values[*place];
+  const Missing& missing = block_.missing[*place];
+  if (missing.count > 0)
+    fail(missing.line, static_cast<std::size_t>(block_.columns[*place]), "the time is missing; it must be a finite number");
+  std::optional<Unit> unit = time_unit(*place);
+  if (is_sample_count(*place, unit)) {
+    for (std::size_t i = 1; i < count; ++i) {
+      if (raw[i] != raw[i - 1] + 1)
+        fail(block_.lines[i], static_cast<std::size_t>(block_.columns[*place]),
+             fmt::format("the number of the sample is {}, and that above {}; they must follow each other", raw[i], raw[i - 1]));
+    }
+    return set_even_times();
+  }
+  if (!unit && preamble_.horizontal_unit && preamble_.horizontal_unit->symbol == "s") unit = preamble_.horizontal_unit;
+  made_.times_have_unit = unit.has_value();
+  if (!unit) unit = Unit{.measure = Measure::time, .symbol = "s"};
+  if (unit->measure != Measure::time)
+    fail(fmt::format("column {} is in {} and no time; time_column names another, or time_unit says its unit",
+                     block_.columns[*place], unit->symbol));
+  made_.has_times = true;
+  made_.times.resize(count);
+  for (std::size_t i = 0; i < count; ++i) made_.times[i] = unit->in_si(raw[i]);
+  const double largest = std::max(std::abs(made_.times.front()), std::abs(made_.times.back()));
+  if (largest > 0) made_.last_digit = std::pow(10, std::floor(std::log10(largest)) - block_.digits[*place] + 1);
+}
+
+// Codes of a converter that stand for volts.
+void RecordingMaker::scale_codes() {
+  constexpr double largest_code = 32767, codes_per_division = 25;
+  std::size_t whole = 0, fractions = 0;
+  for (const Channel& c : made_.channels) {
+    for (const double v : c.values) ++(v == std::floor(v) ? whole : fractions);
+  }
+  const bool are_codes = made_.format == "GW Instek CSV" && !made_.has_times && whole > fractions;
+  if (are_codes && fractions > 0) fail("codes and fractions: one of both is no sample");
+  if (are_codes && (made_.channels.size() > 1 || !preamble_.vertical_scale))
+    fail("codes whose volts per division cannot be told; save one channel per file");
+  if (made_.channels.size() != 1) return;
+  Channel& channel = made_.channels.front();
+  double factor = 1, offset = 0;
+  if (preamble_.high && preamble_.low && made_.format == "Keysight arb") {
+    const bool is_short = preamble_.text.find("short") != std::string::npos;
+    factor = (*preamble_.high - *preamble_.low) / 2 / (is_short ? largest_code : 1);
+    offset = (*preamble_.high + *preamble_.low) / 2;
+    channel.name = channel.heading = "V";
+    channel.unit = "V";
+    channel.is_voltage = true;
+  } else if (are_codes) {
+    factor = *preamble_.vertical_scale / codes_per_division;
+    made_.notes.push_back(
+        fmt::format("numbers are codes, {} of them a division of {} V", codes_per_division, *preamble_.vertical_scale));
+  } else {
+    return;
+  }
+  for (double& value : channel.values) value = offset + value * factor;
+}
+
+void RecordingMaker::refuse_spectrum() const {
+  if (preamble_.horizontal_unit && preamble_.horizontal_unit->measure == Measure::frequency)
+    fail(fmt::format("a spectrum over {}; a record over time is due", preamble_.horizontal_unit->symbol));
+  for (std::size_t k = 0; k < block_.columns.size(); ++k) {
+    const Heading heading = heading_of(block_.names[k]);
+    const std::optional<Unit> unit = unit_of_column(k);
+    const bool is_frequency = (unit && unit->measure == Measure::frequency) || lower_case(heading.name).starts_with("freq");
+    if (is_frequency && k == 0)
+      fail(fmt::format("a spectrum: column {} is a frequency; a record over time is due", block_.columns[k]));
+  }
+}
+
+// "d0", "dio 3", "channel 0"
+bool is_logic_name(std::string_view name) {
+  constexpr std::array words{"dio", "d", "bit", "logic", "bus", "channel", "probe"};
+  for (const std::string_view word : words) {
+    if (!name.starts_with(word)) continue;
+    const std::string_view rest = trimmed(name.substr(word.size()));
+    if (!rest.empty() && rest.find_first_not_of("0123456789") == std::string_view::npos) return true;
+  }
+  return false;
+}
+
+void RecordingMaker::refuse_logic_states() const {
+  const bool is_logic =
+      !made_.channels.empty() && std::all_of(made_.channels.begin(), made_.channels.end(), [&](const Channel& c) {
+        const std::string name = lower_case(c.name);
+        const bool is_named_so = is_logic_name(name) || made_.format == "sigrok CSV" ||
+                                 preamble_.text.find("logic") != std::string::npos ||
+                                 preamble_.text.find("digital") != std::string::npos;
+        return is_named_so && c.unit.empty() &&
+               std::all_of(c.values.begin(), c.values.end(), [](double v) { return v == 0 || v == 1; });
+      });
+  if (is_logic) fail("a capture of logic states: every channel is 0 or 1; a record of volts over time is due");
+}
+
+void RecordingMaker::add_channel(std::size_t k, bool is_only) {
+  Channel channel;
+  channel.heading = block_.names[k];
+  channel.name = heading_of(channel.heading).name;
+  channel.column = block_.columns[k];
+  if (is_only && !preamble_.source.empty() && (channel.name.empty() || !made_.has_times)) channel.name = preamble_.source;
+  if (channel.name.empty()) channel.name = fmt::format("column {}", channel.column);
+  std::optional<Unit> unit = unit_of_column(k);
+  if (!unit) unit = preamble_.vertical_unit;
+  if (!unit && made_.format == own_format) unit = unit_of("V");
+  if (unit) {
+    channel.unit = unit->symbol;
+    channel.is_voltage = unit->measure == Measure::voltage;
+    channel.per_si = unit->per_si;
+  } else {
+    channel.unit = printable_line(trimmed(block_.units[k]));
+  }
+  channel.values = std::move(block_.values[k]);
+  channel.missing = block_.missing[k];
+  made_.channels.push_back(std::move(channel));
+}
+
+Recording RecordingMaker::make() {
+  drop_rows_without_numbers();
+  if (block_.lines.empty()) fail("no row has numbers");
+  made_.file = refusals_.file();
+  made_.left_out.insert(made_.left_out.begin(), block_.left_out.begin(), block_.left_out.end());
+  made_.notes = block_.notes;
+  made_.lines = block_.lines;
+  const bool is_own = std::find(block_.names.begin(), block_.names.end(), "time_s") != block_.names.end();
+  made_.format = is_own ? own_format : format_of(preamble_.text);
+  refuse_spectrum();
+  const std::optional<std::size_t> place = time_place();
+  set_times(place);
+  if (preamble_.samples && *preamble_.samples > static_cast<double>(block_.lines.size()))
+    made_.notes.push_back(fmt::format("the file speaks of {} samples and holds {}", *preamble_.samples, block_.lines.size()));
+  for (std::size_t k = 0; k < block_.columns.size(); ++k) {
+    if (k == place || (place && is_second_time(k, *place))) continue;
+    add_channel(k, block_.columns.size() == (place ? 2U : 1U));
+  }
+  if (made_.channels.empty()) fail("there is a column of times and none of values");
+  scale_codes();
+  refuse_logic_states();
+  return std::move(made_);
+}
+
+}  // namespace
+
+Recording read_columns(std::string_view text, const std::string& file, const ReadKeys& keys) {
+  const Refusals refusals(file);
+  std::optional<Block> lying = read_lying_rows(text, refusals, keys);
+  return RecordingMaker(lying ? std::move(*lying) : read_block(text, refusals, keys), refusals, keys).make();
+}
+
+}  // namespace softland::internal

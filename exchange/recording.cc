@@ -1,0 +1,136 @@
+#include "exchange/recording.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "base/engineering.h"
+#include "base/printable.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "exchange/decoding.h"
+#include "exchange/parsers.h"
+
+namespace softland {
+namespace {
+
+std::string names_of(const Recording& recording) {
+  std::string names;
+  for (const Channel& channel : recording.channels)
+    names += fmt::format("{}\"{}\" ({})", names.empty() ? "" : ", ", printable_line(channel.name), channel.column);
+  return names;
+}
+
+/// Times that a user says are even, from the first one of the file on.
+void take_even_times(Recording& made, double interval) {
+  const double first = made.times.empty() ? 0 : made.times.front();
+  made.interval = interval;
+  made.times.resize(made.rows());
+  for (std::size_t i = 0; i < made.times.size(); ++i) made.times[i] = first + static_cast<double>(i) * interval;
+}
+
+}  // namespace
+
+std::string Recording::place(std::size_t row) const { return row < lines.size() ? fmt::format("{}:{}", file, lines[row]) : file; }
+
+Recording read_recording(const std::string& file, const ReadKeys& keys) { return parse_recording(read_file(file), file, keys); }
+
+Recording parse_recording(std::string_view content, const std::string& file, const ReadKeys& keys) {
+  require(!content.empty(), [&] { return file + ": the file is empty"; });
+  if (internal::is_uff(content)) {
+    Recording made = internal::read_uff(content, file);
+    if (keys.interval) take_even_times(made, *keys.interval);
+    return made;
+  }
+  std::string storage;
+  std::vector<std::string> left_out;
+  const std::string_view text = internal::decoded(content, storage, left_out);
+  const std::string kind = internal::refused_kind(text);
+  require(kind.empty(), [&] { return fmt::format("{}: {}; a record over time is due", file, kind); });
+  require(!internal::is_binary(text), [&] {
+    return file + ": binary data; what is read are exports as text, and data sets 58b of the Universal File Format";
+  });
+  Recording made =
+      internal::is_spice_pwl(text) ? internal::read_spice_pwl(text, file, keys) : internal::read_columns(text, file, keys);
+  made.left_out.insert(made.left_out.begin(), left_out.begin(), left_out.end());
+  if (keys.interval) take_even_times(made, *keys.interval);
+  return made;
+}
+
+const Channel& channel_of(const Recording& recording, const ReadKeys& keys, const std::string& usual) {
+  const auto named = [&](const std::string& name) -> const Channel* {
+    const Channel* found = nullptr;
+    for (const Channel& channel : recording.channels) {
+      if (channel.name != name && channel.heading != name) continue;
+      require(found == nullptr, [&] {
+        return fmt::format("{}: two channels are called \"{}\"; column = {} takes one by its place", recording.file,
+                           printable_line(name), channel.column);
+      });
+      found = &channel;
+    }
+    return found;
+  };
+  if (keys.column_number > 0) {
+    for (const Channel& channel : recording.channels) {
+      if (channel.column == keys.column_number) return channel;
+    }
+    throw InvalidInput(fmt::format("{}: column = {}: there is no channel in that place; there are {}", recording.file,
+                                   keys.column_number, names_of(recording)));
+  }
+  if (!keys.column.empty()) {
+    const Channel* const found = named(keys.column);
+    require(found != nullptr || recording.format == "SPICE PWL", [&] {
+      return fmt::format("{}: column = \"{}\": there is no such channel; there are {}", recording.file,
+                         printable_line(keys.column), names_of(recording));
+    });
+    if (found != nullptr) return *found;
+  }
+  if (recording.channels.size() == 1) return recording.channels.front();
+  const Channel* const found = named(usual);
+  require(found != nullptr, [&] {
+    return fmt::format("{}: there are {} channels, {}; column = \"{}\" takes one", recording.file, recording.channels.size(),
+                       names_of(recording), printable_line(recording.channels.front().name));
+  });
+  return *found;
+}
+
+TimeAxis time_axis(const Recording& recording) {
+  TimeAxis axis;
+  const std::vector<double>& t = recording.times;
+  if (t.empty()) return axis;
+  axis.first = t.front();
+  axis.last = t.back();
+  for (std::size_t i = 1; i < t.size(); ++i) {
+    axis.repeated += t[i] == t[i - 1];
+    if (t[i] < t[i - 1] && !axis.back) axis.back = i;
+  }
+  if (recording.interval) {
+    axis.interval = *recording.interval;
+  } else if (t.size() > 1) {
+    axis.interval = (axis.last - axis.first) / static_cast<double>(t.size() - 1);
+  }
+  return axis;
+}
+
+std::string summary(const Recording& recording) {
+  constexpr int digits = 6;
+  const TimeAxis axis = time_axis(recording);
+  std::vector<std::string> names;
+  for (const Channel& channel : recording.channels) {
+    names.push_back(printable_line(channel.name));
+    if (!channel.unit.empty()) names.back() += " [" + channel.unit + "]";
+  }
+  std::string text = fmt::format("{}: {}, {} samples", recording.format, fmt::join(names, ", "), recording.rows());
+  if (recording.times.empty()) {
+    text += ", no times";
+  } else {
+    text += fmt::format(", every {}, from {} to {}", engineering(axis.interval, "s", digits),
+                        engineering(axis.first, "s", digits), engineering(axis.last, "s", digits));
+  }
+  for (const std::string& note : recording.notes) text += "; " + note;
+  for (const std::string& what : recording.left_out) text += "; left out: " + what;
+  return text;
+}
+
+}  // namespace softland

@@ -1,0 +1,205 @@
+#include "exchange/trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/engineering.h"
+#include "base/printable.h"
+#include "base/require.h"
+#include "exchange/measure.h"
+
+namespace softland {
+namespace {
+
+using internal::Measure;
+using internal::Unit;
+using internal::unit_of;
+
+constexpr int digits = 6;
+// Single precision, in which some instruments compute their times, relative.
+constexpr double single_precision = 1.2e-7;
+
+std::string seconds(double time) { return engineering(time, "s", digits); }
+
+double volts_divisor(const Recording& recording, const Channel& channel, const ReadKeys& keys, bool any_unit, std::string& told) {
+  if (!keys.unit.empty()) {
+    const std::optional<Unit> unit = unit_of(keys.unit);
+    require(unit && (any_unit || unit->measure == Measure::voltage), [&] {
+      return fmt::format("{}: unit = \"{}\" is no unit of voltage; there are V, mV, uV and kV", recording.file,
+                         printable_line(keys.unit));
+    });
+    return unit->per_si;
+  }
+  if (channel.unit.empty()) {
+    if (!any_unit) told += "; the file names no unit: V taken";
+    return 1;
+  }
+  require(channel.is_voltage || any_unit, [&] {
+    return fmt::format("{}: \"{}\" is in {}, not in volts; unit = \"V\" takes its numbers for volts, and scale multiplies them",
+                       recording.file, printable_line(channel.name), channel.unit);
+  });
+  return channel.per_si;
+}
+
+std::vector<double> even(double first, double interval, std::size_t count) {
+  std::vector<double> times(count);
+  for (std::size_t i = 0; i < count; ++i) times[i] = first + static_cast<double>(i) * interval;
+  return times;
+}
+
+/// How far times are from even ones that begin with them [s].
+double deviation(const std::vector<double>& times, double interval) {
+  double most = 0;
+  for (std::size_t i = 0; i < times.size(); ++i)
+    most = std::max(most, std::abs(times[i] - times.front() - static_cast<double>(i) * interval));
+  return most;
+}
+
+/// What rounding leaves of times as they are written [s].
+double rounding(const Recording& recording) {
+  const std::vector<double>& t = recording.times;
+  return 1.01 * recording.last_digit + single_precision * std::max(std::abs(t.front()), std::abs(t.back()));
+}
+
+// The row at which a step is unlike most others though nine of ten are alike; nothing where steps are uneven anyway.
+std::optional<std::size_t> odd_step(const Recording& recording) {
+  constexpr double most_of = 0.9;
+  const std::vector<double>& t = recording.times;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < t.size(); ++i) steps.push_back(t[i] - t[i - 1]);
+  if (steps.size() < 10) return std::nullopt;
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double tolerance = 2 * rounding(recording);
+  std::size_t alike = 0, odd = 0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (std::abs(steps[i] - *middle) <= tolerance) {
+      ++alike;
+    } else if (odd == 0) {
+      odd = i + 1;
+    }
+  }
+  if (odd == 0 || static_cast<double>(alike) < most_of * static_cast<double>(steps.size())) return std::nullopt;
+  return odd;
+}
+
+void require_not_back(const Recording& recording, const TimeAxis& axis) {
+  if (!axis.back) return;
+  const std::size_t row = *axis.back;
+  throw InvalidInput(
+      fmt::format("{}: the time goes back from {} to {}; interval = \"...\" takes rows as even, and skip leaves out lines, such "
+                  "as a first segment",
+                  recording.place(row), seconds(recording.times[row - 1]), seconds(recording.times[row])));
+}
+
+void require_no_repeats(const Recording& recording, const TimeAxis& axis) {
+  if (axis.repeated == 0) return;
+  const std::vector<double>& t = recording.times;
+  std::size_t row = 1;
+  while (t[row] != t[row - 1]) ++row;
+  throw InvalidInput(
+      fmt::format("{}: the time {} stands twice, and {} rows have the time of the row above; interval = \"...\" gives the time "
+                  "between rows that are even, interval = \"uneven\" makes rows of one time a jump",
+                  recording.place(row), seconds(t[row]), axis.repeated));
+}
+
+// Times of the rows, where the file has some, as the keys and the file say.
+std::vector<double> resolved_times(const Recording& recording, const ReadKeys& keys, std::string& told) {
+  const std::size_t count = recording.rows();
+  require(!recording.times.empty(), [&] {
+    return fmt::format(
+        "{}: the file has no times and says no interval; interval = \"...\" gives the time between rows, or time_column "
+        "the column of times",
+        recording.file);
+  });
+  if (keys.interval) return recording.times;  // even already
+  const TimeAxis axis = time_axis(recording);
+  if (keys.uneven || recording.is_breakpoints) {
+    require_not_back(recording, axis);
+    return recording.times;
+  }
+  if (!recording.has_times) return recording.times;
+  if (recording.interval) {
+    constexpr double printed = 1e-5;  // of an interval that is written with few digits, relative
+    const double off = deviation(recording.times, *recording.interval), duration = std::abs(axis.last - axis.first);
+    if (!(off <= rounding(recording) + printed * duration)) {
+      throw InvalidInput(
+          fmt::format("{}: the file says that rows are {} apart, and its times drift from that by {}; interval = \"{}\" takes "
+                      "the first, interval = "
+                      "\"uneven\" the times",
+                      recording.file, seconds(*recording.interval), seconds(off), seconds(*recording.interval)));
+    }
+    constexpr double exact = 1e-3;  // of an interval: times that are nearer to even ones are taken as they are
+    if (axis.repeated == 0 && !axis.back && off <= exact * *recording.interval) return recording.times;
+    told += fmt::format("; times are rounded to {}: taken from the first and the interval of the file",
+                        seconds(recording.last_digit));
+    return even(recording.times.front(), *recording.interval, count);
+  }
+  require_not_back(recording, axis);
+  require_no_repeats(recording, axis);
+  if (count > 2 && deviation(recording.times, axis.interval) > rounding(recording)) {
+    if (const auto row = odd_step(recording)) {
+      throw InvalidInput(
+          fmt::format("{}: the time is {} after that of the row above, where most rows are {} apart; interval = \"uneven\" takes "
+                      "the times as they "
+                      "are, interval = \"...\" rows as even",
+                      recording.place(*row), seconds(recording.times[*row] - recording.times[*row - 1]), seconds(axis.interval)));
+    }
+  }
+  return recording.times;
+}
+
+// Rows at the ends without a number are left out; between others a blank is passed over, and what is out of range refused.
+void drop_missing(const Recording& recording, const Channel& channel, Trace& trace, std::string& told) {
+  if (channel.missing.count == 0) return;
+  std::size_t first = 0, last = trace.values.size();
+  while (first < last && !std::isfinite(trace.values[first])) ++first;
+  while (last > first && !std::isfinite(trace.values[last - 1])) --last;
+  require(first < last, [&] { return fmt::format("{}: \"{}\" has no numbers", recording.file, printable_line(channel.name)); });
+  Trace kept;
+  std::size_t between = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    if (std::isfinite(trace.values[i])) {
+      kept.times.push_back(trace.times[i]);
+      kept.values.push_back(trace.values[i]);
+      continue;
+    }
+    ++between;
+  }
+  require(between == 0 || !channel.missing.is_overrange, [&] {
+    return fmt::format("{}:{}: column {}: \"{}\" is not finite there (overrange, inf or nan), between finite numbers",
+                       recording.file, channel.missing.line, channel.column, printable_line(channel.name));
+  });
+  told += fmt::format("; left out: {} rows without a number, the first in line {}", channel.missing.count, channel.missing.line);
+  trace.times = std::move(kept.times);
+  trace.values = std::move(kept.values);
+}
+
+}  // namespace
+
+Trace trace_of(const Recording& recording, const ReadKeys& keys, const std::string& usual, bool any_unit) {
+  const Channel& channel = channel_of(recording, keys, usual);
+  std::string told;
+  const double divisor = volts_divisor(recording, channel, keys, any_unit, told);
+  if (recording.has_times && !recording.times_have_unit && keys.time_unit.empty())
+    told += "; the file names no unit of time: s taken";
+  Trace trace{.times = resolved_times(recording, keys, told), .values = channel.values, .told = {}};
+  for (double& value : trace.values) value /= divisor;
+  drop_missing(recording, channel, trace, told);
+  for (const std::string& note : recording.notes) told += "; " + note;
+  for (const std::string& what : recording.left_out) told += "; left out: " + what;
+  const double mean =
+      trace.times.size() > 1 ? (trace.times.back() - trace.times.front()) / static_cast<double>(trace.times.size() - 1) : 0;
+  trace.told =
+      fmt::format("{}, \"{}\": {} samples{}, from {} to {}{}", recording.format, printable_line(channel.name), trace.times.size(),
+                  recording.is_breakpoints ? std::string() : fmt::format(", every {}", seconds(mean)),
+                  seconds(trace.times.front()), seconds(trace.times.back()), told);
+  return trace;
+}
+
+}  // namespace softland
