@@ -175,6 +175,35 @@ TEST(Fit, SharesUnknownsOfDevicesAndKeepsTheRestOfEach) {
   ASSERT_TRUE(found.population.has_value());
   EXPECT_EQ(found.population->names, (std::vector<std::string>{"gaps", "structure.mass"}));
 }
+TEST(Fit, OfManyDevicesFindsTheSpreadThatTheyCameFrom) {
+  SKIP_WITHOUT_CERES();
+  constexpr std::size_t devices = 40;
+  constexpr double stiffness = 0.03, gaps = 0.015, correlation = 0.6;
+  Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
+  for (std::uint64_t k = 0; k < devices; ++k) {
+    const double a = random_normal(2, Stream::fit, 2 * k), b = random_normal(2, Stream::fit, 2 * k + 1);
+    const Truth truth{.stiffness = 1.02 + stiffness * a, .mass = 1, .gaps = 1 + gaps * (correlation * a + 0.8 * b)};
+    for (BenchMeasurement& m : bench_of(all_kinds, truth, 1, fmt::format("D{}", k), k).measurements)
+      bench.measurements.push_back(std::move(m));
+  }
+  const Fit found = fit(plate(), bench, {.unknowns = {"structure.stiffness", "gaps"}, .starts = 1, .suggest = false});
+  ASSERT_TRUE(found.population.has_value());
+  const FittedPopulation& all = *found.population;
+  ASSERT_EQ(all.names, (std::vector<std::string>{"gaps", "structure.stiffness"}));
+  // Of so many devices: what a sample of them leaves open, three standard errors.
+  const double open = 3 / std::sqrt(2.0 * devices);
+  EXPECT_NEAR(all.deviation[0] / gaps, 1, open);
+  EXPECT_NEAR(all.deviation[1] / stiffness, 1, open);
+  EXPECT_NEAR(all.mean[1], 1.02, 3 * stiffness / std::sqrt(1.0 * devices));
+  EXPECT_NEAR(all.correlation(0, 1), correlation, 3 * (1 - correlation * correlation) / std::sqrt(1.0 * devices));
+  // As a scene that robustness and tune read.
+  SceneFile file = plate();
+  set_spread(file, found);
+  const DeviceSpread written = read_scene(file).spread;
+  ASSERT_EQ(written.variables.size(), 3U);
+  EXPECT_NEAR(written.variables[0].distribution.standard_deviation(), all.deviation[0] / all.mean[0], 1e-5);
+  EXPECT_NEAR(written.correlation(0, 2), all.correlation(0, 1), 1e-4);
+}
 TEST(Fit, RefusesWhatNoDeviceHas) {
   const Bench bench = bench_of({all_kinds[0]}, {});
   EXPECT_NE(
