@@ -8,7 +8,7 @@
 
 #include "program.h"
 
-namespace softland {
+namespace softland::fit_verb_test {
 namespace {
 
 using nlohmann::json;
@@ -98,17 +98,20 @@ TEST_F(FitVerb, LeavesDataThatSayHowWellEachNumberIsKnown) {
 }
 TEST_F(FitVerb, RefusesWhatItCannotFit) {
   const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& words) {
-    const Outcome o = fit(more);
+    std::vector<std::string> all{"fit", "plate.toml", "--out", "out"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome o = here.run(all);
     EXPECT_EQ(o.status, 2) << words;
     EXPECT_THAT(o.err, HasSubstr(words));
   };
-  expect_refused({"--unknown", "structure.stifness"}, "did you mean 'stiffness'?");
-  expect_refused({"--loss", "l1"}, "must be huber, cauchy or none");
-  expect_refused({"--starts", "0"}, "--starts 0");
+  expect_refused({"--data", "bench.toml", "--unknown", "structure.stifness"}, "did you mean 'stiffness'?");
+  expect_refused({"--data", "bench.toml", "--loss", "l1"}, "must be huber, cauchy or none");
+  expect_refused({"--data", "bench.toml", "--starts", "0"}, "--starts 0");
+  expect_refused({}, "--data: name the file");
   expect_refused({"--data", "none.toml"}, "none.toml");
   write(here.path() / "bench.toml", "[[measurement]]\nquantity = \"pull_in\"\nvalue = \"96 V\"\n");
-  expect_refused({}, "bench.toml:1: [[measurement]]: missing key 'error'");
+  expect_refused({"--data", "bench.toml"}, "bench.toml:1: [[measurement]]: missing key 'error'");
 }
 
 }  // namespace
-}  // namespace softland
+}  // namespace softland::fit_verb_test
