@@ -43,10 +43,10 @@ class MeasurementReader {
     if (has("value")) {
       refuse_where(kind.is_over_time, "value", fmt::format("a {} is given by rows of time: name a file", kind.name));
       for (const Quantity& one : quantities("value", kind.dimension)) m.values.push_back(one.value);
-      if (has("level")) m.levels.assign(m.values.size(), quantities("level", dimension::voltage).front().value);
     } else {
       read_rows(kind, m);
     }
+    if (has("level")) m.levels.assign(m.values.size(), quantities("level", dimension::voltage).front().value);
     read_errors(kind, m);
     return m;
   }
@@ -159,7 +159,6 @@ class MeasurementReader {
                 [&] { return fmt::format("{}: times must rise from 0 s on", at()); });
         other.push_back(next);
       });
-      if (!beside && has("level")) m.levels.assign(m.values.size(), quantities("level", dimension::voltage).front().value);
     } catch (const InvalidInput& error) {
       refuse("file", error.what());
     }
