@@ -33,11 +33,22 @@ constexpr double unlikely = 3;  // errors
 
 std::string label_of(const FittedUnknown& u) { return u.device.empty() ? u.name : fmt::format("{} of {}", u.name, u.device); }
 
+// People weigh in grams.
+std::string in_unit(double value, const std::string& unit, int digits = 3) {
+  return unit == "kg" ? quantity(1e3 * value, "g", digits) : quantity(value, unit, digits);
+}
+
 // Factors as they change the scene's values.
 std::string fitted_value_text(const FittedUnknown& u, double value, double error) {
   if (!std::isfinite(value)) return "—";
   if (u.unit.empty()) return internal::relative_change(value - 1);
+  if (u.unit == "kg") return internal::quantity_within(1e3 * value, 1e3 * error, "g", 6);
   return internal::quantity_within(value, error, u.unit, 6);
+}
+
+std::string nominal_text(const FittedUnknown& u) {
+  if (u.unit.empty()) return "—";
+  return u.unit == "kg" ? internal::given_quantity(1e3 * u.nominal, "g") : internal::given_quantity(u.nominal, u.unit);
 }
 
 std::string fitted_error_text(const FittedUnknown& u) {
@@ -46,7 +57,7 @@ std::string fitted_error_text(const FittedUnknown& u) {
   if (u.unit.empty()) return plain_number(100 * u.standard_error, 2) + "\u00a0%";
   const std::string share =
       u.value != 0 ? fmt::format(" ({}\u00a0%)", plain_number(100 * std::abs(u.standard_error / u.value), 2)) : "";
-  return quantity(u.standard_error, u.unit, 2) + share;
+  return in_unit(u.standard_error, u.unit, 2) + share;
 }
 
 std::string fitted_interval_text(const FittedUnknown& u) {
@@ -56,7 +67,7 @@ std::string fitted_interval_text(const FittedUnknown& u) {
 std::string fitted_prior_text(const FittedUnknown& u) {
   if (!std::isfinite(u.prior_mean)) return "none";
   if (u.unit.empty()) return fmt::format("±\u00a0{}\u00a0%", plain_number(100 * u.prior_deviation, 2));
-  return fmt::format("±\u00a0{}", quantity(u.prior_deviation, u.unit, 2));
+  return fmt::format("±\u00a0{}", in_unit(u.prior_deviation, u.unit, 2));
 }
 
 std::string what_text(const FitResidual& r) {
@@ -67,38 +78,29 @@ std::string what_text(const FitResidual& r) {
   return text;
 }
 
-// "+1 % of a with −2.1 % of b": a direction, its largest part being one per cent.
+// "+1 % of a with −2.1 % of b"
 std::string direction_words(const Fit& fit, const WeakDirection& weak) {
-  std::vector<std::pair<double, std::string>> parts;
-  double largest = 0;
+  std::vector<std::string> words;
   for (const std::size_t i : weak.unknowns) {
     const FittedUnknown& u = fit.unknowns[i];
-    const double change = weak.direction[static_cast<Eigen::Index>(i)] * u.scale / (u.nominal != 0 ? std::abs(u.nominal) : 1);
-    largest = std::max(largest, std::abs(change));
-    parts.emplace_back(change, label_of(u));
-  }
-  std::vector<std::string> words;
-  for (const auto& [change, name] : parts) {
-    const bool is_relative = fit.unknowns[weak.unknowns[words.size()]].nominal != 0;
-    words.push_back(is_relative
-                        ? fmt::format("{}{}\u00a0% of {}", change < 0 ? "−" : "+", plain_number(100 * std::abs(change), 2), name)
-                        : fmt::format("{}{} of {}", change < 0 ? "−" : "+",
-                                      quantity(std::abs(change), fit.unknowns[weak.unknowns[words.size()]].unit, 2), name));
+    const double change = weak.direction[static_cast<Eigen::Index>(i)] * u.scale, size = std::abs(change);
+    const std::string shown =
+        u.nominal != 0 ? plain_number(100 * size / std::abs(u.nominal), 2) + "\u00a0%" : in_unit(size, u.unit, 2);
+    words.push_back(fmt::format("{}{} of {}", change < 0 ? "−" : "+", shown, u.name));
   }
   return fmt::format("{}", fmt::join(words, " with "));
 }
 
 std::string weak_words(const Fit& fit, const WeakDirection& weak) {
-  const std::string seen = plain_number(weak.seen, 2);
-  if (weak.unknowns.size() == 1) {
-    return fmt::format(
-        "The data say less of {} than was known before: a change by {} changes all data together by {} of their errors.",
-        label_of(fit.unknowns[weak.unknowns.front()]), direction_words(fit, weak).substr(3), seen);
-  }
+  const std::string seen = plain_number(weak.seen, 2), direction = direction_words(fit, weak);
+  const char* const data = fit.devices.size() > 1 ? "all data of a device" : "all data";
   std::vector<std::string> names;
-  for (const std::size_t i : weak.unknowns) names.push_back(label_of(fit.unknowns[i]));
-  return fmt::format("The data cannot tell {} apart: {} together change all data by {} of their errors.",
-                     fmt::join(names, " and "), direction_words(fit, weak), seen);
+  for (const std::size_t i : weak.unknowns) names.push_back(fit.unknowns[i].name);
+  if (names.size() == 1)
+    return fmt::format("The data say less of {} than was known before: {} changes {} together by {} of their errors.",
+                       names.front(), direction, data, seen);
+  return fmt::format("The data cannot tell {} apart: {} together change {} by {} of their errors.", fmt::join(names, " and "),
+                     direction, data, seen);
 }
 
 std::size_t freedom(const Fit& fit) {
@@ -177,7 +179,7 @@ json fit_json(const Fit& fit, const Provenance& provenance) {
   }
   for (const WeakDirection& one : fit.estimate.weak) {
     json keys = json::array();
-    for (const std::size_t i : one.unknowns) keys.push_back(label_of(fit.unknowns[i]));
+    for (const std::size_t i : one.unknowns) keys.push_back(fit.unknowns[i].name);
     weak.push_back(std::move(keys));
   }
   for (const NextMeasurement& one : fit.next)
@@ -239,8 +241,7 @@ std::string fit_text(const Fit& fit) {
     text += "\n" + left_aligned("Unknown", name) + right_aligned("scene", wide) + right_aligned("fitted", wide) +
             right_aligned("± 1 sigma", wide + 4) + right_aligned("95 %", interval) + right_aligned("prior", wide) + "\n";
     for (const FittedUnknown& u : fit.unknowns) {
-      text += left_aligned(label_of(u), name) +
-              right_aligned(u.unit.empty() ? "—" : internal::given_quantity(u.nominal, u.unit), wide) +
+      text += left_aligned(label_of(u), name) + right_aligned(nominal_text(u), wide) +
               right_aligned(fitted_value_text(u, u.value, u.standard_error), wide) +
               right_aligned(fitted_error_text(u), wide + 4) + right_aligned(fitted_interval_text(u), interval) +
               right_aligned(fitted_prior_text(u), wide) + "\n";
@@ -255,7 +256,7 @@ namespace {
 std::string values_section(const Fit& fit) {
   std::vector<internal::TableRow> rows;
   for (const FittedUnknown& u : fit.unknowns) {
-    rows.push_back({escaped(label_of(u)), escaped(u.unit.empty() ? "—" : internal::given_quantity(u.nominal, u.unit)),
+    rows.push_back({escaped(label_of(u)), escaped(nominal_text(u)),
                     internal::Cell(escaped(fitted_value_text(u, u.value, u.standard_error)), "own"),
                     escaped(fitted_error_text(u)), escaped(fitted_interval_text(u)), escaped(fitted_prior_text(u))});
   }

@@ -51,13 +51,19 @@ double Estimate::reduction(const std::vector<VectorXd>& slopes) const {
   return 1 - std::sqrt(std::max(0.0, after.trace()) / covariance.trace());
 }
 
+std::vector<WeakDirection> weak_directions(const MatrixXd& data) {
+  std::vector<WeakDirection> weak;
+  const SymmetricEigen eigen = symmetric_eigen(data);
+  for (Index k = 0; k < eigen.values.size() && eigen.values[k] < 1; ++k)
+    weak.push_back(weak_direction(eigen.vectors.col(k), eigen.values[k]));
+  return weak;
+}
+
 Estimate estimate(const MatrixXd& data, const MatrixXd& prior) {
   Estimate found{.data = data, .covariance = inverse(data + prior), .correlation = {}, .weak = {}};
   const VectorXd deviations = found.covariance.diagonal().cwiseSqrt();
   found.correlation = deviations.cwiseInverse().asDiagonal() * found.covariance * deviations.cwiseInverse().asDiagonal();
-  const SymmetricEigen eigen = symmetric_eigen(data);
-  for (Index k = 0; k < eigen.values.size() && eigen.values[k] < 1; ++k)
-    found.weak.push_back(weak_direction(eigen.vectors.col(k), eigen.values[k]));
+  found.weak = weak_directions(data);
   return found;
 }
 

@@ -33,6 +33,8 @@ struct Estimate {
   [[nodiscard]] double reduction(const std::vector<Eigen::VectorXd>& slopes) const;
 };
 
+/// Those of this information, by rising eigenvalue.
+[[nodiscard]] std::vector<WeakDirection> weak_directions(const Eigen::MatrixXd& data);
 [[nodiscard]] Estimate estimate(const Eigen::MatrixXd& data, const Eigen::MatrixXd& prior);
 
 /// Of a population of devices, each known by data of information H_k about z_k near the estimate m_k: mean and covariance of the

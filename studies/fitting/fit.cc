@@ -381,6 +381,7 @@ class EndOfFit {
     residuals_ = residuals;
     add_residuals(values);
     fit_.estimate = estimate(information(slopes_, residuals_, setup_.loss), setup_.prior);
+    if (setup_.devices.size() > 1) fit_.estimate.weak = weak_of_a_device();
     add_unknowns();
   }
 
@@ -410,6 +411,26 @@ class EndOfFit {
       if (!instrument.times.empty()) one.time = instrument.times[static_cast<std::size_t>(datum.row)];
       fit_.residuals.push_back(one);
     }
+  }
+
+  // Of the mean of the devices: what is weak on one is weak on all, each in a mixture of its own.
+  [[nodiscard]] std::vector<WeakDirection> weak_of_a_device() const {
+    const auto n = static_cast<Index>(setup_.parameters.size());
+    const std::vector<std::size_t>& first = setup_.of_device.front();
+    MatrixXd together = MatrixXd::Zero(n, static_cast<Index>(first.size()));
+    for (const std::vector<std::size_t>& own : setup_.of_device) {
+      for (std::size_t v = 0; v < own.size(); ++v) together(static_cast<Index>(own[v]), static_cast<Index>(v)) = 1;
+    }
+    std::vector<WeakDirection> all =
+        weak_directions(together.transpose() * fit_.estimate.data * together / static_cast<double>(setup_.devices.size()));
+    for (WeakDirection& weak : all) {
+      const VectorXd by_variable = weak.direction;
+      weak.direction = VectorXd::Zero(n);
+      for (std::size_t v = 0; v < first.size(); ++v)
+        weak.direction[static_cast<Index>(first[v])] = by_variable[static_cast<Index>(v)];
+      for (std::size_t& unknown : weak.unknowns) unknown = first[unknown];
+    }
+    return all;
   }
 
   void add_unknowns() {

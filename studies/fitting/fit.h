@@ -81,7 +81,7 @@ struct Fit {
   bool spread_assumed = false;
   std::vector<std::string> devices;
   std::vector<FittedUnknown> unknowns;
-  Estimate estimate;
+  Estimate estimate;  ///< of several devices its weak directions are those of the mean device, by the unknowns of the first
   std::vector<FitResidual> residuals;
   std::vector<NextMeasurement> next;  ///< the best first
   std::optional<FittedPopulation> population;

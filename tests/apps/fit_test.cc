@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "program.h"
@@ -95,6 +97,23 @@ TEST_F(FitVerb, LeavesDataThatSayHowWellEachNumberIsKnown) {
   const std::string page = read(here.path() / "out/fit.html");
   EXPECT_THAT(page, HasSubstr("What to measure next"));
   EXPECT_THAT(page, testing::Not(HasSubstr(">nan<")));
+}
+TEST_F(FitVerb, OfSeveralDevicesLeavesASpreadThatOtherVerbsRead) {
+  std::string wafer;
+  for (const auto& [device, frequency] : {std::pair{"A", "21.2 kHz"}, std::pair{"B", "21.0 kHz"}, std::pair{"C", "21.4 kHz"}})
+    wafer += std::string("[[measurement]]\nquantity = \"frequency\"\nerror = \"0.1 %\"\nvalue = \"") + frequency +
+             "\"\ndevice = \"" + device + "\"\n";
+  write(here.path() / "bench.toml", wafer);
+  const Outcome o = fit({});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("structure.stiffness of B"));
+  // One sentence for what is alike on all of them, broken into lines.
+  EXPECT_THAT(std::regex_replace(o.out, std::regex("\n"), " "), HasSubstr("structure.mass and structure.stiffness apart"));
+  const std::string fitted = read(here.path() / "out/fitted.toml");
+  EXPECT_THAT(fitted, HasSubstr("correlation = [[\"structure.mass\", \"structure.stiffness\", "));
+  EXPECT_THAT(fitted, HasSubstr("# of four springs, wafer 3"));
+  EXPECT_EQ(here.run({"robustness", "out/fitted.toml", "--samples", "10", "--quiet"}).status, 0);
+  EXPECT_EQ(json::parse(read(here.path() / "out/fit.json"))["population"]["variables"].size(), 2U);
 }
 TEST_F(FitVerb, RefusesWhatItCannotFit) {
   const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& words) {
