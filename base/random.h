@@ -37,6 +37,7 @@ enum class Stream : std::uint64_t {
   practice_device = 21,  ///< the values of a device to practise on
   practice_gain = 22,    ///< the gain of its sources, and its scatter
   practice_edges = 23,   ///< errors of the times at which its contact is seen to close and open
+  fit = 24,              ///< where the searches of a fit begin
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

@@ -2,7 +2,7 @@
 # which find each other from include/softland; a CMake package and a pkg-config file. Everything is found relative to its own place.
 include(CMakePackageConfigHelpers)
 
-set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies tuning reports)
+set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies tuning fitting reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
 install(TARGETS softland EXPORT softland)
@@ -29,7 +29,7 @@ endforeach()
 foreach(name ${libraries})
   set_target_properties(softland_${name} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS softland_${name} EXPORT softland INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
-  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${name}) # studies/tuning comes with studies
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${name}) # studies/tuning and studies/fitting come with studies
     install(DIRECTORY ${name} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland
             FILES_MATCHING PATTERN "*.h" PATTERN page EXCLUDE PATTERN uplot EXCLUDE)
   endif()

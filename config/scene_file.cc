@@ -66,22 +66,6 @@ std::size_t find_deep_dotted_key(std::string_view text) {
   return std::string_view::npos;
 }
 
-toml::table parse_toml(std::string_view text, const std::string& name) {
-  if (const auto at = find_deep_dotted_key(text); at != std::string_view::npos) {
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    throw InvalidInput(fmt::format("{}:{}: a key has more than {} parts", name, line, deepest_path));
-  }
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    const auto& at = error.source().begin;
-    // The usual slip of a newcomer, which the parser reports in its own terms only: length = 2 um.
-    const bool may_miss_quotes = error.description().find("expected a comment or whitespace") != std::string_view::npos;
-    throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, shortened(error.description(), 200),
-                                   may_miss_quotes ? " (a quantity needs quotes: \"2 um\")" : ""));
-  }
-}
-
 std::string float_text(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -159,6 +143,22 @@ nlohmann::json to_json(const toml::node& node) {
 }
 
 }  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& name) {
+  if (const auto at = find_deep_dotted_key(text); at != std::string_view::npos) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    throw InvalidInput(fmt::format("{}:{}: a key has more than {} parts", name, line, deepest_path));
+  }
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const auto& at = error.source().begin;
+    // The usual slip of a newcomer, which the parser reports in its own terms only: length = 2 um.
+    const bool may_miss_quotes = error.description().find("expected a comment or whitespace") != std::string_view::npos;
+    throw InvalidInput(fmt::format("{}:{}:{}: not TOML: {}{}", name, at.line, at.column, shortened(error.description(), 200),
+                                   may_miss_quotes ? " (a quantity needs quotes: \"2 um\")" : ""));
+  }
+}
 
 bool is_bare_key(std::string_view key) {
   constexpr std::string_view extra = "_-";

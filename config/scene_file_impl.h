@@ -27,6 +27,8 @@ namespace softland::internal {
 [[nodiscard]] bool is_bare_key(std::string_view key);
 /// A basic TOML string with its quotes.
 [[nodiscard]] std::string toml_string(std::string_view text);
+/// The text as TOML; `name` stands for it in messages. Throws InvalidInput.
+[[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& name);
 /// A value as TOML on one line.
 [[nodiscard]] std::string inline_text(const toml::node& node);
 /// A whole scene as TOML, in the order of the schema.

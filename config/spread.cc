@@ -20,6 +20,24 @@
 
 namespace softland {
 
+void DeviceSpread::leave_out(std::size_t variable) {
+  std::vector<Eigen::Index> rest;
+  for (Eigen::Index i = 0; i < correlation.rows(); ++i) {
+    if (i != static_cast<Eigen::Index>(variable)) rest.push_back(i);
+  }
+  variables.erase(variables.begin() + static_cast<std::ptrdiff_t>(variable));
+  correlate(Eigen::MatrixXd(correlation(rest, rest)));
+}
+
+void DeviceSpread::correlate(const Eigen::MatrixXd& matrix) {
+  correlation = matrix;
+  copula.reset();
+  if (correlation.isIdentity(0)) return;
+  std::vector<std::string> names;
+  for (const SpreadVariable& variable : variables) names.push_back(variable.name);
+  copula.emplace(correlation, names);
+}
+
 void DeviceSpread::to_values(std::span<double> u) const {
   if (copula) copula->correlate(u);
   for (std::size_t i = 0; i < variables.size(); ++i) {

@@ -71,6 +71,10 @@ struct DeviceSpread {
   [[nodiscard]] bool empty() const { return variables.empty(); }
   /// Whether there are errors of drives among what varies.
   [[nodiscard]] bool varies_drives() const;
+  /// Takes a variable out, with its correlations.
+  void leave_out(std::size_t variable);
+  /// Gives the variables this correlation. Throws as GaussianCopula does.
+  void correlate(const Eigen::MatrixXd& matrix);
   /// Turns a point of the open unit cube into values of the variables [SI unit, factor, or for jitter a number in (0, 1)], in
   /// place.
   void to_values(std::span<double> u) const;

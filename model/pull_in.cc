@@ -346,15 +346,39 @@ StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias) {
       .status = Status::done, .voltage = model.value_of_strength(drive, best), .deflection = end, .kind = StaticKind::contact};
 }
 
-double release_voltage(const Switch& model, std::size_t drive, Bias bias) {
-  if (!model.has_contact() || !pulls_in(model.device(), drive)) return nan;
+namespace {
+
+// The branch from the straight beam up to the contact plane, in small steps.
+void follow_to_plane(EquilibriumBranch& branch, double plane) {
+  for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
+}
+
+ReleasePoint released_at(double square, double deflection) {
+  if (!std::isfinite(square)) return {};
+  return {.voltage = std::sqrt(std::max(square, 0.0)), .deflection = deflection};
+}
+
+}  // namespace
+
+std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection, Bias bias) {
   EquilibriumBranch branch(model, drive, bias);
   const double plane = model.device().gap.contact;
-  for (int k = 1; k < branch_steps; ++k) branch(plane * k / branch_steps);
-  if (model.rigid_contact() != nullptr) {
-    const double square = branch(plane);
-    return std::isfinite(square) ? std::sqrt(std::max(square, 0.0)) : nan;
-  }
+  double last = nan;
+  const auto follow = [&](double from, double to) {
+    for (int k = 1; k <= branch_steps; ++k) last = branch(from + (to - from) * k / branch_steps);
+  };
+  follow(0, std::min(deflection, plane));
+  if (deflection > plane) follow(plane, deflection);
+  if (!(last > 0)) return std::nullopt;
+  return HeldEquilibrium{.q = branch.q(), .voltage = model.value_of_strength(drive, last)};
+}
+
+ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias) {
+  if (!model.has_contact() || !pulls_in(model.device(), drive)) return {};
+  EquilibriumBranch branch(model, drive, bias);
+  const double plane = model.device().gap.contact;
+  follow_to_plane(branch, plane);
+  if (model.rigid_contact() != nullptr) return released_at(branch(plane), plane);
   if (model.contact_reach() > 0) {
     // Adhesion inside may make a deeper well than the first.
     constexpr int looks = 256;
@@ -366,15 +390,16 @@ double release_voltage(const Switch& model, std::size_t drive, Bias bias) {
     }
     // In units of the step: Brent's tolerance is partly absolute.
     const double low = std::max(0.0, at / step - 1);
-    best = std::min(
-        best,
-        boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30).second);
-    return std::isfinite(best) ? std::sqrt(std::max(best, 0.0)) : nan;
+    const auto [depth, value] =
+        boost::math::tools::brent_find_minima([&](double x) { return branch(plane + x * step); }, low, at / step + 1, 30);
+    return value < best ? released_at(value, plane + depth * step) : released_at(best, plane + at);
   }
   // The contact is soft at first touch, so the branch may fall on beyond the plane before contact turns it up.
   const auto lowest = first_minimum([&](double depth) { return branch(plane + depth); }, model.penetration_scale() / 16);
-  return lowest ? std::sqrt(std::max(lowest->value, 0.0)) : nan;
+  return lowest ? released_at(lowest->value, plane + lowest->depth) : ReleasePoint{};
 }
+
+double release_voltage(const Switch& model, std::size_t drive, Bias bias) { return release_point(model, drive, bias).voltage; }
 
 namespace {
 

@@ -40,6 +40,22 @@ using Bias = std::span<const double>;
 /// strong the nominal force is. Throws InvalidInput for a bias of another number of drives.
 [[nodiscard]] StaticPullIn static_pull_in(const Switch& model, std::size_t drive, Bias bias = {});
 
+/// Where a drive holds the contact point of an equilibrium, stable or not.
+struct HeldEquilibrium {
+  Eigen::VectorXd q;                                          ///< modal coordinates [m kg^(1/2)]
+  double voltage = std::numeric_limits<double>::quiet_NaN();  ///< of the drive [V]
+};
+/// The equilibrium whose contact point has this deflection [m], on the branch that static_pull_in() and release_voltage() follow;
+/// none where it cannot be followed so far, or the drive would have to push. Throws as static_pull_in() does.
+[[nodiscard]] std::optional<HeldEquilibrium> held_by_drive(const Switch& model, std::size_t drive, double deflection,
+                                                           Bias bias = {});
+
+/// The least voltage of the closed branch, and the deflection of the contact point there.
+struct ReleasePoint {
+  double voltage = std::numeric_limits<double>::quiet_NaN();     ///< as release_voltage() says [V]
+  double deflection = std::numeric_limits<double>::quiet_NaN();  ///< [m]
+};
+[[nodiscard]] ReleasePoint release_point(const Switch& model, std::size_t drive, Bias bias = {});
 /// Release voltage [V]: the smallest voltage with a closed equilibrium, 0 where the dispersion force, or the bias, keeps the
 /// switch closed by itself. NaN where there is no contact law, where the contact is too soft to keep the beam off the electrode
 /// at any voltage, or where the branch could not be followed. Throws as static_pull_in() does.

@@ -53,6 +53,12 @@ class SwitchSlopes {
     const Neighbours& n = neighbours_[j];
     return (f(n.above.contact()) - f(n.below.contact())) / n.distance;
   }
+  /// Of a figure of the whole switch, which f(switch, step) tells; `step` is how far its parameter is from that of the switch.
+  template <class F>
+  [[nodiscard]] auto of_switch(std::size_t j, F&& f) const {
+    const Neighbours& n = neighbours_[j];
+    return decltype(f(n.above, n.distance))((f(n.above, n.distance / 2) - f(n.below, -n.distance / 2)) / n.distance);
+  }
   /// Of the modal accelerations at fixed q and v, F_p. `by_q` is F_q there: modes x modes.
   void accelerations(std::size_t j, const double* q, const double* v, std::span<const double> volts, const ContactState& contact,
                      const Eigen::Ref<const Eigen::MatrixXd>& by_q, Eigen::Ref<Eigen::VectorXd> result);

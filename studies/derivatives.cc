@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "base/require.h"
 #include "objectives/cost_slope.h"
+#include "studies/nearby_devices.h"
 #include "studies/robustness.h"
 
 namespace softland {
@@ -19,7 +19,6 @@ constexpr double no_derivative = Metrics::unset;
 constexpr double usual_tolerance = 1e-8;
 constexpr double largest_disagreement = 0.05;  // what derivatives may differ by from those of a looser run
 constexpr double no_change = 1e-5;  // of a figure: a derivative that is off by this for a standard deviation is as good as 0
-constexpr const char* other_pieces = "the waveforms have other pieces on either side of its nominal value";
 
 // The edges of every device are drawn anew: the nominal one has none of it.
 Prepared without_jitter(const Prepared& scene) {
@@ -29,135 +28,15 @@ Prepared without_jitter(const Prepared& scene) {
   return own;
 }
 
-// The devices beside the nominal one, and what they are driven with.
-class Surroundings {
- public:
-  // Keeps references.
-  Surroundings(const Prepared& nominal, const EnsembleDrive& drive)
-      : nominal_(nominal),
-        drive_(drive),
-        known_(drive.known.without_errors()),
-        ensemble_(nominal, 1),
-        builder_(ensemble_),
-        drives_(nominal) {
-    const Calibration& calibration = known_.calibration();
-    constexpr double precision = 1e-11;  // of pull-in voltages, whose differences are taken
-    if (!calibration.is_empty()) meter_.emplace(nominal, Gauges::of(calibration), precision);
-    for (const SpreadVariable& v : variables()) {
-      values_.push_back(v.is_factor ? 1 : v.keys.front().nominal);
-      steps_.push_back(values_.back() != 0 ? SwitchSlopes::step * std::abs(values_.back())
-                                           : SwitchSlopes::step * v.distribution.standard_deviation());
-    }
+// What the varying quantities do to the nominal device, where they do it smoothly.
+DeviceChanges changes_near(NearbyDevices& near, const Switch& model, std::vector<Derivatives::Variable*>& variables,
+                           const Watch& watch) {
+  std::vector<std::string> why_none(variables.size());
+  DeviceChanges changes = near.changes(model, why_none, watch);
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    if (variables[i]->why_none.empty()) variables[i]->why_none = why_none[i];
   }
-
-  [[nodiscard]] const std::vector<SpreadVariable>& variables() const { return nominal_.scene.spread.variables; }
-  [[nodiscard]] const std::vector<double>& values() const { return values_; }
-  [[nodiscard]] double step(std::size_t i) const { return steps_[i]; }
-  [[nodiscard]] bool changes_switch(std::size_t i) const {
-    const std::vector<VariedKey>& keys = variables()[i].keys;
-    return std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return !key.drive; });
-  }
-
-  // The two devices beside the nominal one. Throws InvalidInput where one of them cannot be described.
-  [[nodiscard]] SwitchSlopes::Neighbours neighbours(std::size_t i) {
-    Switch above = device(i, 1), below = device(i, -1);
-    SwitchOptions finer = nominal_.quadrature;
-    // A panel that has a point more than on the other side would look like a change of the device.
-    while (above.points() != below.points()) {
-      constexpr double little = 1.01;
-      finer.points_per_length *= little;
-      above = Switch(above.device(), finer, &nominal_.model);
-      below = Switch(below.device(), finer, &nominal_.model);
-    }
-    const std::vector<VariedKey>& keys = variables()[i].keys;
-    const auto is_of_contact = [](const VariedKey& key) {
-      return key.drive || key.path == "gap.contact" || key.path.starts_with("contact.");
-    };
-    return {.above = std::move(above),
-            .below = std::move(below),
-            .distance = 2 * step(i),
-            .acts_in_flight = !std::all_of(keys.begin(), keys.end(), is_of_contact)};
-  }
-
-  // The signals of the device with these values.
-  [[nodiscard]] std::vector<Signal> signals(std::span<const double> values) {
-    const std::vector<double> own(values.begin(), values.end());
-    DeviceUnits units;
-    if (meter_) {
-      const SampledDevice sampled = builder_.device(own);
-      require(sampled.model.has_value(), sampled.refusal);
-      units = known_.of(meter_->exact(*sampled.model), 0, 0);
-      require(std::isfinite(units.volts), "its pull-in voltage cannot be found");
-    }
-    return drives_.differ(units) ? drives_.signals(drive_.waveforms, units, own) : nominal_.driven(drive_.waveforms);
-  }
-  [[nodiscard]] std::vector<Signal> signals() { return signals(values_); }
-  // Whether a quantity changes what a device is driven with.
-  [[nodiscard]] bool changes_signals(std::size_t i) const {
-    const std::vector<VariedKey>& keys = variables()[i].keys;
-    return meter_ || std::any_of(keys.begin(), keys.end(), [](const VariedKey& key) { return key.drive.has_value(); });
-  }
-  // A step of a waveform that comes, goes or begins the clock on one side is no small change.
-  [[nodiscard]] bool keeps_pieces(std::size_t i) {
-    const auto pieces = [&](double side) {
-      std::vector<std::size_t> counts;
-      for (const Signal& signal : signals(beside(i, side))) counts.push_back(signal.pieces().size());
-      return counts;
-    };
-    return pieces(-1) == pieces(0) && pieces(0) == pieces(1);
-  }
-
- private:
-  [[nodiscard]] std::vector<double> beside(std::size_t i, double side) const {
-    std::vector<double> values = values_;
-    values[i] += side * steps_[i];
-    return values;
-  }
-  [[nodiscard]] Switch device(std::size_t i, double side) {
-    SampledDevice sampled = builder_.device(beside(i, side));
-    require(sampled.model.has_value(), sampled.refusal);
-    return std::move(*sampled.model);
-  }
-
-  const Prepared& nominal_;
-  const EnsembleDrive& drive_;
-  KnownUnits known_;
-  Ensemble ensemble_;
-  DeviceBuilder builder_;
-  DeviceDrives drives_;
-  std::optional<DeviceMeter> meter_;
-  std::vector<double> values_, steps_;
-};
-
-// What the varying quantities do to the switch and to its drives, where they do it smoothly.
-struct Changes {
-  SwitchSlopes of_switch;
-  SignalSlopes of_signals;
-};
-
-Changes changes_near(Surroundings& near, const Switch& model, std::vector<Derivatives::Variable*>& variables,
-                     const Watch& watch) {
-  std::vector<std::optional<SwitchSlopes::Neighbours>> neighbours(variables.size());
-  std::vector<double> lower = near.values(), upper = lower;
-  for (std::size_t i = 0; i < variables.size() && !watch.stopped(); ++i) {
-    watch.tell("derivatives", static_cast<double>(i) / static_cast<double>(variables.size()));
-    std::string& why_none = variables[i]->why_none;
-    try {
-      if (near.changes_switch(i)) neighbours[i] = near.neighbours(i);
-      if (!near.changes_signals(i)) continue;
-      if (near.keeps_pieces(i)) {
-        lower[i] -= near.step(i) / SignalSlopes::share_of_range;
-        upper[i] += near.step(i) / SignalSlopes::share_of_range;
-      } else {
-        why_none = other_pieces;
-      }
-    } catch (const InvalidInput& error) {
-      why_none = fmt::format("there is no device beside the nominal one: {}", error.what());
-    }
-    if (!why_none.empty()) neighbours[i].reset();
-  }
-  return {.of_switch = SwitchSlopes(model, std::move(neighbours)),
-          .of_signals = SignalSlopes([&](std::span<const double> x) { return near.signals(x); }, near.values(), lower, upper)};
+  return changes;
 }
 
 // The figure's change for a standard deviation of each quantity; 0 where it has no derivative.
@@ -181,7 +60,7 @@ struct NominalClosing {
   Eigen::MatrixXd gradient = {};  // a row to each of derived_figures; empty where the device does not close
 };
 
-NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>& signals, Changes& by,
+NominalClosing close_nominal(const Prepared& nominal, const std::vector<Signal>& signals, DeviceChanges& by,
                              const DerivativeOptions& options, const Watch& watch) {
   MetricsObserver observer(nominal.model.device().gap.contact, nominal.scene.metrics);
   MotionTape tape(observer);
@@ -245,9 +124,9 @@ Derivatives derivatives(const Prepared& scene, const EnsembleDrive& drive, const
   if (!found.why_none.empty()) return found;
 
   const Prepared nominal = without_jitter(scene);
-  Surroundings near(nominal, drive);
-  Changes by = changes_near(near, nominal.model, variables, watch);
-  for (const std::size_t k : by.of_signals.kinks()) variables[k]->why_none = other_pieces;
+  NearbyDevices near(nominal, drive);
+  DeviceChanges by = changes_near(near, nominal.model, variables, watch);
+  for (const std::size_t k : by.of_signals.kinks()) variables[k]->why_none = NearbyDevices::other_pieces;
   const std::vector<Signal> signals = near.signals();
   DerivativeOptions own = options;
   if (!(own.tolerance > 0)) own.tolerance = std::min(nominal.tolerance, usual_tolerance);

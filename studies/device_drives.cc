@@ -27,6 +27,21 @@ Waveform as_table(const Signal& signal, double window) {
   return table;
 }
 
+// Null for jitter, which is none of one number.
+double* member_of(SourceErrors& errors, DriveError error) {
+  switch (error) {
+    case DriveError::gain:
+      return &errors.gain;
+    case DriveError::offset:
+      return &errors.offset;
+    case DriveError::delay:
+      return &errors.delay;
+    case DriveError::jitter:
+      break;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device, const DeviceUnits& units) {
@@ -89,6 +104,25 @@ std::vector<double> DeviceDrives::shown(std::vector<double> values) const {
 double DeviceDrives::value(const Source& source, const std::vector<double>& values) const {
   const SpreadVariable& variable = nominal_->scene.spread.variables[source.variable];
   return DeviceSpread::value(variable, variable.keys[source.key], values[source.variable]);
+}
+
+SourceErrors DeviceDrives::errors(std::size_t k, const std::vector<double>& values) const {
+  SourceErrors errors = nominal_->errors(k);
+  for (const Source& source : sources_[k]) {
+    if (double* const member = member_of(errors, source.error)) *member = value(source, values);
+  }
+  return errors;
+}
+
+SourceErrors DeviceDrives::errors_by(std::size_t k, std::size_t i) const {
+  SourceErrors slopes{.gain = 0};
+  const SpreadVariable& variable = nominal_->scene.spread.variables[i];
+  for (const Source& source : sources_[k]) {
+    if (source.variable != i) continue;
+    if (double* const member = member_of(slopes, source.error))
+      *member = variable.is_factor ? variable.keys[source.key].nominal : 1;
+  }
+  return slopes;
 }
 
 DeviceDrives::Driven DeviceDrives::driven(const std::vector<Waveform>& nominal, const DeviceUnits& units,

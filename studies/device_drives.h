@@ -36,6 +36,10 @@ class DeviceDrives {
   /// device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,
                                             const std::vector<double>& values) const;
+  /// What the source of drive k does wrong where the varying quantities have these values, but for its jitter.
+  [[nodiscard]] SourceErrors errors(std::size_t k, const std::vector<double>& values) const;
+  /// The derivatives of these errors by varying quantity i: those of gain, offset [V] and delay [s].
+  [[nodiscard]] SourceErrors errors_by(std::size_t k, std::size_t i) const;
   /// A waveform, and the gain, offset and delay that the scene of the device is to have beside it.
   struct Written {
     Waveform waveform;

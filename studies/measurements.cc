@@ -21,6 +21,7 @@
 #include "optimizers/problem.h"
 #include "sampling/confidence.h"
 #include "sampling/statistics.h"
+#include "studies/instruments.h"
 #include "studies/plain_step.h"
 #include "studies/robust_cost.h"
 
@@ -52,26 +53,28 @@ void over_devices(std::size_t devices, int jobs, const char* what, const Watch& 
 }
 
 // What is measured, and how.
-struct Instrument {
+struct Gauge {
   std::string name, unit;
   double error;
   std::function<double(const Switch&)> read;
 };
 
-std::vector<Instrument> instruments(const Prepared& nominal, const DeviceMeter& meter, const MeasurementOptions& options) {
+std::vector<Gauge> instruments(const Prepared& nominal, const DeviceMeter& meter, const MeasurementOptions& options) {
   const std::size_t electrode = meter.electrode();
   const std::vector<double> bias = bias_of(nominal.scene, electrode);
-  std::vector<Instrument> all{
-      {"Vdp", "V", options.pull_in_error, [&meter](const Switch& m) { return meter.exact(m).volts * meter.pull_in(); }},
-      {"Vsp", "V", options.static_pull_in_error, [=](const Switch& m) { return static_pull_in(m, electrode, bias).voltage; }},
-      {"release", "V", options.release_error, [=](const Switch& m) { return release_voltage(m, electrode, bias); }},
-      {"frequency", "Hz", options.frequency_error, [](const Switch& m) { return m.angular_frequencies()[0] / (2 * pi); }}};
+  std::vector<Gauge> all{
+      {"Vdp", "V", options.pull_in_error, [&meter](const Switch& m) { return meter.exact(m).volts * meter.pull_in(); }}};
   const double duration = periods_of_step / meter.frequency();
-  for (const double step : options.steps) {
-    const double volts = step * meter.pull_in();
-    all.push_back({fmt::format("time at {:g} Vdp", step), "s", options.time_error,
-                   [=](const Switch& m) { return closing_time(m, electrode, volts, bias, duration); }});
-  }
+  const auto add = [&](std::string name, double error, const Instrument& instrument) {
+    all.push_back({std::move(name), std::string(row_of(instrument.what).unit), error,
+                   [=](const Switch& m) { return read(instrument, m, bias, duration); }});
+  };
+  add("Vsp", options.static_pull_in_error, {.what = Measurable::pull_in, .drive = electrode});
+  add("release", options.release_error, {.what = Measurable::release, .drive = electrode});
+  add("frequency", options.frequency_error, {.what = Measurable::frequency, .drive = electrode});
+  for (const double step : options.steps)
+    add(fmt::format("time at {:g} Vdp", step), options.time_error,
+        {.what = Measurable::closing_time, .drive = electrode, .level = step * meter.pull_in()});
   return all;
 }
 
@@ -82,10 +85,10 @@ bool tells(const MeasurableFigure& figure) {
                      [&](double v) { return std::isfinite(v) && std::abs(v / figure.nominal - 1) > 1e-9; });
 }
 
-std::vector<MeasurableFigure> measure(const std::vector<Instrument>& all, const Switch& nominal, const RobustCost& cost, int jobs,
+std::vector<MeasurableFigure> measure(const std::vector<Gauge>& all, const Switch& nominal, const RobustCost& cost, int jobs,
                                       const Watch& watch) {
   std::vector<MeasurableFigure> figures;
-  for (const Instrument& one : all) {
+  for (const Gauge& one : all) {
     figures.push_back({.name = one.name,
                        .unit = one.unit,
                        .nominal = one.read(nominal),

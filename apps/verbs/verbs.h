@@ -19,6 +19,7 @@ void add_release(Verb& verb);
 void add_explore(Verb& verb);
 void add_robustness(Verb& verb);
 void add_calibrate(Verb& verb);
+void add_fit(Verb& verb);
 void add_tune(Verb& verb);
 void add_device(Verb& verb);
 void add_table(Verb& verb);
@@ -49,6 +50,7 @@ inline constexpr std::array all_verbs{
     VerbRow{"explore", "compute many points of a design space into a store", add_explore},
     VerbRow{"robustness", "how drives do on devices that differ as [spread] says", add_robustness},
     VerbRow{"calibrate", "which measurable figures of a device pin its waveform best", add_calibrate},
+    VerbRow{"fit", "fit a scene to what was measured on devices", add_fit},
     VerbRow{"tune", "tune the waveform on a device, by nothing but the state of its contact", add_tune},
     VerbRow{"device", "a simulated device that answers as one in a laboratory, to practise on", add_device},
     VerbRow{"table", "print the rows of a store, as CSV or for people", add_table},

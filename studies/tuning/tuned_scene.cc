@@ -67,23 +67,6 @@ SceneFile with_nuisances(const Prepared& prepared, const TunerOptions& options) 
   return file;
 }
 
-void rebuild_copula(DeviceSpread& spread) {
-  std::vector<std::string> names;
-  for (const SpreadVariable& variable : spread.variables) names.push_back(variable.name);
-  spread.copula.reset();
-  if (!spread.correlation.isIdentity(0)) spread.copula.emplace(spread.correlation, names);
-}
-
-void leave_out(DeviceSpread& spread, std::size_t variable) {
-  const Eigen::Index n = spread.correlation.rows(), k = static_cast<Eigen::Index>(variable);
-  std::vector<Eigen::Index> rest;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (i != k) rest.push_back(i);
-  }
-  spread.correlation = Eigen::MatrixXd(spread.correlation(rest, rest));
-  spread.variables.erase(spread.variables.begin() + k);
-}
-
 // The contact gap leaves the factor that it shares with other gaps, and follows it but for a deviation of its own: correlated
 // normal factors.
 void loosen_contact_gap(DeviceSpread& spread) {
@@ -121,10 +104,10 @@ Prepared prepared_for_belief(const SceneFile& given, const TunerOptions& options
   Prepared p = prepare(with_nuisances(prepared, options), true, watch);
   DeviceSpread& spread = p.scene.spread;
   for (std::size_t i = spread.variables.size(); i-- > 0;) {
-    if (spread.variables[i].is_drawn_per_edge) leave_out(spread, i);
+    if (spread.variables[i].is_drawn_per_edge) spread.leave_out(i);
   }
   loosen_contact_gap(spread);
-  rebuild_copula(spread);
+  spread.correlate(spread.correlation);
   return p;
 }
 

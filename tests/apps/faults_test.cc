@@ -73,6 +73,7 @@ std::map<std::string, Call> calls() {
       {"explore",
        {gold + in_volts + short_window + std::vector<std::string>{"--vary", "gap.contact=1.9 um,2 um", "--resume"},
         gold + in_volts + many + long_window + json_file + std::vector<std::string>{"--vary", "gap.contact=1.9 um:2.1 um:9"}}},
+      {"fit", {gold + in_volts + std::vector<std::string>{"--data", "bench.toml", "--starts", "1"}, {}}},
       {"tune",
        {gold + in_volts +
             std::vector<std::string>{"--set", "structure.modes=1", "--effort", "0.01", "--closings", "1", "--device",
@@ -95,6 +96,7 @@ std::unique_ptr<Workplace> workplace() {
   const std::string gold = shipped("mem-gold.toml");
   write(place->path() / "volts.toml", edited(edited(gold, "1.25 Vdp", "17 V"), "1.5 Vdp", "60 V"));
   write(place->path() / "stdin.txt", "{\"shot\":1,\"hold_s\":1e-4,\"drives\":{\"main\":{\"time_s\":[0],\"V\":[17]}}}\n");
+  write(place->path() / "bench.toml", "[[measurement]]\nquantity = \"frequency\"\nvalue = \"25 kHz\"\nerror = \"1 %\"\n");
   write(place->path() / "slow.toml", edited(edited(gold, "modes = 4", "modes = 20"), "\"strip\"", "\"reynolds\""));
   return place;
 }

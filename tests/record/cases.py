@@ -65,6 +65,9 @@ SHOT = '{"shot":1,"hold_s":1e-4,"drives":{"main":{"time_s":[0,1e-6],"V":[0,12]}}
 # Stands for instruments: the same record of every shot.
 INSTRUMENTS = 'n=1; while read -r line; do echo "{\\"shot\\":$n,\\"edges_s\\":[[3.6e-05,1],[3.8e-05,0],[4e-05,1]]}"; n=$((n+1)); done'
 
+# Whatever the scene is, it has a resonance.
+MEASURED = '[[measurement]]\nquantity = "frequency"\nvalue = "100 kHz"\nerror = "20 %"\n'
+
 
 def quick(scene):
     """Few modes, a coarse accuracy and no compressible film."""
@@ -130,6 +133,8 @@ def scene_cases(name, text):
             *[Step(words, needs="out/best.toml") for words in (
                 ["simulate", "out/best.toml", "--quiet"], ["export", "out"], ["report", "out"],
                 ["optimize", "--resume", "--out", "out", "--budget", "240", "--jobs", "1", "--quiet"])]], weight=2)
+    yield Case(f"{name}.fit", [step("fit", "--data", "bench.toml", "--starts", "2", "--jobs", "1", "--json", "fit.json", "--out", "fitted", *fast)],
+               inputs={"bench.toml": MEASURED})
     yield Case(f"{name}.tune", [
         step("device", "--seed", "3", *fast, told=SHOT),
         step("tune", "--device", INSTRUMENTS, "--effort", "0.05", "--closings", "2", "--jobs", "1", "--out", "tuned", *fast),

@@ -11,14 +11,18 @@
 
 namespace softland::test {
 
+/// What the published etch and the textbook say: how much the etch takes off every edge [m], and Young's modulus [Pa].
+inline constexpr double published_undercut = 0.4e-6, textbook_modulus = 169e9;
+
 /// Fingers that overlap by `overlap` as drawn [m], springs `spring_width` wide as drawn [m].
-[[nodiscard]] inline Device gap_closing_actuator(double overlap, double spring_width = 3e-6) {
+[[nodiscard]] inline Device gap_closing_actuator(double overlap, double spring_width = 3e-6, double undercut = published_undercut,
+                                                 double youngs_modulus = textbook_modulus) {
   using namespace literals;
-  constexpr double undercut = 0.4_um, layer = 40_um, density = 2300, fingers = 70, root = 10_um, spring_length = 241_um;
-  constexpr double modulus = 169e9 / (1 - 0.069 * 0.069);
-  constexpr double finger = 5.01_um - 2 * undercut, hole = 8_um + 2 * undercut, holes = 61;
-  constexpr double spine = (20_um - 2 * undercut) * (860_um - 2 * undercut) - holes * hole * hole;
-  constexpr double stops = 2 * (10_um - 2 * undercut) * (45_um - undercut);
+  constexpr double layer = 40_um, density = 2300, fingers = 70, root = 10_um, spring_length = 241_um;
+  const double modulus = youngs_modulus / (1 - 0.069 * 0.069);
+  const double finger = 5.01_um - 2 * undercut, hole = 8_um + 2 * undercut, holes = 61;
+  const double spine = (20_um - 2 * undercut) * (860_um - 2 * undercut) - holes * hole * hole;
+  const double stops = 2 * (10_um - 2 * undercut) * (45_um - undercut);
   const double spring = spring_width - 2 * undercut, facing = overlap - undercut;
   const double moving = spine + stops + fingers * (facing + root) * finger;
   return {.structure = {.kind = StructureKind::plate,

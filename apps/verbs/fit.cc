@@ -1,0 +1,123 @@
+// Fits a scene to what was measured on devices.
+#include "studies/fitting/fit.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/exit_status.h"
+#include "apps/output.h"
+#include "apps/progress.h"
+#include "apps/scenes.h"
+#include "apps/streams.h"
+#include "apps/values.h"
+#include "apps/verbs/verbs.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "config/assumed_spread.h"
+#include "config/edited_scene.h"
+#include "reports/fit_report.h"
+
+namespace softland::apps {
+namespace {
+
+struct FitRequest {
+  std::string data, loss = "huber";
+  std::vector<std::string> unknowns, shared;
+  std::optional<std::string> starts, seed, jobs;
+};
+
+// The file as it is written, or, where --set changed it, the scene without its comments.
+std::string text_of(const Common& c, const SceneFile& file) { return c.set.empty() ? read_file(c.scene) : file.text(); }
+
+// The scene with what was found of this device; of several devices, with the middle of their population and its spread.
+std::string fitted_text(const Common& c, const SceneFile& file, const Fit& fit, const std::string& device) {
+  const bool is_population = fit.population.has_value();
+  Fit shown = fit;
+  if (is_population) {
+    for (std::size_t i = 0; i < fit.population->names.size(); ++i) {
+      const std::string& name = fit.population->names[i];
+      const SpreadVariable& variable = fit.scene.scene.spread.variables[fit.population->variables[i]];
+      const double unit = variable.is_factor && variable.keys.size() == 1 ? variable.keys.front().nominal : 1;
+      for (FittedUnknown& u : shown.unknowns) {
+        if (u.name == name) u.value = unit * fit.population->mean[i];
+      }
+    }
+  }
+  std::vector<SceneEdit> edits;
+  for (const Fit::FittedKey& key : shown.keys(device))
+    edits.push_back({.path = key.path, .element = key.element, .value = key.value, .remark = "fitted"});
+  std::string text = edited_scene(text_of(c, file), c.scene, edits);
+  if (is_population) {
+    SceneFile with_spread = SceneFile::parse(text, c.scene, std::filesystem::path(c.scene).parent_path());
+    set_spread(with_spread, fit);
+    text = with_spread_of(text, c.scene, with_spread);
+  }
+  return text;
+}
+
+int fit_verb(const Common& given, const FitRequest& request) {
+  Common c = given;
+  if (c.out.empty()) c.out = "softland-fit";
+  require(!request.data.empty(), "--data: name the file of measurements, such as bench.toml");
+  const auto* const loss = find_named(losses, request.loss);
+  require(loss != nullptr, [&] { return fmt::format("--loss {}: must be {}", request.loss, listed(losses)); });
+  FitOptions options{.unknowns = request.unknowns, .shared = request.shared, .loss = loss->value};
+  if (request.starts) options.starts = whole_number<std::size_t>("--starts", *request.starts, 1);
+  options.seed = seed_of(request.seed, 1);
+  options.jobs = job_count(request.jobs);
+  const SceneFile file = load_scene(c);
+  const Bench bench = load_bench(request.data);
+  std::optional<ResultFolder> folder = claim_places(c, {"fitted.toml", "fit.json", "fit.html"});
+  std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
+  const Fit found = fit(file, bench, options, work->watch());
+  work.reset();
+  if (found.spread_assumed && !c.quiet) say(std::string(assumed_words));
+  const nlohmann::json data = fit_json(found, {.command = c.command});
+  std::vector<std::string> left{"fit.html", "fit.json"};
+  folder->write("fit.json", json_text(data, 1) + "\n");
+  folder->write("fit.html", fit_html(found, {.command = c.command}));
+  if (found.found) {
+    folder->write("fitted.toml", fitted_text(c, file, found, found.devices.front()));
+    left.insert(left.begin(), "fitted.toml");
+  }
+  const std::string text = fit_text(found) + left_in(folder->destination(false), left);
+  folder->publish(false);
+  print_json_or(c, data, text);
+  return found.found ? exit_done : exit_numerical_failure;
+}
+
+}  // namespace
+
+void add_fit(Verb& verb) {
+  const auto request = std::make_shared<FitRequest>();
+  verb.with_scene();
+  verb.with_json();
+  verb.option("--data", request->data, "FILE", "what was measured, and how well: a bench.toml (docs/fit.md)");
+  verb.repeated("--unknown", request->unknowns, "KEY",
+                "what is fitted: an entry of [spread], which is its prior, or any key of the scene, without one (default: all of "
+                "[spread])");
+  verb.repeated("--shared", request->shared, "KEY",
+                "of these, what all devices of the file have in common; the rest is of each device");
+  verb.option("--loss", request->loss, "NAME", "how data that do not agree count: " + first_is_default(listed(losses)));
+  verb.optional("--starts", request->starts, "N",
+                fmt::format("searches, the first one from the scene as it is (default: {})", FitOptions{}.starts));
+  verb.with_seed(request->seed, "same searches, whatever --jobs is");
+  verb.with_jobs(request->jobs);
+  verb.with_out("folder for fitted.toml, fit.json and fit.html (default: softland-fit)");
+  verb.footer(
+      "fitted.toml is the scene with the values found; comments, sources and units stay. Values have standard errors, 95 %\n"
+      "intervals and correlations. What the data cannot tell apart is said in words, and which further measurement would tell "
+      "most.\n"
+      "Status 3: at no start do the devices have what was measured.\n"
+      "Examples:\n  softland fit my.toml --data bench.toml\n"
+      "  softland fit my.toml --data bench.toml --unknown structure.youngs_modulus --unknown gaps --out device-17\n"
+      "  softland fit my.toml --data wafer.toml --shared structure.youngs_modulus --loss cauchy");
+  verb.runs([request](const Common& common) { return fit_verb(common, *request); });
+}
+
+}  // namespace softland::apps

@@ -1,0 +1,316 @@
+#include "config/bench.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/csv.h"
+#include "base/read_file.h"
+#include "base/require.h"
+#include "base/shortened.h"
+#include "config/scene_file_impl.h"
+#include "config/schema.h"
+
+namespace softland {
+namespace {
+
+using internal::hint;
+using internal::inline_text;
+
+constexpr std::size_t most_rows = 100'000;
+constexpr std::string_view of_contact = "contact";
+
+// One [[measurement]].
+class MeasurementReader {
+ public:
+  MeasurementReader(const toml::table& table, const std::string& file, const std::filesystem::path& directory)
+      : table_(table), file_(file), directory_(directory) {}
+
+  [[nodiscard]] BenchMeasurement read() {
+    check_keys();
+    BenchMeasurement m{.quantity = text("quantity"), .place = place_of(table_)};
+    const BenchQuantity& kind = kind_of(m.quantity);
+    if (has("drive")) m.drive = text("drive");
+    if (has("device")) m.device = text("device");
+    if (has("mode")) m.mode = whole("mode", 1, 64);
+    refuse_where(has("mode") && kind.name != "frequency", "mode", "is of a frequency only");
+    refuse_where(has("edges") && kind.name != of_contact, "edges", "is of a contact record only");
+    read_drive(kind, m);
+    if (has("value") == has("file")) fail(fmt::format("must have one of 'value' and 'file' with the {}", noun(kind.dimension)));
+    if (has("value")) {
+      refuse_where(kind.is_over_time, "value", fmt::format("a {} is given by rows of time: name a file", kind.name));
+      for (const Quantity& one : quantities("value", kind.dimension)) m.values.push_back(one.value);
+    } else {
+      read_rows(kind, m);
+    }
+    if (has("level")) m.levels.assign(m.values.size(), quantities("level", dimension::voltage).front().value);
+    read_errors(kind, m);
+    return m;
+  }
+
+ private:
+  void check_keys() const {
+    static const std::vector<std::string_view> known{"quantity", "drive", "level", "waveform", "value",
+                                                     "file",     "error", "mode",  "edges",    "device"};
+    for (const auto& [key, node] : table_) {
+      if (std::find(known.begin(), known.end(), key.str()) == known.end())
+        refuse(std::string(key.str()), "unknown key" + hint(key.str(), known));
+    }
+  }
+  [[nodiscard]] const BenchQuantity& kind_of(const std::string& name) const {
+    std::vector<std::string_view> known;
+    for (const BenchQuantity& one : bench_quantities()) {
+      if (one.name == name) return one;
+      known.push_back(one.name);
+    }
+    refuse("quantity", "is none that is measured" + hint(name, known));
+  }
+  void read_drive(const BenchQuantity& kind, BenchMeasurement& m) {
+    refuse_where(has("level") && !kind.has_level, "level", fmt::format("a {} has none", kind.name));
+    refuse_where(has("waveform") && !kind.has_waveform, "waveform", fmt::format("a {} has none", kind.name));
+    refuse_where(has("waveform") && has("level"), "waveform", "must not stand beside a level");
+    if (!has("waveform")) return;
+    const std::string name = text("waveform");
+    refuse_where(name.empty() || name.find('\0') != std::string::npos, "waveform", "must be \"scene\" or the name of a file");
+    m.waveform = name == "scene" ? name : (directory_ / name).string();
+  }
+
+  // ---- rows of a file
+
+  struct Column {
+    std::string name;  // in the header
+    double unit = 1;   // of its numbers [SI unit]
+  };
+  // "closing_time_us", "capacitance [fF]", "time_s"
+  [[nodiscard]] std::optional<Column> column_of(const std::vector<std::string>& header, std::string_view stem,
+                                                const Dimension& due) const {
+    for (const std::string& name : header) {
+      if (!name.starts_with(stem)) continue;
+      std::string unit = name.substr(stem.size());
+      if (unit.empty() && due == dimension::none) return Column{.name = name};
+      if (unit.starts_with(" [") && unit.ends_with("]")) {
+        unit = unit.substr(2, unit.size() - 3);
+      } else if (unit.starts_with("_")) {
+        unit = unit == "_m_s" ? "m/s" : unit.substr(1);
+      } else {
+        continue;
+      }
+      try {
+        const Quantity one = parse_quantity("1 " + unit);
+        if (one.dimension == due) return Column{.name = name, .unit = one.value};
+      } catch (const InvalidInput&) {
+        continue;
+      }
+    }
+    return std::nullopt;
+  }
+  [[nodiscard]] static std::vector<std::string> header_of(std::string_view content) {
+    while (!content.empty()) {
+      const std::size_t end = std::min(content.find('\n'), content.size());
+      std::string line(content.substr(0, end));
+      content.remove_prefix(std::min(end + 1, content.size()));
+      if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+      std::vector<std::string> names;
+      for (std::size_t begin = 0; begin <= line.size();) {
+        const std::size_t comma = std::min(line.find(',', begin), line.size());
+        const std::string cell = line.substr(begin, comma - begin);
+        const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
+        names.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+        begin = comma + 1;
+      }
+      if (!names.front().starts_with('#') && !(names.size() == 1 && names.front().empty())) return names;
+    }
+    return {};
+  }
+  void read_rows(const BenchQuantity& kind, BenchMeasurement& m) {
+    const std::string name = text("file");
+    refuse_where(name.empty() || name.find('\0') != std::string::npos, "file", "must be the name of a file");
+    const std::string path = (directory_ / name).string();
+    try {
+      const std::string content = read_file(path);
+      const std::vector<std::string> header = header_of(content);
+      const Dimension due = kind.name == of_contact ? dimension::none : kind.dimension;
+      const std::optional<Column> value = column_of(header, kind.name, due);
+      std::optional<Column> beside;
+      if (kind.is_over_time) {
+        beside = column_of(header, "time", dimension::time);
+      } else if (kind.has_level && !has("level") && !has("waveform")) {
+        beside = column_of(header, "level", dimension::voltage);
+        if (!beside) beside = column_of(header, "voltage", dimension::voltage);
+      }
+      const std::string of_value = kind.name == of_contact ? "contact" : fmt::format("{}_{}", kind.name, unit_symbol(due));
+      const std::string expected = kind.is_over_time ? fmt::format("time_s and {}", of_value)
+                                   : kind.has_level  ? fmt::format("voltage_V and {}", of_value)
+                                                     : of_value;
+      require(value.has_value() && (beside || !kind.is_over_time),
+              [&] { return fmt::format("{}: its header must have columns such as {}", path, expected); });
+      std::vector<std::string> columns{value->name};
+      if (beside) columns.push_back(beside->name);
+      read_csv(content, path, columns, expected, [&](std::span<const double> row, const CsvPlace& at) {
+        require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows", at(), most_rows); });
+        m.values.push_back(row[0] * value->unit);
+        if (!beside) return;
+        std::vector<double>& other = kind.is_over_time ? m.times : m.levels;
+        const double next = row[1] * beside->unit;
+        require(!kind.is_over_time || (next >= 0 && (other.empty() || next > other.back())),
+                [&] { return fmt::format("{}: times must rise from 0 s on", at()); });
+        other.push_back(next);
+      });
+    } catch (const InvalidInput& error) {
+      refuse("file", error.what());
+    }
+    if (kind.name == of_contact) find_edges(m);
+  }
+  // Halfway between the rows on either side, which are open and closed.
+  void find_edges(BenchMeasurement& m) const {
+    const int edges = has("edges") ? whole("edges", 1, 3) : 1;
+    std::vector<double> found;
+    bool closed = false;
+    for (std::size_t i = 0; i < m.values.size() && found.size() < static_cast<std::size_t>(edges); ++i) {
+      const bool now = m.values[i] > 0.5;
+      if (now == closed) continue;
+      found.push_back(i == 0 ? m.times[0] : (m.times[i - 1] + m.times[i]) / 2);
+      closed = now;
+    }
+    refuse_where(found.size() < static_cast<std::size_t>(edges), "file",
+                 fmt::format("its contact column has {} edges from open (0) to closed (1) and back, fewer than the {} that count",
+                             found.size(), edges));
+    m.values = std::move(found);
+    m.times.clear();
+  }
+
+  void read_errors(const BenchQuantity& kind, BenchMeasurement& m) const {
+    if (!has("error")) fail("missing key 'error': one standard deviation of the measurement, absolute or in %");
+    const Quantity error = quantity("error", {kind.dimension, dimension::none});
+    refuse_where(!(error.value > 0), "error", "must be above 0");
+    for (const double value : m.values) {
+      m.errors.push_back(error.dimension == dimension::none ? error.value * std::abs(value) : error.value);
+      refuse_where(!(m.errors.back() > 0), "error", "is a percentage of a value that is 0: give it in a unit");
+    }
+  }
+
+  // ---- keys
+
+  [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+  [[nodiscard]] std::string place_of(const toml::node& node) const {
+    return fmt::format("{}:{}", file_, node.source().begin.line);
+  }
+  [[noreturn]] void fail(std::string_view rule) const {
+    throw InvalidInput(fmt::format("{}: [[measurement]]: {}", place_of(table_), rule));
+  }
+  [[noreturn]] void refuse(const std::string& key, std::string_view rule) const {
+    const toml::node& node = *table_.get(key);
+    throw InvalidInput(
+        fmt::format("{}: measurement.{} = {}: {}", place_of(node), shortened(key), shortened(inline_text(node)), rule));
+  }
+  void refuse_where(bool wrong, const std::string& key, std::string_view rule) const {
+    if (wrong) refuse(key, rule);
+  }
+  [[nodiscard]] std::string text(const std::string& key) const {
+    if (!has(key)) fail(fmt::format("missing key '{}'", key));
+    const auto* text = table_.get(key)->as_string();
+    if (text == nullptr) refuse(key, "expected text in quotes");
+    return text->get();
+  }
+  [[nodiscard]] int whole(const std::string& key, int least, int most) const {
+    const auto* number = table_.get(key)->as_integer();
+    if (number == nullptr || number->get() < least || number->get() > most)
+      refuse(key, fmt::format("must be a whole number from {} to {}", least, most));
+    return static_cast<int>(number->get());
+  }
+  [[nodiscard]] Quantity quantity_in(const std::string& key, const toml::node& node, const std::vector<Dimension>& due) const {
+    const auto* text = node.as_string();
+    if (text == nullptr)
+      refuse(key, fmt::format("expected {} in quotes, such as \"{}\"", noun(due.front()), example(due.front())));
+    Quantity one;
+    try {
+      one = parse_quantity(text->get());
+    } catch (const InvalidInput& error) {
+      refuse(key, error.what());
+    }
+    if (std::find(due.begin(), due.end(), one.dimension) == due.end())
+      refuse(key, fmt::format("expected {}, got {}", describe(due.front()), describe(one.dimension)));
+    return one;
+  }
+  [[nodiscard]] Quantity quantity(const std::string& key, const std::vector<Dimension>& due) const {
+    return quantity_in(key, *table_.get(key), due);
+  }
+  [[nodiscard]] std::vector<Quantity> quantities(const std::string& key, const Dimension& due) const {
+    const toml::array* list = table_.get(key)->as_array();
+    if (list == nullptr) return {quantity(key, {due})};
+    std::vector<Quantity> all;
+    for (const toml::node& node : *list) all.push_back(quantity_in(key, node, {due}));
+    refuse_where(all.empty(), key, "must not be empty");
+    return all;
+  }
+
+  const toml::table& table_;
+  const std::string& file_;
+  const std::filesystem::path& directory_;
+};
+
+std::vector<std::string> changes_of(const toml::node& node, const std::string& name, const std::string& device) {
+  const auto refuse = [&](std::string_view rule) {
+    throw InvalidInput(fmt::format("{}:{}: [device.{}]: {}", name, node.source().begin.line, shortened(device), rule));
+  };
+  const toml::table* table = node.as_table();
+  const toml::array* list =
+      table != nullptr && table->size() == 1 && table->contains("set") ? table->get("set")->as_array() : nullptr;
+  if (list == nullptr) refuse("expected the one key set = [\"gap.electrode=3.4 um\"]");
+  std::vector<std::string> all;
+  for (const toml::node& one : *list) {
+    if (!one.is_string()) refuse("set: expected texts such as \"gap.electrode=3.4 um\"");
+    all.push_back(one.as_string()->get());
+  }
+  return all;
+}
+
+}  // namespace
+
+const std::vector<BenchQuantity>& bench_quantities() {
+  static const std::vector<BenchQuantity> all{
+      {.name = "pull_in", .dimension = dimension::voltage},
+      {.name = "release", .dimension = dimension::voltage},
+      {.name = "frequency", .dimension = dimension::frequency, .has_level = true},
+      {.name = "capacitance", .dimension = dimension::capacitance, .has_level = true},
+      {.name = "closing_time", .dimension = dimension::time, .has_level = true, .has_waveform = true},
+      {.name = of_contact, .dimension = dimension::time, .has_level = true, .has_waveform = true, .is_over_time = true},
+      {.name = "position", .dimension = dimension::length, .has_level = true, .has_waveform = true, .is_over_time = true},
+      {.name = "velocity", .dimension = dimension::velocity, .has_level = true, .has_waveform = true, .is_over_time = true},
+  };
+  return all;
+}
+
+Bench load_bench(const std::filesystem::path& path) { return parse_bench(read_file(path), path.string(), path.parent_path()); }
+
+Bench parse_bench(std::string_view text, const std::string& name, const std::filesystem::path& directory) {
+  const toml::table root = internal::parse_toml(text, name);
+  Bench bench{.name = name, .measurements = {}, .changes = {}};
+  for (const auto& [key, node] : root) {
+    if (key.str() == "measurement") {
+      const toml::array* all = node.as_array();
+      require(all != nullptr && all->is_homogeneous<toml::table>(), [&] {
+        return fmt::format("{}:{}: measurement: expected sections [[measurement]]", name, node.source().begin.line);
+      });
+      for (const toml::node& one : *all) bench.measurements.push_back(MeasurementReader(*one.as_table(), name, directory).read());
+    } else if (key.str() == "device" && node.is_table()) {
+      for (const auto& [device, changes] : *node.as_table())
+        bench.changes.emplace(device.str(), changes_of(changes, name, std::string(device.str())));
+    } else {
+      throw InvalidInput(fmt::format("{}:{}: {}: unknown key{}", name, node.source().begin.line, shortened(key.str()),
+                                     hint(key.str(), {"measurement", "device"})));
+    }
+  }
+  require(!bench.measurements.empty(), [&] { return fmt::format("{}: there is no [[measurement]]", name); });
+  for (const auto& [device, changes] : bench.changes) {
+    const bool is_measured = std::ranges::any_of(bench.measurements, [&](const auto& m) { return m.device == device; });
+    require(is_measured,
+            [&] { return fmt::format("{}: [device.{}]: no measurement is of this device", name, shortened(device)); });
+  }
+  return bench;
+}
+
+}  // namespace softland

@@ -1,0 +1,70 @@
+// A file of measurements, bench.toml: what was measured on devices of a scene, and how well.
+//
+//   [[measurement]]
+//   quantity = "closing_time"        # pull_in, release, frequency, capacitance, closing_time, contact, position or velocity
+//   drive = "main"                   # which one; not needed where the scene has one electrode
+//   level = "22 V"                   # told by the source: of a closing time, a capacitance, a resonance under voltage
+//   waveform = "drive.csv"           # instead of a level: time_s and a column for each drive, or "scene" for that of the scene
+//   value = "38.2 us"                # one number, or a list of them that were measured alike
+//   file = "times.csv"               # instead of a value: rows, with a header line
+//   error = "50 ns"                  # one standard deviation, absolute or a percentage of the value
+//   mode = 1                         # of a resonance
+//   edges = 1                        # of a contact record: how many edges count from the first touch on, 1 to 3
+//   device = "A7"                    # which device; all measurements without one are of one device
+//
+//   [device.A7]
+//   set = ["gap.electrode=3.4 um"]   # what is known to be different of this device
+//
+// A file has the columns VALUE, LEVEL (voltage, level) or TIME (time): their names begin with the quantity, with "level" or
+// "voltage", and with "time", and end in the unit: "closing_time_us", "capacitance [fF]", "time_s". Of a contact record the
+// column is "contact", 0 open and 1 closed.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/units.h"
+
+namespace softland {
+
+/// What a quantity of a bench file is measured in, and what else it has.
+struct BenchQuantity {
+  std::string_view name;
+  Dimension dimension;
+  bool has_level = false;     ///< may have one
+  bool has_waveform = false;  ///< may have one instead
+  bool is_over_time = false;  ///< rows of time
+};
+
+struct BenchMeasurement {
+  std::string quantity;                 ///< of bench_quantities()
+  std::string drive = {};               ///< empty: not said
+  std::string device = {};              ///< empty: not said
+  std::vector<double> values = {};      ///< [SI unit]
+  std::vector<double> errors = {};      ///< of each, one standard deviation [SI unit]
+  std::vector<double> levels = {};      ///< of each [V]; empty: none is given
+  std::vector<double> times = {};       ///< of each, of what is over time [s]
+  std::optional<std::string> waveform;  ///< "scene", or a path
+  int mode = 1;
+  std::string place = {};  ///< "bench.toml:12", for messages
+};
+
+struct Bench {
+  std::string name;
+  std::vector<BenchMeasurement> measurements;
+  std::map<std::string, std::vector<std::string>> changes;  ///< by device: assignments as --set takes them
+};
+
+[[nodiscard]] const std::vector<BenchQuantity>& bench_quantities();
+
+/// Throws InvalidInput with file, line, key, value and rule.
+[[nodiscard]] Bench load_bench(const std::filesystem::path& path);
+/// `name` stands for the text in messages, paths in it are relative to `directory`.
+[[nodiscard]] Bench parse_bench(std::string_view text, const std::string& name, const std::filesystem::path& directory = ".");
+
+}  // namespace softland

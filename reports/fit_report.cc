@@ -1,0 +1,432 @@
+#include "reports/fit_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "reports/escape.h"
+#include "reports/json_number.h"
+#include "reports/made_with.h"
+#include "reports/page.h"
+#include "reports/quantity.h"
+#include "reports/text.h"
+#include "version.h"
+
+namespace softland {
+namespace {
+
+using internal::escaped;
+using internal::json_number;
+using internal::left_aligned;
+using internal::plain_number;
+using internal::quantity;
+using internal::right_aligned;
+using nlohmann::json;
+
+constexpr double unlikely = 3;  // errors
+
+std::string label_of(const FittedUnknown& u) { return u.device.empty() ? u.name : fmt::format("{} of {}", u.name, u.device); }
+
+// People weigh in grams.
+std::string in_unit(double value, const std::string& unit, int digits = 3) {
+  return unit == "kg" ? quantity(1e3 * value, "g", digits) : quantity(value, unit, digits);
+}
+
+// Factors as they change the scene's values.
+std::string fitted_value_text(const FittedUnknown& u, double value, double error) {
+  if (!std::isfinite(value)) return "—";
+  if (u.unit.empty()) return internal::relative_change(value - 1);
+  if (u.unit == "kg") return internal::quantity_within(1e3 * value, 1e3 * error, "g", 6);
+  return internal::quantity_within(value, error, u.unit, 6);
+}
+
+std::string nominal_text(const FittedUnknown& u) {
+  if (u.unit.empty()) return "—";
+  return u.unit == "kg" ? internal::given_quantity(1e3 * u.nominal, "g") : internal::given_quantity(u.nominal, u.unit);
+}
+
+std::string fitted_error_text(const FittedUnknown& u) {
+  constexpr double nothing = 100;  // scales
+  if (!(u.standard_error < nothing * u.scale)) return "not known";
+  if (u.unit.empty()) return plain_number(100 * u.standard_error, 2) + "\u00a0%";
+  const std::string share =
+      u.value != 0 ? fmt::format(" ({}\u00a0%)", plain_number(100 * std::abs(u.standard_error / u.value), 2)) : "";
+  return in_unit(u.standard_error, u.unit, 2) + share;
+}
+
+std::string fitted_interval_text(const FittedUnknown& u) {
+  return fmt::format("{} to {}", fitted_value_text(u, u.low, u.standard_error), fitted_value_text(u, u.high, u.standard_error));
+}
+
+std::string fitted_prior_text(const FittedUnknown& u) {
+  if (!std::isfinite(u.prior_mean)) return "none";
+  if (u.unit.empty()) return fmt::format("±\u00a0{}\u00a0%", plain_number(100 * u.prior_deviation, 2));
+  return fmt::format("±\u00a0{}", in_unit(u.prior_deviation, u.unit, 2));
+}
+
+std::string what_text(const FitResidual& r) {
+  std::string text(row_of(r.what).words);
+  if (r.level) text += " at " + quantity(*r.level, "V", 4);
+  if (r.time) text += " at " + quantity(*r.time, "s", 4);
+  if (!r.device.empty()) text += " of " + r.device;
+  return text;
+}
+
+// "+1 % of a with −2.1 % of b"
+std::string direction_words(const Fit& fit, const WeakDirection& weak) {
+  std::vector<std::string> words;
+  for (const std::size_t i : weak.unknowns) {
+    const FittedUnknown& u = fit.unknowns[i];
+    const double change = weak.direction[static_cast<Eigen::Index>(i)] * u.scale, size = std::abs(change);
+    const std::string shown =
+        u.nominal != 0 ? plain_number(100 * size / std::abs(u.nominal), 2) + "\u00a0%" : in_unit(size, u.unit, 2);
+    words.push_back(fmt::format("{}{} of {}", change < 0 ? "−" : "+", shown, u.name));
+  }
+  return fmt::format("{}", fmt::join(words, " with "));
+}
+
+std::string weak_words(const Fit& fit, const WeakDirection& weak) {
+  const std::string seen = plain_number(weak.seen, 2), direction = direction_words(fit, weak);
+  const char* const data = fit.devices.size() > 1 ? "all data of a device" : "all data";
+  std::vector<std::string> names;
+  for (const std::size_t i : weak.unknowns) names.push_back(fit.unknowns[i].name);
+  if (names.size() == 1)
+    return fmt::format("The data say less of {} than was known before: {} changes {} together by {} of their errors.",
+                       names.front(), direction, data, seen);
+  return fmt::format("The data cannot tell {} apart: {} together change {} by {} of their errors.", fmt::join(names, " and "),
+                     direction, data, seen);
+}
+
+std::size_t freedom(const Fit& fit) {
+  return fit.residuals.size() > fit.unknowns.size() ? fit.residuals.size() - fit.unknowns.size() : 0;
+}
+
+std::string fit_headline(const Fit& fit) {
+  if (!fit.found) return "No device like the scene could be read as it was measured.";
+  const auto n = static_cast<double>(fit.residuals.size());
+  return fmt::format(
+      "The fitted scene is off the data by {} of their errors, the scene as it was by {} (root of the mean square).",
+      plain_number(std::sqrt(fit.chi_squared() / n), 3), plain_number(std::sqrt(fit.chi_squared_before() / n), 3));
+}
+
+}  // namespace
+
+std::vector<std::string> fit_words(const Fit& fit) {
+  std::vector<std::string> all;
+  if (!fit.found) {
+    all.emplace_back(
+        "At none of the starts do all devices have what was measured on them: one may not close at a level at which it was "
+        "measured to. Is the scene that of the device, and every measurement under the right quantity and unit?");
+    return all;
+  }
+  const auto free = static_cast<double>(freedom(fit));
+  constexpr double beyond = 4;  // standard deviations of chi squared
+  if (free > 0 && fit.chi_squared() > free + beyond * std::sqrt(2 * free))
+    all.push_back(fmt::format(
+        "The scene does not describe the data within their errors: the squares of {} residuals sum up to {} where {} are "
+        "expected. The intervals are too narrow then: an effect is missing in the scene, or the errors are too small.",
+        fit.residuals.size(), plain_number(fit.chi_squared(), 3), freedom(fit)));
+  std::vector<std::string> outliers;
+  for (const FitResidual& r : fit.residuals) {
+    if (std::abs(r.normalized()) > unlikely)
+      outliers.push_back(fmt::format("{} ({} errors)", what_text(r), plain_number(r.normalized(), 2)));
+  }
+  constexpr std::size_t most = 6;
+  if (!outliers.empty()) {
+    const std::string rest = outliers.size() > most ? fmt::format(" and {} more", outliers.size() - most) : "";
+    outliers.resize(std::min(most, outliers.size()));
+    all.push_back(fmt::format("Off by more than {} errors: {}{}.{}", unlikely, fmt::join(outliers, ", "), rest,
+                              fit.loss == Loss::none ? "" : " The robust loss gives them less weight."));
+  }
+  for (const WeakDirection& weak : fit.estimate.weak) all.push_back(weak_words(fit, weak));
+  if (!fit.next.empty() && fit.next.front().reduction > 0.01) {
+    const NextMeasurement& best = fit.next.front();
+    all.push_back(fmt::format("What would tell most: the {} to {}, by which the standard errors fall by {}.", best.name,
+                              quantity(best.error, row_of(best.what).unit, 2), internal::percent(best.reduction)));
+  }
+  all.push_back(fit.starts == 1
+                    ? "One search, from the scene as it was."
+                    : fmt::format("{} of {} searches converged, to {}.", fit.converged, fit.starts,
+                                  fit.minima == 1 ? "the same minimum" : fmt::format("{} distinct minima", fit.minima)));
+  return all;
+}
+
+json fit_json(const Fit& fit, const Provenance& provenance) {
+  json unknowns = json::array(), correlation = json::array(), weak = json::array(), next = json::array(),
+       residuals = json::array();
+  for (const FittedUnknown& u : fit.unknowns) {
+    json one{{"key", u.name},
+             {"unit", u.unit},
+             {"nominal", json_number(u.nominal)},
+             {"value", json_number(u.value)},
+             {"standard_error", json_number(u.standard_error)},
+             {"interval95", {json_number(u.low), json_number(u.high)}},
+             {"prior", std::isfinite(u.prior_mean) ? json{{"mean", u.prior_mean}, {"standard_deviation", u.prior_deviation}}
+                                                   : json(nullptr)}};
+    if (!u.device.empty()) one["device"] = u.device;
+    unknowns.push_back(std::move(one));
+  }
+  for (Eigen::Index i = 0; i < fit.estimate.correlation.rows(); ++i) {
+    json row = json::array();
+    for (const double value : fit.estimate.correlation.row(i)) row.push_back(json_number(value));
+    correlation.push_back(std::move(row));
+  }
+  for (const WeakDirection& one : fit.estimate.weak) {
+    json keys = json::array();
+    for (const std::size_t i : one.unknowns) keys.push_back(fit.unknowns[i].name);
+    weak.push_back(std::move(keys));
+  }
+  for (const NextMeasurement& one : fit.next)
+    next.push_back({{"quantity", row_of(one.what).name},
+                    {"name", one.name},
+                    {"level_V", one.level ? json(*one.level) : json(nullptr)},
+                    {"error", json_number(one.error)},
+                    {"reduction", json_number(one.reduction)}});
+  for (const FitResidual& r : fit.residuals) {
+    json one{{"measurement", r.measurement},    {"quantity", row_of(r.what).name}, {"drive", r.drive},
+             {"unit", row_of(r.what).unit},     {"measured", r.measured},          {"error", r.error},
+             {"before", json_number(r.before)}, {"after", json_number(r.after)},   {"normalized", json_number(r.normalized())}};
+    if (!r.device.empty()) one["device"] = r.device;
+    if (r.level) one["level_V"] = *r.level;
+    if (r.time) one["time_s"] = *r.time;
+    residuals.push_back(std::move(one));
+  }
+  json data{{"kind", "fit"},
+            {"status", fit.found ? "done" : "numerical_failure"},
+            {"title", fit.scene.scene.title},
+            {"unknowns", unknowns},
+            {"correlation", correlation},
+            {"indistinguishable", weak},
+            {"next_measurement", next},
+            {"minima", fit.minima},
+            {"starts", fit.starts},
+            {"converged", fit.converged},
+            {"residuals", residuals},
+            {"chi_squared", fit.found ? json_number(fit.chi_squared()) : json(nullptr)},
+            {"chi_squared_before", fit.found ? json_number(fit.chi_squared_before()) : json(nullptr)},
+            {"words", fit_words(fit)},
+            {"spread_assumed", fit.spread_assumed},
+            {"loss", losses[static_cast<std::size_t>(fit.loss)].name},
+            {"seed", fit.seed},
+            {"scene", resolved(fit.scene.scene, fit.scene.voltage_units()).json()},
+            {"version", version},
+            {"made_with", made_with_json()},
+            {"command", provenance.command}};
+  if (fit.population) {
+    json matrix = json::array(), variables = json::array();
+    for (Eigen::Index i = 0; i < fit.population->correlation.rows(); ++i) {
+      json row = json::array();
+      for (const double value : fit.population->correlation.row(i)) row.push_back(json_number(value));
+      matrix.push_back(std::move(row));
+    }
+    for (std::size_t i = 0; i < fit.population->names.size(); ++i)
+      variables.push_back({{"key", fit.population->names[i]},
+                           {"mean", json_number(fit.population->mean[i])},
+                           {"standard_deviation", json_number(fit.population->deviation[i])}});
+    data["population"] = {{"variables", variables}, {"correlation", matrix}};
+  }
+  return data;
+}
+
+std::string fit_text(const Fit& fit) {
+  std::string text = wrapped(fit_headline(fit)) + "\n";
+  if (fit.found) {
+    constexpr std::size_t name = 34, wide = 16, interval = 28;
+    text += "\n" + left_aligned("Unknown", name) + right_aligned("scene", wide) + right_aligned("fitted", wide) +
+            right_aligned("± 1 sigma", wide + 4) + right_aligned("95 %", interval) + right_aligned("prior", wide) + "\n";
+    for (const FittedUnknown& u : fit.unknowns) {
+      text += left_aligned(label_of(u), name) + right_aligned(nominal_text(u), wide) +
+              right_aligned(fitted_value_text(u, u.value, u.standard_error), wide) +
+              right_aligned(fitted_error_text(u), wide + 4) + right_aligned(fitted_interval_text(u), interval) +
+              right_aligned(fitted_prior_text(u), wide) + "\n";
+    }
+  }
+  for (const std::string& sentence : fit_words(fit)) text += "\n" + wrapped(sentence) + "\n";
+  return text;
+}
+
+namespace {
+
+std::string values_section(const Fit& fit) {
+  std::vector<internal::TableRow> rows;
+  for (const FittedUnknown& u : fit.unknowns) {
+    rows.push_back({escaped(label_of(u)), escaped(nominal_text(u)),
+                    internal::Cell(escaped(fitted_value_text(u, u.value, u.standard_error)), "own"),
+                    escaped(fitted_error_text(u)), escaped(fitted_interval_text(u)), escaped(fitted_prior_text(u))});
+  }
+  std::string words;
+  for (const std::string& sentence : fit_words(fit)) words += "<p class=\"below\">" + escaped(sentence) + "</p>\n";
+  return internal::section("values", "What was fitted",
+                           internal::table_html({"Unknown", "Scene", "Fitted", "± 1 σ", "95 %", "Known before"}, rows) + words);
+}
+
+std::string correlation_section(const Fit& fit) {
+  constexpr std::size_t most = 12;
+  if (fit.unknowns.size() < 2 || fit.unknowns.size() > most) return {};
+  internal::TableRow head{""};
+  std::vector<internal::TableRow> rows;
+  for (const FittedUnknown& u : fit.unknowns) head.push_back(escaped(label_of(u)));
+  for (std::size_t i = 0; i < fit.unknowns.size(); ++i) {
+    internal::TableRow row{escaped(label_of(fit.unknowns[i]))};
+    for (std::size_t j = 0; j < fit.unknowns.size(); ++j)
+      row.push_back(internal::with_true_minus(
+          fmt::format("{:.3f}", fit.estimate.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)))));
+    rows.push_back(std::move(row));
+  }
+  return internal::section("correlation", "Correlations of their errors", internal::table_html(head, rows));
+}
+
+std::string next_section(const Fit& fit) {
+  constexpr std::size_t most = 8;
+  std::vector<internal::TableRow> rows;
+  for (const NextMeasurement& one : fit.next) {
+    if (rows.size() == most) break;
+    rows.push_back({escaped(one.name), escaped(quantity(one.error, row_of(one.what).unit, 2)),
+                    internal::Cell(escaped(internal::percent(one.reduction)), "own")});
+  }
+  if (rows.empty()) return {};
+  return internal::section(
+      "next", "What to measure next",
+      internal::table_html({"Measurement", "To", "Standard errors fall by"}, rows) +
+          "<p class=\"below\">The root of the mean square of all standard errors, each over what was known before, where "
+          "this is measured as well, on every device.</p>\n");
+}
+
+std::string data_section(const Fit& fit) {
+  constexpr std::size_t most = 60;
+  std::vector<internal::TableRow> rows;
+  for (const FitResidual& r : fit.residuals) {
+    if (rows.size() == most) break;
+    const std::string_view unit = row_of(r.what).unit;
+    rows.push_back({escaped(what_text(r)), escaped(quantity(r.measured, unit, 5)), escaped(quantity(r.error, unit, 2)),
+                    escaped(quantity(r.before, unit, 5)), internal::Cell(escaped(quantity(r.after, unit, 5)), "own"),
+                    internal::with_true_minus(fmt::format("{:.2f}", r.normalized()))});
+  }
+  std::string below;
+  if (fit.residuals.size() > most)
+    below = fmt::format("<p class=\"below\">The first {} of {}; fit.json has all.</p>\n", most, fit.residuals.size());
+  return internal::section(
+      "data", "Measured, before and after",
+      internal::table_html({"Measured", "Value", "Error", "Scene", "Fitted", "Off, in errors"}, rows) + below);
+}
+
+void add_residual_chart(const Fit& fit, internal::Picture& drawn) {
+  internal::CurveTable& table = drawn.tables["residuals"];
+  double largest = unlikely;
+  for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
+    table["number"].push_back(static_cast<double>(i + 1));
+    table["after"].push_back(fit.residuals[i].normalized());
+    largest = std::max(largest, std::abs(fit.residuals[i].normalized()));
+  }
+  internal::Chart chart{
+      .id = "residuals",
+      .title = "Residuals of the fitted scene",
+      .caption =
+          "Fitted minus measured, in errors of the measurement. Of a scene that describes the device 95 % are between −2 and 2.",
+      .x_column = "number",
+      .x_label = "Number of the datum",
+      .x_unit = "",
+      .y_label = "Residual",
+      .y_unit = "",
+      .zero_line = true,
+      .height = 240};
+  chart.x_home = chart.x_whole = {0, static_cast<double>(fit.residuals.size()) + 1};
+  chart.y_home = {-1.1 * largest, 1.1 * largest};
+  chart.series.push_back({.table = "residuals", .column = "after", .label = "", .role = internal::Role::measured});
+  drawn.charts.push_back(std::move(chart));
+}
+
+// What was measured over levels or times, with the scene before and after.
+void add_courses(const Fit& fit, internal::Picture& drawn) {
+  constexpr std::size_t most = 12;
+  std::map<std::tuple<std::string, Measurable, bool>, std::vector<const FitResidual*>> groups;
+  for (const FitResidual& r : fit.residuals) {
+    if (r.level || r.time) groups[{r.device, r.what, r.time.has_value()}].push_back(&r);
+  }
+  for (auto& [key, rows] : groups) {
+    const auto& [device, what, is_over_time] = key;
+    const auto place = [over_time = is_over_time](const FitResidual* r) { return over_time ? *r->time : *r->level; };
+    std::ranges::stable_sort(rows, {}, place);
+    if (place(rows.front()) == place(rows.back()) || drawn.charts.size() == most) continue;
+    const MeasurableRow& row = row_of(what);
+    const std::string name = fmt::format("course-{}", drawn.charts.size());
+    internal::CurveTable& table = drawn.tables[name];
+    for (const FitResidual* r : rows) {
+      table["x"].push_back(place(r));
+      table["measured"].push_back(r->measured);
+      table["before"].push_back(r->before);
+      table["after"].push_back(r->after);
+    }
+    std::string title(row.words);
+    title.front() = static_cast<char>(title.front() - 'a' + 'A');
+    internal::Chart chart{.id = name,
+                          .title = device.empty() ? title : fmt::format("{} of {}", title, device),
+                          .caption = "",
+                          .x_column = "x",
+                          .x_label = is_over_time ? "Time" : "Level",
+                          .x_unit = is_over_time ? "s" : "V",
+                          .y_label = title,
+                          .y_unit = std::string(row.unit),
+                          .height = 260};
+    constexpr double margin = 0.04;
+    const auto widened = [](double low, double high) {
+      const double more = margin * (high - low);
+      return std::array{low - more, high + more};
+    };
+    chart.x_home = chart.x_whole = widened(table["x"].front(), table["x"].back());
+    double low = rows.front()->measured, high = low;
+    for (const char* column : {"measured", "before", "after"}) {
+      for (const double value : table[column]) {
+        if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+      }
+    }
+    if (high > low) chart.y_home = widened(low, high);
+    chart.series = {{.table = name, .column = "before", .label = "scene as it was", .role = internal::Role::baseline},
+                    {.table = name, .column = "after", .label = "fitted", .role = internal::Role::best},
+                    {.table = name, .column = "measured", .label = "measured", .role = internal::Role::measured}};
+    drawn.charts.push_back(std::move(chart));
+  }
+}
+
+std::string keys_of(const Fit& fit) {
+  const auto n = static_cast<double>(fit.residuals.size());
+  return internal::key_html("Off the data by", fmt::format("{} errors", plain_number(std::sqrt(fit.chi_squared() / n), 3)),
+                            fmt::format("the scene as it was: {}", plain_number(std::sqrt(fit.chi_squared_before() / n), 3))) +
+         internal::key_html("Unknowns", fmt::format("{}", fit.unknowns.size()),
+                            fmt::format("from {} data", fit.residuals.size())) +
+         internal::key_html("Minima", fmt::format("{}", fit.minima), fmt::format("of {} searches that converged", fit.converged));
+}
+
+}  // namespace
+
+std::string fit_html(const Fit& fit, const Provenance& provenance) {
+  internal::Picture drawn;
+  std::string charts;
+  if (fit.found) {
+    add_residual_chart(fit, drawn);
+    add_courses(fit, drawn);
+    for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
+  }
+  Result result{.command = provenance.command, .version = std::string(version), .made_with = made_with()};
+  result.seed = fit.seed;
+  result.tolerance = fit.scene.tolerance;
+  result.scene.text = resolved(fit.scene.scene, fit.scene.voltage_units()).text();
+  return internal::page({.title = fit.scene.scene.title,
+                         .origin = "fit",
+                         .headline = fit_headline(fit),
+                         .headline_rest = "",
+                         .keys = fit.found ? keys_of(fit) : "",
+                         .body = values_section(fit) + correlation_section(fit) + next_section(fit) +
+                                 internal::section("courses", "Residuals", charts) + data_section(fit) +
+                                 internal::reproduce(result) + internal::scene(result),
+                         .style = internal::chart_style(),
+                         .scripts = internal::chart_scripts(drawn)});
+}
+
+}  // namespace softland

@@ -1,0 +1,19 @@
+// What the module that holds Ceres offers: a shared library that is loaded when something is first fitted.
+#pragma once
+
+#include <exception>
+#include <vector>
+
+#include "studies/fitting/least_squares.h"
+
+namespace softland {
+
+inline constexpr const char* ceres_solve_name = "softland_ceres_solve";
+/// solve(), with what `evaluate` has thrown in `fault`.
+using CeresSolve = void(const LeastSquares& problem, std::vector<double> start, const Watch& watch, LeastSquaresEnd& end,
+                        std::exception_ptr& fault);
+
+}  // namespace softland
+
+extern "C" void softland_ceres_solve(const softland::LeastSquares& problem, std::vector<double> start,
+                                     const softland::Watch& watch, softland::LeastSquaresEnd& end, std::exception_ptr& fault);

@@ -1,0 +1,114 @@
+// The scene fitted to what was measured on devices: least squares over the quantities of [spread], or any keys of the scene.
+//
+//   minimise  sum over data of rho(((y_i(x) - m_i) / s_i)^2) + (z - mean)^T R^-1 (z - mean)
+//
+// y_i(x) what an instrument reads of the device (studies/instruments.h), m_i what was measured, s_i its error, rho a robust loss
+// (least_squares.h). z are the unknowns in scales of their own: one standard deviation of [spread], whose correlations R count,
+// or, for a key that it does not have, a tenth of the scene's value, with no prior. Distributions other than the normal one count
+// with their mean and standard deviation.
+//
+// Unknowns are those of each device, or shared by all. The searches begin at the nominal device and at points of low discrepancy
+// spread over the prior; the best end counts. Standard errors are those of the linearised problem there.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "config/bench.h"
+#include "studies/fitting/estimate.h"
+#include "studies/fitting/least_squares.h"
+#include "studies/instruments.h"
+
+namespace softland {
+
+struct FitOptions {
+  std::vector<std::string> unknowns = {};  ///< entries of [spread], or keys; empty: all entries of [spread]
+  std::vector<std::string> shared = {};    ///< of these, what all devices have in common
+  Loss loss = Loss::huber;
+  std::size_t starts = 20;
+  std::uint64_t seed = 1;
+  int jobs = 1;         ///< threads; does not change the result
+  bool suggest = true;  ///< look for what to measure next
+};
+inline constexpr std::size_t most_starts = 10'000;
+
+struct FittedUnknown {
+  std::string name;    ///< of the entry in [spread], or the key
+  std::string device;  ///< empty: of all, or of the only one
+  std::string unit;    ///< SI; empty: a factor of the scene's values
+  double nominal = 0;  ///< of the scene [unit]
+  double value = 0, standard_error = 0;
+  double low = 0, high = 0;                                              ///< 95 % interval
+  double prior_mean = Metrics::unset, prior_deviation = Metrics::unset;  ///< NaN: nothing was known
+  double scale = 0;                                                      ///< of z
+};
+
+struct FitResidual {
+  std::size_t measurement = 0;  ///< number in the bench file
+  std::string device;
+  Measurable what = Measurable::pull_in;
+  std::string drive;
+  std::optional<double> level, time;                      ///< [V], [s]
+  double measured = 0, error = 0, before = 0, after = 0;  ///< of the scene as it was given; of the fitted one
+  [[nodiscard]] double normalized() const { return (after - measured) / error; }
+  [[nodiscard]] double normalized_before() const { return (before - measured) / error; }
+};
+
+struct NextMeasurement {
+  std::string name;  ///< "closing time at 22 V"
+  Measurable what = Measurable::pull_in;
+  std::optional<double> level;  ///< [V]
+  double error = 0;             ///< taken for it [SI unit]
+  double reduction = 0;         ///< of the root of the mean square of all standard errors
+};
+
+/// What the fitted population of devices is, where there are several.
+struct FittedPopulation {
+  std::vector<std::size_t> variables;  ///< numbers of the variables of the scene's spread
+  std::vector<std::string> names;
+  std::vector<double> mean, deviation;  ///< [unit of the value]
+  Eigen::MatrixXd correlation;
+};
+
+struct Fit {
+  Prepared scene;  ///< before, with the [spread] of the unknowns
+  bool spread_assumed = false;
+  std::vector<std::string> devices;
+  std::vector<FittedUnknown> unknowns;
+  Estimate estimate;  ///< of several devices its weak directions are those of the mean device, by the unknowns of the first
+  std::vector<FitResidual> residuals;
+  std::vector<NextMeasurement> next;  ///< the best first
+  std::optional<FittedPopulation> population;
+  std::size_t starts = 0, converged = 0, minima = 0;
+  std::vector<double> costs;  ///< of the ends, by start; NaN where a search had none
+  Loss loss = Loss::huber;
+  std::uint64_t seed = 1;
+  bool found = false;
+
+  /// Sum of the squared normalized residuals, as they are.
+  [[nodiscard]] double chi_squared() const;
+  [[nodiscard]] double chi_squared_before() const;
+  /// Key and value of everything that was fitted for this device: what the fitted scene has in the place of the scene's own.
+  struct FittedKey {
+    std::string path;
+    std::size_t element = 0;
+    Quantity value;
+  };
+  [[nodiscard]] std::vector<FittedKey> keys(const std::string& device) const;
+};
+
+/// Gives [spread] of the scene the deviations and correlations of the population that was fitted: normal, about the scene's
+/// values.
+void set_spread(SceneFile& file, const Fit& fit);
+
+/// Throws InvalidInput for unknowns that no device can have, measurements that the scene cannot have, and where the scene itself
+/// or a device of the bench file does not allow any of it; Interrupted.
+[[nodiscard]] Fit fit(const SceneFile& file, const Bench& bench, const FitOptions& options, const Watch& watch = {});
+
+}  // namespace softland

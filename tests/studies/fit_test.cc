@@ -1,0 +1,273 @@
+// A scene fitted to what was measured on devices of it.
+#include "studies/fitting/fit.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/random.h"
+#include "scenes.h"
+#include "studies/fitting/estimate.h"
+
+namespace softland::fit_test {
+namespace {
+
+#define SKIP_WITHOUT_CERES() \
+  if (!has_ceres()) GTEST_SKIP() << "skipped: no Ceres; needs: libceres-dev"
+
+constexpr const char* spread =
+    R"(spread={"structure.stiffness"={distribution="normal",cov="4 %"},"structure.mass"={distribution="normal",cov="3 %"},gaps={keys=["gap.electrode","gap.contact"],distribution="normal",cov="2 %"}})";
+SceneFile plate(std::initializer_list<std::string_view> changes = {}) {
+  SceneFile file = spring_plate(changes);
+  file.set(spread);
+  return file;
+}
+
+// Of a plate of other numbers.
+struct Truth {
+  double stiffness = 1.03, mass = 0.98, gaps = 1.015;
+};
+double exact(const Instrument& instrument, const Truth& truth) {
+  const Prepared p = prepare(plate());
+  DeviceReader reader(p);
+  std::vector<double> values;
+  for (const SpreadVariable& v : p.scene.spread.variables)
+    values.push_back(v.name == "gaps" ? truth.gaps : v.name == "structure.mass" ? truth.mass : truth.stiffness);
+  EXPECT_TRUE(reader.move_to(values));
+  return reader.read(instrument, false).values[0];
+}
+
+struct Measured {
+  const char* quantity;
+  Instrument instrument;
+  double error;  // over the value
+};
+const std::vector<Measured> all_kinds{{"pull_in", {.what = Measurable::pull_in}, 1e-3},
+                                      {"release", {.what = Measurable::release}, 1e-3},
+                                      {"frequency", {.what = Measurable::frequency}, 1e-4},
+                                      {"capacitance", {.what = Measurable::capacitance}, 2e-3},
+                                      {"closing_time", {.what = Measurable::closing_time, .level = 110}, 1e-3},
+                                      {"closing_time", {.what = Measurable::closing_time, .level = 130}, 1e-3}};
+
+Bench bench_of(const std::vector<Measured>& what, const Truth& truth, double noise = 0, const std::string& device = "",
+               std::uint64_t seed = 1) {
+  Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
+  for (std::size_t i = 0; i < what.size(); ++i) {
+    const double value = exact(what[i].instrument, truth), error = what[i].error * value;
+    BenchMeasurement m{.quantity = what[i].quantity, .device = device, .place = "bench.toml:1"};
+    m.values = {value + noise * error * random_normal(seed, Stream::measurement, i)};
+    m.errors = {error};
+    if (what[i].instrument.level != 0) m.levels = {what[i].instrument.level};
+    bench.measurements.push_back(m);
+  }
+  return bench;
+}
+
+const FittedUnknown& unknown(const Fit& fit, const std::string& name) {
+  for (const FittedUnknown& u : fit.unknowns) {
+    if (u.name == name) return u;
+  }
+  throw std::logic_error("no unknown " + name);
+}
+
+TEST(Fit, FindsTheDeviceThatWasMeasured) {
+  SKIP_WITHOUT_CERES();
+  const Truth truth;
+  // Without noise, and so well known that the prior does not pull.
+  std::vector<Measured> sharp = all_kinds;
+  for (Measured& m : sharp) m.error *= 1e-4;
+  const Fit found = fit(plate(), bench_of(sharp, truth), {.starts = 4});
+  ASSERT_TRUE(found.found);
+  EXPECT_NEAR(unknown(found, "structure.stiffness").value / (42 * truth.stiffness), 1, 1e-4);
+  EXPECT_NEAR(unknown(found, "structure.mass").value / (2.4e-9 * truth.mass), 1, 1e-4);
+  EXPECT_NEAR(unknown(found, "gaps").value, truth.gaps, 1e-4);
+  EXPECT_EQ(found.minima, 1U);
+  EXPECT_LT(found.chi_squared(), 1e-3 * found.chi_squared_before());
+}
+TEST(Fit, IsTheSameForAnyNumberOfThreads) {
+  SKIP_WITHOUT_CERES();
+  const Bench bench = bench_of(all_kinds, {}, 1);
+  const Fit one = fit(plate(), bench, {.starts = 6, .jobs = 1}), two = fit(plate(), bench, {.starts = 6, .jobs = 2});
+  ASSERT_EQ(one.costs.size(), 6U);
+  for (std::size_t i = 0; i < one.unknowns.size(); ++i) {
+    EXPECT_EQ(one.unknowns[i].value, two.unknowns[i].value);
+    EXPECT_EQ(one.unknowns[i].standard_error, two.unknowns[i].standard_error);
+  }
+  for (std::size_t i = 0; i < one.costs.size(); ++i) EXPECT_EQ(one.costs[i], two.costs[i]);
+}
+TEST(Fit, SaysWhatTheDataCannotTellApart) {
+  SKIP_WITHOUT_CERES();
+  // Closing times alone show one combination.
+  std::vector<Measured> times{all_kinds[4], all_kinds[5]};
+  const Fit found = fit(plate(), bench_of(times, {}), {.starts = 1});
+  ASSERT_FALSE(found.estimate.weak.empty());
+  EXPECT_GT(found.estimate.weak.front().unknowns.size(), 1U);
+  // What would tell more is ranked, and does.
+  ASSERT_FALSE(found.next.empty());
+  EXPECT_GT(found.next.front().reduction, 0.05);
+  for (std::size_t i = 1; i < found.next.size(); ++i) EXPECT_LE(found.next[i].reduction, found.next[i - 1].reduction);
+  const Fit all = fit(plate(), bench_of(all_kinds, {}), {.starts = 1});
+  EXPECT_TRUE(all.estimate.weak.empty());
+}
+TEST(Fit, SaysThatVoltagesAndTimesOfAPlateShowNoGap) {
+  SKIP_WITHOUT_CERES();
+  // Voltages are those of stiffness * gap^3, times those of mass / stiffness besides: what leaves both alone is not seen.
+  std::vector<Measured> without_capacitance = all_kinds;
+  without_capacitance.erase(without_capacitance.begin() + 3);
+  const Fit found = fit(plate(), bench_of(without_capacitance, {}), {.starts = 1});
+  ASSERT_EQ(found.estimate.weak.size(), 1U);
+  const WeakDirection& weak = found.estimate.weak.front();
+  Eigen::Vector3d change = weak.direction;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const FittedUnknown& u = found.unknowns[static_cast<std::size_t>(i)];
+    change[i] *= u.scale / u.nominal;
+  }
+  const double gaps = change[0], mass = change[1], stiffness = change[2];
+  constexpr double by_the_contact = 0.1;  // whose stiffness is finite: the release voltage sees a little of the gap
+  EXPECT_NEAR(stiffness / gaps, -3, by_the_contact);
+  EXPECT_NEAR(mass / stiffness, 1, by_the_contact);
+  EXPECT_LT(weak.seen, 0.1);
+  EXPECT_EQ(found.next.front().what, Measurable::capacitance);
+}
+TEST(Fit, OfAKeyWithoutASpreadHasNoPrior) {
+  SKIP_WITHOUT_CERES();
+  // Ten per cent off, which the prior of the spread would pull back by a measurement as rough as this.
+  const Bench bench = bench_of({{"pull_in", {.what = Measurable::pull_in}, 0.03}}, {.stiffness = 1.1, .mass = 1, .gaps = 1});
+  SceneFile without_prior = plate();
+  without_prior.erase("spread");
+  const Fit free = fit(without_prior, bench, {.unknowns = {"structure.stiffness"}, .starts = 1});
+  EXPECT_TRUE(std::isnan(unknown(free, "structure.stiffness").prior_mean));
+  EXPECT_NEAR(unknown(free, "structure.stiffness").value / 42, 1.1, 1e-4);
+  const Fit held = fit(plate(), bench, {.unknowns = {"structure.stiffness"}, .starts = 1});
+  EXPECT_LT(unknown(held, "structure.stiffness").value / 42, 1.06);
+}
+TEST(Fit, WeighsDownADatumThatDoesNotAgree) {
+  SKIP_WITHOUT_CERES();
+  Bench bench = bench_of(all_kinds, {});
+  bench.measurements[0].values[0] *= 1.05;  // fifty errors
+  const Fit huber = fit(plate(), bench, {.loss = Loss::huber, .starts = 1});
+  const Fit none = fit(plate(), bench, {.loss = Loss::none, .starts = 1});
+  const auto off = [](const Fit& found) {
+    return std::abs(unknown(found, "structure.stiffness").value / 42 - Truth{}.stiffness);
+  };
+  EXPECT_LT(off(huber), 0.5 * off(none));
+}
+TEST(Fit, SharesUnknownsOfDevicesAndKeepsTheRestOfEach) {
+  SKIP_WITHOUT_CERES();
+  Bench bench = bench_of(all_kinds, {.stiffness = 1.03, .mass = 0.98, .gaps = 1.02}, 0, "A");
+  for (BenchMeasurement& m : bench_of(all_kinds, {.stiffness = 1.03, .mass = 1.01, .gaps = 0.98}, 0, "B").measurements)
+    bench.measurements.push_back(m);
+  const Fit found = fit(plate(), bench, {.shared = {"structure.stiffness"}, .starts = 1});
+  ASSERT_EQ(found.devices, (std::vector<std::string>{"A", "B"}));
+  ASSERT_EQ(found.unknowns.size(), 5U);
+  for (const FittedUnknown& u : found.unknowns) {
+    if (u.name == "structure.stiffness") {
+      EXPECT_EQ(u.device, "");
+      EXPECT_NEAR(u.value / 42, 1.03, 2e-3);
+    }
+    if (u.name == "gaps") {
+      EXPECT_NEAR(u.value, u.device == "A" ? 1.02 : 0.98, 2e-3);
+    }
+  }
+  ASSERT_TRUE(found.population.has_value());
+  EXPECT_EQ(found.population->names, (std::vector<std::string>{"gaps", "structure.mass"}));
+}
+TEST(Fit, OfManyDevicesFindsTheSpreadThatTheyCameFrom) {
+  SKIP_WITHOUT_CERES();
+  constexpr std::size_t devices = 40;
+  constexpr double stiffness = 0.03, gaps = 0.015, correlation = 0.6;
+  Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
+  for (std::uint64_t k = 0; k < devices; ++k) {
+    const double a = random_normal(2, Stream::fit, 2 * k), b = random_normal(2, Stream::fit, 2 * k + 1);
+    const Truth truth{.stiffness = 1.02 + stiffness * a, .mass = 1, .gaps = 1 + gaps * (correlation * a + 0.8 * b)};
+    for (BenchMeasurement& m : bench_of(all_kinds, truth, 1, fmt::format("D{}", k), k).measurements)
+      bench.measurements.push_back(std::move(m));
+  }
+  const Fit found = fit(plate(), bench, {.unknowns = {"structure.stiffness", "gaps"}, .starts = 1, .suggest = false});
+  ASSERT_TRUE(found.population.has_value());
+  const FittedPopulation& all = *found.population;
+  ASSERT_EQ(all.names, (std::vector<std::string>{"gaps", "structure.stiffness"}));
+  // Of so many devices: what a sample of them leaves open, three standard errors.
+  const double open = 3 / std::sqrt(2.0 * devices);
+  EXPECT_NEAR(all.deviation[0] / gaps, 1, open);
+  EXPECT_NEAR(all.deviation[1] / stiffness, 1, open);
+  EXPECT_NEAR(all.mean[1], 1.02, 3 * stiffness / std::sqrt(1.0 * devices));
+  EXPECT_NEAR(all.correlation(0, 1), correlation, 3 * (1 - correlation * correlation) / std::sqrt(1.0 * devices));
+  // As a scene that robustness and tune read.
+  SceneFile file = plate();
+  set_spread(file, found);
+  const DeviceSpread written = read_scene(file).spread;
+  ASSERT_EQ(written.variables.size(), 3U);
+  EXPECT_NEAR(written.variables[0].distribution.standard_deviation(), all.deviation[0] / all.mean[0], 1e-5);
+  EXPECT_NEAR(written.correlation(0, 2), all.correlation(0, 1), 1e-4);
+}
+TEST(Fit, RefusesWhatNoDeviceHas) {
+  const Bench bench = bench_of({all_kinds[0]}, {});
+  EXPECT_NE(
+      refusal([&] { (void)fit(plate(), bench, {.unknowns = {"structure.stifness"}}); }).find("--unknown structure.stifness"),
+      std::string::npos);
+  EXPECT_NE(refusal([&] { (void)fit(plate(), bench, {.unknowns = {"gap.contact"}}); }).find("entry 'gaps'"), std::string::npos);
+  EXPECT_NE(refusal([&] { (void)fit(plate(), bench, {.shared = {"gap.far"}}); }).find("--shared gap.far"), std::string::npos);
+  Bench other = bench;
+  other.measurements[0].drive = "mian";
+  EXPECT_NE(refusal([&] { (void)fit(plate(), other, {}); }).find("no drive 'mian'"), std::string::npos);
+}
+
+// ---- the linear algebra
+
+TEST(Estimate, OfOneDatumKnowsOneDirection) {
+  Eigen::MatrixXd slopes(1, 2);
+  slopes << 30, -30;
+  const Estimate found = estimate(slopes.transpose() * slopes, Eigen::MatrixXd::Identity(2, 2));
+  ASSERT_EQ(found.weak.size(), 1U);
+  EXPECT_NEAR(found.weak[0].direction[0], found.weak[0].direction[1], 1e-12);
+  EXPECT_NEAR(found.correlation(0, 1), 1, 2e-3);
+  EXPECT_NEAR(found.deviation(0), std::sqrt(0.5), 1e-3);
+  // The sum as well, as exactly.
+  EXPECT_NEAR(found.reduction({Eigen::Vector2d(30, 30)}), 1 - 1 / (30 * std::sqrt(1.0)), 0.01);
+}
+TEST(Estimate, OfAPopulationFindsItsMomentsFromExactDevices) {
+  constexpr int devices = 400;
+  std::vector<KnownDevice> all;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2d> drawn;
+  for (std::uint64_t k = 0; k < devices; ++k) {
+    const double a = random_normal(1, Stream::fit, 2 * k), b = random_normal(1, Stream::fit, 2 * k + 1);
+    drawn.emplace_back(0.3 + 0.5 * a, -0.2 + 0.5 * (0.8 * a + 0.6 * b));
+    sum += drawn.back();
+    const Eigen::Matrix2d information = 1e4 * Eigen::Matrix2d::Identity();
+    all.push_back({.data = information, .target = information * drawn.back()});
+  }
+  const Population found = population_of(all, {.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()});
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& one : drawn) covariance += (one - sum / devices) * (one - sum / devices).transpose() / devices;
+  constexpr double of_errors = 1e-3;  // what is known of each device is not quite exact
+  EXPECT_LE((found.mean - sum / devices).norm(), of_errors);
+  EXPECT_LE((found.covariance - covariance).norm(), of_errors);
+}
+TEST(LeastSquares, FindsTheMinimumOfRosenbrocksValleyFromManyStarts) {
+  SKIP_WITHOUT_CERES();
+  const LeastSquares valley{
+      .unknowns = 2, .residuals = 2, .robust = 0, .evaluate = [](std::span<const double> x, std::span<double> r, double* j) {
+        r[0] = 10 * (x[1] - x[0] * x[0]), r[1] = 1 - x[0];
+        if (j != nullptr) j[0] = -20 * x[0], j[1] = 10, j[2] = -1, j[3] = 0;
+        return true;
+      }};
+  const ManyEnds ends =
+      solve_from([&] { return valley; }, {{-1.2, 1}, {2, 2}, {0, -1}}, 2,
+                 [](const LeastSquaresEnd& a, const LeastSquaresEnd& b) { return std::abs(a.x[0] - b.x[0]) < 1e-4; });
+  EXPECT_EQ(ends.minima, 1U);
+  for (const LeastSquaresEnd& end : ends.ends) EXPECT_NEAR(end.x[0], 1, 1e-6);
+}
+TEST(LeastSquares, PassesOnWhatItsFunctionThrows) {
+  SKIP_WITHOUT_CERES();
+  const LeastSquares broken{
+      .unknowns = 1, .residuals = 1, .evaluate = [](auto, auto, double*) -> bool { throw InvalidInput("broken"); }};
+  EXPECT_THROW((void)solve(broken, {0}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace softland::fit_test
