@@ -8,8 +8,8 @@
 // A tuning leaves a belief about z_i, normal with mean m and covariance C from a prior with mean and covariance of its own. Along
 // the eigenvectors of C in units of that prior whose eigenvalue is below a half, it is a measurement y = J z_i + n, n ~ N(0, I);
 // the other directions are not told. All measurements and the next z are normal together: the next is that under these y, for
-// every rho of a grid, with the likelihood of y as its weight: before, sqrt(1 - rho), the deviation of the devices of a wafer over
-// that of all, is as likely to be anywhere from 0.03 to 1 on a logarithmic scale.
+// every rho of a grid, with the likelihood of y as its weight: before, sqrt(1 - rho), the deviation of the devices of a wafer
+// over that of all, is as likely to be anywhere from 0.03 to 1 on a logarithmic scale.
 //
 // Source: empirical Bayes for groups, D. V. Lindley & A. F. M. Smith, J. R. Stat. Soc. B 34 (1972) 1.
 #pragma once
