@@ -1,22 +1,33 @@
 #include "apps/laboratory.h"
 
+#include <algorithm>
+
 #include "apps/values.h"
 #include "config/units.h"
+#include "model/constants.h"
+#include "model/switch.h"
 
 namespace softland::apps {
 
 void with_laboratory(Verb& verb, LaboratoryRequest& request) {
   verb.optional("--edge-error", request.edge_error, "TIME",
-                "error of the time of an edge of the contact, one standard deviation (default: 50 ns)");
-  verb.optional("--unseen", request.unseen, "TIME", "openings of the contact shorter than this are not seen (default: 100 ns)");
+                "error of the time of an edge of the contact, one standard deviation (default: 50 ns, at most "
+                "a 200th of the period of the first mode)");
+  verb.optional("--unseen", request.unseen, "TIME",
+                "openings of the contact shorter than this are not seen (default: 100 ns, "
+                "at most a 100th of that period)");
   verb.optional("--gain-error", request.gain_error, "SHARE",
                 "error of the gain of a source, constant but unknown, one standard deviation (default: 0.5 %)");
   verb.optional("--shot-error", request.shot_error, "SHARE",
                 "scatter of the gain from shot to shot, one standard deviation (default: 0.02 %)");
 }
 
-LaboratoryErrors laboratory_errors(const LaboratoryRequest& request) {
+LaboratoryErrors laboratory_errors(const LaboratoryRequest& request, const SceneFile& file) {
+  constexpr double of_edge = 1.0 / 200, of_opening = 1.0 / 100;
+  const double period = 2 * pi / Switch(read_scene(file).device).angular_frequencies()[0];
   LaboratoryErrors known;
+  known.edge_error = std::min(known.edge_error, of_edge * period);
+  known.unseen = std::min(known.unseen, of_opening * period);
   const auto take = [](double& value, const char* option, const std::optional<std::string>& text, const Dimension& due) {
     if (text) value = quantity_of(option, *text, due);
   };

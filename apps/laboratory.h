@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/options.h"
+#include "config/scene.h"
 #include "studies/tuning/contact_record.h"
 
 namespace softland::apps {
@@ -17,7 +18,8 @@ struct LaboratoryRequest {
 /// --edge-error, --unseen, --gain-error and --shot-error.
 void with_laboratory(Verb& verb, LaboratoryRequest& request);
 
-/// Throws InvalidInput for a quantity of another dimension or below 0.
-[[nodiscard]] LaboratoryErrors laboratory_errors(const LaboratoryRequest& request);
+/// Of instruments for this scene: those of time follow it, where it is quick and nobody says them. Throws InvalidInput for a
+/// quantity of another dimension or below 0, and for a scene that cannot be read.
+[[nodiscard]] LaboratoryErrors laboratory_errors(const LaboratoryRequest& request, const SceneFile& file);
 
 }  // namespace softland::apps

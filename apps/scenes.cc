@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "apps/values.h"
+#include "base/choice.h"
 #include "base/read_file.h"
 #include "base/require.h"
 #include "reports/result_reader.h"
@@ -78,10 +80,9 @@ void set_calibration(SceneFile& file, const std::string& given) {
     const std::string name = one.substr(0, colon), error = colon != std::string::npos ? one.substr(colon + 1)
                                                            : name == measured_time    ? "0 s"
                                                                                       : "0 %";
-    require(name == measured_pull_in || name == measured_frequency || name == measured_time, [&] {
-      return fmt::format(
-          "--calibrate {}: '{}' is no measurement; there are {}, {} and {}, with an error such as {}:1 % or {}:50 ns",
-          shown(given), name, measured_pull_in, measured_frequency, measured_time, measured_pull_in, measured_time);
+    require(std::ranges::find(measurement_names, name) != measurement_names.end(), [&] {
+      return fmt::format("--calibrate {}: '{}' is no measurement; there are {}, with an error such as {}:1 % or {}:50 ns",
+                         shown(given), name, in_words(measurement_names), measured_pull_in, measured_time);
     });
     require(seen.insert(name).second, [&] { return fmt::format("--calibrate {}: {} stands twice", shown(given), name); });
     file.set(fmt::format("calibration.{}.error=\"{}\"", name, error));

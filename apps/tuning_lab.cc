@@ -4,10 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "apps/child_process.h"
 #include "apps/line_reader.h"
@@ -71,7 +73,15 @@ struct Stopped {};
 
 class HandLab final : public TuningLab {
  public:
-  explicit HandLab(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  // Shots that an earlier tuning has left are none of this one.
+  HandLab(std::filesystem::path folder, bool goes_on) : folder_(std::move(folder)) {
+    if (goes_on) return;
+    std::vector<std::filesystem::path> left;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      if (is_shot(entry.path().filename().string())) left.push_back(entry.path());
+    }
+    for (const std::filesystem::path& file : left) std::filesystem::remove(file);
+  }
 
   std::optional<ContactRecord> fire(const ToldShot& shot, const SentSignals& sent) override {
     const std::filesystem::path file = folder_ / fmt::format("shot-{}.csv", shot.number);
@@ -88,6 +98,13 @@ class HandLab final : public TuningLab {
   }
 
  private:
+  // "shot-12.csv"
+  [[nodiscard]] static bool is_shot(std::string_view name) {
+    constexpr std::string_view before = "shot-", after = ".csv";
+    if (!name.starts_with(before) || !name.ends_with(after) || name.size() <= before.size() + after.size()) return false;
+    const std::string_view number = name.substr(before.size(), name.size() - before.size() - after.size());
+    return std::ranges::all_of(number, [](char c) { return c >= '0' && c <= '9'; });
+  }
   [[nodiscard]] ContactRecord asked(const ToldShot& shot) {
     ContactRecord record = answer<ContactRecord>(
         R"(when did the contact first close, from the start of the waveform? A time such as "36.1 us"; "never"; )"
@@ -143,7 +160,9 @@ std::unique_ptr<TuningLab> command_lab(const std::string& command, milliseconds 
   return std::make_unique<CommandLab>(command, patience);
 }
 
-std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder) { return std::make_unique<HandLab>(folder); }
+std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on) {
+  return std::make_unique<HandLab>(folder, goes_on);
+}
 
 ContactRecord read_edges_file(const std::string& file) {
   ContactRecord record;

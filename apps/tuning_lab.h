@@ -31,8 +31,8 @@ class TuningLab {
 [[nodiscard]] std::unique_ptr<TuningLab> command_lab(const std::string& command, std::chrono::milliseconds patience);
 
 /// Writes the voltages of each shot to FOLDER/shot-N.csv, and asks on standard error for what was seen, until the answer on
-/// standard input can be one.
-[[nodiscard]] std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder);
+/// standard input can be one. Such files of an earlier tuning are removed unless this one `goes_on` with it.
+[[nodiscard]] std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on);
 
 /// Closing and opening of a contact in a CSV file: a header time_s,closed and a row for each edge, 1 where it closes and 0 where
 /// it opens. Throws InvalidInput with file, line and rule.

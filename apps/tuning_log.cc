@@ -20,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* origin_key = "tuning";
-
 // The first name beside the file that is free.
 fs::path free_name(const fs::path& file) {
   std::error_code ignored;

@@ -9,6 +9,9 @@
 
 namespace softland::apps {
 
+/// Of what tells apart tunings that cannot go on with each other, in a file.
+inline constexpr const char* origin_key = "tuning";
+
 /// closings.jsonl: a line that says what is tuned, then one for each shot with what came of it.
 class TuningLog {
  public:

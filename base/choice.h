@@ -95,6 +95,15 @@ template <class Row, std::size_t n>
   return text;
 }
 
+/// "bounce, count and energy", of a list of texts.
+template <class Texts>
+[[nodiscard]] std::string in_words(const Texts& texts) {
+  std::string words;
+  std::size_t i = 0;
+  for (const auto& text : texts) words += (i == 0 ? "" : i + 1 == texts.size() ? " and " : ", ") + std::string(text), ++i;
+  return words;
+}
+
 /// The names of the rows whose `keys` hold this one.
 template <class Row, std::size_t n>
 [[nodiscard]] std::vector<std::string_view> with_key(const std::array<Row, n>& rows, std::string_view key) {

@@ -21,23 +21,24 @@ enum class Stream : std::uint64_t {
   normals = 4,
   scene = 5,
   perturbation = 6,
-  spread = 7,            ///< the switches of an ensemble
-  indices = 8,           ///< the evaluations for Sobol' indices
-  bootstrap = 9,         ///< which samples a repetition of a bootstrap takes
-  folds = 10,            ///< which figures a cross-validation holds back together
-  measurement = 11,      ///< errors of what is measured on a device
-  fresh = 12,            ///< seeds of devices that a search has not seen
-  jitter = 13,           ///< times by which the edges of a drive are late
-  classes = 14,          ///< the devices that classes are made of, and where their search begins
-  plan = 15,             ///< the points of an exploration
-  offspring = 16,        ///< which members of a population are parents, and how their child differs from them
-  hop = 17,              ///< how far a local search begins from the best point
-  race = 18,             ///< the searches of a race over devices
-  tuning = 19,           ///< devices that a belief about one of them is made of
-  practice_device = 21,  ///< the values of a device to practise on
-  practice_gain = 22,    ///< the gain of its sources, and its scatter
-  practice_edges = 23,   ///< errors of the times at which its contact is seen to close and open
-  fit = 24,              ///< where the searches of a fit begin
+  spread = 7,              ///< the switches of an ensemble
+  indices = 8,             ///< the evaluations for Sobol' indices
+  bootstrap = 9,           ///< which samples a repetition of a bootstrap takes
+  folds = 10,              ///< which figures a cross-validation holds back together
+  measurement = 11,        ///< errors of what is measured on a device
+  fresh = 12,              ///< seeds of devices that a search has not seen
+  jitter = 13,             ///< times by which the edges of a drive are late
+  classes = 14,            ///< the devices that classes are made of, and where their search begins
+  plan = 15,               ///< the points of an exploration
+  offspring = 16,          ///< which members of a population are parents, and how their child differs from them
+  hop = 17,                ///< how far a local search begins from the best point
+  race = 18,               ///< the searches of a race over devices
+  tuning = 19,             ///< devices that a belief about one of them is made of
+  practice_device = 21,    ///< the values of a device to practise on
+  practice_gain = 22,      ///< the gain of its sources, and its scatter
+  practice_edges = 23,     ///< errors of the times at which its contact is seen to close and open
+  piezo_measurement = 24,  ///< errors of the deflection that a device's piezo gives
+  fit = 25,                ///< where the searches of a fit begin
 };
 
 /// Output number n, counted from 0, of SplitMix64 with this seed.

@@ -64,22 +64,31 @@ void check_electrodes(const Device& device, const SceneFile::Impl& file) {
   in.fail(conflict->why);
 }
 
-Calibration read_calibration(const SceneFile::Impl& file) {
+Calibration read_calibration(const SceneFile::Impl& file, const Device& device) {
   Calibration calibration;
+  const auto error_named = [&](std::string_view name) {
+    return name == measured_pull_in     ? &calibration.pull_in_error
+           : name == measured_frequency ? &calibration.frequency_error
+           : name == measured_piezo     ? &calibration.piezo_error
+           : name == measured_time      ? &calibration.time_error
+                                        : nullptr;
+  };
   for (const std::string& name : file.names_in("calibration")) {
-    if (name != measured_pull_in && name != measured_frequency && name != measured_time) {
-      file.fail_section(internal::join_path("calibration", name),
-                        "unknown measurement" + internal::hint(name, {measured_pull_in, measured_frequency, measured_time}));
+    std::optional<double>* const measured = error_named(name);
+    if (measured == nullptr) {
+      file.fail_section(
+          internal::join_path("calibration", name),
+          "unknown measurement" + internal::hint(name, {measured_pull_in, measured_frequency, measured_piezo, measured_time}));
     }
     const SectionReader in(file, "calibration", name);
     const Quantity& error = in.quantities("error").front();
     if (error.value != 0)
       in.require((error.dimension == dimension::time) == (name == measured_time), "error",
                  name == measured_time ? "must be a time [s]" : "must be a percentage or a plain number");
-    (name == measured_pull_in     ? calibration.pull_in_error
-     : name == measured_frequency ? calibration.frequency_error
-                                  : calibration.time_error) = error.value;
+    *measured = error.value;
   }
+  if (calibration.piezo_error && !device.piezo)
+    file.fail_section("calibration.piezo", "there is no [piezo] whose deflection could be measured");
   if (calibration.time_error && calibration.pull_in_error)
     file.fail_section("calibration.time", "tells the volts of a device, as Vdp does: measure one of them");
   if (const toml::node* classes = file.find({"calibration", std::string(internal::classes_key)})) {
@@ -153,7 +162,7 @@ Scene read_scene(const SceneFile& file) {
   check_electrodes(scene.device, impl);
   internal::check_drives(impl, scene);
   internal::read_spread(scene, impl);
-  scene.calibration = read_calibration(impl);
+  scene.calibration = read_calibration(impl, scene.device);
   scene.warnings = find_warnings(impl, scene.device);
   scene.warnings.insert(scene.warnings.begin(), scene.file_notes.begin(), scene.file_notes.end());
   try {

@@ -1,6 +1,7 @@
 // A scene file, read and checked: the only place that sees text, units and keys. Everything behind it is plain SI.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -108,20 +109,24 @@ struct SimulateOptions {
 };
 
 /// What is measured on every device before it is driven: the waveform is then a recipe in the device's own units, V(t) = Vdp f(t
-/// f_1), and the scene's own waveform is that of the nominal device.
+/// f_1), of a piezo V(t) = f(t f_1) / p with p its unit, and the scene's own waveform is that of the nominal device.
 struct Calibration {
   /// Of the measurement, relative, one standard deviation; none: it is not measured.
   std::optional<double> pull_in_error = {}, frequency_error = {};
+  /// The same of a piezo's unit, the static deflection that it gives the contact point per volt over the contact gap [1/V].
+  std::optional<double> piezo_error = {};
   /// Of the closing time of a step to closing_step times the nominal Vdp, one standard deviation [s]; none: it is not measured.
   /// It tells the volts, and is never measured beside Vdp.
   std::optional<double> time_error = {};
   /// Into which devices are sorted by what is measured, each with one waveform; none: every device has its own.
   std::optional<int> classes = {};
 
-  [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error && !time_error; }
+  [[nodiscard]] bool is_empty() const { return !pull_in_error && !frequency_error && !piezo_error && !time_error; }
 };
 /// Names of the measurements in a scene.
-inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency", measured_time = "time";
+inline constexpr std::string_view measured_pull_in = "Vdp", measured_frequency = "frequency", measured_piezo = "piezo",
+                                  measured_time = "time";
+inline constexpr std::array measurement_names{measured_pull_in, measured_frequency, measured_piezo, measured_time};
 /// The step whose closing time is measured, in nominal pull-in voltages (Vdp): slow enough to show what a landing depends on.
 inline constexpr double closing_step = 1.2;
 /// Of a closing time where nobody says it: of a generator and an oscilloscope [s].

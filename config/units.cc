@@ -116,6 +116,7 @@ constexpr std::array names{
     Name{dimension::stiffness, "a stiffness", "N/m", "100 N/m"},
     Name{dimension::slowness, "an inverse velocity", "s/m", "0.3 s/m"},
     Name{dimension::voltage, "a voltage", "V", "45 V"},
+    Name{dimension::inverse_voltage, "an inverse voltage", "1/V", "1.6 %/V"},
     Name{dimension::slew_rate, "a slew rate", "V/s", "3 V/us"},
     Name{dimension::charge, "a charge", "C", "1 pC"},
     Name{dimension::capacitance, "a capacitance", "F", "1 pF"},

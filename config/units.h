@@ -48,6 +48,7 @@ inline constexpr Dimension viscosity{{-1, 1, -1}};
 inline constexpr Dimension stiffness{{0, 1, -2}};
 inline constexpr Dimension slowness{{-1, 0, 1}};
 inline constexpr Dimension voltage{{2, 1, -3, -1}};
+inline constexpr Dimension inverse_voltage{{-2, -1, 3, 1}};
 inline constexpr Dimension slew_rate{{2, 1, -4, -1}};
 inline constexpr Dimension charge{{0, 0, 1, 1}};
 inline constexpr Dimension capacitance{{-2, -1, 4, 2}};

@@ -511,6 +511,8 @@ double Switch::charge(std::size_t drive, double value, const double* q, Workspac
   return piezo_charge(q);
 }
 
+double Switch::piezo_deflection() const { return contact_shape_.cwiseQuotient(squares_).dot(piezo_shape_); }
+
 double Switch::piezo_charge(const double* q) const { return Eigen::Map<const Eigen::VectorXd>(q, modes()).dot(piezo_shape_); }
 
 double Switch::kinetic_energy(const double* v) const { return Eigen::Map<const Eigen::VectorXd>(v, modes()).squaredNorm() / 2; }

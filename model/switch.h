@@ -53,6 +53,9 @@ class Switch {
   [[nodiscard]] const Eigen::VectorXd& contact_shape() const { return contact_shape_; }      ///< phi_i(x_c) [kg^(-1/2)]
   /// Force on mode i per volt on the piezo [N kg^(-1/2) / V]; zero where there is no layer.
   [[nodiscard]] const Eigen::VectorXd& piezo_shape() const { return piezo_shape_; }
+  /// Static deflection of the contact point per volt on the piezo, of the beam by itself and small [m/V]; 0 where there is no
+  /// layer. Positive towards the electrodes.
+  [[nodiscard]] double piezo_deflection() const;
   [[nodiscard]] double in_contact_period() const { return in_contact_period_; }  ///< 2 pi over the first pinned frequency [s]
   /// Number of drives: the electrodes in order, then the dispersion force, then the piezo, if there are any. The values of
   /// electrodes and piezo are voltages [V]; that of the dispersion force is its factor less one.

@@ -45,12 +45,13 @@ json quantile_json(const EstimatedQuantile& q) {
 
 constexpr std::size_t name_width = 36, miss_width = 10, yield_width = 23, quantile_width = 27;
 
-std::string row(const Prediction& p) {
+std::string row(const Prediction& p, bool drives_piezo) {
   const auto miss = [](double value) {
     return std::isfinite(value) ? internal::plain_number(100 * value, 2) + " %" : std::string("—");
   };
   std::string text = left_aligned(p.name, name_width) + right_aligned(miss(p.volts_miss), miss_width) +
                      right_aligned(miss(p.time_miss), miss_width);
+  if (drives_piezo) text += right_aligned(miss(p.piezo_miss), miss_width);
   if (!p.is_judged) return text + right_aligned("—", yield_width) + "\n";
   return text + right_aligned(yield_text(p.bounce_free), yield_width) +
          right_aligned(quantile_text(p.impact_speed, "m/s"), quantile_width) +
@@ -79,7 +80,9 @@ json measurements_json(const MeasurementStudy& study, const MeasurementOptions& 
                {"volts_miss", json_number(p.volts_miss)},
                {"time_miss", json_number(p.time_miss)},
                {"volts_unexplained", json_number(p.volts_unexplained)},
-               {"time_unexplained", json_number(p.time_unexplained)}};
+               {"time_unexplained", json_number(p.time_unexplained)},
+               {"piezo_miss", json_number(p.piezo_miss)},
+               {"piezo_unexplained", json_number(p.piezo_unexplained)}};
       if (p.is_judged) {
         one["score_95"] = json_number(p.score);
         one["bounce_free"] = yield_json(p.bounce_free);
@@ -94,6 +97,7 @@ json measurements_json(const MeasurementStudy& study, const MeasurementOptions& 
           {"status", study.interrupted ? "interrupted" : "done"},
           {"devices", study.devices},
           {"seed", options.seed},
+          {"drives_piezo", study.drives_piezo},
           {"figures", std::move(figures)},
           {"references", rows(study.references)},
           {"predictions", rows(study.predictions)},
@@ -117,9 +121,9 @@ std::string measurements_text(const MeasurementStudy& study, const MeasurementOp
             right_aligned(percent(variation(f)), 12) + right_aligned(f.error > 0 ? percent(f.error) : "exact", 12) +
             right_aligned(std::to_string(known(f).size()), 12) + "\n";
   }
-  const std::string head =
-      fmt::format("{:>{}}{:>{}}{:>{}}{:>{}}{:>{}}\n", "volts off", miss_width, "time off", miss_width, "without a rebound",
-                  yield_width, "v_max, 95 % below", quantile_width, "B_H, 95 % below", quantile_width);
+  const std::string head = fmt::format("{:>{}}{:>{}}{}{:>{}}{:>{}}{:>{}}\n", "volts off", miss_width, "time off", miss_width,
+                                       study.drives_piezo ? right_aligned("piezo off", miss_width) : "", "without a rebound",
+                                       yield_width, "v_max, 95 % below", quantile_width, "B_H, 95 % below", quantile_width);
   text += "\n" + left_aligned("Measured, the best first", name_width) + head;
   // Whether a pair is worth its second figure.
   const auto is_better_than_its_figures = [&](const Prediction& p) {
@@ -135,11 +139,11 @@ std::string measurements_text(const MeasurementStudy& study, const MeasurementOp
       ++left_out;
       continue;
     }
-    text += row(p);
+    text += row(p, study.drives_piezo);
     ++shown;
   }
   text += "\n" + left_aligned("To compare with", name_width) + head;
-  for (const Prediction& p : study.references) text += row(p);
+  for (const Prediction& p : study.references) text += row(p, study.drives_piezo);
   const std::string others =
       left_out > 0 ? fmt::format(" Left out are pairs that do no better than one of their figures: {}.", left_out) : "";
   return text + "\n" +

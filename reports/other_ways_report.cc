@@ -68,13 +68,6 @@ std::string value_text(const SpreadVariable& variable, double value) {
   return variable.is_factor ? fmt::format("× {:.4f}", value) : quantity(value, variable.keys.front().unit, 5);
 }
 
-/// "t_i and B_H".
-std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (std::size_t i = 0; i < words.size(); ++i) all += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
-  return all;
-}
-
 std::string box_words(const OtherWays& ways, const DriveRobustness& drive) {
   return fmt::format(
       "The box: every quantity within ± {:.2f} standard deviations of the normal number beneath it, which holds {:.0f} % of all "
@@ -104,15 +97,15 @@ std::string chaos_words(const OtherWays& ways, Symbol symbol) {
         fmt::format(" {} of them do not close; mean, deviation and quantile of chaos go on to such devices as if they closed.",
                     ways.left_out);
   }
-  if (!good.empty()) words += fmt::format(" It predicts {}{}.", joined(good), ways.left_out > 0 ? " of those that close" : "");
+  if (!good.empty()) words += fmt::format(" It predicts {}{}.", in_words(good), ways.left_out > 0 ? " of those that close" : "");
   if (!bad.empty()) {
     words += fmt::format(
         " It fails for {}: where a small change of a quantity adds or takes away a touch, a figure jumps, and no sum of "
         "polynomials follows. There the sample is to be believed.",
-        joined(bad));
+        in_words(bad));
   }
   if (!none.empty())
-    words += fmt::format(" It says nothing of {}: too few of these devices have it, or all the same.", joined(none));
+    words += fmt::format(" It says nothing of {}: too few of these devices have it, or all the same.", in_words(none));
   return words;
 }
 

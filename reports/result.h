@@ -130,6 +130,7 @@ struct ResultDevices {
   struct Row {
     std::string name;                                                         ///< "plain step", "for the drawing", "Vdp to 1 %"
     double pull_in_error = Metrics::unset, frequency_error = Metrics::unset;  ///< of what is measured, relative; NaN: it is not
+    double piezo_error = Metrics::unset;                                      ///< of its piezo's unit, relative
     double time_error = Metrics::unset;                                       ///< of a closing time [s]
     bool searched_for_it = true;
     double bounce_free = Metrics::unset, open = Metrics::unset, collapsed = Metrics::unset;  ///< shares of the devices

@@ -217,6 +217,7 @@ ResultDevices::Row devices_row(const json& one) {
   return {.name = text(one, {"name"}),
           .pull_in_error = number(one, {"knowledge", "Vdp"}),
           .frequency_error = number(one, {"knowledge", "frequency"}),
+          .piezo_error = number(one, {"knowledge", "piezo"}),
           .time_error = number(one, {"knowledge", "time_s"}),
           .searched_for_it = truth(one, {"searched_for_it"}).value_or(true),
           .bounce_free = number(one, {"bounce_free"}),

@@ -94,6 +94,7 @@ json calibration_json(const Calibration& c) {
   const auto error = [](const std::optional<double>& of) { return of ? json(*of) : json(nullptr); };
   return {{"Vdp_error", error(c.pull_in_error)},
           {"frequency_error", error(c.frequency_error)},
+          {"piezo_error", error(c.piezo_error)},
           {"time_error_s", error(c.time_error)},
           {"classes", c.classes ? json(*c.classes) : json(nullptr)}};
 }
@@ -101,7 +102,8 @@ json calibration_json(const Calibration& c) {
 json classes_json(const std::vector<KnownUnits::Class>& classes) {
   json all = json::array();
   for (const KnownUnits::Class& c : classes)
-    all.push_back({{"volts_factor", c.centre.volts}, {"time_factor", c.centre.time}, {"share", c.share}});
+    all.push_back(
+        {{"volts_factor", c.centre.volts}, {"time_factor", c.centre.time}, {"piezo_factor", c.centre.piezo}, {"share", c.share}});
   return all;
 }
 

@@ -61,6 +61,7 @@ std::string calibration_words(const Calibration& c) {
   };
   add(measured_pull_in, c.pull_in_error);
   add(measured_frequency, c.frequency_error);
+  add(measured_piezo, c.piezo_error);
   if (c.time_error)
     words += (words.empty() ? "" : ", ") + fmt::format("closing time under {} Vdp{}", closing_step,
                                                        *c.time_error > 0 ? " ± " + quantity(*c.time_error, "s") : " exactly");
@@ -73,7 +74,8 @@ std::string why_no_indices(const SobolEstimate& e) {
 }
 
 bool is_erring(const Calibration& c) {
-  return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0 || c.time_error.value_or(0) > 0;
+  return c.pull_in_error.value_or(0) > 0 || c.frequency_error.value_or(0) > 0 || c.piezo_error.value_or(0) > 0 ||
+         c.time_error.value_or(0) > 0;
 }
 
 std::vector<double> shown_values(const Ensemble& ensemble, std::size_t k) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "base/require.h"
 #include "reports/escape.h"
 #include "reports/json_number.h"
 #include "reports/made_with.h"
@@ -28,7 +29,7 @@ using internal::percent;
 using internal::quantity;
 using nlohmann::json;
 
-constexpr std::array end_names{"under_way", "done", "closings_used", "stopped", "interrupted"};
+constexpr std::array end_names{"under_way", "done", "closings_used", "stopped", "interrupted", "failed"};
 
 std::string_view name_of(TuningEnd end) { return end_names.at(static_cast<std::size_t>(end)); }
 
@@ -66,6 +67,27 @@ json closing_json(const Prepared& scene, const TunedClosing& closing) {
   return one;
 }
 
+json normal_json(const NormalBelief& belief) {
+  json covariance = json::array();
+  for (Eigen::Index k = 0; k < belief.covariance.rows(); ++k)
+    covariance.push_back(std::vector<double>(belief.covariance.row(k).begin(), belief.covariance.row(k).end()));
+  return {{"mean", std::vector<double>(belief.mean.begin(), belief.mean.end())}, {"covariance", std::move(covariance)}};
+}
+
+NormalBelief normal_of(const json& written) {
+  const auto mean = written.at("mean").get<std::vector<double>>();
+  const auto rows = written.at("covariance").get<std::vector<std::vector<double>>>();
+  const auto size = static_cast<Eigen::Index>(mean.size());
+  NormalBelief belief{.mean = Eigen::Map<const Eigen::VectorXd>(mean.data(), size), .covariance = Eigen::MatrixXd(size, size)};
+  require(rows.size() == mean.size(), "its belief has as many rows as coordinates");
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const std::vector<double>& row = rows[static_cast<std::size_t>(k)];
+    require(row.size() == mean.size(), "its belief has as many columns as coordinates");
+    belief.covariance.row(k) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), size);
+  }
+  return belief;
+}
+
 json belief_json(const BeliefSummary& belief) {
   json quantities = json::array();
   for (const BelievedQuantity& q : belief.quantities) {
@@ -78,7 +100,8 @@ json belief_json(const BeliefSummary& belief) {
   }
   return {{"quantities", quantities},
           {"effective_devices", json_number(belief.effective_devices)},
-          {"correlated", belief.correlated}};
+          {"correlated", belief.correlated},
+          {"coordinates", belief_json(belief.coordinates)}};
 }
 
 std::string bounces_words(int count) {
@@ -376,6 +399,19 @@ json tuning_json(const TuningReport& report, const Provenance& provenance) {
           {"version", version},
           {"made_with", made_with_json()},
           {"command", provenance.command}};
+}
+
+json belief_json(const TunedBelief& belief) {
+  return {{"prior", normal_json(belief.prior)}, {"posterior", normal_json(belief.posterior)}};
+}
+
+TunedBelief tuned_belief(const json& written) {
+  try {
+    const json& coordinates = written.at("belief").at("coordinates");
+    return {.prior = normal_of(coordinates.at("prior")), .posterior = normal_of(coordinates.at("posterior"))};
+  } catch (const json::exception&) {
+    throw InvalidInput("holds no belief about a device that was tuned");
+  }
 }
 
 std::string closing_words(const TuningReport& report) {

@@ -11,7 +11,7 @@
 namespace softland {
 
 /// How a tuning stands.
-enum class TuningEnd { under_way, done, closings_used, stopped, interrupted };
+enum class TuningEnd { under_way, done, closings_used, stopped, interrupted, failed };
 
 /// A closing that was recorded.
 struct TunedClosing {
@@ -41,6 +41,9 @@ struct TuningReport {
                                          TuningEnd end);
 
 [[nodiscard]] nlohmann::json tuning_json(const TuningReport& report, const Provenance& provenance);
+[[nodiscard]] nlohmann::json belief_json(const TunedBelief& belief);
+/// What the JSON of a tuning tells of its device. Throws InvalidInput with the rule: "holds no belief ...".
+[[nodiscard]] TunedBelief tuned_belief(const nlohmann::json& written);
 /// One line: what the last closing was, and what is expected of the next.
 [[nodiscard]] std::string closing_words(const TuningReport& report);
 [[nodiscard]] std::string tuning_text(const TuningReport& report);

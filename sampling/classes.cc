@@ -14,15 +14,15 @@ namespace {
 constexpr std::size_t starts = 8;
 constexpr int most_iterations = 200;
 
-double square_distance(const PlanePoint& a, const PlanePoint& b) {
-  const double dx = a[0] - b[0], dy = a[1] - b[1];
-  return dx * dx + dy * dy;
+double square_distance(const SpacePoint& a, const SpacePoint& b) {
+  const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
+  return dx * dx + dy * dy + dz * dz;
 }
 
 // Fewer than `count` where the points are fewer.
-std::vector<PlanePoint> start_centres(std::span<const PlanePoint> points, std::size_t count, std::uint64_t seed,
+std::vector<SpacePoint> start_centres(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed,
                                       std::size_t start) {
-  std::vector<PlanePoint> centres;
+  std::vector<SpacePoint> centres;
   std::vector<double> square(points.size(), 1.0);  // the first centre is any of the points
   while (centres.size() < count) {
     double sum = 0;
@@ -49,20 +49,19 @@ struct Sorted {
 };
 
 // Sorts the points by these centres, and moves each centre to the mean of its points until none changes its class.
-Sorted settle(std::span<const PlanePoint> points, std::vector<PlanePoint> centres) {
+Sorted settle(std::span<const SpacePoint> points, std::vector<SpacePoint> centres) {
   Sorted sorted{.classes = {.centres = std::move(centres), .shares = {}}};
   std::vector<std::size_t> own(points.size(), points.size());
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     bool moved = false;
     sorted.square = 0;
-    std::vector<PlanePoint> sums(sorted.classes.centres.size());
+    std::vector<SpacePoint> sums(sorted.classes.centres.size());
     std::vector<double> counts(sums.size(), 0.0);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::size_t c = sorted.classes.nearest(points[i]);
       moved = moved || own[i] != c;
       own[i] = c;
-      sums[c][0] += points[i][0];
-      sums[c][1] += points[i][1];
+      for (std::size_t axis = 0; axis < 3; ++axis) sums[c][axis] += points[i][axis];
       counts[c] += 1;
       sorted.square += square_distance(points[i], sorted.classes.centres[c]);
     }
@@ -70,7 +69,8 @@ Sorted settle(std::span<const PlanePoint> points, std::vector<PlanePoint> centre
     for (double& share : sorted.classes.shares) share /= static_cast<double>(points.size());
     if (!moved) break;
     for (std::size_t c = 0; c < sums.size(); ++c) {
-      if (counts[c] > 0) sorted.classes.centres[c] = {sums[c][0] / counts[c], sums[c][1] / counts[c]};
+      if (!(counts[c] > 0)) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) sorted.classes.centres[c][axis] = sums[c][axis] / counts[c];
     }
   }
   return sorted;
@@ -78,7 +78,11 @@ Sorted settle(std::span<const PlanePoint> points, std::vector<PlanePoint> centre
 
 }  // namespace
 
-std::size_t Classes::nearest(const PlanePoint& point) const {
+bool is_finite(const SpacePoint& point) {
+  return std::ranges::all_of(point, [](double x) { return std::isfinite(x); });
+}
+
+std::size_t Classes::nearest(const SpacePoint& point) const {
   std::size_t best = 0;
   for (std::size_t c = 1; c < centres.size(); ++c) {
     if (square_distance(point, centres[c]) < square_distance(point, centres[best])) best = c;
@@ -86,10 +90,9 @@ std::size_t Classes::nearest(const PlanePoint& point) const {
   return best;
 }
 
-Classes classes_of(std::span<const PlanePoint> points, std::size_t count, std::uint64_t seed) {
+Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed) {
   require(count > 0, "classes: there must be at least one");
-  require(!points.empty() && std::all_of(points.begin(), points.end(),
-                                         [](const PlanePoint& p) { return std::isfinite(p[0]) && std::isfinite(p[1]); }),
+  require(!points.empty() && std::all_of(points.begin(), points.end(), [](const SpacePoint& p) { return is_finite(p); }),
           "classes: there must be points, all of them finite");
   Sorted best;
   for (std::size_t start = 0; start < starts; ++start) {

@@ -1,4 +1,4 @@
-// Points of a plane sorted into classes: every point belongs to the class of the nearest centre, and the centres are chosen so
+// Points of space sorted into classes: every point belongs to the class of the nearest centre, and the centres are chosen so
 // that the mean square distance of the points to theirs is small.
 //
 //   minimise  sum_i min_c |x_i - c|^2   over `count` centres c
@@ -20,18 +20,19 @@
 
 namespace softland {
 
-using PlanePoint = std::array<double, 2>;
+using SpacePoint = std::array<double, 3>;
+[[nodiscard]] bool is_finite(const SpacePoint& point);
 
 struct Classes {
-  std::vector<PlanePoint> centres;  ///< in ascending order
+  std::vector<SpacePoint> centres;  ///< in ascending order
   std::vector<double> shares;       ///< of the points, by class
 
   /// The class of a point: the nearest centre, the first of several.
-  [[nodiscard]] std::size_t nearest(const PlanePoint& point) const;
+  [[nodiscard]] std::size_t nearest(const SpacePoint& point) const;
 };
 
 /// A function of its arguments alone. There are fewer classes than `count` where there are fewer distinct points. Throws
 /// InvalidInput for count 0, and unless there are points, all of them finite.
-[[nodiscard]] Classes classes_of(std::span<const PlanePoint> points, std::size_t count, std::uint64_t seed);
+[[nodiscard]] Classes classes_of(std::span<const SpacePoint> points, std::size_t count, std::uint64_t seed);
 
 }  // namespace softland

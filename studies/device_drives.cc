@@ -46,8 +46,11 @@ double* member_of(SourceErrors& errors, DriveError error) {
 
 std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device, const DeviceUnits& units) {
   std::vector<Waveform> own = waveforms;
-  for (std::size_t k = 0; k < own.size(); ++k)
-    own[k] = scaled(std::move(own[k]), k < device.electrodes.size() ? units.volts : 1, units.time);
+  const std::size_t piezo = device.piezo ? own.size() - 1 : own.size();
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const double factor = k < device.electrodes.size() ? units.volts : k == piezo ? units.piezo : 1;
+    own[k] = scaled(std::move(own[k]), factor, units.time);
+  }
   return own;
 }
 

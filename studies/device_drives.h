@@ -2,6 +2,7 @@
 // source_errors.h). All drives of a device have one clock, which begins at the first edge of any of them where that is early.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -15,13 +16,17 @@ namespace softland {
 /// What is known of a device, over what holds for the nominal one: factors of the voltages and of the times of its drives.
 struct DeviceUnits {
   double volts = 1, time = 1;
+  double piezo = 1;  ///< of the voltages of a piezo, whose unit Vdp does not tell
   /// Of volts that are told by a closing time: by which part they change with it [1/s].
   double volts_by_time = 0;
+
+  /// Whether there are such voltages.
+  [[nodiscard]] bool are_known() const { return std::isfinite(volts) && std::isfinite(piezo); }
 };
 
 /// The waveforms, in the order of Switch::drives(), in the units of one device. What drives stand at before t = 0 stays what it
 /// is: no measured unit and no error of a source changes it. The voltages of a piezo do not follow the pull-in
-/// voltage, nor does the factor of a dispersion force.
+/// voltage, they have a factor of their own; that of a dispersion force follows nothing.
 [[nodiscard]] std::vector<Waveform> in_units(const std::vector<Waveform>& waveforms, const Device& device,
                                              const DeviceUnits& units);
 
@@ -31,7 +36,9 @@ class DeviceDrives {
   explicit DeviceDrives(const Prepared& nominal);
 
   /// Whether a device of these units has other drives than the nominal one.
-  [[nodiscard]] bool differ(const DeviceUnits& units) const { return has_errors_ || units.volts != 1 || units.time != 1; }
+  [[nodiscard]] bool differ(const DeviceUnits& units) const {
+    return has_errors_ || units.volts != 1 || units.piezo != 1 || units.time != 1;
+  }
   /// What a device gets from its sources, whose varying quantities have these values; `nominal` are the waveforms of the nominal
   /// device, in the order of Switch::drives() [V].
   [[nodiscard]] std::vector<Signal> signals(const std::vector<Waveform>& nominal, const DeviceUnits& units,

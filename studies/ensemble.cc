@@ -152,6 +152,10 @@ double closing_time(const Switch& model, std::size_t drive, double step, Bias bi
 
 DeviceMeter::DeviceMeter(const Prepared& nominal, const Gauges& gauges, double precision)
     : nominal_(&nominal), gauges_(gauges), precision_(precision) {
+  require(!gauges.piezo || piezo_unit(nominal.model) > 0, [&] {
+    return fmt::format("{}: piezo cannot be measured: {}", nominal.scene.file.name(),
+                       nominal.model.has_piezo() ? "it does not move the contact point" : "there is no [piezo]");
+  });
   if (!gauges.pull_in && !gauges.closing_time) return;
   require(has_pulling_electrode(nominal.scene.device), [&] {
     return fmt::format("{}: {} cannot be measured: there is no electrode that pulls in", nominal.scene.file.name(),
@@ -197,6 +201,8 @@ DeviceUnits DeviceMeter::told_by(double time) const {
   return {.volts = volts, .time = 1, .volts_by_time = slope / volts};
 }
 
+double DeviceMeter::piezo_unit(const Switch& model) { return std::abs(model.piezo_deflection()) / model.device().gap.contact; }
+
 double DeviceMeter::frequency() const { return nominal_->model.angular_frequencies()[0] / (2 * pi); }
 
 double DeviceMeter::pull_in(const Switch& model) const {
@@ -211,20 +217,23 @@ DeviceUnits DeviceMeter::exact(const Switch& model) const {
                       : gauges_.pull_in    ? DeviceUnits{.volts = pull_in(model) / pull_in_}
                                            : DeviceUnits{};
   units.time = nominal_->model.angular_frequencies()[0] / model.angular_frequencies()[0];
+  if (const double unit = piezo_unit(nominal_->model); unit > 0) units.piezo = unit / piezo_unit(model);
   return units;
 }
 
 DeviceUnits DeviceMeter::measured(const DeviceUnits& exact, const Calibration& calibration, std::uint64_t seed, std::uint64_t k) {
   constexpr double least_volts = 0.1;  // no instrument reads less than nothing
-  const auto reading = [&](double error, std::uint64_t which) {
-    return std::max(least_volts, 1 + error * random_normal(seed, Stream::measurement, 2 * k + which));
+  const auto reading = [&](double error, Stream stream, std::uint64_t counter) {
+    return std::max(least_volts, 1 + error * random_normal(seed, stream, counter));
   };
   DeviceUnits units;
-  if (calibration.pull_in_error) units.volts = exact.volts * reading(*calibration.pull_in_error, 0);
+  if (calibration.pull_in_error) units.volts = exact.volts * reading(*calibration.pull_in_error, Stream::measurement, 2 * k);
   if (calibration.time_error)
     units.volts = std::max(least_volts, exact.volts * (1 + exact.volts_by_time * *calibration.time_error *
                                                                random_normal(seed, Stream::measurement, 2 * k)));
-  if (calibration.frequency_error) units.time = exact.time / reading(*calibration.frequency_error, 1);
+  if (calibration.frequency_error)
+    units.time = exact.time / reading(*calibration.frequency_error, Stream::measurement, 2 * k + 1);
+  if (calibration.piezo_error) units.piezo = exact.piezo / reading(*calibration.piezo_error, Stream::piezo_measurement, k);
   return units;
 }
 
@@ -255,17 +264,19 @@ std::vector<DeviceUnits> reference_units(const Prepared& nominal, const Gauges& 
 }
 
 // Relative errors of volts and time count alike.
-PlanePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time)}; }
-DeviceUnits units_at(const PlanePoint& point) { return {.volts = std::exp(point[0]), .time = std::exp(point[1])}; }
+SpacePoint logarithms(const DeviceUnits& units) { return {std::log(units.volts), std::log(units.time), std::log(units.piezo)}; }
+DeviceUnits units_at(const SpacePoint& point) {
+  return {.volts = std::exp(point[0]), .time = std::exp(point[1]), .piezo = std::exp(point[2])};
+}
 
 }  // namespace
 
 KnownUnits::KnownUnits(const Calibration& calibration, std::span<const DeviceUnits> reference) : calibration_(calibration) {
   if (!calibration.classes) return;
-  std::vector<PlanePoint> points;
+  std::vector<SpacePoint> points;
   for (std::size_t k = 0; k < std::min(reference.size(), reference_size(calibration)); ++k) {
-    const PlanePoint point = logarithms(DeviceMeter::measured(reference[k], calibration, reference_seed, k));
-    if (std::isfinite(point[0]) && std::isfinite(point[1])) points.push_back(point);
+    const SpacePoint point = logarithms(DeviceMeter::measured(reference[k], calibration, reference_seed, k));
+    if (is_finite(point)) points.push_back(point);
   }
   require(!points.empty(), "no device of the spread can be measured: there is nothing to sort into classes");
   classes_ = classes_of(points, static_cast<std::size_t>(*calibration.classes), reference_seed);
@@ -276,7 +287,7 @@ DeviceUnits KnownUnits::of(const DeviceUnits& exact, std::uint64_t seed, std::ui
 }
 
 DeviceUnits KnownUnits::of(const DeviceUnits& measured) const {
-  if (classes_.centres.empty() || !std::isfinite(measured.volts)) return measured;
+  if (classes_.centres.empty() || !measured.are_known()) return measured;
   return units_at(classes_.centres[classes_.nearest(logarithms(measured))]);
 }
 
@@ -289,8 +300,8 @@ std::vector<KnownUnits::Class> KnownUnits::classes() const {
 
 KnownUnits KnownUnits::without_errors() const {
   KnownUnits exact = *this;
-  for (std::optional<double>* error :
-       {&exact.calibration_.pull_in_error, &exact.calibration_.frequency_error, &exact.calibration_.time_error}) {
+  Calibration& all = exact.calibration_;
+  for (std::optional<double>* error : {&all.pull_in_error, &all.frequency_error, &all.piezo_error, &all.time_error}) {
     if (*error) *error = 0;
   }
   return exact;
@@ -306,8 +317,7 @@ std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Cal
     for (const Calibration& one : calibrations) {
       if (one.time_error.has_value() != by_time) continue;
       size = std::max(size, reference_size(one));
-      gauges.pull_in = gauges.pull_in || (one.classes && one.pull_in_error);
-      gauges.closing_time = gauges.closing_time || (one.classes && one.time_error);
+      if (one.classes) gauges = gauges | Gauges::of(one);
     }
     if (size > 0) references[by_time] = reference_units(nominal, gauges, size, jobs, watch);
   }
@@ -318,15 +328,18 @@ std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Cal
 
 DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int jobs, const Watch& watch) {
   constexpr std::size_t devices = 128;  // a deviation within 6 %
-  DeviceUnits squares{.volts = 0, .time = 0};
+  DeviceUnits squares{.volts = 0, .time = 0, .piezo = 0};
   double known = 0;
   for (const DeviceUnits& one : reference_units(nominal, {.pull_in = need_pull_in}, devices, jobs, watch)) {
-    if (!std::isfinite(one.volts) || !std::isfinite(one.time)) continue;
+    if (!one.are_known() || !std::isfinite(one.time)) continue;
     ++known;
     squares.volts += (one.volts - 1) * (one.volts - 1);
     squares.time += (one.time - 1) * (one.time - 1);
+    squares.piezo += (one.piezo - 1) * (one.piezo - 1);
   }
-  return {.volts = std::sqrt(squares.volts / known), .time = std::sqrt(squares.time / known)};
+  return {.volts = std::sqrt(squares.volts / known),
+          .time = std::sqrt(squares.time / known),
+          .piezo = std::sqrt(squares.piezo / known)};
 }
 
 double DeviceOutcome::of(const Figure& figure) const {
@@ -400,10 +413,13 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
       seed_(run.seed),
       vectors_(run.vectors),
       device_drives_(nominal) {
-  const auto any = [&](auto&& known) { return std::any_of(drives.begin(), drives.end(), known); };
-  if (any([](const EnsembleDrive& d) { return !d.known.calibration().is_empty(); }))
-    meter_.emplace(nominal, Gauges{any([](const EnsembleDrive& d) { return Gauges::of(d.known.calibration()).pull_in; }),
-                                   any([](const EnsembleDrive& d) { return Gauges::of(d.known.calibration()).closing_time; })});
+  Gauges gauges;
+  bool is_measured = false;
+  for (const EnsembleDrive& drive : drives) {
+    gauges = gauges | Gauges::of(drive.known.calibration());
+    is_measured = is_measured || !drive.known.calibration().is_empty();
+  }
+  if (is_measured) meter_.emplace(nominal, gauges);
   for (const EnsembleDrive& drive : drives) {
     nominal_signals_.push_back(nominal.driven(drive.waveforms));
     nominal_closed_.push_back(closed_equilibrium(nominal.model, hold_levels(nominal_signals_.back())));
@@ -427,8 +443,8 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
     for (std::size_t i = 0; i < devices.size(); ++i) {
       const std::vector<Signal>* signals = &nominal_signals_[d];
       const DeviceUnits units = devices[i].model ? drive.known.of(exact[i], seed_, first + i) : DeviceUnits{};
-      if (!std::isfinite(units.volts)) {
-        outcomes[d][i].failure = "its pull-in voltage cannot be measured";
+      if (!units.are_known()) {
+        outcomes[d][i].failure = not_measured;
         continue;
       }
       if (devices[i].model && device_drives_.differ(units)) {

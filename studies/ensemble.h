@@ -97,13 +97,20 @@ struct DeviceOutcome {
 /// Periods of the first mode in which a step closes a switch, or does not.
 inline constexpr double periods_to_close = 20;
 
-/// What is measured on devices beside their frequency.
+/// What is measured on devices beside their frequency and, where they have one, what their piezo does.
 struct Gauges {
-  bool pull_in = false, closing_time = false;
+  bool pull_in = false, closing_time = false, piezo = false;
   [[nodiscard]] static Gauges of(const Calibration& calibration) {
-    return {calibration.pull_in_error.has_value(), calibration.time_error.has_value()};
+    return {calibration.pull_in_error.has_value(), calibration.time_error.has_value(), calibration.piezo_error.has_value()};
+  }
+  /// Those of both.
+  friend Gauges operator|(const Gauges& a, const Gauges& b) {
+    return {a.pull_in || b.pull_in, a.closing_time || b.closing_time, a.piezo || b.piezo};
   }
 };
+
+/// Why a device has no units.
+inline constexpr const char* not_measured = "its pull-in voltage, or what its piezo does, cannot be measured";
 
 /// Measures devices against the nominal one, with the errors of a calibration. A closing time tells the volts of a device as
 /// those that make the nominal one close as late: the nominal device closes under a step to closing_step Vdp / s in the time that
@@ -111,11 +118,14 @@ struct Gauges {
 class DeviceMeter {
  public:
   /// Keeps a reference to `nominal`, of which it measures the electrode that closes the switch. Throws InvalidInput where there
-  /// is none, or it has no pull-in voltage, and one of the gauges needs it. `precision`: of pull-in voltages, relative.
+  /// is none, or it has no pull-in voltage, and one of the gauges needs it; and where a piezo is asked for that the switch has
+  /// not, or that does not move its contact point. `precision`: of pull-in voltages, relative.
   DeviceMeter(const Prepared& nominal, const Gauges& gauges, double precision = dynamic_pull_in_precision);
   /// Of the nominal device [V], [Hz].
   [[nodiscard]] double pull_in() const { return pull_in_; }
   [[nodiscard]] double frequency() const;
+  /// The unit of a switch's piezo: how far its volt moves the contact point, over the contact gap; 0 where there is none [1/V].
+  [[nodiscard]] static double piezo_unit(const Switch& model);
   /// The number of the electrode among the drives.
   [[nodiscard]] std::size_t electrode() const { return electrode_; }
   /// Under the step whose closing time is measured; NaN where it is not [s].
@@ -169,15 +179,15 @@ class KnownUnits {
 
  private:
   Calibration calibration_;
-  Classes classes_;  // of the logarithms of volts and time
+  Classes classes_;  // of the logarithms of volts, time and the piezo's volts
 };
 /// For each of these calibrations, their classes made of devices of the spread that depend on nothing but the spread: a device
 /// belongs to the same class in every study. Throws Interrupted where `watch` asks to stop.
 [[nodiscard]] std::vector<KnownUnits> known_units(const Prepared& nominal, std::span<const Calibration> calibrations, int jobs,
                                                   const Watch& watch = {});
 
-/// Standard deviations of the devices of the spread from the nominal one, in volts and in time, over its own. Throws Interrupted
-/// where `watch` asks to stop.
+/// Standard deviations of the devices of the spread from the nominal one, in volts, in time and in a piezo's volts, over its own.
+/// Throws Interrupted where `watch` asks to stop.
 [[nodiscard]] DeviceUnits deviation_of_units(const Prepared& nominal, bool need_pull_in, int jobs, const Watch& watch = {});
 
 /// The drives that every device gets: the waveforms of the nominal device, or, where devices are calibrated, those in the units

@@ -220,7 +220,7 @@ DeviceReader::Reading DeviceReader::touch(const Instrument& instrument, bool wit
   constexpr int refinement = 2;
   LinearizedClosing motion(*model_, signals, tape, refinement, &slopes());
   const CostSlopes figures = cost_slopes(*model_, signals, motion, nominal_.scene.metrics);
-  reading.slopes = motion.backward({figures.first_touch}, near_.changes_of_signals());
+  reading.slopes = motion.backward({figures.of[&Metrics::initial_contact_time]}, near_.changes_of_signals());
   return reading;
 }
 

@@ -4,12 +4,14 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -30,7 +32,7 @@ namespace {
 
 constexpr double widest_change = 0.25;  // of the logarithm of a factor
 constexpr double first_step = 0.005;    // of the search, of the logarithm of a factor
-constexpr long closings_of_a_device = 80;
+constexpr long closings_of_a_factor = 40;
 constexpr double periods_of_step = 5;  // in which it closes a switch
 constexpr double probability = 0.95;
 
@@ -75,6 +77,7 @@ std::vector<Gauge> instruments(const Prepared& nominal, const DeviceMeter& meter
   for (const double step : options.steps)
     add(fmt::format("time at {:g} Vdp", step), options.time_error,
         {.what = Measurable::closing_time, .drive = electrode, .level = step * meter.pull_in()});
+  all.push_back({std::string(measured_piezo), "1/V", options.piezo_error, DeviceMeter::piezo_unit});
   return all;
 }
 
@@ -105,24 +108,41 @@ std::vector<MeasurableFigure> measure(const std::vector<Gauge>& all, const Switc
   return figures;
 }
 
+// What a recipe is multiplied by.
+using Factor = double DeviceUnits::*;
+constexpr std::array all_factors{&DeviceUnits::volts, &DeviceUnits::time, &DeviceUnits::piezo};
+// Of a recipe: that of a piezo comes last, and only where it is driven.
+std::span<const Factor> factors_of(bool drives_piezo) { return std::span(all_factors).first(drives_piezo ? 3 : 2); }
+
+constexpr DeviceUnits no_factors{.volts = unknown, .time = unknown};
+
 // The best factors of a device, searched from its own units.
-DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& recipe, std::size_t k, const DeviceUnits& own) {
-  const auto units_at = [](std::span<const double> x) { return DeviceUnits{.volts = std::exp(x[0]), .time = std::exp(x[1])}; };
+DeviceUnits best_factors(const RobustCost& cost, const std::vector<Waveform>& recipe, std::size_t k, const DeviceUnits& own,
+                         std::span<const Factor> factors) {
+  const auto units_at = [&](std::span<const double> x) {
+    DeviceUnits units;
+    for (std::size_t i = 0; i < factors.size(); ++i) units.*factors[i] = std::exp(x[i]);
+    return units;
+  };
+  std::vector<double> start;
+  for (const Factor factor : factors) start.push_back(std::log(own.*factor));
   double least = std::numeric_limits<double>::infinity();
-  const Problem problem{.variables = {{.name = "volts", .lower = -widest_change, .upper = widest_change},
-                                      {.name = "time", .lower = -widest_change, .upper = widest_change}},
-                        .objective =
-                            [&](std::span<const double> x) {
-                              const double score =
-                                  std::min(cost.score(cost.close(recipe, k, units_at(x))), RobustCost::not_closed);
-                              least = std::min(least, score);
-                              return score + x[0] * x[0] + x[1] * x[1];
-                            },
-                        .starts = {{std::log(own.volts), std::log(own.time)}}};
-  const OptimizerResult found = minimize(
-      problem, {.optimizer = "nelder-mead", .max_evaluations = closings_of_a_device, .step = first_step / (2 * widest_change)});
-  if (found.x.empty() || least >= RobustCost::not_closed) return {.volts = unknown, .time = unknown};
-  return units_at(found.x);
+  Problem problem{.variables = {{.name = "volts"}, {.name = "time"}, {.name = "piezo"}},
+                  .objective =
+                      [&](std::span<const double> x) {
+                        const double score = std::min(cost.score(cost.close(recipe, k, units_at(x))), RobustCost::not_closed);
+                        least = std::min(least, score);
+                        double changes = 0;
+                        for (const double change : x) changes += change * change;
+                        return score + changes;
+                      },
+                  .starts = {start}};
+  problem.variables.resize(factors.size());
+  for (Variable& variable : problem.variables) variable.lower = -widest_change, variable.upper = widest_change;
+  const OptimizerResult found = minimize(problem, {.optimizer = "nelder-mead",
+                                                   .max_evaluations = closings_of_a_factor * static_cast<long>(factors.size()),
+                                                   .step = first_step / (2 * widest_change)});
+  return found.x.empty() || least >= RobustCost::not_closed ? no_factors : units_at(found.x);
 }
 
 // Rows 1, ln x_1 ... of the devices; NaN where a figure is not there.
@@ -142,9 +162,10 @@ Eigen::MatrixXd regressors(const std::vector<MeasurableFigure>& figures, const s
 }
 
 // The factors of every device, told by a fit to the half that it is not in.
-std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best) {
-  const Eigen::Index devices = x.rows(), middle = devices / 2;
-  Eigen::MatrixXd told = Eigen::MatrixXd::Constant(devices, 2, unknown);
+std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vector<DeviceUnits>& best,
+                                      std::span<const Factor> factors) {
+  const Eigen::Index devices = x.rows(), middle = devices / 2, count = static_cast<Eigen::Index>(factors.size());
+  Eigen::MatrixXd told = Eigen::MatrixXd::Constant(devices, count, unknown);
   for (const bool first : {true, false}) {
     const Eigen::Index begin = first ? 0 : middle, end = first ? middle : devices;
     std::vector<Eigen::Index> fitted;
@@ -153,23 +174,26 @@ std::vector<DeviceUnits> told_factors(const Eigen::MatrixXd& x, const std::vecto
       if (!inside && x.row(k).allFinite() && std::isfinite(best[static_cast<std::size_t>(k)].volts)) fitted.push_back(k);
     }
     if (static_cast<Eigen::Index>(fitted.size()) < x.cols() + 2) continue;  // nothing can be told
-    Eigen::MatrixXd factors(fitted.size(), 2);
+    Eigen::MatrixXd logarithms(fitted.size(), count);
     for (std::size_t i = 0; i < fitted.size(); ++i) {
       const DeviceUnits& units = best[static_cast<std::size_t>(fitted[i])];
-      factors.row(static_cast<Eigen::Index>(i)) << std::log(units.volts), std::log(units.time);
+      for (Eigen::Index f = 0; f < count; ++f)
+        logarithms(static_cast<Eigen::Index>(i), f) = std::log(units.*factors[static_cast<std::size_t>(f)]);
     }
     const Eigen::MatrixXd rows = x(fitted, Eigen::all);
-    const Eigen::MatrixXd slopes = least_squares(rows, factors);
+    const Eigen::MatrixXd slopes = least_squares(rows, logarithms);
     told.middleRows(begin, end - begin) = x.middleRows(begin, end - begin) * slopes;
   }
-  std::vector<DeviceUnits> units;
-  for (Eigen::Index k = 0; k < devices; ++k) units.push_back({.volts = std::exp(told(k, 0)), .time = std::exp(told(k, 1))});
+  std::vector<DeviceUnits> units(best.size());
+  for (Eigen::Index k = 0; k < devices; ++k) {
+    for (Eigen::Index f = 0; f < count; ++f)
+      units[static_cast<std::size_t>(k)].*factors[static_cast<std::size_t>(f)] = std::exp(told(k, f));
+  }
   return units;
 }
 
 // Root mean square of what is missed, and its square over the variance.
-std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std::vector<DeviceUnits>& best,
-                                 double DeviceUnits::*factor) {
+std::pair<double, double> misses(const std::vector<DeviceUnits>& told, const std::vector<DeviceUnits>& best, Factor factor) {
   std::vector<double> wanted;
   double square = 0;
   for (std::size_t k = 0; k < told.size(); ++k) {
@@ -192,9 +216,10 @@ struct Told {
 Told fitted(const MeasurementStudy& study, std::uint64_t seed, std::string name, std::vector<std::size_t> figures) {
   Told told{.prediction = {.name = std::move(name), .figures = std::move(figures)}, .units = {}};
   Prediction& p = told.prediction;
-  told.units = told_factors(regressors(study.figures, p.figures, seed), study.best);
+  told.units = told_factors(regressors(study.figures, p.figures, seed), study.best, factors_of(study.drives_piezo));
   std::tie(p.volts_miss, p.volts_unexplained) = misses(told.units, study.best, &DeviceUnits::volts);
   std::tie(p.time_miss, p.time_unexplained) = misses(told.units, study.best, &DeviceUnits::time);
+  if (study.drives_piezo) std::tie(p.piezo_miss, p.piezo_unexplained) = misses(told.units, study.best, &DeviceUnits::piezo);
   return told;
 }
 
@@ -214,12 +239,20 @@ std::vector<Told> told_for_reference(const MeasurementStudy& study, std::uint64_
   std::vector<std::size_t> every(count);
   std::iota(every.begin(), every.end(), std::size_t{0});
   all.push_back(fitted(study, seed, "all of them", every));
-  if (const std::size_t v = number_of("Vdp"), f = number_of("frequency"); v < count && f < count) {
-    const Eigen::MatrixXd x = regressors(study.figures, {v, f}, seed);
-    std::vector<DeviceUnits> own;
-    for (Eigen::Index k = 0; k < x.rows(); ++k) own.push_back({.volts = std::exp(x(k, 1)), .time = std::exp(-x(k, 2))});
-    given("own units: Vdp, frequency", std::move(own));
-  }
+  const std::size_t v = number_of(measured_pull_in), f = number_of(measured_frequency), p = number_of(measured_piezo);
+  if (v == count || f == count) return all;
+  const auto in_own_units = [&](const std::string& name, const std::vector<std::size_t>& measured) {
+    const Eigen::MatrixXd x = regressors(study.figures, measured, seed);
+    std::vector<DeviceUnits> own(study.devices);
+    for (Eigen::Index k = 0; k < x.rows(); ++k) {
+      DeviceUnits& units = own[static_cast<std::size_t>(k)];
+      units = {.volts = std::exp(x(k, 1)), .time = std::exp(-x(k, 2))};
+      if (x.cols() > 3) units.piezo = std::exp(-x(k, 3));
+    }
+    given("own units: " + name, std::move(own));
+  };
+  in_own_units("Vdp, frequency", {v, f});
+  if (study.drives_piezo && p < count) in_own_units("Vdp, frequency, piezo", {v, f, p});
   return all;
 }
 
@@ -240,7 +273,7 @@ void judge_told(Told& told, const RobustCost& cost, const std::vector<Waveform>&
   run_tasks(outcomes.size(), jobs, [&](std::size_t k) {
     if (watch.stopped()) return;
     const DeviceUnits& units = told.units[k];
-    if (std::isfinite(units.volts) && std::isfinite(units.time)) {
+    if (units.are_known() && std::isfinite(units.time)) {
       outcomes[k] = cost.close(recipe, k, units);
     } else {
       outcomes[k].failure = "its factors cannot be told";
@@ -287,13 +320,14 @@ MeasurementStudy study_measurements(const SceneFile& file, const MeasurementOpti
   const RobustCost cost(setting, aim, build_all(ensemble, {}, options.seed, options.jobs, watch));
 
   MeasurementStudy study{.devices = cost.devices()};
+  study.drives_piezo = nominal.model.has_piezo() && nominal.told(recipe).back().peak() > 0;
   study.figures = measure(instruments(nominal, meter, options), nominal.model, cost, options.jobs, watch);
-  study.best.assign(study.devices, {.volts = unknown, .time = unknown});
+  study.best.assign(study.devices, no_factors);
   over_devices(study.devices, options.jobs, "best factors of the devices", watch, [&](std::size_t k) {
     if (!cost.device(k).model) return;
     DeviceUnits own = meter.exact(*cost.device(k).model);
     if (!std::isfinite(own.volts)) own.volts = 1;
-    study.best[k] = best_factors(cost, recipe, k, own);
+    study.best[k] = best_factors(cost, recipe, k, own, factors_of(study.drives_piezo));
   });
   watch.throw_if_stopped();
 

@@ -3,12 +3,13 @@
 //
 //   best factors   (s_V, s_t) of device k minimise  s_k + (ln s_V)^2 + (ln s_t)^2,   s_k its score for `bounce` (robust_cost.h)
 //                  under V(t) = s_V V_0(t / s_t), the recipe V_0 being the scene's own drive; searched by Nelder and Mead's
-//                  simplex from the device's own units (its Vdp, its period)
+//                  simplex from the device's own units (its Vdp, its period). Where the recipe drives a piezo, its voltages have
+//                  a factor s_p of their own, from the device's own unit of it: what a volt deflects over the contact gap.
 //   told factors   ln s = a + sum_i b_i ln x_i, least squares over one half of the devices, used on the other half, and vice
 //   versa
 //
 // The score is flat where a device already lands softly, and there the best factors would be anything: the squares choose the
-// smallest change of the waveform that lands it, and are too small to spoil a landing. Both factors are fitted by the same
+// smallest change of the waveform that lands it, and are too small to spoil a landing. All factors are fitted by the same
 // figures, so that the fit is the same whatever the two misses are worth to each other. It is judged by closings alone: figures
 // are ranked by the 95 % quantile of the score of the devices, all of them in the half that the factors were not fitted to.
 //
@@ -39,10 +40,10 @@ struct MeasurableFigure {
 struct Prediction {
   std::string name;
   std::vector<std::size_t> figures;  ///< numbers in MeasurementStudy::figures
-  /// Of the logarithms of the best factors of volts and of time: their root mean square miss on devices that were not fitted to,
-  /// and its square over their variance. NaN where nothing is fitted.
-  double volts_miss = Metrics::unset, time_miss = Metrics::unset;
-  double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset;
+  /// Of the logarithms of the best factors of volts, of time and of a piezo's volts: their root mean square miss on devices that
+  /// were not fitted to, and its square over their variance. NaN where nothing is fitted; of a piezo also where it is not driven.
+  double volts_miss = Metrics::unset, time_miss = Metrics::unset, piezo_miss = Metrics::unset;
+  double volts_unexplained = Metrics::unset, time_unexplained = Metrics::unset, piezo_unexplained = Metrics::unset;
   bool is_judged = false;         ///< the rest is known
   double score = Metrics::unset;  ///< 95 % quantile
   Yield bounce_free;
@@ -55,7 +56,7 @@ struct MeasurementOptions {
   std::uint64_t seed = 1;
   int jobs = 1;                               ///< threads; does not change the result
   std::vector<double> steps{1.1, 1.25, 1.5};  ///< whose closing times are measured, over the nominal Vdp
-  double pull_in_error = 0, static_pull_in_error = 0, release_error = 0, frequency_error = 0, time_error = 0;
+  double pull_in_error = 0, static_pull_in_error = 0, release_error = 0, frequency_error = 0, piezo_error = 0, time_error = 0;
 };
 
 struct MeasurementStudy {
@@ -64,6 +65,7 @@ struct MeasurementStudy {
   std::vector<Prediction> references;   ///< nothing, own units, all figures, the best factors themselves
   std::vector<Prediction> predictions;  ///< single figures and pairs, the best first; those not judged last
   std::size_t devices = 0;
+  bool drives_piezo = false;  ///< whose voltages then have a factor of their own
   bool interrupted = false;
 };
 

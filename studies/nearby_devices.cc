@@ -68,7 +68,7 @@ std::vector<Signal> NearbyDevices::signals_of(std::span<const double> values) {
     const SampledDevice sampled = builder_.device(own);
     require(sampled.model.has_value(), sampled.refusal);
     units = known_.of(meter_->exact(*sampled.model), 0, 0);
-    require(std::isfinite(units.volts), "its pull-in voltage cannot be found");
+    require(units.are_known(), not_measured);
   }
   return drives_.differ(units) ? drives_.signals(drive_->waveforms, units, own) : nominal_.driven(drive_->waveforms);
 }

@@ -94,8 +94,8 @@ BuiltEnsemble known_as(GaugedEnsemble gauged, const KnownUnits& known, std::uint
     SampledDevice& device = built.devices[k];
     if (!device.model) continue;
     built.units[k] = known.of(gauged.exact[k], seed, k);
-    if (std::isfinite(built.units[k].volts)) continue;
-    device.refusal = "its pull-in voltage cannot be measured";
+    if (built.units[k].are_known()) continue;
+    device.refusal = not_measured;
     device.model.reset();
   }
   return built;

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <set>
+#include <span>
 #include <utility>
 
+#include "base/choice.h"
 #include "base/require.h"
 #include "sampling/confidence.h"
 #include "sampling/statistics.h"
@@ -96,6 +99,14 @@ void set_errors(SceneFile& file, const std::string& driver, const SourceErrors& 
   set(".delay", errors.delay, 0);
 }
 
+struct Measurement {
+  std::string_view name;
+  std::optional<double> Calibration::*error;
+};
+constexpr std::array all_measurements{
+    Measurement{measured_pull_in, &Calibration::pull_in_error}, Measurement{"closing time", &Calibration::time_error},
+    Measurement{measured_frequency, &Calibration::frequency_error}, Measurement{measured_piezo, &Calibration::piezo_error}};
+
 // The same drive for every knowledge that one can have of a device, without errors: from nothing to all that can be measured,
 // first as the class of the device, then as its own units.
 std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
@@ -104,20 +115,30 @@ std::vector<NamedDrive> by_knowledge(const NamedDrive& drive) {
     all.push_back({.name = name, .waveforms = drive.waveforms, .calibration = calibration});
   };
   add("nothing", {});
-  const Calibration& c = drive.calibration;
-  const bool has_both = c.pull_in_error && c.frequency_error;
-  if (has_both) {
-    add("Vdp", {.pull_in_error = 0});
-    add("frequency", {.frequency_error = 0});
+  std::vector<Measurement> measured;
+  for (const Measurement& one : all_measurements) {
+    if (drive.calibration.*one.error) measured.push_back(one);
   }
-  Calibration exact;
-  if (c.pull_in_error) exact.pull_in_error = 0;
-  if (c.frequency_error) exact.frequency_error = 0;
-  if (c.time_error) exact.time_error = 0;
-  std::string name = c.pull_in_error ? "Vdp" : c.time_error ? "closing time" : "frequency";
-  if (has_both || (c.time_error && c.frequency_error)) name += " and frequency";
+  const auto exactly = [](std::span<const Measurement> those) {
+    Calibration exact;
+    for (const Measurement& one : those) exact.*one.error = 0;
+    return exact;
+  };
+  const auto named = [](std::span<const Measurement> those) {
+    std::vector<std::string_view> names;
+    for (const Measurement& one : those) names.push_back(one.name);
+    return in_words(names);
+  };
+  for (std::size_t i = 0; i < measured.size() && measured.size() > 1; ++i)
+    add(std::string(measured[i].name), exactly(std::span(measured).subspan(i, 1)));
+  if (measured.size() > 2 && drive.calibration.piezo_error) {  // what the last one is worth beside the others
+    const auto others = std::span(measured).first(measured.size() - 1);
+    add(named(others), exactly(others));
+  }
+  const Calibration exact = exactly(measured);
+  const std::string name = named(measured);
   std::set<int> counts(worth_of_classes.begin(), worth_of_classes.end());
-  if (c.classes) counts.insert(*c.classes);
+  if (drive.calibration.classes) counts.insert(*drive.calibration.classes);
   for (const int count : counts) {
     Calibration sorted = exact;
     sorted.classes = count;
@@ -271,7 +292,7 @@ SceneFile scene_of_values(const Ensemble& ensemble, const DriveRobustness& drive
     if (sampled.model) {
       const DeviceMeter meter(nominal, Gauges::of(calibration));
       units = drive.known.of(meter.exact(*sampled.model), seed, device);
-      if (!std::isfinite(units.volts)) units = {};
+      if (!units.are_known()) units = {};
     }
     file.erase("calibration");  // has been used
   }

@@ -39,10 +39,11 @@ struct CalibrateRequest {
 
 // "Vdp:1 %,time:0.5 %"
 void read_errors(const std::string& list, MeasurementOptions& options) {
-  const std::array<std::pair<std::string_view, double*>, 5> errors{{{"Vdp", &options.pull_in_error},
+  const std::array<std::pair<std::string_view, double*>, 6> errors{{{"Vdp", &options.pull_in_error},
                                                                     {"Vsp", &options.static_pull_in_error},
                                                                     {"release", &options.release_error},
                                                                     {"frequency", &options.frequency_error},
+                                                                    {"piezo", &options.piezo_error},
                                                                     {"time", &options.time_error}}};
   std::set<std::string_view> seen;
   for (const std::string& one : parts_of(list)) {
@@ -57,7 +58,7 @@ void read_errors(const std::string& list, MeasurementOptions& options) {
     }
     require(q.dimension == dimension::none && q.value >= 0 && q.value <= most, [&] {
       return fmt::format(
-          "--error {}: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\"",
+          "--error {}: must be Vdp, Vsp, release, frequency, piezo or time with an error from 0 to 50 %, such as \"Vdp:1 %\"",
           shown(list));
     });
     require(seen.insert(row->first).second, [&] { return fmt::format("--error {}: {} stands twice", shown(list), row->first); });
@@ -114,15 +115,16 @@ void add_calibrate(Verb& verb) {
   verb.with_samples(request->samples, "devices (default: 256)");
   verb.option("--steps", request->steps, "LIST",
               "steps whose closing times are measured, in multiples of the nominal Vdp (default: 1.1,1.25,1.5)");
-  verb.option(
-      "--error", request->errors, "LIST",
-      "of the measurements, one standard deviation: \"Vdp:1 %,frequency:0.5 %\"; there are Vdp, Vsp, release, frequency and "
-      "time (default: exact)");
+  verb.option("--error", request->errors, "LIST",
+              "of the measurements, one standard deviation: \"Vdp:1 %,frequency:0.5 %\"; there are Vdp, Vsp, release, frequency, "
+              "piezo and time (default: exact)");
   verb.with_seed(request->seed, "same devices");
   verb.with_jobs(request->jobs);
   verb.footer(
       "The scene's drive is the recipe: a landing, not the plain step. Every device is closed with the recipe's voltages and\n"
-      "times multiplied by factors told from what is measured: from each figure, and from every pair.\n"
+      "times multiplied by factors told from what is measured: from each figure, and from every pair. Where it drives a piezo, "
+      "its\n"
+      "voltages have a factor of their own.\n"
       "Example:\n  softland calibrate softland-out --error \"Vdp:0.2 %,frequency:0.1 %\"");
   verb.runs([request](const Common& common) { return calibrate_verb(common, *request); });
 }

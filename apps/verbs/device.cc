@@ -107,10 +107,12 @@ json answer(const PracticeDevice& device, const json& line) {
 }
 
 int device_verb(const Common& c, const DeviceRequest& request) {
-  PracticeOptions options{
-      .laboratory = laboratory_errors(request.laboratory), .drift = drift_of(request.drift), .model = model_of(request.model)};
+  const SceneFile file = load_scene(c);
+  PracticeOptions options{.laboratory = laboratory_errors(request.laboratory, file),
+                          .drift = drift_of(request.drift),
+                          .model = model_of(request.model)};
   options.seed = seed_of(request.seed, options.seed);
-  const PracticeDevice device(load_scene(c), options);
+  const PracticeDevice device(file, options);
   LineReader lines(STDIN_FILENO, longest_line);
   for (LineReader::Line line = lines.next(); line.end == LineReader::End::line; line = lines.next()) {
     if (trimmed(line.text).empty()) continue;

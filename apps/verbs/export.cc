@@ -35,7 +35,7 @@ constexpr double usual_error = 0.01;  // of a measurement whose error nobody giv
 
 struct ExportRequest {
   std::string result, format = "csv", signal = "told";
-  std::string measured;                                         ///< "Vdp=54.2 V,frequency=10.2 kHz"
+  std::string measured;                                         ///< "Vdp=54.2 V,frequency=10.2 kHz,piezo=1.6 %/V"
   std::optional<std::string> device_pull_in, device_frequency;  ///< the same, each by itself
 };
 
@@ -73,7 +73,8 @@ struct Measured {
 struct Measurements {
   Measured pull_in{.name = measured_pull_in, .due = dimension::voltage};
   Measured frequency{.name = measured_frequency, .due = dimension::frequency};
-  Measured time{.name = measured_time, .due = dimension::time};  // of closing under a step to closing_step Vdp
+  Measured piezo{.name = measured_piezo, .due = dimension::inverse_voltage};  // its deflection per volt over the contact gap
+  Measured time{.name = measured_time, .due = dimension::time};               // of closing under a step to closing_step Vdp
 
   explicit Measurements(const ExportRequest& request) {
     if (request.device_pull_in) pull_in.read("--device-vdp", *request.device_pull_in);
@@ -85,19 +86,22 @@ struct Measurements {
       Measured* const known = sign == std::string::npos ? nullptr
                               : name == pull_in.name    ? &pull_in
                               : name == frequency.name  ? &frequency
+                              : name == piezo.name      ? &piezo
                               : name == time.name       ? &time
                                                         : nullptr;
       require(known != nullptr, [&] {
-        return fmt::format("--measured {}: '{}' is no measurement; there are {}, {} and {}, such as \"{}=54.2 V\"",
-                           shown(request.measured), shown(one), pull_in.name, frequency.name, time.name, pull_in.name);
+        return fmt::format("--measured {}: '{}' is no measurement; there are {}, such as \"{}=54.2 V\"", shown(request.measured),
+                           shown(one), in_words(measurement_names), pull_in.name);
       });
       known->read(fmt::format("--measured {} =", name), one.substr(sign + 1));
     }
     require(!time.value || !pull_in.value,
             "--measured: a closing time tells the volts of a device, as Vdp does: give one of them");
   }
-  [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value && !time.value; }
-  [[nodiscard]] const std::string& said() const { return pull_in.value ? pull_in.said : time.value ? time.said : frequency.said; }
+  [[nodiscard]] bool are_none() const { return !pull_in.value && !frequency.value && !piezo.value && !time.value; }
+  [[nodiscard]] const std::string& said() const {
+    return pull_in.value ? pull_in.said : time.value ? time.said : piezo.value ? piezo.said : frequency.said;
+  }
 };
 
 // Of a measurement, relative: what [calibration] says, or the usual one, which is told.
@@ -127,15 +131,19 @@ Prepared with_spread(const Prepared& p) {
 
 // The units of the device on which this was measured.
 DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watch& watch) {
-  const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value(), .closing_time = measured.time.value.has_value()});
+  const DeviceMeter meter(p, {.pull_in = measured.pull_in.value.has_value(),
+                              .closing_time = measured.time.value.has_value(),
+                              .piezo = measured.piezo.value.has_value()});
   const Calibration& calibration = p.scene.calibration;
   require(!calibration.classes || (measured.pull_in.value.has_value() == calibration.pull_in_error.has_value() &&
                                    measured.frequency.value.has_value() == calibration.frequency_error.has_value() &&
+                                   measured.piezo.value.has_value() == calibration.piezo_error.has_value() &&
                                    measured.time.value.has_value() == calibration.time_error.has_value()),
           "--measured, --device-vdp, --device-frequency: the scene sorts devices into classes: give what [calibration] measures");
   const DeviceUnits told = measured.time.value ? meter.told_by(*measured.time.value) : DeviceUnits{};
   const double volts = measured.pull_in.value ? *measured.pull_in.value / meter.pull_in() : told.volts,
-               time = meter.frequency() / measured.frequency.value.value_or(meter.frequency());
+               time = meter.frequency() / measured.frequency.value.value_or(meter.frequency()),
+               piezo = measured.piezo.value ? DeviceMeter::piezo_unit(p.model) / *measured.piezo.value : 1;
   const bool by_volts = measured.pull_in.value || measured.time.value;
   const DeviceUnits deviation = deviation_of_units(with_spread(p), by_volts, job_count({}), watch);
   if (measured.time.value)
@@ -143,8 +151,9 @@ DeviceUnits units_of(const Prepared& p, const Measurements& measured, const Watc
                     told.volts_by_time * calibration.time_error.value_or(usual_time_error));
   if (measured.pull_in.value) warn_if_strange(measured.pull_in, volts, deviation.volts, calibration.pull_in_error);
   if (measured.frequency.value) warn_if_strange(measured.frequency, 1 / time, deviation.time, calibration.frequency_error);
+  if (measured.piezo.value) warn_if_strange(measured.piezo, 1 / piezo, deviation.piezo, calibration.piezo_error);
   const KnownUnits known = known_units(p, std::array{calibration}, job_count({}), watch).front();
-  return known.of({.volts = volts, .time = time, .volts_by_time = told.volts_by_time});
+  return known.of({.volts = volts, .time = time, .piezo = piezo, .volts_by_time = told.volts_by_time});
 }
 
 // The waveforms of that device. Throws InvalidInput where a source cannot give them.
@@ -225,13 +234,16 @@ void add_export(Verb& verb) {
       "--measured", request->measured, "WHAT",
       "measured on a device, \"Vdp=54.2 V,frequency=10.2 kHz\" or one of them: its own waveform, with voltages in "
       "proportion to the dynamic pull-in voltage, and times to the period; \"time=36.1 us\", the closing time under a step "
-      "to 1.2 Vdp of the nominal device, tells the voltages as well");
+      "to 1.2 Vdp of the nominal device, tells the voltages as well; \"piezo=1.6 %/V\", the static deflection of the contact "
+      "point per volt on the piezo over the contact gap (31 nm/V over the 2 um that the closed switch is deflected by: one "
+      "instrument reads both), tells those of the piezo, which else are the nominal device's");
   verb.optional("--device-vdp", request->device_pull_in, "VOLTAGE", "the same as --measured \"Vdp=VOLTAGE\"");
   verb.optional("--device-frequency", request->device_frequency, "FREQUENCY",
                 "the same as --measured \"frequency=FREQUENCY\": the first natural frequency");
   verb.footer(
       "Examples:\n  softland export softland-out --format spice-pwl > drive.cir\n"
-      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz\" > device-17.csv");
+      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz\" > device-17.csv\n"
+      "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz,piezo=1.6 %/V\" > device-17.csv");
   verb.runs([request](const Common& common) { return export_verb(common, *request); });
 }
 

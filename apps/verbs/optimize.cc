@@ -359,11 +359,11 @@ void add_optimize(Verb& verb) {
       "--constrain", request->conditions, "CONDITION",
       "condition that the winner on the drawing, and 95 % of the devices, have to fulfil: \"permanent_contact_time < 60 us\"; "
       "may be repeated");
-  verb.option(
-      "--calibrate", request->calibration, "LIST",
-      "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
-      "errors, \"Vdp:1 %,frequency:0.5 %\"; \"Vdp,frequency in 8 classes\": sorted by it, one waveform for each class; none: "
-      "not even what [calibration] says");
+  verb.option("--calibrate", request->calibration, "LIST",
+              "measured on every device before it is driven, whose waveform is then in its own units: \"Vdp,frequency\" or, with "
+              "errors, \"Vdp:1 %,frequency:0.5 %\"; piezo, the deflection per volt on it over the contact gap, as well; "
+              "\"Vdp,frequency in 8 classes\": sorted by it, one waveform for each class; none: "
+              "not even what [calibration] says");
   verb.with_samples(request->samples,
                     "devices that a search by one measure looks at (default: 128), or fresh ones of the verdict (default: 2000)");
   verb.option("--optimizer", request->optimizer, "NAME", "auto (default), or another of the names below");

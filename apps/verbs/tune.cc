@@ -23,8 +23,10 @@
 #include "apps/tuning_log.h"
 #include "apps/values.h"
 #include "apps/verbs/verbs.h"
+#include "base/read_file.h"
 #include "base/require.h"
 #include "config/assumed_spread.h"
+#include "reports/tuning_lines.h"
 #include "reports/tuning_report.h"
 #include "store/study_store.h"
 #include "studies/search_setting.h"
@@ -42,15 +44,16 @@ constexpr int usual_closings = 30;
 struct TuneRequest {
   std::string device, actuator = "electrostatic";
   bool by_hand = false, resume = false;
+  std::vector<std::string> wafer;  ///< folders of earlier tunings
   std::optional<std::string> closings, recipes, effort, timeout, seed, jobs;
   LaboratoryRequest laboratory;
 };
 
-TunerOptions tuner_options(const TuneRequest& request) {
+TunerOptions tuner_options(const TuneRequest& request, const SceneFile& file) {
   const auto* const actuator = find_named(actuators, request.actuator);
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
   TunerOptions options{
-      .actuator = actuator->value, .jobs = job_count(request.jobs), .laboratory = laboratory_errors(request.laboratory)};
+      .actuator = actuator->value, .jobs = job_count(request.jobs), .laboratory = laboratory_errors(request.laboratory, file)};
   options.seed = seed_of(request.seed, options.seed);
   if (request.recipes) options.most_recipes = whole_number("--recipes", *request.recipes, 1);
   if (request.effort) options.effort = quantity_of("--effort", *request.effort, dimension::none);
@@ -70,6 +73,23 @@ json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"shot_error", options.laboratory.shot_error}};
 }
 
+// What a tuning began with and found, in the folder that --out named.
+TunedBelief tuned_in(const std::string& folder, const json& origin) {
+  const std::string path = (std::filesystem::path(folder) / "tune.json").string();
+  json written;
+  try {
+    written = read_line(read_file(path));
+    for (const char* key : {"scene", "actuator", "gain_error"})
+      require(written.value(origin_key, json::object()).value(key, json()) == origin.at(key),
+              [&] { return fmt::format("is a tuning of another {}", key); });
+    return tuned_belief(written);
+  } catch (const InvalidInput& error) {
+    const std::string_view what = error.what();
+    throw InvalidInput(
+        fmt::format("--wafer {}: {}", folder, what.starts_with(path) ? std::string(what) : path + ": " + error.what()));
+  }
+}
+
 std::chrono::milliseconds patience_of(const std::optional<std::string>& timeout) {
   constexpr double usual = 60, longest = 1e6;  // [s]
   const double seconds = timeout ? quantity_of("--timeout", *timeout, dimension::time) : usual;
@@ -81,38 +101,46 @@ std::chrono::milliseconds patience_of(const std::optional<std::string>& timeout)
 /// A tuning, its closings on disk, and the files that tell of it.
 class Tuning {
  public:
-  Tuning(const Common& common, const SceneFile& file, const TunerOptions& options, bool resume);
+  Tuning(const Common& common, const SceneFile& file, TunerOptions options, const TuneRequest& request);
 
+  /// Learns what was recorded before.
+  void learn_log();
   /// Fires shots until the switch has landed often enough, `closings` are used, or the lab wants no more.
   TuningEnd run(TuningLab& lab, int closings);
   /// The files as they stand.
   void write(TuningEnd end);
+  [[nodiscard]] json told_json(const TuningReport& report) const;
   [[nodiscard]] TuningReport report(TuningEnd end) const { return tuning_report(*tuner_, closings_, options_, end); }
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
 
  private:
   [[nodiscard]] ToldShot told(const TunerShot& shot) const;
   [[nodiscard]] SentSignals sent(const TunerShot& shot) const { return sent_signals(tuner_->scene(), shot.waveforms); }
-  void learn_log();
   void learn(const TunerShot& shot, const ContactRecord& record);
 
   Common common_;
   TunerOptions options_;
+  json origin_;
   std::optional<ResultFolder> folder_;
   std::unique_ptr<TuningLog> log_;
   std::optional<Tuner> tuner_;
   std::vector<TunedClosing> closings_;
 };
 
-Tuning::Tuning(const Common& common, const SceneFile& file, const TunerOptions& options, bool resume)
-    : common_(common),
-      options_(options),
-      folder_(claim_places(common, {"best.toml", "best.csv", "tune.json", "tune.html", log_file}, {log_file})),
-      log_(std::make_unique<TuningLog>(folder_->path() / log_file, origin_of(file, options), resume)) {
+Tuning::Tuning(const Common& common, const SceneFile& file, TunerOptions options, const TuneRequest& request)
+    : common_(common), options_(std::move(options)), origin_(origin_of(file, options_)) {
+  json wafer = json::array();
+  for (const std::string& folder : request.wafer) {
+    options_.wafer.push_back(tuned_in(folder, origin_));
+    wafer.push_back(belief_json(options_.wafer.back()));
+  }
+  origin_["wafer"] = wafer.empty() ? json() : json(content_key(wafer.dump()).hexadecimal());
+  folder_ = claim_places(common, {"best.toml", "best.csv", "tune.json", "tune.html", log_file}, {log_file});
+  log_ = std::make_unique<TuningLog>(folder_->path() / log_file, origin_, request.resume);
   if (!log_->kept_aside().empty() && !common_.quiet)
     say(fmt::format("the closings of an earlier run are now in {}", log_->kept_aside().string()));
   const WatchedWork work(common_.quiet, common_.stop);
-  tuner_.emplace(file, options, work.watch());
+  tuner_.emplace(file, options_, work.watch());
 }
 
 ToldShot Tuning::told(const TunerShot& shot) const { return told_shot(shot.number, shot.hold_time, sent(shot).signals); }
@@ -137,7 +165,6 @@ void Tuning::learn_log() {
 
 TuningEnd Tuning::run(TuningLab& lab, int closings) {
   constexpr int most_failures = 3;  // in a row
-  learn_log();
   for (int failures = 0; !tuner_->is_done();) {
     if (tuner_->closings() >= closings) return TuningEnd::closings_used;
     const TunerShot shot = tuner_->next();
@@ -156,6 +183,12 @@ TuningEnd Tuning::run(TuningLab& lab, int closings) {
   return TuningEnd::done;
 }
 
+json Tuning::told_json(const TuningReport& report) const {
+  json told = tuning_json(report, {.command = common_.command});
+  told[origin_key] = origin_;
+  return told;
+}
+
 void Tuning::write(TuningEnd end) {
   const TuningReport now = report(end);
   const Prepared& scene = tuner_->scene();
@@ -167,7 +200,7 @@ void Tuning::write(TuningEnd end) {
   }
   folder_->write("best.toml", with_waveforms(scene, waveforms).text());
   folder_->write("best.csv", csv(kept.signals, scene.duration, kept.sample_rates));
-  folder_->write("tune.json", json_text(tuning_json(now, {.command = common_.command}), 1));
+  folder_->write("tune.json", json_text(told_json(now), 1));
   folder_->write("tune.html", tuning_html(now, {.command = common_.command}));
   folder_->publish(false);
 }
@@ -179,23 +212,29 @@ int tune_verb(const Common& given, const TuneRequest& request) {
           "--device COMMAND or --by-hand says where the shots are fired: give one of them");
   const std::chrono::milliseconds patience = patience_of(request.timeout);
   const int closings = request.closings ? whole_number("--closings", *request.closings, 1) : usual_closings;
-  const TunerOptions options = tuner_options(request);
-  Tuning tuning(c, load_scene(c), options, request.resume);
+  const SceneFile file = load_scene(c);
+  Tuning tuning(c, file, tuner_options(request, file), request);
   if (tuning.report(TuningEnd::under_way).spread_assumed && !c.quiet) say(std::string(assumed_words));
 
   TuningEnd end = TuningEnd::interrupted;
   try {
     const std::unique_ptr<TuningLab> lab =
-        request.by_hand ? hand_lab(tuning.folder().path()) : command_lab(request.device, patience);
-    end = tuning.run(*lab, closings);
-    lab->finish();
+        request.by_hand ? hand_lab(tuning.folder().path(), request.resume) : command_lab(request.device, patience);
+    tuning.learn_log();
+    try {
+      end = tuning.run(*lab, closings);
+      lab->finish();
+    } catch (const InvalidInput&) {
+      tuning.write(TuningEnd::failed);
+      throw;
+    }
   } catch (const Interrupted&) {
     end = TuningEnd::interrupted;
   }
   tuning.write(end);
   const TuningReport report = tuning.report(end);
   print_json_or(
-      c, tuning_json(report, {.command = c.command}),
+      c, tuning.told_json(report),
       tuning_text(report) + left_in(tuning.folder().path(), {"tune.html", "tune.json", "best.toml", "best.csv", log_file}));
   if (end == TuningEnd::interrupted) return exit_interrupted;
   return report.ever_bounce_free() ? exit_done : exit_no_success;
@@ -215,6 +254,9 @@ void add_tune(Verb& verb) {
                             usual_closings, Tuner::enough_in_a_row));
   verb.flag("--resume", request->resume,
             "go on with the closings in the folder of --out, none of which is fired again; scene and options as before");
+  verb.repeated("--wafer", request->wafer, "FOLDER",
+                "tuning of another device of the same wafer, in the folder that its --out named: what they all tell of the next "
+                "device is known before its first closing; may be repeated");
   verb.option("--actuator", request->actuator, "NAME", "drives that are shaped: " + first_is_default(listed(actuators)));
   with_laboratory(verb, request->laboratory);
   verb.optional(
@@ -236,7 +278,8 @@ void add_tune(Verb& verb) {
       "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
       "  softland tune my.toml --device \"python3 scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
       "  softland tune my.toml --by-hand --closings 12 --out device-17\n"
-      "  softland tune my.toml --by-hand --resume --out device-17");
+      "  softland tune my.toml --by-hand --resume --out device-17\n"
+      "  softland tune my.toml --by-hand --wafer device-17 --wafer device-18 --out device-19");
   verb.runs([request](const Common& common) { return tune_verb(common, *request); });
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/decompositions.h"
 #include "base/engineering.h"
 #include "base/executor.h"
 #include "base/require.h"
@@ -182,8 +183,19 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
 double TunedScene::delay_deviation() const { return delay_share * scales_.closing_time; }
 double TunedScene::hold_time() const { return (longest_wait + after_touch) * scales_.closing_time; }
 
-std::vector<double> TunedScene::values(const Eigen::VectorXd& z) const {
+void TunedScene::begin_with(const NormalBelief& prior) {
+  prior_ = prior;
+  prior_factor_ = cholesky_factor(prior.covariance);
+}
+
+NormalBelief TunedScene::in_spread(const NormalBelief& belief) const {
+  if (!prior_) return belief;
+  return {.mean = spread_point(belief.mean), .covariance = prior_factor_ * belief.covariance * prior_factor_.transpose()};
+}
+
+std::vector<double> TunedScene::values(const Eigen::VectorXd& point) const {
   constexpr double furthest = 8;  // standard deviations
+  const Eigen::VectorXd z = spread_point(point);
   std::vector<double> u(static_cast<std::size_t>(size() - 1));
   for (std::size_t k = 0; k < u.size(); ++k)
     u[k] = standard_normal_cdf(std::clamp(z[static_cast<Eigen::Index>(k)], -furthest, furthest));
@@ -198,9 +210,7 @@ std::vector<ImaginedDevice> TunedScene::devices(std::span<const Eigen::VectorXd>
             [&](std::size_t task) {
               DeviceBuilder builder(*ensemble_);
               for (std::size_t k = task * together; k < std::min(points.size(), (task + 1) * together); ++k)
-                all[k] = {.z = points[k],
-                          .sampled = builder.device(values(points[k])),
-                          .delay = delay_deviation() * points[k][size() - 1]};
+                all[k] = {.z = points[k], .sampled = builder.device(values(points[k])), .delay = delay(points[k])};
             },
             watch.stop);
   watch.throw_if_stopped();
@@ -329,13 +339,15 @@ void TunedScene::find_units(const Watch& watch) {
 }
 
 TunedScene::Units TunedScene::units(const Eigen::VectorXd& z) const {
-  return {.volts = std::exp(volts_slope_.dot(z)), .time = std::exp(time_slope_.dot(z))};
+  const Eigen::VectorXd own = spread_point(z);
+  return {.volts = std::exp(volts_slope_.dot(own)), .time = std::exp(time_slope_.dot(own))};
 }
 
 double TunedScene::safe_level(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) const {
   constexpr double one_in_a_thousand = 3.0902;  // standard deviations
-  const double deviation = std::sqrt(std::max(0.0, pulled_through_slope_.dot(covariance * pulled_through_slope_)));
-  return pulled_through_ * std::exp(pulled_through_slope_.dot(mean) - one_in_a_thousand * deviation);
+  const NormalBelief own = in_spread({.mean = mean, .covariance = covariance});
+  const double deviation = std::sqrt(std::max(0.0, pulled_through_slope_.dot(own.covariance * pulled_through_slope_)));
+  return pulled_through_ * std::exp(pulled_through_slope_.dot(own.mean) - one_in_a_thousand * deviation);
 }
 
 }  // namespace softland

@@ -9,6 +9,8 @@
 //   contact gap over electrode gap         normal, 3 %, beside the factor that both may share
 //   delay of all edges                     normal, 0.3 % of the closing time of the plain step
 //
+// Where devices of the same wafer were tuned before, coordinates are those of what they tell of the next (wafer.h).
+//
 // What is drawn per edge (jitter) is scatter, not a quantity of the device, and is left out.
 #pragma once
 
@@ -25,6 +27,7 @@
 #include "base/watch.h"
 #include "studies/ensemble.h"
 #include "studies/tuning/tuner.h"
+#include "studies/tuning/wafer.h"
 
 namespace softland {
 
@@ -79,8 +82,16 @@ class TunedScene {
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(nominal_.scene.spread.variables.size()) + 1; }
   /// Which coordinates are of [spread] or the gain of a source: what moves the units of volts and time.
   [[nodiscard]] bool is_nuisance(Eigen::Index k) const { return nuisances_[static_cast<std::size_t>(k)]; }
-  /// One standard deviation of the delay [s].
+  /// One standard deviation of the delay over all devices of the spread [s].
   [[nodiscard]] double delay_deviation() const;
+  /// Of the edges of a device at z [s].
+  [[nodiscard]] double delay(const Eigen::VectorXd& z) const { return delay_deviation() * spread_point(z)[size() - 1]; }
+
+  /// From now on coordinates are those of this belief about z: standard normal where it is.
+  void begin_with(const NormalBelief& prior);
+  [[nodiscard]] const std::optional<NormalBelief>& prior() const { return prior_; }
+  /// A belief in the coordinates as it is in those of the spread.
+  [[nodiscard]] NormalBelief in_spread(const NormalBelief& belief) const;
 
   /// Values of the varying quantities, as DeviceSpread::to_values, at z.
   [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
@@ -98,7 +109,7 @@ class TunedScene {
     double volts = 1, time = 1;
   };
   [[nodiscard]] Units units(const Eigen::VectorXd& z) const;
-  /// How ln volts and ln time change with z.
+  /// How ln volts changes with z of the spread.
   [[nodiscard]] const Eigen::VectorXd& volts_slope() const { return volts_slope_; }
   /// Of the devices with this mean and covariance of z, at most one in a thousand is pulled through its contact by a level of
   /// that electrode below this [V]; infinite where none is.
@@ -106,6 +117,9 @@ class TunedScene {
 
  private:
   void find_units(const Watch& watch);
+  [[nodiscard]] Eigen::VectorXd spread_point(const Eigen::VectorXd& z) const {
+    return prior_ ? Eigen::VectorXd(prior_->mean + prior_factor_ * z) : z;
+  }
 
   TunerOptions options_;
   bool spread_is_assumed_ = false;
@@ -116,6 +130,8 @@ class TunedScene {
   TuningScales scales_;
   std::optional<std::size_t> electrode_;  // that closes the switch, among the drives
   Eigen::VectorXd volts_slope_, time_slope_, pulled_through_slope_;
+  std::optional<NormalBelief> prior_;
+  Eigen::MatrixXd prior_factor_;                                     // L L^T is its covariance
   double pulled_through_ = std::numeric_limits<double>::infinity();  // of the nominal device [V]
 };
 

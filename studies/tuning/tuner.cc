@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/engineering.h"
@@ -38,7 +39,9 @@ std::uint64_t first_draw(int closings) { return (static_cast<std::uint64_t>(clos
 // What no closing changes.
 struct Tuner::Setting {
   Setting(const SceneFile& file, const TunerOptions& options, const Watch& watch)
-      : scene(file, options, watch), shapes(scene), recipes(search_recipes(scene, shapes, watch)) {}
+      : scene(file, options, watch), shapes(scene), recipes(search_recipes(scene, shapes, watch)) {
+    if (!options.wafer.empty()) scene.begin_with(believed_of_wafer(options.wafer, scene.size()).next);
+  }
 
   TunedScene scene;
   Shapes shapes;
@@ -87,12 +90,24 @@ struct Tuner::State {
     Draws draws(scene.options().seed, first_draw(0));
     now.belief = Belief::prior(scene.size(), draws);
     const Outlook outlook(scene, now.belief.resampled(proposal_devices, draws), draws, watch);
+    const TunedScene::Units units = scene.units(now.belief.mean);
+    if (scene.prior()) now.hold = believed_hold(units);
     const Shapes limited = shapes_for(now);
     now.x = limited.in_units(recipes.front().x, {}, {});
+    if (scene.prior()) now.x = propose(scene, limited, outlook, recipes_in(units), scene.options().seed, watch).x;
     now.next = shot(1, limited.waveforms(now.x), outlook);
     now.kept = now.next;
   }
 
+  [[nodiscard]] static double believed_hold(const TunedScene::Units& units) {
+    constexpr double lowest = 0.85, highest = 1.2;
+    return std::clamp(units.volts, lowest, highest);
+  }
+  [[nodiscard]] std::vector<std::vector<double>> recipes_in(const TunedScene::Units& units) const {
+    std::vector<std::vector<double>> all;
+    for (const Recipe& recipe : recipes) all.push_back(shapes.in_units(recipe.x, recipe.units, units));
+    return all;
+  }
   [[nodiscard]] Shapes shapes_for(const Learned& known) const {
     return shapes.within(scene.safe_level(known.belief.mean, known.belief.covariance), known.hold);
   }
@@ -150,7 +165,7 @@ Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& 
 }
 
 void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
-  constexpr double calm = 0.05, lowest_hold = 0.85, highest_hold = 1.2;
+  constexpr double calm = 0.05;
   constexpr int hold_is_fixed = 2;  // closings
   Draws draws(scene.options().seed, first_draw(known.closings));
   std::vector<LearnedShot> shots;
@@ -159,11 +174,11 @@ void Tuner::State::propose_next(Learned& known, const Watch& watch) const {
   }
   known.belief = softland::learned(scene, shots, known.belief, draws, watch);
   const TunedScene::Units units = scene.units(known.belief.mean);
-  if (known.closings <= hold_is_fixed) known.hold = std::clamp(units.volts, lowest_hold, highest_hold);
+  if (known.closings <= hold_is_fixed) known.hold = believed_hold(units);
   const Outlook outlook(scene, known.belief.resampled(proposal_devices, draws), draws, watch);
   const Shapes limited = shapes_for(known);
   std::vector<std::vector<double>> candidates{known.x};
-  for (const Recipe& recipe : recipes) candidates.push_back(shapes.in_units(recipe.x, recipe.units, units));
+  std::ranges::move(recipes_in(units), std::back_inserter(candidates));
   for (const Fired& fired : known.fired) {
     if (std::ranges::find(candidates, fired.x) == candidates.end()) candidates.push_back(fired.x);
   }
@@ -259,7 +274,7 @@ BeliefSummary Tuner::belief() const {
   for (const Eigen::VectorXd& z : belief.points) {
     const std::vector<double> values = scene.values(z);
     for (std::size_t i = 0; i < values.size(); ++i) columns[i].push_back(values[i]);
-    columns.back().push_back(scene.delay_deviation() * z[scene.size() - 1]);
+    columns.back().push_back(scene.delay(z));
   }
   BeliefSummary summary{.quantities = {}, .effective_devices = belief.effective_devices, .correlated = {}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -272,6 +287,10 @@ BeliefSummary Tuner::belief() const {
     one.deviation = weighted_deviation(belief.weights, columns[i], one.mean);
     summary.quantities.push_back(one);
   }
+  const NormalBelief standard{.mean = Eigen::VectorXd::Zero(scene.size()),
+                              .covariance = Eigen::MatrixXd::Identity(scene.size(), scene.size())};
+  summary.coordinates = {.prior = scene.in_spread(standard),
+                         .posterior = scene.in_spread({.mean = belief.mean, .covariance = belief.covariance})};
   constexpr double alike = 0.9;
   for (std::size_t i = 0; i < columns.size() && state_->now.closings > 0; ++i) {
     for (std::size_t j = 0; j < i; ++j) {

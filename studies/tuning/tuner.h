@@ -38,6 +38,7 @@
 #include "studies/prepared.h"
 #include "studies/search_space.h"
 #include "studies/tuning/contact_record.h"
+#include "studies/tuning/wafer.h"
 #include "waveforms/waveform.h"
 
 namespace softland {
@@ -49,6 +50,8 @@ struct TunerOptions {
   LaboratoryErrors laboratory = {};
   int most_recipes = 1;  ///< units of volts that recipes are searched for, 1 to 5
   double effort = 1;     ///< evaluations of every search, over the usual
+  /// Devices of the same wafer that were tuned before: what they tell is what is known of this one before its first closing.
+  std::vector<TunedBelief> wafer = {};
   Vectors vectors = vectors_in_use();
 };
 
@@ -83,12 +86,15 @@ struct BeliefSummary {
   std::vector<BelievedQuantity> quantities;
   double effective_devices = 0;         ///< of the weighted samples: 1 over the sum of the squares of the weights
   std::vector<std::string> correlated;  ///< sentences about quantities that the records do not tell apart
+  /// For a tuning of another device of the wafer: in standard normal coordinates of the spread, of which the delay is the last.
+  TunedBelief coordinates = {};
 };
 
 class Tuner {
  public:
   /// Makes the scene ready and searches the recipes of its nominal device: seconds in lanes. Throws InvalidInput for a scene that
-  /// cannot be tuned (no contact, no drive to shape, options out of range), Interrupted where `watch` asks to stop.
+  /// cannot be tuned (no contact, no drive to shape, options out of range), and for a wafer of other quantities, Interrupted
+  /// where `watch` asks to stop.
   Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch = {});
   ~Tuner();
   Tuner(Tuner&&) noexcept;

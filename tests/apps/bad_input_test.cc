@@ -105,8 +105,11 @@ TEST_F(BadInput, Options) {
       {{"optimize", "gold.toml", "--robust", "worst", "--constrain", "t_i < 3 V"},
        "--constrain: initial_contact_time in 't_i < 3 V' must be a time [s]"},
       {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vsp"},
-       "--calibrate Vsp: 'Vsp' is no measurement; there are Vdp, frequency and time, with an error such as Vdp:1 % or time:50 "
+       "--calibrate Vsp: 'Vsp' is no measurement; there are Vdp, frequency, piezo and time, with an error such as Vdp:1 % or "
+       "time:50 "
        "ns"},
+      {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vdp,piezo"},
+       "--set calibration.piezo.error=\"0 %\": [calibration.piezo]: there is no [piezo] whose deflection could be measured"},
       {{"optimize", "gold.toml", "--robust", "worst", "--calibrate", "Vdp:1 %,frequency,Vdp:2 %"},
        "--calibrate Vdp:1 %,frequency,Vdp:2 %: Vdp stands twice"},
       {{"robustness", "gold.toml", "--calibrate", "frequency,frequency in 3 classes"},
@@ -152,12 +155,13 @@ TEST_F(BadInput, Options) {
        "--set calibration.classes=many: must be a whole number from 2 to 256"},
       {{"calibrate", "gold.toml", "--samples", "9"}, "--samples 9: must be a whole number from 16 on"},
       {{"calibrate", "gold.toml", "--error", "Vdp"},
-       "--error Vdp: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},
+       "--error Vdp: must be Vdp, Vsp, release, frequency, piezo or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},
       {{"calibrate", "gold.toml", "--error", "Vdp:1 %,mass:1 %"},
-       "--error Vdp:1 %,mass:1 %: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 "
+       "--error Vdp:1 %,mass:1 %: must be Vdp, Vsp, release, frequency, piezo or time with an error from 0 to 50 %, such as "
+       "\"Vdp:1 "
        "%\""},
       {{"calibrate", "gold.toml", "--error", "time:1 s"},
-       "--error time:1 s: must be Vdp, Vsp, release, frequency or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},
+       "--error time:1 s: must be Vdp, Vsp, release, frequency, piezo or time with an error from 0 to 50 %, such as \"Vdp:1 %\""},
       {{"calibrate", "gold.toml", "--steps", "1.2,1.1"},
        "--steps 1.2,1.1: must be rising multiples of Vdp from 1 to 10, such as 1.1,1.25,1.5"},
       {{"calibrate", "gold.toml", "--quiet"},

@@ -665,12 +665,46 @@ TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {
            {"Vdp=20 V", "--measured Vdp = 20 V: the waveform of this device: drive 'main': the voltage reaches 25 V, above"},
            {"Vdp=3 A", "--measured Vdp = 3 A: must be a voltage [V] above 0"},
            {"Vdp=14 V,Vdp=14 V", "Vdp stands twice"},
-           {"mass=3 kg", "'mass=3 kg' is no measurement; there are Vdp, frequency and time"},
+           {"mass=3 kg", "'mass=3 kg' is no measurement; there are Vdp, frequency, piezo and time"},
+           {"piezo=1.6 %/V", "piezo cannot be measured: there is no [piezo]"},
+           {"piezo=31 nm/V", "--measured piezo = 31 nm/V: must be an inverse voltage [1/V] above 0, such as \"1.6 %/V\""},
            {"Vdp", "'Vdp' is no measurement"}}) {
     const Outcome bad = run(measured);
     EXPECT_EQ(bad.status, 2) << measured;
     EXPECT_THAT(bad.err, HasSubstr(said));
   }
+}
+
+// Half the deflection per volt needs twice the volts, of the piezo alone.
+TEST(Export, GivesAPiezoVoltsByWhatOneDeflects_optimized) {
+  const Workplace here;
+  write(here.path() / "pzt.toml",
+        edited(shipped("mem-gold-pzt.toml"), "[driver.main]",
+               "[waveform.piezo]\nfamily = \"pulse\"\nlevels = [\"0.3 V\", \"0 V\"]\ntimes = [\"9 us\"]\n\n[driver.main]"));
+  const json ranked =
+      json::parse(here.run({"calibrate", "pzt.toml", "--samples", "16", "--steps", "1.25", "--quiet", "--json", "-"}).out);
+  const json& figure = ranked["figures"].back();
+  ASSERT_EQ(figure["name"], "piezo");
+  const std::string half = fmt::format("piezo={} %/V", 50 * figure["nominal"].get<double>());
+  const Outcome own = here.run({"export", "pzt.toml", "--measured", half}), nominal = here.run({"export", "pzt.toml"});
+  ASSERT_EQ(own.status, 0) << own.err;
+  EXPECT_THAT(own.err, HasSubstr("warning: --measured piezo = "));
+  const auto voltages = [](const std::string& csv) {  // of the electrode and of the piezo
+    std::vector<std::array<double, 2>> rows;
+    std::istringstream in(csv.substr(csv.find('\n') + 1));
+    double time = 0;
+    std::array<double, 2> row{};
+    for (char comma = 0; in >> time >> comma >> row[0] >> comma >> row[1];) rows.push_back(row);
+    return rows;
+  };
+  const auto before = voltages(nominal.out), after = voltages(own.out);
+  ASSERT_GT(before.size(), 2U);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(after[i][0], before[i][0]);
+    EXPECT_NEAR(after[i][1], 2 * before[i][1], 1e-12);
+  }
+  EXPECT_EQ(before[1][1], 0.3) << "after the step from 0 V";
 }
 
 // "Set the amplifier 2 % high."

@@ -196,6 +196,29 @@ TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
   EXPECT_THAT(other.err, HasSubstr("out/closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
 }
 
+TEST_F(TuneVerb, BeginsWithWhatAnotherDeviceOfTheWaferTold_optimized) {
+  ASSERT_EQ(here.run(words(device(), {"--closings", "2", "--quiet"})).status % 4, 0);
+  const json first = tune_json();
+  fs::rename(here.path() / "out", here.path() / "first");
+  const Outcome o = here.run(words(device(), {"--closings", "1", "--quiet", "--wafer", "first"}));
+  ASSERT_EQ(o.status % 4, 0) << o.err;
+  const json next = tune_json();
+  EXPECT_NE(next["closings"][0]["waveforms"], first["closings"][0]["waveforms"]);
+  EXPECT_LT(next["closings"][0]["expected_cost"], first["closings"][0]["expected_cost"]);
+  EXPECT_NE(next["belief"]["coordinates"]["prior"], first["belief"]["coordinates"]["prior"]);
+  // The same wafer, or the records are of something else.
+  EXPECT_EQ(here.run(words(device(), {"--closings", "1", "--quiet", "--resume", "--wafer", "first"})).status % 4, 0);
+  const Outcome without = here.run(words(device(), {"--closings", "1", "--quiet", "--resume"}));
+  EXPECT_EQ(without.status, 2);
+  EXPECT_THAT(without.err, HasSubstr("its closings are of another wafer"));
+  const Outcome other = here.run(words(device(), {"--wafer", "first", "--set", "gap.contact=1.4 um"}));
+  EXPECT_THAT(other.err, HasSubstr("--wafer first: first/tune.json: is a tuning of another scene"));
+  EXPECT_THAT(here.run(words(device(), {"--wafer", "none"})).err, HasSubstr("--wafer none: none/tune.json"));
+  fs::create_directory(here.path() / "empty");
+  write(here.path() / "empty/tune.json", "{}");
+  EXPECT_THAT(here.run(words(device(), {"--wafer", "empty"})).err, HasSubstr("empty/tune.json: is a tuning of another scene"));
+}
+
 TEST_F(TuneVerb, LosesNothingWhereTheDeviceDies_optimized) {
   const std::string dying = "read -r line; echo \"$line\" | " + device() + "; read -r line; exit 5";
   const Outcome o = here.run(words(dying));
@@ -203,7 +226,7 @@ TEST_F(TuneVerb, LosesNothingWhereTheDeviceDies_optimized) {
   EXPECT_THAT(o.err, HasSubstr("ended with status 5 before it answered shot 2"));
   EXPECT_EQ(logged(), 1U);
   EXPECT_EQ(tune_json()["closings"].size(), 1U);
-  EXPECT_EQ(tune_json()["status"], "under_way");
+  EXPECT_EQ(tune_json()["status"], "failed");
   EXPECT_EQ(here.run(words(device(), {"--closings", "2", "--resume"})).status % 4, 0);
   EXPECT_EQ(logged(), 2U);
 }
@@ -246,10 +269,27 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   EXPECT_EQ(j["closings"][1]["record"]["error"], "the shot failed");
   EXPECT_EQ(j["closings"][2]["record"]["edges_s"].size(), 3U);
   EXPECT_EQ(j["closings"][3]["record"]["edges_s"].size(), 0U);
+  EXPECT_TRUE(fs::exists(here.path() / "out/shot-4.csv"));
+  write(here.path() / "out/shot-of-mine.csv", "");
   // The same voltages as a device would be told, as a waveform that softland reads.
   write(here.path() / "shot.toml",
         edited(plate, "family = \"step\"\nlevel = \"1.3 Vdp\"", "family = \"table\"\nfile = \"out/shot-1.csv\""));
   EXPECT_EQ(here.run({"check", "shot.toml", "--quiet"}).status, 0);
+  // Another tuning in the folder leaves its own shots there.
+  write(here.path() / "stdin.txt", "21.5 us\n2\nstop\n");
+  static_cast<void>(here.run({"tune", "plate.toml", "--by-hand", "--effort", "0.2", "--jobs", "1", "--out", "out", "--quiet"}));
+  EXPECT_TRUE(fs::exists(here.path() / "out/shot-2.csv"));
+  EXPECT_FALSE(fs::exists(here.path() / "out/shot-4.csv"));
+  EXPECT_TRUE(fs::exists(here.path() / "out/shot-of-mine.csv"));
+}
+
+// A switch of nanoseconds: the errors of its instruments follow it.
+TEST_F(TuneVerb, TakesASwitchThatIsQuickerThanAnOscilloscope_slow) {
+  fs::copy_file(fs::path(SOFTLAND_SOURCE_DIR) / "scenes/nem-tin.toml", here.path() / "nem.toml");
+  const Outcome o = here.run({"tune", "nem.toml", "--device", std::string(SOFTLAND_PROGRAM) + " device nem.toml --seed 3",
+                              "--effort", "0.02", "--closings", "1", "--out", "out", "--quiet"});
+  EXPECT_EQ(o.status % 4, 0) << o.err;
+  EXPECT_EQ(logged(), 1U);
 }
 
 TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {

@@ -115,6 +115,17 @@ TEST(Calibration, SaysWhatIsMeasured) {
   EXPECT_NE(refusal([] { return calibrated({"calibration.Vdp.error=\"60 %\""}); }).find("must be in [0, "), std::string::npos);
 }
 
+TEST(Calibration, OfAPiezoNeedsOne) {
+  SceneFile file = SceneFile::load(std::string(SOFTLAND_SOURCE_DIR) + "/scenes/mem-gold-pzt.toml");
+  file.set("calibration.piezo.error=\"1 %\"");
+  EXPECT_EQ(read_scene(file).calibration.piezo_error, 0.01);
+  EXPECT_FALSE(read_scene(file).calibration.is_empty());
+  EXPECT_EQ(refusal([] { return calibrated({"calibration.piezo.error=\"1 %\""}); }),
+            "--set calibration.piezo.error=\"1 %\": [calibration.piezo]: there is no [piezo] whose deflection could be measured");
+  file.set("calibration.piezo.error=\"1 us\"");
+  EXPECT_NE(refusal([&] { return read_scene(file); }).find("must be a percentage or a plain number"), std::string::npos);
+}
+
 TEST(Calibration, MaySortDevicesIntoClasses) {
   const auto refused = [](std::initializer_list<const char*> sets) { return refusal([&] { return calibrated(sets); }); };
   EXPECT_FALSE(calibrated({"calibration={Vdp={}}"}).calibration.classes);

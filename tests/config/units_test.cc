@@ -72,6 +72,8 @@ INSTANTIATE_TEST_SUITE_P(Units, GoodQuantity, testing::Values(
     Good{"100 1/um^2", 1e14, dimension::area_density},
     Good{"100 um^-2", 1e14, dimension::area_density},
     Good{"-171 pm/V", -171e-12, dimension::piezo_coefficient},
+    Good{"1.6 %/V", 0.016, dimension::inverse_voltage},
+    Good{"16 1/kV", 0.016, dimension::inverse_voltage},
     Good{"-171 pC/N", -171e-12, dimension::piezo_coefficient},
     Good{"3 V/us", 3e6, dimension::slew_rate},
     Good{"30 kHz", 30e3, dimension::frequency},

@@ -47,6 +47,8 @@ Result devices_result() {
   ResultDevices::Row measured = row("Vdp to 1 %", 0.1, 0.0166, 50e-9);
   measured.pull_in_error = 0.01;
   d.rows.push_back(measured);
+  measured.name = "Vdp and piezo to 1 %", measured.piezo_error = 0.01;
+  d.rows.push_back(measured);
   d.by_error = {{.error = 0.002, .bounce_free = 0.162, .impact_speed = 0.0146},
                 {.error = 0.01, .bounce_free = 0.104, .impact_speed = 0.0178}};
   d.windows = {.of_electrodes = {{"main", {.lower = 16.36, .upper = 36.31}}}, .devices = 200};
@@ -107,6 +109,9 @@ TEST(DevicesReport, ComesBackFromJsonAsItWas) {
   EXPECT_EQ(internal::devices_json(*read.devices), written.at("devices"));
   EXPECT_EQ(read.devices->drawing_goal_met, true);
   EXPECT_EQ(internal::headline(read).whole(), internal::headline(devices_result()).whole());
+  EXPECT_EQ(written["devices"]["rows"][4]["knowledge"]["piezo"], 0.01);
+  EXPECT_TRUE(written["devices"]["rows"][3]["knowledge"]["piezo"].is_null()) << "not measured";
+  EXPECT_EQ(read.devices->rows[4].piezo_error, 0.01);
   EXPECT_TRUE(written.at("drawing").at("goal_met"));
   EXPECT_TRUE(written["devices"]["rows"][0]["quantile_95"]["peak_contact_force_N"].is_null()) << "infinite";
   EXPECT_FALSE(read_result(result_json(search_alone())).devices);

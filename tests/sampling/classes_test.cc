@@ -15,9 +15,9 @@ namespace softland::classes_test {
 namespace {
 
 // Equidistant quantiles of the standard normal distribution, on a line.
-std::vector<PlanePoint> normal_points(std::size_t count) {
+std::vector<SpacePoint> normal_points(std::size_t count) {
   const Distribution normal(Normal{.mean = 0, .standard_deviation = 1});
-  std::vector<PlanePoint> points;
+  std::vector<SpacePoint> points;
   for (std::size_t i = 0; i < count; ++i)
     points.push_back({normal.quantile((static_cast<double>(i) + 0.5) / static_cast<double>(count)), 0});
   return points;
@@ -29,7 +29,7 @@ struct Published {
 };
 
 TEST(Classes, OfANormalQuantityAreThoseOfMax) {
-  const std::vector<PlanePoint> points = normal_points(4000);
+  const std::vector<SpacePoint> points = normal_points(4000);
   // The mean square is flat about its minimum, and the iteration ends where no point changes its class any more.
   constexpr double of_a_centre = 0.02, of_the_mean_square = 5e-3;
   // J. Max, IRE Trans. Inf. Theory 6 (1960) 7, table I.
@@ -42,7 +42,7 @@ TEST(Classes, OfANormalQuantityAreThoseOfMax) {
       EXPECT_NEAR(classes.centres[half - 1 - c][0], -published.centres[c], of_a_centre) << c;
     }
     double square = 0;
-    for (const PlanePoint& p : points) square += std::pow(p[0] - classes.centres[classes.nearest(p)][0], 2);
+    for (const SpacePoint& p : points) square += std::pow(p[0] - classes.centres[classes.nearest(p)][0], 2);
     const double mean_square = square / static_cast<double>(points.size());
     EXPECT_NEAR(mean_square, published.mean_square, of_the_mean_square * published.mean_square);
     EXPECT_NEAR(std::accumulate(classes.shares.begin(), classes.shares.end(), 0.0), 1, 1e-12);
@@ -51,8 +51,8 @@ TEST(Classes, OfANormalQuantityAreThoseOfMax) {
 }
 
 TEST(Classes, AreTheClumpsOfThePlaneWhateverTheSeed) {
-  std::vector<PlanePoint> points;
-  for (const PlanePoint clump : {PlanePoint{0, 0}, PlanePoint{0, 10}, PlanePoint{10, 0}}) {
+  std::vector<SpacePoint> points;
+  for (const SpacePoint clump : {SpacePoint{0, 0}, SpacePoint{0, 10}, SpacePoint{10, 0}}) {
     for (int i = 0; i < 5; ++i) points.push_back({clump[0] + 0.1 * i, clump[1] - 0.1 * i});
   }
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
@@ -68,14 +68,14 @@ TEST(Classes, AreTheClumpsOfThePlaneWhateverTheSeed) {
 }
 
 TEST(Classes, AreFewerWherePointsAreFewer) {
-  const std::vector<PlanePoint> points{{1, 1}, {2, 2}, {1, 1}};
+  const std::vector<SpacePoint> points{{1, 1}, {2, 2}, {1, 1}};
   const Classes classes = classes_of(points, 7, 1);
   ASSERT_EQ(classes.centres.size(), 2U);
   EXPECT_DOUBLE_EQ(classes.shares[0], 2.0 / 3);
 }
 
 TEST(Classes, RefuseWhatCannotBeSorted) {
-  const std::vector<PlanePoint> good{{1, 1}}, bad{{1, std::numeric_limits<double>::quiet_NaN()}};
+  const std::vector<SpacePoint> good{{1, 1}}, bad{{1, std::numeric_limits<double>::quiet_NaN()}};
   EXPECT_THROW(static_cast<void>(classes_of(good, 0, 1)), InvalidInput);
   EXPECT_THROW(static_cast<void>(classes_of({}, 2, 1)), InvalidInput);
   EXPECT_THROW(static_cast<void>(classes_of(bad, 2, 1)), InvalidInput);

@@ -96,6 +96,20 @@ TEST(DeviceDrives, OfOneDeviceHaveOneClock) {
   EXPECT_TRUE(drives.has_errors(1));
 }
 
+TEST(DeviceDrives, GiveAPiezoVoltsOfItsOwnUnit) {
+  const Prepared nominal =
+      prepare(gold_pzt({"waveform.piezo={family=\"pulse\", levels=[\"0.5 V\", \"0 V\"], times=[\"9 us\"]}"}));
+  const std::vector<Waveform> waveforms = nominal.in_drive_order(nominal.drives.waveforms);
+  const DeviceUnits units{.volts = 1.1, .time = 0.9, .piezo = 0.8};
+  const std::vector<Waveform> own = in_units(waveforms, nominal.scene.device, units);
+  ASSERT_EQ(own.size(), 2U);
+  EXPECT_EQ(signal(own[0]).hold_level(), 1.1 * signal(waveforms[0]).hold_level());
+  EXPECT_EQ(signal(own[1]).voltage(1e-6), 0.8 * 0.5);
+  EXPECT_EQ(signal(own[1]).pieces().back().begin, 0.9 * 9e-6);
+  EXPECT_TRUE(DeviceDrives(nominal).differ({.piezo = 0.8}));
+  EXPECT_FALSE(DeviceDrives(nominal).differ({}));
+}
+
 TEST(DeviceDrives, JitterOfEdgesIsAsWideAsItIsSaid) {
   const Prepared nominal = prepare(gold_at_17_volts({throw_and_catch, normal("jitter", "50 ns")}));
   const Ensemble ensemble(nominal, 4096);

@@ -204,6 +204,73 @@ TEST(Calibration, ByATimeErrsAsMuchAsTheClock) {
   EXPECT_NEAR(std::sqrt(squares / devices), 1e-3, 4 * 1e-3 / std::sqrt(2.0 * devices));
 }
 
+// What a volt does is a static deflection: under 1 mV, and -1 mV, from rest.
+TEST(Calibration, OfAPiezoIsByWhatAVoltDeflects) {
+  const Prepared nominal = prepare(gold_pzt());
+  const DeviceMeter meter(nominal, {.piezo = true});
+  const auto unit_of = [](const Switch& model) {
+    const auto deflection = [&](double volts) {
+      return model.contact_deflection(model.open_equilibrium(std::vector{0.0, volts})->data());
+    };
+    return std::abs(deflection(1e-3) - deflection(-1e-3)) / 2e-3 / model.device().gap.contact;
+  };
+  EXPECT_NEAR(DeviceMeter::piezo_unit(nominal.model), unit_of(nominal.model), 1e-9 * unit_of(nominal.model));
+  EXPECT_EQ(meter.exact(nominal.model).piezo, 1);
+  const Ensemble ensemble(nominal, 4);
+  DeviceBuilder builder(ensemble);
+  for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
+    const SampledDevice device = builder.device(k);
+    const double ratio = unit_of(nominal.model) / unit_of(*device.model);
+    EXPECT_GT(std::abs(ratio - 1), 1e-3);
+    EXPECT_NEAR(meter.exact(*device.model).piezo, ratio, 1e-8);
+  }
+  EXPECT_EQ(DeviceMeter::piezo_unit(prepare(gold()).model), 0);
+  EXPECT_NE(refusal([] { DeviceMeter(prepare(gold()), {.piezo = true}); }).find("piezo cannot be measured: there is no [piezo]"),
+            std::string::npos);
+  const Prepared still = prepare(gold_pzt({"piezo.d31=0 m/V"}));
+  EXPECT_NE(refusal([&] { DeviceMeter(still, {.piezo = true}); }).find("it does not move the contact point"), std::string::npos);
+}
+
+// Devices that differ in their layer alone close alike once they are driven in its unit.
+TEST(Calibration, OfAPiezoUndoesWhatItsLayerDoes) {
+  const Prepared nominal = prepare(gold_pzt(
+      {"waveform.piezo={family=\"pulse\", levels=[\"1 V\", \"-1 V\", \"0 V\"], times=[\"9 us\", \"40 us\"], edge=\"1 us\"}",
+       "spread={\"piezo.d31\"={distribution=\"normal\", cov=\"5 %\"}}", "simulate.duration=60 us"}));
+  const Ensemble ensemble(nominal, 6);
+  const std::vector<Waveform> drive = nominal.in_drive_order(nominal.drives.waveforms);
+  const EnsembleRun run{.duration = nominal.duration};
+  const Calibration exact{.pull_in_error = 0, .piezo_error = 0}, without{.pull_in_error = 0};
+  const auto outcomes = close_all(ensemble, {{.waveforms = drive, .known = exact}, {.waveforms = drive, .known = without}}, run);
+  const double alone =
+      simulate_closing(nominal.model, nominal.driven(drive), {.duration = run.duration, .tolerance = 1e-9}).touches.front().begin;
+  for (std::uint64_t k = 0; k < ensemble.size(); ++k) {
+    EXPECT_NEAR(outcomes[0][k].metrics.initial_contact_time, alone, 1e-5 * alone) << k;
+    EXPECT_GT(std::abs(outcomes[1][k].metrics.initial_contact_time / alone - 1), 1e-4) << k;
+  }
+}
+
+TEST(Calibration, OfAPiezoErrsApartFromWhatElseIsMeasured) {
+  const DeviceUnits exact{.volts = 1.03, .time = 0.98, .piezo = 1.05};
+  const Calibration two{.pull_in_error = 0.01, .frequency_error = 0.005};
+  Calibration three = two;
+  three.piezo_error = 0.01;
+  double squares = 0, by_volts = 0, by_time = 0;
+  constexpr int devices = 4000;
+  for (std::uint64_t k = 0; k < devices; ++k) {
+    const DeviceUnits known = DeviceMeter::measured(exact, three, 3, k), others = DeviceMeter::measured(exact, two, 3, k);
+    ASSERT_EQ(known.volts, others.volts);
+    ASSERT_EQ(known.time, others.time);
+    ASSERT_EQ(others.piezo, 1) << "not measured";
+    const double miss = exact.piezo / known.piezo - 1;
+    squares += miss * miss;
+    by_volts += miss * (known.volts / exact.volts - 1);
+    by_time += miss * (exact.time / known.time - 1);
+  }
+  EXPECT_NEAR(std::sqrt(squares / devices), 0.01, 4 * 0.01 / std::sqrt(2.0 * devices));
+  EXPECT_NEAR(by_volts / devices, 0, 4 * 0.01 * 0.01 / std::sqrt(devices));
+  EXPECT_NEAR(by_time / devices, 0, 4 * 0.01 * 0.005 / std::sqrt(devices));
+}
+
 // Devices on a grid of volts and times, far apart.
 std::vector<DeviceUnits> grid() {
   std::vector<DeviceUnits> units;
@@ -228,6 +295,19 @@ TEST(KnownUnits, AreThoseOfTheCentreOfTheClass) {
   EXPECT_NEAR(centre.volts, 1.1, of_the_mean);
   EXPECT_NEAR(centre.time, 0.8, of_the_mean);
   EXPECT_TRUE(std::isnan(sorted.of({.volts = Metrics::unset, .time = 1}).volts)) << "not measured, in no class";
+
+  std::vector<DeviceUnits> weak, strong;  // piezos
+  for (DeviceUnits units : grid()) {
+    for (const double piezo : {0.7, 1.3}) units.piezo = piezo, (piezo < 1 ? weak : strong).push_back(units);
+  }
+  std::vector<DeviceUnits> both = weak;
+  both.insert(both.end(), strong.begin(), strong.end());
+  const KnownUnits by_three({.pull_in_error = 0, .frequency_error = 0, .piezo_error = 0, .classes = 8}, both);
+  ASSERT_EQ(by_three.classes().size(), 8U);
+  const DeviceUnits of_three = by_three.of({.volts = 1.07, .time = 0.85, .piezo = 0.75});
+  EXPECT_NEAR(of_three.volts, 1.1, of_the_mean);
+  EXPECT_NEAR(of_three.piezo, 0.7, of_the_mean);
+  EXPECT_EQ(centre.piezo, 1) << "not measured";
 
   const KnownUnits by_volts({.pull_in_error = 0, .classes = 2}, grid());
   EXPECT_NEAR(by_volts.of({.volts = 1.07, .time = 0.85}, 1, 0).volts, 1.1, of_the_mean);
@@ -266,6 +346,20 @@ TEST(Calibration, DrivesADeviceWithTheWaveformOfItsClass) {
     EXPECT_EQ(outcomes[k].metrics.initial_contact_time, expected.initial_contact_time);
   }
   EXPECT_EQ(times.size(), 3U) << "three waveforms for all devices";
+}
+
+TEST(Robustness, SaysWhatAPiezosUnitIsWorthBesideTheOthers_slow) {
+  const Prepared nominal = prepare(gold_pzt({"simulate.duration=60 us"}));
+  const Calibration all{.pull_in_error = 0.01, .frequency_error = 0.005, .piezo_error = 0.01};
+  const Robustness found = robustness(nominal, {{.name = "own", .waveforms = nominal.drives.waveforms, .calibration = all}},
+                                      {.samples = 4, .jobs = 2, .worth_of_measuring = true});
+  std::vector<std::string> names;
+  for (const DriveRobustness& d : found.by_knowledge) names.push_back(d.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"nothing", "Vdp", "frequency", "piezo", "Vdp and frequency",
+                                             "Vdp, frequency and piezo, 4 classes", "Vdp, frequency and piezo, 8 classes",
+                                             "Vdp, frequency and piezo, 16 classes", "Vdp, frequency and piezo"}));
+  EXPECT_FALSE(found.by_knowledge[4].known.calibration().piezo_error);
+  EXPECT_EQ(found.by_knowledge[8].known.calibration().piezo_error, 0);
 }
 
 TEST(Robustness, SaysWhatEachMeasurementIsWorth_optimized) {

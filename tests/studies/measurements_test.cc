@@ -115,6 +115,28 @@ TEST(Measurements, KeepWhatIsJudgedWhenStopped_optimized) {
   EXPECT_THROW(static_cast<void>(study_measurements(recipe(), quick(1), watch)), Interrupted);
 }
 
+// A landing by the piezo, searched with softland optimize --waveform catch, on devices whose layers differ.
+TEST(Measurements, RankAPiezosUnitFirstWhereLittleElseVaries_slow) {
+  const SceneFile file = gold_pzt(
+      {"waveform.main.level=28.086315 V", "driver.main.max_voltage=34 V",
+       "waveform.piezo={family=\"pulse\", levels=[\"-0.164041193 V\", \"0.334724316 V\", \"0.498785465 V\", \"0 V\"], "
+       "times=[\"4.18628334 us\", \"28.3294943 us\", \"46.4372444 us\"], edge=\"2.54599131 us\"}",
+       "spread={\"piezo.d31\"={distribution=\"normal\", cov=\"10 %\"}, \"structure.thickness\"={distribution=\"normal\", "
+       "cov=\"0.1 %\"}}",
+       "structure.modes=2", "simulate.accuracy=1e-3"});
+  const MeasurementStudy found = study_measurements(file, {.samples = 16, .jobs = 2, .steps = {}});
+  EXPECT_TRUE(found.drives_piezo);
+  EXPECT_EQ(found.figures.back().name, "piezo");
+  const Prediction &by_piezo = of(found.predictions, "piezo"), &by_pull_in = of(found.predictions, "Vdp");
+  EXPECT_LT(by_piezo.piezo_unexplained, 0.2);
+  EXPECT_GT(by_pull_in.piezo_unexplained, 0.8);
+  EXPECT_LT(by_piezo.score, by_pull_in.score);
+  EXPECT_LT(of(found.references, "own units: Vdp, frequency, piezo").score,
+            of(found.references, "own units: Vdp, frequency").score);
+  EXPECT_FALSE(study().drives_piezo);
+  EXPECT_TRUE(std::isnan(study().predictions.front().piezo_miss));
+}
+
 TEST(Measurements, RefuseWhatHasNoLandingToPin_optimized) {
   const auto refused = [](const SceneFile& file) {
     return refusal([&] { static_cast<void>(study_measurements(file, quick())); });

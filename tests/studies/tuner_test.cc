@@ -125,6 +125,47 @@ TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
   EXPECT_FALSE(other.broken_assumption());
 }
 
+// Devices of a wafer that is 4 % too thick, and differ by 0.1 %: closings up to the second of two in a row without a bounce.
+TEST(Tuners, LaterDevicesOfAWaferNeedFewerClosings_slow) {
+  SceneFile wafer = gold_with_two_modes();
+  wafer.set("structure.thickness=2.08 um");
+  for (const char* cov : {"spread.\"structure.thickness\".cov=\"0.1 %\"", "spread.\"structure.youngs_modulus\".cov=\"0.1 %\"",
+                          "spread.gaps.cov=\"0.1 %\""})
+    wafer.set(cov);
+  const TunerOptions usual{.jobs = 2, .effort = 0.2};
+  struct Tuned {
+    TunedBelief belief;
+    int closings = 0;
+    double first_rebound = 0;  // of the first shot [m]
+  };
+  const auto tuned = [&](const TunerOptions& options, std::uint64_t seed) {
+    constexpr int most = 8;
+    const PracticeDevice device(wafer, {.seed = seed, .laboratory = {.gain_error = 0}});  // of the same laboratory
+    Tuner tuner(gold_with_two_modes(), options);
+    Tuned one;
+    while (tuner.closings() < most && tuner.bounce_free_in_a_row() < 2) {
+      const PracticeClosing closing = fired(device, tuner.next(), static_cast<std::uint64_t>(tuner.closings()) + 1);
+      if (tuner.closings() == 0) one.first_rebound = closing.motion.major_bounce_height;
+      expect_within_limits(tuner, tuner.next().waveforms);
+      tuner.learn(closing.record);
+    }
+    one.belief = tuner.belief().coordinates;
+    one.closings = tuner.closings();
+    return one;
+  };
+  TunerOptions later = usual;
+  later.wafer.push_back(tuned(usual, 41).belief);
+  int alone = 0, together = 0;
+  for (const std::uint64_t seed : {42U, 43U, 44U}) {
+    const Tuned one = tuned(usual, seed), next = tuned(later, seed);
+    alone += one.closings;
+    together += next.closings;
+    EXPECT_LT(next.first_rebound, one.first_rebound) << seed;
+    later.wafer.push_back(next.belief);
+  }
+  EXPECT_LT(together, alone);
+}
+
 // The whole of it: gold cantilevers with one mode more than the belief has, below 10 nm within three closings.
 TEST(Tuners, DevicesThatNoBeliefHasSeenLandWithinThreeClosings_slow) {
   const Tuner fresh(gold(), {.jobs = 2, .effort = 0.5});
