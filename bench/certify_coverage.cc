@@ -100,8 +100,10 @@ Scene judge(const Options& options, std::uint64_t index) {
   if (!c.certificate) return scene;
   const Switch fine(p.scene.device,
                     {.points_per_length = std::max(fewest_truth_points, truth_finer * c.quadrature.points_per_length)});
-  const Trajectory best =
-      simulate_closing(fine, p.signals(), {.duration = p.duration, .tolerance = std::max(1e-13, truth_tighter * c.tolerance)});
+  const Trajectory best = simulate_closing(fine, p.signals(),
+                                           {.duration = p.duration,
+                                            .tolerance = std::max(1e-13, truth_tighter * c.tolerance),
+                                            .steady_force = p.scene.metrics.steady_force * c.trajectory.hold_force});
   if (best.status != Status::done) return scene;
   scene.outcome = Outcome::certified;
   const Metrics truth = metrics(best, p.scene.metrics);

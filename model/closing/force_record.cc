@@ -1,11 +1,48 @@
 #include "model/closing/force_record.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include "integrators/roots.h"
 
 namespace softland {
+namespace {
+
+template <class Law>
+constexpr bool presses_harder_the_deeper =
+    std::is_same_v<Law, UniformAsperityContact> || std::is_same_v<Law, LinearContact> ||
+    std::is_same_v<Law, GaussianAsperityContact> || std::is_same_v<Law, PlasticAsperityContact<ZmcAsperity>> ||
+    std::is_same_v<Law, PlasticAsperityContact<KogutEtsionAsperity>>;
+
+bool rises_with_depth(const Switch& model) {
+  return !model.has_contact() ||
+         std::visit([](const auto& law) { return presses_harder_the_deeper<std::decay_t<decltype(law)>>; }, model.contact());
+}
+
+}  // namespace
+
+ForceRecord::ForceRecord(const Switch& model, double threshold)
+    : model_(model), threshold_(threshold), rises_with_depth_(rises_with_depth(model)) {}
+
+// An extremum in between shows where the force leaves both ends to the same side.
+template <class Force>
+void ForceRecord::follow_way(const Force& force, double begin, double from, double end, double to) {
+  constexpr double beside = 1e-6;  // of the time
+  constexpr int bits = 30;
+  if (rises_with_depth_) return follow(force, begin, from, end, to);
+  const double after = force(begin + beside * (end - begin)) - from, before = force(end - beside * (end - begin)) - to;
+  if (!(after * before > 0)) return follow(force, begin, from, end, to);
+  const double sign = after < 0 ? 1 : -1;
+  const auto at = [&](double share) { return std::lerp(begin, end, share); };  // of order one, as the search expects
+  const double turn =
+      at(boost::math::tools::brent_find_minima([&](double share) { return sign * force(at(share)); }, 0.0, 1.0, bits).first);
+  const double there = force(turn);
+  follow(force, begin, from, turn, there);
+  follow(force, turn, there, end, to);
+}
 
 // Follows the force over a time in which it only rises or only falls.
 template <class Force>
@@ -34,10 +71,10 @@ void ForceRecord::take(const TipMotion& tip, const TrajectoryPoint& from, const 
   if (!law.active || model_.has_pad_contact()) return take_line(from, to);
   const double plane = model_.device().gap.contact;
   const auto force = [&](double t) { return contact_force(model_.contact(), tip.position(t) - plane, law, tip.velocity(t)); };
-  if (!(from.velocity * to.velocity < 0)) return follow(force, from.time, from.contact_force, to.time, to.contact_force);
+  if (!(from.velocity * to.velocity < 0)) return follow_way(force, from.time, from.contact_force, to.time, to.contact_force);
   const double turn = tip.turn(), there = force(turn);
-  follow(force, from.time, from.contact_force, turn, there);
-  follow(force, turn, there, to.time, to.contact_force);
+  follow_way(force, from.time, from.contact_force, turn, there);
+  follow_way(force, turn, there, to.time, to.contact_force);
 }
 
 void ForceRecord::take_line(const TrajectoryPoint& from, const TrajectoryPoint& to) {

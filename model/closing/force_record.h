@@ -2,7 +2,8 @@
 //
 // Between knots the force is the contact law's along the motion of the contact point; along a pad, and of a plate at rest on a
 // rigid contact, it is a straight line. Out of contact it is that of a law that acts beyond the plane, else 0. Its extremes are
-// looked for at knots and where the contact point turns back, which is where an undamped law has them.
+// looked for at knots and where the contact point turns back, which is where a law has them that presses harder the deeper it
+// is; under others, which pull or are damped, between these too.
 #pragma once
 
 #include <limits>
@@ -16,7 +17,7 @@ namespace softland {
 class ForceRecord {
  public:
   /// Keeps a reference. `threshold` [N]; NaN: there is none.
-  ForceRecord(const Switch& model, double threshold) : model_(model), threshold_(threshold) {}
+  ForceRecord(const Switch& model, double threshold);
 
   /// Takes a piece of a step after the first touch, under a contact law in this state.
   void take(const TipMotion& tip, const TrajectoryPoint& from, const TrajectoryPoint& to, const ContactState& law);
@@ -34,11 +35,15 @@ class ForceRecord {
  private:
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
+  /// A time over which the contact point goes one way.
+  template <class Force>
+  void follow_way(const Force& force, double begin, double from, double end, double to);
   template <class Force>
   void follow(const Force& force, double begin, double from, double end, double to);
 
   const Switch& model_;
   double threshold_;  // [N]
+  bool rises_with_depth_;
   bool has_risen_ = false, has_fallen_ = false;
   double steady_from_ = none, least_ = std::numeric_limits<double>::infinity(), last_ = 0;
   double largest_ = 0;  // [N]

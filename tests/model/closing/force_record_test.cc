@@ -120,6 +120,25 @@ TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
   EXPECT_GT(inside, 10);
 }
 
+/// The most that an adhesive contact pulls on its way out is a number of the law alone.
+TEST(ForceRecord, OfAContactThatPullsIsTheMostThatItPulls) {
+  for (const double energy : {0.05, 0.2}) {
+    Device device = test::gold_cantilever();
+    device.contact->model = ContactModel::adhesive;
+    device.contact->adhesion_energy = energy;
+    const Switch model(device);
+    double most = 0;
+    for (double d = 0; d < 20e-9; d += 1e-13) most = std::min(most, contact_force(model.contact(), d, true, 0));
+    ASSERT_LT(most, 0);
+    const std::vector<Signal> drives{Signal::constant(test::step_level)};
+    for (const double tolerance : {1e-5, 1e-9}) {
+      const Trajectory t = simulate_closing(model, drives, {.duration = 150_us, .tolerance = tolerance});
+      ASSERT_GT(t.touches.size(), 1U) << "it leaves its contact";
+      EXPECT_NEAR(t.least_force_after_touch, most, 1e-6 * std::abs(most)) << energy << " J/m^2, " << tolerance;
+    }
+  }
+}
+
 TEST(ForceRecord, IsNothingWhereTheContactOpens) {
   int opened = 0;
   for (double volts = 16; volts < 22; volts += 0.1) {
