@@ -55,7 +55,7 @@ class BadInput : public ::testing::Test {
 TEST_F(BadInput, Verbs) {
   const std::string missing =
       "a verb is required: simulate, pull-in, modes, check, effects, accuracy, optimize, limit, release, explore, robustness, "
-      "calibrate, tune, device, "
+      "calibrate, fit, tune, device, "
       "table, "
       "status, merge, slurm, new, "
       "export, report or read (see softland --help)";

@@ -87,6 +87,7 @@ std::map<std::string, Call> calls() {
       {"new", {{"plate"}, {}}},
       {"export", {{"volts.toml"}, {"slow.toml"}}},
       {"report", {{"run"}, {}}},
+      {"read", {{"scope.csv"}, {}}},
   };
 }
 
@@ -97,6 +98,7 @@ std::unique_ptr<Workplace> workplace() {
   write(place->path() / "volts.toml", edited(edited(gold, "1.25 Vdp", "17 V"), "1.5 Vdp", "60 V"));
   write(place->path() / "stdin.txt", "{\"shot\":1,\"hold_s\":1e-4,\"drives\":{\"main\":{\"time_s\":[0],\"V\":[17]}}}\n");
   write(place->path() / "bench.toml", "[[measurement]]\nquantity = \"frequency\"\nvalue = \"25 kHz\"\nerror = \"1 %\"\n");
+  write(place->path() / "scope.csv", "TIME,CH1\n0,0\n1e-6,1\n2e-6,17\n");
   write(place->path() / "slow.toml", edited(edited(gold, "modes = 4", "modes = 20"), "\"strip\"", "\"reynolds\""));
   return place;
 }
@@ -401,8 +403,8 @@ TEST_F(Faults, NoOutputTakesThePlaceOfAnInput) {
   const std::string absolute = (here->path() / "gold.toml").string();
   for (const std::string& verb : verbs) {
     if (!takes(verb, "--json")) continue;
-    const std::vector<std::string> inputs = reads_stores_only(verb)
-                                                ? std::vector<std::string>{"part.sqlite"}
+    const std::vector<std::string> inputs = reads_stores_only(verb) || verb == "read"
+                                                ? std::vector<std::string>{calls()[verb].quick.front()}
                                                 : std::vector<std::string>{"gold.toml", "link.toml", "hard.toml", absolute};
     for (const std::string& place : inputs) {
       const Outcome o = here->run(words(verb, calls()[verb].quick + std::vector<std::string>{"--json", place}));

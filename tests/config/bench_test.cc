@@ -80,7 +80,7 @@ error = "1 mm/s"
   EXPECT_NEAR(bench.measurements[1].values[0], 1.5e-6, 1e-18);
   EXPECT_NEAR(bench.measurements[1].values[1], 3.5e-6, 1e-18);
   EXPECT_EQ(bench.measurements[2].times, (std::vector<double>{0, 1e-6}));
-  for (const std::size_t moves : {1, 2}) EXPECT_EQ(bench.measurements[moves].levels, (std::vector<double>{20, 20}));
+  for (const std::size_t moves : {1U, 2U}) EXPECT_EQ(bench.measurements[moves].levels, (std::vector<double>{20, 20}));
 }
 TEST(Bench, RefusesWhatItCannotMean) {
   const std::string begin = "[[measurement]]\nquantity = \"pull_in\"\n";

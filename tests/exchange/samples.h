@@ -282,7 +282,7 @@ inline std::vector<Sample> all_samples() {
                                                   return replaced(fmt::format("\"{:.6f}\"|\"{:.3f}\"",
                                                                               (static_cast<double>(i) - 4) * 1e-6, v(i)),
                                                                   ".", ",")
-                                                      .replace(11 + (i < 4 ? 0 : -1), 1, ",");
+                                                      .replace(i < 4 ? 11U : 10U, 1, ",");
                                                 }),
                  "columns",
                  {"U"},
