@@ -209,22 +209,23 @@ void RecordingMaker::scale_codes() {
     fail("codes whose volts per division cannot be told; save one channel per file");
   if (made_.channels.size() != 1) return;
   Channel& channel = made_.channels.front();
-  double factor = 1, offset = 0;
+  double full_scale = 1, factor = 1, offset = 0;  // at full scale a value is offset + factor, to the bit
   if (preamble_.high && preamble_.low && made_.format == "Keysight arb") {
     const bool is_short = preamble_.text.find("short") != std::string::npos;
-    factor = (*preamble_.high - *preamble_.low) / 2 / (is_short ? largest_code : 1);
+    if (is_short) full_scale = largest_code;
+    factor = (*preamble_.high - *preamble_.low) / 2;
     offset = (*preamble_.high + *preamble_.low) / 2;
     channel.name = channel.heading = "V";
     channel.unit = "V";
     channel.is_voltage = true;
   } else if (are_codes) {
-    factor = *preamble_.vertical_scale / codes_per_division;
+    full_scale = codes_per_division, factor = *preamble_.vertical_scale;
     made_.notes.push_back(
         fmt::format("numbers are codes, {} of them a division of {} V", codes_per_division, *preamble_.vertical_scale));
   } else {
     return;
   }
-  for (double& value : channel.values) value = offset + value * factor;
+  for (double& value : channel.values) value = offset + value / full_scale * factor;
 }
 
 void RecordingMaker::refuse_spectrum() const {

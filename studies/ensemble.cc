@@ -41,7 +41,8 @@ class LaneFigures final : public LandingObserver {
                          .contact_gap = model.device().gap.contact,
                          .in_contact_period = model.in_contact_period(),
                          .steady_force_time = end.steady_force_time,
-                         .least_force_after_touch = end.least_force_after_touch};
+                         .least_force_after_touch = end.least_force_after_touch,
+                         .energy = {.source_work = end.drive_energy}};
     return {.metrics = figures_.metrics(run, course_)};
   }
 
@@ -365,7 +366,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
   std::vector<std::size_t> places;
   std::vector<LaneFigures> figures(closings.size(), LaneFigures(options));
   for (std::size_t i = 0; i < closings.size(); ++i) {
-    const auto& [device, signals, run] = closings[i];
+    const auto& [device, signals, run, measures_drive_energy] = closings[i];
     if (vectors == Vectors::none || !device->model) continue;
     places.push_back(i);
     in_lanes.push_back({.model = &*device->model,
@@ -375,6 +376,7 @@ std::vector<DeviceOutcome> close_devices(std::span<const DeviceClosing> closings
                         .no_end_before = run.no_end_before,
                         .no_contact_before = run.no_contact_before,
                         .steady_force = run.steady_force,
+                        .measures_drive_energy = measures_drive_energy,
                         .observer = &figures[i]});
   }
   std::vector<bool> done(closings.size(), false);
@@ -412,6 +414,7 @@ DeviceCloser::DeviceCloser(const Prepared& nominal, const std::vector<EnsembleDr
       options_{.duration = run.duration, .tolerance = run.tolerance, .stop = stop},
       seed_(run.seed),
       vectors_(run.vectors),
+      measures_drive_energy_(run.measures_drive_energy),
       device_drives_(nominal) {
   Gauges gauges;
   bool is_measured = false;
@@ -453,7 +456,8 @@ std::vector<std::vector<DeviceOutcome>> DeviceCloser::operator()(std::span<const
       }
       places.push_back(i);
       holds.push_back(devices[i].model ? hold_of(*devices[i].model, *signals, nominal_closed_[d]) : Hold{});
-      closings.push_back({.device = &devices[i], .signals = signals, .run = options_});
+      closings.push_back(
+          {.device = &devices[i], .signals = signals, .run = options_, .measures_drive_energy = measures_drive_energy_});
       closings.back().run.steady_force = holds.back().steady_force(nominal_->scene.metrics);
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, nominal_->scene.metrics, vectors_);

@@ -203,6 +203,7 @@ struct EnsembleRun {
   std::uint64_t seed = 1;   ///< of the errors of measurements
   int jobs = 1;             ///< threads; does not change the outcomes
   Vectors vectors = vectors_in_use();
+  bool measures_drive_energy = false;
 };
 
 /// The closing of one device; figures are those of the run, however early its options end it.
@@ -213,6 +214,7 @@ struct DeviceClosing {
   const SampledDevice* device = nullptr;
   const std::vector<Signal>* signals = nullptr;
   ClosingOptions run;
+  bool measures_drive_energy = false;  ///< in lanes, too; of closings one by one it is known anyway
 };
 /// The closings of several devices, in lanes where their laws are written for that (model/ensemble/fleet.h), the others one by
 /// one. All of the first one's tolerance. An outcome does not depend on what else is closed.
@@ -235,6 +237,7 @@ class DeviceCloser {
   ClosingOptions options_;
   std::uint64_t seed_;
   Vectors vectors_;
+  bool measures_drive_energy_;
   DeviceDrives device_drives_;
   std::optional<DeviceMeter> meter_;
   std::vector<std::vector<Signal>> nominal_signals_;              // of every drive

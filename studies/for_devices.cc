@@ -343,7 +343,10 @@ class DevicesStudy {
   }
 
   [[nodiscard]] RobustnessOptions verdict_options() const {
-    return {.samples = devices_.verdict, .seed = options_.seed, .jobs = options_.jobs, .vectors = vectors_for(options_.target)};
+    return {.samples = devices_.verdict,
+            .seed = options_.seed,
+            .jobs = options_.jobs,
+            .measures_drive_energy = options_.target.is_about(Target::drive)};
   }
   // The searched drives of a candidate, and the others as in the plain step.
   [[nodiscard]] std::map<std::string, Waveform> all_drives(std::map<std::string, Waveform> searched) const {

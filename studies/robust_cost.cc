@@ -68,8 +68,6 @@ bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
 
 }  // namespace
 
-Vectors vectors_for(const Aim& target, Vectors vectors) { return target.is_about(Target::drive) ? Vectors::none : vectors; }
-
 GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
   GaugedEnsemble all{.devices = std::vector<SampledDevice>(ensemble.size()), .exact = std::vector<DeviceUnits>(ensemble.size())};
@@ -117,7 +115,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
       aim_(aim),
       ensemble_(std::move(ensemble)),
       drives_(setting.given),
-      vectors_(vectors_for(setting.target, vectors)),
+      vectors_(vectors),
       measures_steady_force_(is_about_steady_force(setting, aim)) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
@@ -173,7 +171,10 @@ std::vector<DeviceOutcome> RobustCost::close(const std::vector<Waveform>& wavefo
       std::vector<Signal>& of_device = own[i - begin];
       if (device.model && drives_.differ(units)) of_device = drives_.signals(waveforms, units, device.values);
       const std::vector<Signal>& signals = of_device.empty() ? nominal : of_device;
-      closings.push_back({.device = &device, .signals = &signals, .run = run(device, signals)});
+      closings.push_back({.device = &device,
+                          .signals = &signals,
+                          .run = run(device, signals),
+                          .measures_drive_energy = setting_.target.is_about(Target::drive)});
     }
     std::vector<DeviceOutcome> closed = close_devices(closings, setting_.given.scene.metrics, vectors_);
     for (std::size_t i = 0; i < closed.size(); ++i) {

@@ -118,9 +118,6 @@ class RobustCost {
   double window_, tail_, wait_;                      // after first touch, after the last breakpoint, for a touch [s]
 };
 
-/// What devices may close in when a search is about `target`: no vectors where lanes do not measure its figure.
-[[nodiscard]] Vectors vectors_for(const Aim& target, Vectors vectors = vectors_in_use());
-
 /// Whether a device does not close and stay closed, cannot be followed, or cannot be described.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);
 

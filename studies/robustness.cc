@@ -274,7 +274,8 @@ EnsembleRun run_of(const Prepared& nominal, const RobustnessOptions& options) {
           .tolerance = std::max(nominal.tolerance, EnsembleRun{}.tolerance),
           .seed = options.seed,
           .jobs = options.jobs,
-          .vectors = options.vectors};
+          .vectors = options.vectors,
+          .measures_drive_energy = options.measures_drive_energy};
 }
 
 EnsembleDrive exactly_measured(const Prepared& nominal, const DriveRobustness& drive) {

@@ -62,6 +62,7 @@ struct RobustnessOptions {
   PointSet points = PointSet::sobol;
   int jobs = 1;  ///< threads; does not change the result
   Vectors vectors = vectors_in_use();
+  bool measures_drive_energy = false;  ///< of every device
   /// A last drive that is calibrated is judged with nothing known of the devices as well, with each measurement alone, and with
   /// all of them without error, sorted into classes and each device in its own units.
   bool worth_of_measuring = false;

@@ -173,7 +173,7 @@ std::string codes(const std::map<std::string, Coded>& drives) {
 std::string spice_pwl(const std::map<std::string, Signal>& signals, double end) {
   require_signals(signals);
   // Far below any time a switch knows, and resolved by the 17 digits of a time of a second.
-  constexpr double jump_time = 1e-12;
+  const double jump_time = std::min(1e-12, 1e-7 * end);
   std::string text = "* Drive waveforms, one subcircuit each: Xname plus minus softland_drive\n";
   std::set<std::string> names;
   for (const auto& [drive, signal] : signals) {

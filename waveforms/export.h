@@ -41,9 +41,9 @@ struct Coded {
 [[nodiscard]] std::string codes(const std::map<std::string, Coded>& drives);
 
 /// A SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable with
-/// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a thousandth of the interval after them if that is shorter; curves
-/// as in csv(). Letters of a name become lower case and what is neither letter nor digit an underscore. Throws InvalidInput as
-/// csv(), and when two drives get the same name.
+/// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a ten-millionth of `end` or a thousandth of the interval after them
+/// if that is shorter; curves as in csv(). Letters of a name become lower case and what is neither letter nor digit an
+/// underscore. Throws InvalidInput as csv(), and when two drives get the same name.
 [[nodiscard]] std::string spice_pwl(const std::map<std::string, Signal>& signals, double end);
 
 }  // namespace softland

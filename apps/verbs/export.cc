@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "apps/exit_status.h"
+#include "apps/generator_export.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
 #include "apps/streams.h"
@@ -22,6 +23,7 @@
 #include "base/require.h"
 #include "config/assumed_spread.h"
 #include "config/units.h"
+#include "reports/circuit_model.h"
 #include "reports/quantity.h"
 #include "studies/choices.h"
 #include "studies/ensemble.h"
@@ -37,7 +39,22 @@ struct ExportRequest {
   std::string result, format = "csv", signal = "told";
   std::string measured;                                         ///< "Vdp=54.2 V,frequency=10.2 kHz,piezo=1.6 %/V"
   std::optional<std::string> device_pull_in, device_frequency;  ///< the same, each by itself
+  Sampling sampling = {};
 };
+
+// The formats that are no files of generators.
+constexpr std::array<std::string_view, 6> other_formats{"csv", "spice-pwl", "codes", "spice-model", "spice-bench", "verilog-a"};
+
+// Null: none of a generator. Throws InvalidInput where it is no format at all.
+const GeneratorFormat* generator_format(const std::string& name) {
+  if (std::ranges::find(other_formats, name) != other_formats.end()) return nullptr;
+  std::vector<std::string_view> names(other_formats.begin(), other_formats.end());
+  for (const GeneratorFormat& format : generator_formats()) {
+    if (format.name == name) return &format;
+    names.push_back(format.name);
+  }
+  throw InvalidInput(fmt::format("--format {}: must be one of {}", shown(name), fmt::join(names, ", ")));
+}
 
 struct SentRow {
   Sent value;
@@ -199,25 +216,72 @@ double last_breakpoint(const std::map<std::string, Signal>& signals) {
   return last;
 }
 
+// What is exported of the scene, with the samples that are asked for.
+struct Exported {
+  Prepared drawn, sampled;
+  std::vector<std::string> drives;
+};
+Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Watch& watch) {
+  const Prepared drawn = prepare_and_choose(file, need_pull_in, watch);
+  std::vector<std::string> drives = exported_drives(drawn, request.sampling.drive);
+  if (!request.sampling.rate && !request.sampling.bits) return {drawn, drawn, std::move(drives)};
+  set_sampling(file, drives, request.sampling);
+  return {drawn, prepare_and_choose(file, need_pull_in, watch), std::move(drives)};
+}
+
+std::string for_generator(const GeneratorFormat& format, const Exported& what, const SentSignals& sent,
+                          const Sampling& sampling) {
+  require(what.drives.size() == 1, [&] {
+    return fmt::format("--format {}: a file holds one drive: choose it by --drive, one of {}", format.name,
+                       fmt::join(what.drives, ", "));
+  });
+  const std::string& drive = what.drives.front();
+  return generator_text(format, what.sampled, drive, sent.signals.at(drive), sampling);
+}
+
+// The switch itself, where that is asked for. Throws InvalidInput for what has no such model.
+std::optional<std::string> circuit(const std::string& format, const Prepared& p) {
+  if (format == "spice-model") return spice_model(p);
+  if (format == "spice-bench") return spice_bench(p);
+  if (format == "verilog-a") return verilog_a(p);
+  return std::nullopt;
+}
+
 int export_verb(const Common& c, const ExportRequest& request) {
   const SceneFile file = scene_of_result(request.result);
-  require(request.format == "csv" || request.format == "spice-pwl" || request.format == "codes",
-          fmt::format("--format {}: must be csv, spice-pwl or codes", request.format));
+  const GeneratorFormat* const generator = generator_format(request.format);
   const SentRow* const row = find_named(sent_names, request.signal);
   require(row != nullptr, [&] { return fmt::format("--signal {}: must be told or output", shown(request.signal)); });
   const Sent sent_as = row->value;
-  require(request.format != "codes" || sent_as == Sent::told,
-          "--format codes --signal output: codes are the samples that a source is told, not its output");
+  require((request.format != "codes" && generator == nullptr) || sent_as == Sent::told, [&] {
+    return fmt::format("--format {} --signal output: a generator is told samples, not the output of its source", request.format);
+  });
+  require(generator != nullptr || (!request.sampling.amplifier && !request.sampling.marker), [&] {
+    return fmt::format("--amplifier, --marker: belong to the file of a generator, --format {} is none", request.format);
+  });
   const Measurements measured(request);
   std::optional<WatchedWork> work(std::in_place, c.quiet, c.stop);
-  Prepared p = prepare_and_choose(file, !measured.are_none(), work->watch());
-  const SentSignals sent = sent_signals(
+  const Exported what = exported(file, request, !measured.are_none(), work->watch());
+  const Prepared& p = what.sampled;
+  if (const std::optional<std::string> model = circuit(request.format, p)) {
+    require(measured.are_none(),
+            [&] { return fmt::format("--format {}: is of the drawing, and of no device that was measured", request.format); });
+    work.reset();
+    print(*model);
+    return exit_done;
+  }
+  SentSignals sent = sent_signals(
       p, measured.are_none() ? p.in_drive_order(p.drives.waveforms) : waveforms_of(p, measured, work->watch()), sent_as);
-  work.reset();
+  if (!request.sampling.drive.empty())
+    std::erase_if(sent.signals, [&](const auto& one) { return one.first != request.sampling.drive; });
   const double end = std::max(p.duration, last_breakpoint(sent.signals));  // the hold level belongs to the waveform
-  print(request.format == "csv"         ? csv(sent.signals, end, sent.sample_rates)
-        : request.format == "spice-pwl" ? spice_pwl(sent.signals, end)
-                                        : codes(coded(p, sent)));
+  const std::string text = generator != nullptr            ? for_generator(*generator, what, sent, request.sampling)
+                           : request.format == "csv"       ? csv(sent.signals, end, sent.sample_rates)
+                           : request.format == "spice-pwl" ? spice_pwl(sent.signals, end)
+                                                           : codes(coded(p, sent));
+  if (generator != nullptr && measured.are_none()) tell_sampled(p, what.drawn, what.drives, work->watch());
+  work.reset();
+  print(text);
   return exit_done;
 }
 
@@ -226,8 +290,19 @@ int export_verb(const Common& c, const ExportRequest& request) {
 void add_export(Verb& verb) {
   const auto request = std::make_shared<ExportRequest>();
   verb.positional("RESULT", request->result, "folder that --out named, result.json, or a scene file");
-  verb.option("--format", request->format, "NAME",
-              "csv (default), spice-pwl or codes; these are the samples as integers 0 to 2^bits - 1");
+  verb.option(
+      "--format", request->format, "NAME",
+      "csv (default), spice-pwl, codes (the samples as integers 0 to 2^bits - 1), or what a generator loads: keysight-arb, "
+      "siglent-csv, tektronix-csv, rigol-csv, digilent-csv; how the switch closes under these samples is told beside them; "
+      "or the switch itself for a circuit: spice-model, spice-bench (with its drives: a run of ngspice), verilog-a");
+  verb.optional("--sample-rate", request->sampling.rate, "RATE",
+                "samples at this rate, instead of what [driver] says: \"27 MHz\"");
+  verb.optional("--bits", request->sampling.bits, "N",
+                "rounded to 2^N voltages between the limits of [driver], instead of what it says");
+  verb.optional("--amplifier", request->sampling.amplifier, "K",
+                "an amplifier between generator and switch: volts of the file are those at the switch over K");
+  verb.optional("--marker", request->sampling.marker, "TIME", "where the sync output of the generator falls (keysight-arb)");
+  verb.option("--drive", request->sampling.drive, "NAME", "of several drives this one alone");
   verb.option("--signal", request->signal, "NAME",
               "told (default) or output: what the source is told, the samples of one that takes some, or what it makes of that");
   verb.option(
@@ -242,6 +317,8 @@ void add_export(Verb& verb) {
                 "the same as --measured \"frequency=FREQUENCY\": the first natural frequency");
   verb.footer(
       "Examples:\n  softland export softland-out --format spice-pwl > drive.cir\n"
+      "  softland export softland-out --drive piezo --format keysight-arb --sample-rate \"25 MHz\" --bits 14 --amplifier 20 > "
+      "piezo.arb\n"
       "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz\" > device-17.csv\n"
       "  softland export softland-out --measured \"Vdp=14.6 V,frequency=10.2 kHz,piezo=1.6 %/V\" > device-17.csv");
   verb.runs([request](const Common& common) { return export_verb(common, *request); });

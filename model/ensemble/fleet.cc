@@ -147,10 +147,10 @@ std::vector<Segment> faces_of(const Switch& model) {
   return faces;
 }
 
-LaneLayout layout_of(const Switch& model) {
+LaneLayout layout_of(const Switch& model, bool measures_work) {
   const Device& device = model.device();
   const ElasticContact contact = *lane_contact(model);
-  LaneLayout layout{.usual = is_usual(model),
+  LaneLayout layout{.usual = is_usual(model) && !measures_work,
                     .modes = model.modes(),
                     .points = to_int(model.points()),
                     .electrodes = to_int(device.electrodes.size()),
@@ -161,7 +161,8 @@ LaneLayout layout_of(const Switch& model) {
                     .far_film = device.gas && !std::isnan(device.gas->far_gap),
                     .dispersion = *lane_dispersion(device.dispersion),
                     .contact = contact.law,
-                    .damped_contact = contact.damping > 0};
+                    .damped_contact = contact.damping > 0,
+                    .measures_work = measures_work};
   if (!device.electrodes.empty()) layout.fringing = *lane_fringing(device.electrodes.front().fringing);
   const std::vector<Segment> segments = layout.usual ? segments_between(model) : faces_of(model);
   layout.segments = to_int(segments.size());
@@ -271,6 +272,29 @@ class Teller final : public fleet::LaneObserver {
   LandingObserver* observer_;
 };
 
+/// Whether the factor of a dispersion force changes, whose work is another's than that of a charge.
+bool drives_dispersion(const FleetClosing& c) {
+  for (std::size_t k = 0; k < c.drives.size(); ++k) {
+    if (c.model->drive_kind(k) == DriveKind::dispersion && !c.drives[k].is_zero()) return true;
+  }
+  return false;
+}
+
+/// Energy in the fields of the electrodes [J]
+double field_energy(const Switch& model, std::span<const double> volts, const double* q) {
+  Switch::Workspace work = model.workspace();
+  double energy = 0;
+  for (std::size_t k = 0; k < volts.size(); ++k) energy += model.capacitance(k, q, work) * volts[k] * volts[k] / 2;
+  return energy;
+}
+
+/// V dQ is what the field gains and what it does to the modes. A piezo's charge follows the modes alone.
+double drive_energy(const FleetClosing& c, const LaneClosing& lane) {
+  std::vector<double> at_end;
+  for (const Signal& drive : c.drives) at_end.push_back(drive.voltage(lane.end));
+  return field_energy(*c.model, at_end, lane.final) - field_energy(*c.model, values_before(c.drives), lane.start) + lane.work;
+}
+
 fleet::LaneRunner runner(Vectors vectors) {
 #ifdef SOFTLAND_LANES
   if (vectors == Vectors::avx512) return fleet::run_avx512;
@@ -340,7 +364,8 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
     if (!why_not_in_lanes(*closings[i].model).empty() || !drives.go_in_lanes(closings[i].drives)) continue;
     const std::optional<Eigen::VectorXd> rest = closings[i].model->open_equilibrium(values_before(closings[i].drives));
     if (!rest) continue;
-    const LaneLayout own = layout_of(*closings[i].model);
+    if (closings[i].measures_drive_energy && drives_dispersion(closings[i])) continue;
+    const LaneLayout own = layout_of(*closings[i].model, closings[i].measures_drive_energy);
     if (!layout) layout = own;
     if (*layout != own) continue;
     places.push_back(i);
@@ -374,12 +399,13 @@ std::vector<FleetEnd> close_in_lanes(std::span<const FleetClosing> closings, dou
   run(*layout, followed.data(), followed.size());
   for (std::size_t n = 0; n < places.size(); ++n) {
     const LaneClosing& lane = followed[n];
+    const FleetClosing& c = closings[places[n]];
     ends[places[n]] = {.followed = lane.followed,
                        .time = lane.end,
                        .steady_force_time = lane.steady_from,
-                       .least_force_after_touch = std::isnan(lane.least_depth)
-                                                      ? lane.least_depth
-                                                      : contact_force(closings[places[n]].model->contact(), lane.least_depth)};
+                       .least_force_after_touch =
+                           std::isnan(lane.least_depth) ? lane.least_depth : contact_force(c.model->contact(), lane.least_depth)};
+    if (c.measures_drive_energy && lane.followed) ends[places[n]].drive_energy = drive_energy(c, lane);
   }
   return ends;
 }

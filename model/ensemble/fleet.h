@@ -66,6 +66,7 @@ struct FleetClosing {
   double after_contact = std::numeric_limits<double>::infinity(), no_end_before = 0;
   double no_contact_before = std::numeric_limits<double>::infinity();
   double steady_force = std::numeric_limits<double>::quiet_NaN();  ///< [N]
+  bool measures_drive_energy = false;
   LandingObserver* observer = nullptr;
 };
 
@@ -77,6 +78,7 @@ struct FleetEnd {
   /// As in Trajectory [s], [N]
   double steady_force_time = std::numeric_limits<double>::quiet_NaN(),
          least_force_after_touch = std::numeric_limits<double>::quiet_NaN();
+  double drive_energy = std::numeric_limits<double>::quiet_NaN();  ///< as EnergyBalance::source_work, where it is measured [J]
 };
 
 /// Why closings of this switch are not followed in lanes; empty where they are.

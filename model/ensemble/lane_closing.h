@@ -34,6 +34,7 @@ struct LaneLayout {
   LaneDispersion dispersion = LaneDispersion::none;
   LaneContact contact = LaneContact::asperity_uniform;
   bool damped_contact = false;
+  bool measures_work = false;  ///< of the drives; not by UsualLaws
   Segment segment[most_segments];
   [[nodiscard]] bool operator==(const LaneLayout&) const = default;
 };
@@ -91,6 +92,8 @@ struct LanePiece {
 struct LaneClosing {
   const LaneSwitch* numbers = nullptr;
   double start[most_modes] = {};              // modal coordinates at t = 0
+  double final[most_modes] = {};              // and at the end
+  double work = 0;                            // of the forces of the drives on the modes, where it is measured [J]
   const LanePiece* pieces[most_drives] = {};  // by drive
   int piece_count[most_drives] = {};
   double duration = 0, after_contact = 0, no_end_before = 0, no_contact_before = 0;

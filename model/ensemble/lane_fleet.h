@@ -110,6 +110,13 @@ class Lanes {
     return piece.value + s * (piece.slope + s * (piece.square + s * piece.cube));
   }
 
+  [[nodiscard]] V piezo_power(const V* v) const {
+    V power = 0;
+    if (!layout_.piezo) return power;
+    for (int i = 0; i < modes; ++i) power += piezo_[i] * v[i];
+    return power * volts_[layout_.drives - 1];
+  }
+
   // Modal accelerations; `least`: the smallest gap.
   [[gnu::always_inline]] void rates(const V* __restrict q, const V* __restrict v, V* __restrict a, V& least) {
     V sum[capacity];
@@ -118,6 +125,7 @@ class Lanes {
       for (int i = 0; i < modes; ++i) sum[i] += volts_[layout_.drives - 1] * piezo_[i];
     }
     laws_.add(q, v, volts_, sum, least);
+    if (layout_.measures_work) power_ = laws_.power() + piezo_power(v);
     if (any_of(touching_)) {
       V d = -plane_;
       for (int i = 0; i < modes; ++i) d += at_contact_[i] * q[i];
@@ -176,6 +184,7 @@ class Lanes {
     }
     set_drives(time);
     rates(trial_q_, trial_v_, trial_a_, smallest_);
+    if (layout_.measures_work) powers_[S] = power_;
     for (int i = 0; i < modes; ++i) {
       const V excess = square_[i] * (trial_q_[i] - q_[i]) - a_[i] + trial_a_[i];
       slope_q_[S][i] = excess * (at[i].sine * -inverse_[i]);
@@ -422,6 +431,7 @@ class Lanes {
     if constexpr (Laws::has_damped_contact) {
       if (layout_.damped_contact && any_of(taken && touching_)) press(taken, h);
     }
+    if (layout_.measures_work) do_work(taken, h);
     where(taken, position_) = knot_p_[pieces];
     where(taken, speed_) = knot_s_[pieces];
     where(taken, acceleration_) = knot_c_[pieces];
@@ -441,6 +451,14 @@ class Lanes {
     if (all_of(plain)) return;
     for (std::size_t l = 0; l < width; ++l)
       if (taken[l] && !plain[l]) go_on(l, h[l]);
+  }
+
+  // What the drives do to the modes in the step, as one unknown more of the pair has it.
+  void do_work(const M& taken, V h) {
+    V mean = 0;
+    for (int j = 0; j < 6; ++j) mean += Pair::tableau[6][j] * powers_[j];
+    where(taken, work_) += h * mean;
+    where(taken, powers_[0]) = powers_[6];
   }
 
   // The largest force of a damped contact in the step: at the top of the parabola through both ends and the middle, as
@@ -471,6 +489,7 @@ class Lanes {
     if (starting_[l]) {
       for (int i = 0; i < modes; ++i) a_[i][l] = double(trial_a_[i][l]);
       acceleration_[l] = double(knot_c_[pieces][l]);
+      if (layout_.measures_work) powers_[0][l] = double(powers_[6][l]);
       starting_[l] = special_[l] = false;
       set_step(l);
       aim(l, lane.stop);
@@ -653,6 +672,8 @@ class Lanes {
     const double depth = lane.touching ? position_[l] - plane_[l] : 0;
     lane.closing->steady_from = position_[l] < steady_[l] ? nothing : lane.steady;
     lane.closing->least_depth = !lane.touched ? nothing : depth < lane.least ? depth : lane.least;
+    for (int i = 0; i < modes; ++i) lane.closing->final[i] = q_[i][l];
+    lane.closing->work = work_[l];
     lane.closing->followed = followed;
     lane.closing->end = t_[l];
     lane.closing = nullptr;
@@ -695,6 +716,7 @@ class Lanes {
     t_[l] = position_[l] = speed_[l] = acceleration_[l] = 0;
     for (int i = 0; i < modes; ++i) position_[l] = position_[l] + at_contact_[i][l] * q_[i][l];
     moved_[l] = 0;
+    work_[l] = 0;
     until_[l] = closing->no_contact_before;
     last_step_[l] = 0.01 / fastest;
     enter_stretch(l);
@@ -731,6 +753,7 @@ class Lanes {
   V until_;            // ends with the first step beyond [s]
   V last_step_;        // that no stop cut short [s]
   V growth_, most_growth_, rounds_;
+  V power_, powers_[7], work_{0};  // of the drives on the modes [W], at the stages of a step [W], until now [J]
   float log_error_[width] = {}, last_error_[width] = {};  // binary logarithms
   double moved_[width] = {};
 };

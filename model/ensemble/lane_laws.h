@@ -114,6 +114,9 @@ class UsualLaws {
     least = smallest;
   }
 
+  /// What the electrodes do to the modes, where it is measured [W]
+  [[nodiscard]] V power() const { return 0; }
+
   /// Force of the contact [N]
   template <class Rate>
   [[gnu::always_inline]] V push(V depth, Rate&&) const {
@@ -162,6 +165,7 @@ class AnyLaws {
 
   void add(const V* __restrict q, const V* __restrict v, const V* volts, V* sum, V& least) {
     find_field(q, v, least);
+    power_ = 0;
     if (layout_.film != LaneFilm::none) {
       add_film(gap_);
       if (layout_.far_film) {
@@ -174,6 +178,8 @@ class AnyLaws {
     project(sum);
     if (layout_.stretching) stretch(q, sum);
   }
+
+  [[nodiscard]] const V& power() const { return power_; }
 
   template <class Rate>
   V push(V depth, Rate&& rate) const {
@@ -225,6 +231,15 @@ class AnyLaws {
     for (int p = begin; p < end; ++p) load_[p] += drive * law.load(gap[p], velocity_[p]);
   }
 
+  template <class Law>
+  void add_law_and_power(Law law, const V* gap, int begin, int end, V drive) {
+    for (int p = begin; p < end; ++p) {
+      const V load = drive * law.load(gap[p], velocity_[p]);
+      load_[p] += load;
+      power_ += weight_[p] * load * velocity_[p];
+    }
+  }
+
   // A film on the far side takes the same of the velocity, which it sees from there, and pulls the other way.
   void add_film(const V* gap) {
     const auto with = [&](auto law) { add_law(law, gap, 0, layout_.points, V(1)); };
@@ -256,7 +271,14 @@ class AnyLaws {
       look_far(pad.begin, pad.end, electrode_gaps_[pad.electrode], electrode_floor_[pad.electrode]);
       drive = -drive, gap = far_gap_;
     }
-    const auto with = [&](auto law) { add_law(ElectrostaticForce<decltype(law)>{law}, gap, pad.begin, pad.end, drive); };
+    const auto with = [&](auto law) {
+      const ElectrostaticForce<decltype(law)> force{law};
+      if (layout_.measures_work) {
+        add_law_and_power(force, gap, pad.begin, pad.end, drive);
+      } else {
+        add_law(force, gap, pad.begin, pad.end, drive);
+      }
+    };
     switch (pad.fringing) {
       case LaneFringing::none:
         return with(NoFringingOf<V>{.width = width_});
@@ -321,6 +343,7 @@ class AnyLaws {
   V hamaker_, distance_, crossover_;
   V tension_, slopes_[capacity * capacity];
   V strength_, height_, contact_damping_;
+  V power_;
 };
 
 }  // namespace softland::fleet

@@ -38,7 +38,10 @@ struct NoFringingOf {
   S factor(S) const {
     return S(1);
   }
-  [[nodiscard]] double capacitance_over_eps0(double h) const { return width / h; }
+  template <class S>
+  [[nodiscard]] S capacitance_over_eps0(S h) const {
+    return S(width) / h;
+  }
 };
 using NoFringing = NoFringingOf<double>;
 
@@ -50,7 +53,11 @@ struct LinearFringingOf {
   S factor(S h) const {
     return S(1) + S(0.65 / width) * h;
   }
-  [[nodiscard]] double capacitance_over_eps0(double h) const { return width / h - 0.65 * std::log(h / width); }
+  template <class S>
+  [[nodiscard]] S capacitance_over_eps0(S h) const {
+    using std::log;
+    return S(width) / h - S(0.65) * log(h / S(width));
+  }
 };
 using LinearFringing = LinearFringingOf<double>;
 
@@ -71,8 +78,10 @@ struct MeijsFokkemaFringingOf {
     const S w = inverse_fourth_root(h), w2 = w * w, w4 = w2 * w2;
     return w4 * (w4 + w * (S(side) + S(face) * w));
   }
-  [[nodiscard]] double capacitance_over_eps0(double h) const {
-    return width / h + 0.77 + 1.06 * std::sqrt(std::sqrt(width / h)) + 1.06 * std::sqrt(thickness / h);
+  template <class S>
+  [[nodiscard]] S capacitance_over_eps0(S h) const {
+    using std::sqrt;
+    return S(width) / h + S(0.77) + S(1.06) * sqrt(sqrt(S(width) / h)) + S(1.06) * sqrt(S(thickness) / h);
   }
 
  private:
@@ -147,7 +156,10 @@ struct ElectrostaticForce {
     }
   }
   /// [F/m]
-  [[nodiscard]] double capacitance(double gap) const { return vacuum_permittivity * fringing.capacitance_over_eps0(gap); }
+  template <class S>
+  [[nodiscard]] S capacitance(S gap) const {
+    return S(vacuum_permittivity) * fringing.capacitance_over_eps0(gap);
+  }
   /// [J / (m V^2)] at constant voltage
   [[nodiscard]] double potential(double gap) const { return -capacitance(gap) / 2; }
 };

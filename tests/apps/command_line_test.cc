@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -637,7 +638,7 @@ TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
   EXPECT_EQ(here.run({"export", "gold.toml"}).out, here.run({"export", "gold.toml", "--signal", "output"}).out);
   for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"gold.toml", "--format", "codes"}, "no driver takes samples"},
-           {{"sampled.toml", "--format", "codes", "--signal", "output"}, "codes are the samples that a source is told"},
+           {{"sampled.toml", "--format", "codes", "--signal", "output"}, "a generator is told samples"},
            {{"gold.toml", "--signal", "both"}, "--signal both: must be told or output"}}) {
     std::vector<std::string> all{"export"};
     all.insert(all.end(), words.begin(), words.end());
@@ -645,6 +646,104 @@ TEST(Export, HoldsTheSamplesThatASourceIsTold_optimized) {
     EXPECT_EQ(bad.status, 2) << said;
     EXPECT_THAT(bad.err, HasSubstr(said));
   }
+}
+
+// A landing, which few samples spoil.
+std::string landing_gold() {
+  return edited(
+      edited(shipped("mem-gold.toml"), "family = \"step\"\nlevel = \"1.25 Vdp\"", "family = \"table\"\nfile = \"landing.csv\""),
+      "max_voltage = \"1.5 Vdp\"", "max_voltage = \"22 V\"");
+}
+
+TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
+  const Workplace here;
+  write(here.path() / "landing.csv",
+        "time_s,main\n0,0\n0,17.62466013928794\n1.6487295722408488e-06,21.320702395063936\n1.652118037496e-05,21.3206951563\n"
+        "2.783202841320688e-05,0\n3.673540044825161e-05,18.197171607619715\n6.21815511979105e-05,19.618909216948126\n"
+        "8.907219901692676e-05,21.112071872909596\n0.00012199774589255393,19.365491280069566\n0.00012364648118146727,"
+        "17.76726028859526\n");
+  write(here.path() / "landing.toml", landing_gold());
+  const auto exported = [&](const std::string& rate, const std::string& bits, const std::string& format) {
+    return here.run({"export", "landing.toml", "--format", format, "--sample-rate", rate, "--bits", bits, "--amplifier", "20"});
+  };
+  const Outcome fine = exported("100 MHz", "16", "keysight-arb");
+  ASSERT_EQ(fine.status, 0) << fine.err;
+  EXPECT_THAT(fine.out, HasSubstr("Sample Rate:100000000\n"));
+  EXPECT_THAT(fine.err, HasSubstr("MS/s, 16 bit: the switch closes"));
+  EXPECT_THAT(fine.err, Not(HasSubstr("warning")));
+  const Outcome coarse = exported("2 MHz", "5", "rigol-csv");
+  EXPECT_THAT(coarse.err, HasSubstr("MS/s, 5 bit: the switch first touches"));
+  EXPECT_THAT(coarse.err, HasSubstr("warning: as drawn, the switch closes"));
+
+  // Read back by a scene, it is the same closing.
+  write(here.path() / "fine.csv", exported("100 MHz", "16", "tektronix-csv").out);
+  write(here.path() / "back.toml", edited(landing_gold(), "file = \"landing.csv\"", "file = \"fine.csv\"\nscale = 20"));
+  const std::vector<std::string> sampled{
+      "--quiet", "--json", "-", "--set", "driver.main.sample_rate=100 MHz", "--set", "driver.main.bits=16"};
+  const auto metrics = [&](const std::string& scene) {
+    std::vector<std::string> words{"simulate", scene};
+    words.insert(words.end(), sampled.begin(), sampled.end());
+    const Outcome o = here.run(words);
+    EXPECT_EQ(o.status, 0) << o.err;
+    return json::parse(o.out)["metrics"].dump();
+  };
+  EXPECT_EQ(metrics("back.toml"), metrics("landing.toml"));
+
+  for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--format", "awg"}, "--format awg: must be one of csv, spice-pwl, codes, keysight-arb"},
+           {{"--format", "rigol-csv"}, "drive 'main' takes no samples: give --sample-rate"},
+           {{"--format", "rigol-csv", "--sample-rate", "27 V"}, "sample_rate"},
+           {{"--format", "siglent-csv", "--sample-rate", "150 MHz"}, "Siglent SDG1000X takes 16384"},
+           {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--amplifier", "0"}, "must be other than 0"},
+           {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--marker", "1 s"}, "must be within the waveform"},
+           {{"--format", "digilent-csv", "--sample-rate", "1 MHz", "--marker", "1 us"}, "holds no marker"},
+           {{"--format", "csv", "--amplifier", "20"}, "belong to the file of a generator"},
+           {{"--drive", "piezo"}, "is no drive of this scene; there are main"}}) {
+    std::vector<std::string> all{"export", "landing.toml"};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome bad = here.run(all);
+    EXPECT_EQ(bad.status, 2) << said;
+    EXPECT_THAT(bad.err, HasSubstr(said));
+  }
+}
+
+TEST(Export, WritesTheSwitchForACircuit) {
+  const Workplace here;
+  const Outcome model = here.run({"export", "gold.toml", "--format", "spice-model"});
+  ASSERT_EQ(model.status, 0) << model.err;
+  EXPECT_THAT(model.out, HasSubstr(".subckt softland_switch main g s d y vel force"));
+  EXPECT_THAT(model.out, HasSubstr(".ends softland_switch"));
+  const Outcome bench = here.run({"export", "gold.toml", "--format", "spice-bench"});
+  EXPECT_THAT(bench.out, HasSubstr("\n.tran "));
+  EXPECT_THAT(bench.out, HasSubstr("softland_main"));
+  const Outcome module = here.run({"export", "gold.toml", "--format", "verilog-a"});
+  EXPECT_THAT(module.out, HasSubstr("module softland_switch(main, g, s, d, y, vel, force);"));
+  EXPECT_THAT(module.out, HasSubstr("endmodule"));
+  const auto refused = [&](const char* scene) {
+    const Outcome o = here.run({"export", std::string(SOFTLAND_SOURCE_DIR) + "/scenes/" + scene, "--format", "spice-model"});
+    EXPECT_EQ(o.status, 2) << scene;
+    return o.err;
+  };
+  EXPECT_THAT(refused("hung-senturia.toml"), HasSubstr("compressible gas film"));
+  EXPECT_THAT(refused("nem-casimir.toml"), HasSubstr("Casimir force between gold"));
+}
+
+// By ngspice where there is one, whose steps are by trapezoids.
+TEST(Export, OfTheSwitchForACircuitClosesAsItDoes_slow) {
+  if (std::system("ngspice -v > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ngspice";
+  const Workplace here;
+  const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/gap-closing-actuator.toml";
+  write(here.path() / "bench.cir", here.run({"export", scene, "--format", "spice-bench"}).out);
+  ASSERT_EQ(std::system(("cd '" + here.path().string() + "' && ngspice -b bench.cir > ngspice.txt 2>&1").c_str()), 0);
+  const std::string said = read(here.path() / "ngspice.txt");
+  const auto measured = [&](const std::string& name) {
+    const std::size_t at = said.find("\n" + name);
+    return at == std::string::npos ? 0.0 : std::stod(said.substr(said.find('=', at) + 1));
+  };
+  const json metrics = json::parse(here.run({"simulate", scene, "--quiet", "--json", "-"}).out)["metrics"];
+  const double time = metrics["initial_contact_time_s"], speed = metrics["impact_velocity_m_s"];
+  EXPECT_NEAR(measured("t_i"), time, 1e-5 * time);
+  EXPECT_NEAR(measured("v_i"), speed, 1e-3 * speed);
 }
 
 TEST(Export, TakesWhatWasMeasuredAndSaysWhatIsStrange_optimized) {

@@ -99,7 +99,8 @@ def scene_cases(name, text):
         step("check"), step("check", "--quiet", *fast), step("modes", "--json", "modes.json"), step("modes", "--json", "-", *fast),
         step("pull-in", "--json", "pull-in.json"), step("pull-in", "--json", "-", *fast),
         step("export", "--format", "csv"), step("export", "--format", "spice-pwl"), step("export", "--signal", "output"),
-        step("export", "--format", "codes")], weight=3 if film else 1)
+        step("export", "--format", "codes"),
+        *[step("export", "--format", kind, "--sample-rate", "25 MHz") for kind in ("keysight-arb", "tektronix-csv")]], weight=3 if film else 1)
     yield Case(f"{name}.simulate", [
         step("simulate", "--json", "simulate.json", "--out", "out"), Step(["report", "out", "--out", "again"]), Step(["export", "out"]),
         Step(["export", "out", "--format", "spice-pwl"]), Step(["export", "out", "--device-vdp", "20 V", "--device-frequency", "30 kHz"]),

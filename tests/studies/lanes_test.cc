@@ -35,13 +35,15 @@ struct Fleet {
     for (std::uint64_t k = 0; k < count; ++k) devices.push_back(builder.device(k));
   }
 
-  [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Signal>& signals, Vectors vectors, double tolerance) const {
+  [[nodiscard]] std::vector<DeviceOutcome> close(const std::vector<Signal>& signals, Vectors vectors, double tolerance,
+                                                 bool measures_drive_energy = false) const {
     std::vector<DeviceClosing> closings;
     for (const SampledDevice& device : devices) {
       const double steady = device.model ? hold_of(*device.model, signals).steady_force(nominal.scene.metrics) : Metrics::unset;
       closings.push_back({.device = &device,
                           .signals = &signals,
-                          .run = {.duration = nominal.duration, .tolerance = tolerance, .steady_force = steady}});
+                          .run = {.duration = nominal.duration, .tolerance = tolerance, .steady_force = steady},
+                          .measures_drive_energy = measures_drive_energy});
     }
     return close_devices(closings, nominal.scene.metrics, vectors);
   }
@@ -229,6 +231,28 @@ TEST(Lanes, CloseAsOneAtATimeDoes) {
     for (const Vectors vectors : vectors_here()) {
       EXPECT_EQ(fleet.followed(signals, vectors, 1e-6), fleet.devices.size());
       expect_alike(fleet.close(signals, vectors, 1e-6), one_by_one, looser);
+    }
+  }
+}
+
+// A closing one by one adds up V dQ, one in lanes what the fields gain and what they do to the modes: a tight one by one is
+// right.
+TEST(Lanes, MeasureTheDriveEnergyAsOneAtATimeDoes) {
+  for (const auto& [name, file, looser] : cases()) {
+    SCOPED_TRACE(name);
+    const Fleet fleet(file, 16);
+    const std::vector<Signal> signals = fleet.nominal.signals();
+    const std::vector<DeviceOutcome> one_by_one = fleet.close(signals, Vectors::none, 1e-9);
+    for (const Vectors vectors : vectors_here()) {
+      std::vector<double> energies;
+      for (std::size_t k = 0; const DeviceOutcome& o : fleet.close(signals, vectors, 1e-6, true)) {
+        const double expected = one_by_one[k++].metrics.drive_energy;
+        EXPECT_EQ(std::isnan(o.metrics.drive_energy), std::isnan(expected));
+        if (!std::isnan(expected)) energies.push_back(off(o.metrics.drive_energy, expected));
+      }
+      ASSERT_FALSE(energies.empty());
+      EXPECT_LT(sample_quantile(energies, 0.5), looser * 1e-5);
+      EXPECT_LT(sample_quantile(energies, 0.9), looser * 1e-3);
     }
   }
 }

@@ -1,0 +1,116 @@
+#include "apps/generator_export.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "apps/streams.h"
+#include "apps/values.h"
+#include "base/choice.h"
+#include "base/require.h"
+#include "config/units.h"
+#include "reports/course.h"
+#include "reports/quantity.h"
+#include "reports/result_maker.h"
+#include "studies/simulate.h"
+
+namespace softland::apps {
+namespace {
+
+using internal::plain_number;
+using internal::quantity;
+
+double given(const std::string& option, const std::string& text, Dimension due) {
+  Quantity q;
+  try {
+    q = parse_quantity(text);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{} {}: {}", option, shown(text), error.what()));
+  }
+  require(q.dimension == due && std::isfinite(q.value),
+          [&] { return fmt::format("{} {}: must be {}, such as \"{}\"", option, shown(text), describe(due), example(due)); });
+  return q.value;
+}
+
+std::size_t place_of(const Prepared& p, const std::string& drive) {
+  const std::vector<std::string> names = p.drive_names();
+  return static_cast<std::size_t>(std::ranges::find(names, drive) - names.begin());
+}
+
+// "27 MS/s, 14 bit"
+std::string words(const DriverModel& source) {
+  const std::string rate = internal::given_quantity(*source.sample_rate, "S/s");
+  return source.bits ? fmt::format("{}, {} bit", rate, *source.bits) : rate;
+}
+
+std::string clause(const Prepared& p, const Closing& closing) {
+  return internal::closing_clause({.subject = "the switch"}, result_of(p, closing, {}).best, p.duration);
+}
+
+// A rebound that has a height, and one of the drawing that is not as high.
+bool is_worse(const Metrics& sampled, const Metrics& drawn) {
+  if (drawn.settled && !sampled.settled) return true;
+  constexpr double noticeable = 1.05;
+  return sampled.bounce_count > drawn.bounce_count && sampled.major_bounce_height > noticeable * drawn.major_bounce_height;
+}
+
+}  // namespace
+
+std::vector<std::string> exported_drives(const Prepared& p, const std::string& named) {
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> told = p.told(p.in_drive_order(p.drives.waveforms));
+  std::vector<std::string> driven, all;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] == dispersion_drive) continue;
+    all.push_back(names[k]);
+    if (!told[k].is_zero()) driven.push_back(names[k]);
+  }
+  if (named.empty()) return driven;
+  require(std::ranges::find(all, named) != all.end(),
+          [&] { return fmt::format("--drive {}: is no drive of this scene; there are {}", shown(named), fmt::join(all, ", ")); });
+  return {named};
+}
+
+void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling) {
+  for (const std::string& drive : drives) {
+    if (sampling.rate) file.set(fmt::format("driver.{}.sample_rate=\"{}\"", drive, *sampling.rate));
+    if (sampling.bits) file.set(fmt::format("driver.{}.bits={}", drive, *sampling.bits));
+  }
+}
+
+std::string generator_text(const GeneratorFormat& format, const Prepared& p, const std::string& drive, const Signal& told,
+                           const Sampling& sampling) {
+  const DriverModel source = p.source(place_of(p, drive));
+  require(source.sample_rate.has_value(), [&] {
+    return fmt::format("--format {}: drive '{}' takes no samples: give --sample-rate, or [driver.{}] a sample_rate", format.name,
+                       drive, drive);
+  });
+  const double rate = *source.sample_rate;
+  const double factor = sampling.amplifier ? given("--amplifier", *sampling.amplifier, dimension::none) : 1;
+  require(factor != 0, "--amplifier 0: must be other than 0: volts at the switch per volt of the generator");
+  GeneratorSamples samples{.name = drive, .rate = rate};
+  const double last = std::round(told.pieces().back().begin * rate);
+  for (double k = 0; k <= last; ++k) samples.volts.push_back(told.voltage(k / rate) / factor);
+  if (sampling.marker) {
+    const double at = std::round(given("--marker", *sampling.marker, dimension::time) * rate);
+    require(at >= 0 && at <= last, [&] {
+      return fmt::format("--marker {}: must be within the waveform, 0 to {}", shown(*sampling.marker),
+                         quantity(last / rate, "s"));
+    });
+    samples.marker = static_cast<std::size_t>(at);
+  }
+  return generator_file(format, std::move(samples));
+}
+
+void tell_sampled(const Prepared& sampled, const Prepared& drawn, const std::vector<std::string>& drives, const Watch& watch) {
+  const Closing as_sampled = simulate(sampled, false, watch), as_drawn = simulate(drawn, false, watch);
+  const std::string how = words(sampled.source(place_of(sampled, drives.front())));
+  say(fmt::format("as sampled, {}: {}", how, clause(sampled, as_sampled)));
+  if (!is_worse(as_sampled.metrics, as_drawn.metrics)) return;
+  say(fmt::format("warning: as drawn, {}: a higher rate or more bits keep that, or a search under this [driver]",
+                  clause(drawn, as_drawn)));
+}
+
+}  // namespace softland::apps

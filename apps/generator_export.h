@@ -1,0 +1,41 @@
+// Waveforms as files of arbitrary waveform generators: sampled as the instrument will play them, and judged as sampled.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/watch.h"
+#include "config/scene.h"
+#include "exchange/generator.h"
+#include "studies/prepared.h"
+#include "waveforms/signal.h"
+
+namespace softland::apps {
+
+/// How the samples of a waveform are taken, as options say it.
+struct Sampling {
+  std::optional<std::string> rate, bits;  ///< instead of those of [driver]
+  std::string drive = {};                 ///< the only one that is exported; empty: all
+  std::optional<std::string> amplifier;   ///< volts at the switch over volts at the generator
+  std::optional<std::string> marker;      ///< a time
+};
+
+/// The drives of voltages that are exported: the named one, or all that are not at 0 V at all times. Throws InvalidInput where it
+/// is none.
+[[nodiscard]] std::vector<std::string> exported_drives(const Prepared& prepared, const std::string& named);
+
+/// Puts sample rate and bits into [driver] of these drives.
+void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const Sampling& sampling);
+
+/// The samples of a drive, `told` by its source from t = 0 on, as a file of this format. Throws InvalidInput where the source
+/// takes no samples, and what generator_file() throws.
+[[nodiscard]] std::string generator_text(const GeneratorFormat& format, const Prepared& prepared, const std::string& drive,
+                                         const Signal& told, const Sampling& sampling);
+
+/// Tells how the switch closes under the samples, and warns where it does not as well as under the waveform that they were taken
+/// of.
+void tell_sampled(const Prepared& sampled, const Prepared& drawn, const std::vector<std::string>& drives, const Watch& watch);
+
+}  // namespace softland::apps

@@ -1,0 +1,106 @@
+#include "exchange/generator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+struct Range {
+  double low, high;
+};
+// Of the samples; one that is none is that to 0 V, or of one volt.
+Range range_of(const std::vector<double>& volts) {
+  const auto [low, high] = std::ranges::minmax(volts);
+  if (low < high) return {low, high};
+  return low == 0 ? Range{0, 1} : Range{std::min(0.0, low), std::max(0.0, low)};
+}
+
+// Source: Keysight 33500 Series Operating and Service Guide, "Arbitrary waveform file format": codes from -32767 to 32767 between
+// both levels.
+std::string keysight_arb(const GeneratorSamples& s) {
+  constexpr double full_scale = 32767;
+  const auto [low, high] = range_of(s.volts);
+  std::string text = fmt::format(
+      "File Format:1.10\nChecksum:0\nChannel Count:1\nSample Rate:{}\nHigh Level:{}\nLow Level:{}\nMarker Point:{}\nData "
+      "Type:\"short\"\nFilter:\"off\"\nData Points:{}\nData:\n",
+      s.rate, high, low, s.marker.value_or(s.volts.size() / 2), s.volts.size());
+  const double middle = (high + low) / 2, half = (high - low) / 2;
+  for (const double v : s.volts) fmt::format_to(std::back_inserter(text), "{}\n", std::round(full_scale * ((v - middle) / half)));
+  return text;
+}
+
+// As EasyWave writes and reads it: the record is one period.
+std::string siglent_csv(const GeneratorSamples& s) {
+  const auto [low, high] = range_of(s.volts);
+  const auto count = static_cast<double>(s.volts.size());
+  std::string text = fmt::format("data length,{}\nfrequency,{}\namp,{}\noffset,{}\nphase,0\n", s.volts.size(), s.rate / count,
+                                 high - low, (high + low) / 2);
+  for (int i = 0; i < 7; ++i) text += "\n";
+  text += "xpos,value\n";
+  for (std::size_t k = 0; k < s.volts.size(); ++k) fmt::format_to(std::back_inserter(text), "{},{}\n", k + 1, s.volts[k]);
+  return text;
+}
+
+void append_rows(std::string& text, const GeneratorSamples& s) {
+  for (std::size_t k = 0; k < s.volts.size(); ++k)
+    fmt::format_to(std::back_inserter(text), "{},{}\n", static_cast<double>(k) / s.rate, s.volts[k]);
+}
+
+// Times and volts under the preamble of an oscilloscope, which ArbExpress and ArbBuilder import.
+std::string tektronix_csv(const GeneratorSamples& s) {
+  std::string text = fmt::format("Record Length,{}\nSample Interval,{}\nVertical Units,V\nHorizontal Units,s\n\nTIME,{}\n",
+                                 s.volts.size(), 1 / s.rate, s.name);
+  append_rows(text, s);
+  return text;
+}
+
+// As Ultra Station writes it: volts behind an empty cell.
+std::string rigol_csv(const GeneratorSamples& s) {
+  const auto [low, high] = range_of(s.volts);
+  std::string text = fmt::format(
+      "RIGOL:DG8:CSV DATA FILE\nTYPE:Arb\nAMP:{} Vpp\nPERIOD:{} S\nDOTS:{}\nMODE:INSERT\nSample Rate:{}\nAWG N:0\nx,y[V]\n",
+      2 * std::max(std::abs(low), std::abs(high)), static_cast<double>(s.volts.size()) / s.rate, s.volts.size(), s.rate);
+  for (const double v : s.volts) fmt::format_to(std::back_inserter(text), ",{}\n", v);
+  return text;
+}
+
+// As the oscilloscope of WaveForms exports it, and its generator imports it.
+std::string digilent_csv(const GeneratorSamples& s) {
+  std::string text =
+      fmt::format("#Digilent WaveForms\n#Sample rate: {}Hz\n#Samples: {}\n\nTime (s),{} (V)\n", s.rate, s.volts.size(), s.name);
+  append_rows(text, s);
+  return text;
+}
+
+constexpr std::array formats{
+    GeneratorFormat{"keysight-arb", "Keysight 33500B", 8, 1'000'000, true, keysight_arb},
+    GeneratorFormat{"siglent-csv", "Siglent SDG1000X", 2, 16'384, false, siglent_csv},
+    GeneratorFormat{"tektronix-csv", "Tektronix AFG31000", 2, 131'072, false, tektronix_csv},
+    GeneratorFormat{"rigol-csv", "Rigol DG800", 2, 2'000'000, false, rigol_csv},
+    GeneratorFormat{"digilent-csv", "Digilent Analog Discovery 2", 1, 16'384, false, digilent_csv},
+};
+
+}  // namespace
+
+std::span<const GeneratorFormat> generator_formats() { return formats; }
+
+std::string generator_file(const GeneratorFormat& format, GeneratorSamples samples) {
+  require(!samples.volts.empty(), "there are no samples to export");
+  require(samples.volts.size() <= format.most, [&] {
+    return fmt::format("{} samples; a {} takes {}: a sample rate of at most {} S/s has that many", samples.volts.size(),
+                       format.instrument, format.most,
+                       samples.rate * static_cast<double>(format.most - 1) / static_cast<double>(samples.volts.size() - 1));
+  });
+  require(!samples.marker || format.has_marker, [&] { return fmt::format("a file for {} holds no marker", format.instrument); });
+  samples.volts.resize(std::max(samples.volts.size(), format.fewest), samples.volts.back());
+  return format.write(samples);
+}
+
+}  // namespace softland

@@ -1,0 +1,381 @@
+#include "reports/circuit_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "base/require.h"
+#include "base/select.h"
+#include "model/far_side.h"
+#include "model/forces/casimir.h"
+#include "model/forces/dispersion.h"
+#include "model/forces/electrostatic.h"
+#include "reports/formula.h"
+#include "waveforms/export.h"
+
+namespace softland {
+namespace {
+
+template <class Law>
+constexpr bool only_pushes =
+    std::is_same_v<Law, UniformAsperityContact> || std::is_same_v<Law, LinearContact> ||
+    std::is_same_v<Law, HuntCrossley<LinearContact>> || std::is_same_v<Law, HuntCrossley<UniformAsperityContact>>;
+
+// How a language names what a formula is made of.
+struct Dialect {
+  std::string voltage;  // "v" or "V"
+  bool has_variables;   // numbers that are no voltages have names, instead of nodes
+  [[nodiscard]] Formula node(const std::string& name) const { return Formula::named(fmt::format("{}({})", voltage, name)); }
+  [[nodiscard]] Formula between(const std::string& name) const { return Formula::named(fmt::format("{}({},g)", voltage, name)); }
+  [[nodiscard]] Formula variable(const std::string& name) const { return has_variables ? Formula::named(name) : node(name); }
+};
+
+struct Point {
+  std::string gap, velocity;  // sums of coordinates, over the contact gap, and of U
+  std::string load;           // times its weight, as the first mode takes it
+  std::vector<double> share;  // of every mode of that, over the first one
+};
+
+// The parts of the switch in one language.
+struct Circuit {
+  std::vector<std::string> drives;                             // pins, in the order of Switch::drives() where they are connected
+  double tau = 0;                                              // [s]
+  double gap = 0;                                              // of the contact [m]
+  std::vector<double> stiffness, friction, start, at_contact;  // of modes: (tau omega)^2, 2 zeta tau omega, Y at rest, share of y
+  std::vector<std::vector<std::pair<std::string, double>>> pushes;  // of modes: by drives that act in proportion (piezo)
+  std::vector<Point> points;
+  std::vector<std::pair<std::string, std::string>> charges;           // of pins: a formula [C]
+  std::vector<std::pair<std::string, std::vector<double>>> currents;  // of pins: by U of the modes [A]
+  std::optional<std::string> contact;                                 // force as the first mode takes it
+  double force_scale = 0;                                             // of it [N]
+  std::string deflection, rate;                                       // y over the gap, its rate over gap / tau
+  std::vector<std::string> tension;                                   // on every mode; empty: none
+};
+
+std::string pin_name(const std::string& drive) {
+  std::string name;
+  for (const char c : drive) {
+    const auto byte = static_cast<unsigned char>(c);
+    name += byte < 128 && std::isalnum(byte) != 0 ? static_cast<char>(std::tolower(byte)) : '_';
+  }
+  return name;
+}
+
+std::string sum_of(const Dialect& d, char letter, const Eigen::VectorXd& factors, double constant) {
+  Formula sum = constant;
+  for (Eigen::Index i = 0; i < factors.size(); ++i) sum += Formula(factors[i]) * d.node(fmt::format("{}{}", letter, i));
+  return sum.text();
+}
+
+class Maker {
+ public:
+  Maker(const Prepared& p, const Dialect& dialect) : p_(p), model_(p.model), device_(p.model.device()), d_(dialect) {}
+
+  Circuit make() {
+    const std::string why = why_no_circuit(model_);
+    require(why.empty(), [&] { return "a model of this switch for circuits: it has " + why; });
+    const Eigen::VectorXd omega = model_.angular_frequencies(), phi = model_.contact_shape();
+    unit_ = std::abs(phi[0]);
+    c_.tau = 1 / omega[0];
+    c_.gap = device_.gap.contact;
+    c_.force_scale = c_.gap / (c_.tau * c_.tau * unit_ * unit_);
+    const std::optional<Eigen::VectorXd> rest = p_.rest();
+    require(rest.has_value(), "a model of this switch for circuits: it has no rest under what its drives stand at before t = 0");
+    for (Eigen::Index i = 0; i < omega.size(); ++i) {
+      c_.stiffness.push_back(std::pow(c_.tau * omega[i], 2));
+      c_.friction.push_back(2 * device_.structure.damping_ratio * c_.tau * omega[i]);
+      c_.start.push_back((*rest)[i] * unit_ / c_.gap);
+      c_.at_contact.push_back(phi[i] / unit_);
+    }
+    c_.pushes.resize(static_cast<std::size_t>(omega.size()));
+    c_.deflection = sum_of(d_, 'y', phi / unit_, 0);
+    c_.rate = sum_of(d_, 'u', phi / unit_, 0);
+    find_drives();
+    find_points();
+    find_contact();
+    find_tension();
+    return std::move(c_);
+  }
+
+ private:
+  void find_drives() {
+    const std::vector<std::string> names = p_.drive_names();
+    const std::vector<Signal> told = p_.told(p_.in_drive_order(p_.drives.waveforms));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const std::string pin = pin_name(names[k]);
+      const DriveKind kind = model_.drive_kind(k);
+      const bool connected = kind != DriveKind::dispersion || !told[k].is_zero();
+      if (connected) c_.drives.push_back(pin);
+      if (kind == DriveKind::electrode) strengths_.push_back(d_.between(pin) * d_.between(pin));
+      if (kind == DriveKind::dispersion) strengths_.push_back(connected ? Formula(1) + d_.between(pin) : Formula(1));
+      if (kind == DriveKind::piezo) find_piezo(pin);
+    }
+  }
+
+  void find_piezo(const std::string& pin) {
+    std::vector<double> by_rate;
+    for (Eigen::Index i = 0; i < model_.modes(); ++i) {
+      const double moment = model_.piezo_shape()[i];
+      c_.pushes[static_cast<std::size_t>(i)].emplace_back(pin, moment * c_.tau * c_.tau * unit_ / c_.gap);
+      by_rate.push_back(moment * c_.gap / (unit_ * c_.tau));
+    }
+    c_.currents.emplace_back(pin, by_rate);
+  }
+
+  void find_points() {
+    std::vector<Formula> charges(device_.electrodes.size(), Formula(0));
+    const double scale = c_.tau * c_.tau * unit_ * unit_ / c_.gap;  // of a force on the first mode
+    for (Eigen::Index p = 0; p < model_.points(); ++p) {
+      const Eigen::VectorXd shape = model_.point_shapes().row(p).head(model_.modes()) / unit_;
+      const double x = model_.point_positions()[p], weight = model_.point_weights()[p];
+      const Formula gap = Formula(c_.gap) * max(d_.variable(fmt::format("h{}", p)), Formula(model_.gap_floor() / c_.gap));
+      const Formula velocity = Formula(c_.gap / c_.tau) * d_.variable(fmt::format("w{}", p));
+      const Formula load = load_at(x, gap, velocity, weight, charges);
+      c_.points.push_back({.gap = sum_of(d_, 'y', -shape, device_.gap.electrode / c_.gap),
+                           .velocity = sum_of(d_, 'u', shape, 0),
+                           .load = (Formula(scale * weight) * load).text(),
+                           .share = {shape.begin(), shape.end()}});
+    }
+    for (std::size_t k = 0; k < charges.size(); ++k)
+      c_.charges.emplace_back(c_.drives[k], (charges[k] * d_.between(c_.drives[k])).text());
+  }
+
+  // [N/m]; adds the capacitances of this point to those of the electrodes [F].
+  Formula load_at(double x, const Formula& gap, const Formula& velocity, double weight, std::vector<Formula>& capacitances) {
+    const Structure& s = device_.structure;
+    Formula load = 0;
+    for (std::size_t k = 0; k < device_.electrodes.size(); ++k) {
+      const Electrode& e = device_.electrodes[k];
+      const std::vector<Stretch> pads = e.pads(s.length);
+      if (std::ranges::none_of(pads, [&](const Stretch& pad) { return pad.holds(x); })) continue;
+      std::visit(
+          [&](const auto& law) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(law)>, Bao2001Fringing>) {
+              const ElectrostaticForce<std::decay_t<decltype(law)>> force{law};
+              if (e.side != Side::far) {
+                load += strengths_[k] * force.load(gap, velocity);
+                capacitances[k] += Formula(weight) * force.capacitance(gap);
+              }
+              if (e.side == Side::near) return;
+              const double both = device_.gap.electrode + e.gap, floor = e.gap / 100;
+              load += strengths_[k] *
+                      FarSide<std::decay_t<decltype(force)>>{.law = force, .both_gaps = both, .floor = floor}.load(gap, velocity);
+              capacitances[k] += Formula(weight) * force.capacitance(max(Formula(both) - gap, Formula(floor)));
+            }
+          },
+          row_of(fringing_laws, e.fringing).make(s));
+    }
+    if (device_.dispersion) load += strengths_.back() * dispersion(gap, velocity);
+    if (!model_.gas()) return load;
+    std::visit(
+        [&](const auto& law) {
+          load += law.load(gap, velocity);
+          if (const double far = device_.gas->far_gap; !std::isnan(far)) {
+            load += FarSide<std::decay_t<decltype(law)>>{.law = law, .both_gaps = device_.gap.electrode + far, .floor = far / 100}
+                        .load(gap, velocity);
+          }
+        },
+        *model_.gas());
+    return load;
+  }
+
+  Formula dispersion(const Formula& gap, const Formula& velocity) const {
+    const Dispersion& force = *device_.dispersion;
+    const VanDerWaals near{.hamaker_constant = force.hamaker_constant, .equilibrium_distance = force.equilibrium_distance};
+    const auto along = [&](auto law) {
+      return DispersionForce<decltype(law)>{.law = law, .width = device_.structure.width}.load(gap, velocity);
+    };
+    if (force.model == DispersionModel::van_der_waals) return along(near);
+    if (force.model == DispersionModel::casimir) return along(IdealCasimir{});
+    return along(SmallerOfBoth<IdealCasimir>{IdealCasimir{}, near});
+  }
+
+  void find_contact() {
+    if (!model_.has_contact()) return;
+    const Formula depth = Formula(c_.gap) * max(d_.variable("at") - Formula(1), Formula(0));
+    const Formula rate = Formula(c_.gap / c_.tau) * d_.variable("rate");
+    std::visit(
+        [&](const auto& law) {
+          using Law = std::decay_t<decltype(law)>;
+          if constexpr (only_pushes<Law>) {
+            if constexpr (requires { law.force(depth, rate); }) {
+              c_.contact = (Formula(1 / c_.force_scale) * law.force(depth, rate)).text();
+            } else {
+              c_.contact = (Formula(1 / c_.force_scale) * law.force(depth)).text();
+            }
+          }
+        },
+        model_.contact());
+  }
+
+  // Of the tension of a stretched middle line, as model/stretching.h has it.
+  void find_tension() {
+    if (!model_.stretching()) return;
+    const MidPlaneStretching& s = *model_.stretching();
+    const double q = c_.gap / unit_;  // of Y = 1
+    std::vector<Formula> pulls;
+    Formula strain = 0;
+    for (std::size_t i = 0; i < s.modes; ++i) {
+      Formula pull = 0;
+      for (std::size_t j = 0; j < s.modes; ++j) pull += Formula(q * s.slopes[j * s.modes + i]) * d_.node(fmt::format("y{}", j));
+      strain += Formula(q) * d_.node(fmt::format("y{}", i)) * pull;
+      pulls.push_back(pull);
+    }
+    const double scale = s.stiffness * c_.tau * c_.tau * unit_ / c_.gap;
+    c_.tension.push_back((Formula(scale) * strain).text());  // first: of the line, then its pull on every mode
+    for (const Formula& pull : pulls) c_.tension.push_back(pull.text());
+  }
+
+  const Prepared& p_;
+  const Switch& model_;
+  const Device& device_;
+  const Dialect& d_;
+  Circuit c_;
+  double unit_ = 1;
+  std::vector<Formula> strengths_;
+};
+
+std::string title(const Prepared& p) {
+  return fmt::format("{}: {} modes, {} quadrature points", p.scene.file.name(), p.model.modes(), p.model.points());
+}
+
+// Appends lines.
+struct Lines {
+  std::string& text;
+  template <class... Words>
+  void operator()(fmt::format_string<Words...> form, Words&&... words) const {
+    text += fmt::format(form, std::forward<Words>(words)...) + "\n";
+  }
+};
+
+std::string subcircuit(const Circuit& c) {
+  std::string text = fmt::format(".subckt softland_switch {} g s d y vel force rc=1 roff=1e12\n", fmt::join(c.drives, " "));
+  const Lines line{text};
+  for (std::size_t i = 0; i < c.stiffness.size(); ++i) {
+    line("Cy{0} y{0} 0 {1} ic={2}", i, c.tau, c.start[i]);
+    line("Cu{0} u{0} 0 {1} ic=0", i, c.tau);
+    line("Gy{0} 0 y{0} u{0} 0 1", i);
+    line("Gk{0} u{0} 0 y{0} 0 {1}", i, c.stiffness[i]);
+    if (c.friction[i] > 0) line("Gd{0} u{0} 0 u{0} 0 {1}", i, c.friction[i]);
+    for (const auto& [pin, push] : c.pushes[i]) line("Ge{0} 0 u{0} {1} g {2}", i, pin, push);
+    if (!c.tension.empty()) line("Bt{0} u{0} 0 i=v(line)*{1}", i, c.tension[i + 1]);
+  }
+  if (!c.tension.empty()) line("Bline line 0 v={}", c.tension.front());
+  line("Bat at 0 v={}\nBrate rate 0 v={}", c.deflection, c.rate);
+  for (std::size_t p = 0; p < c.points.size(); ++p) {
+    const Point& point = c.points[p];
+    line("Bh{0} h{0} 0 v={1}\nBw{0} w{0} 0 v={2}\nBf{0} f{0} 0 v={3}", p, point.gap, point.velocity, point.load);
+    for (std::size_t i = 0; i < point.share.size(); ++i) line("Gf{0}_{1} 0 u{0} f{1} 0 {2}", i, p, point.share[i]);
+  }
+  if (c.contact) {
+    line("Bp push 0 v={}", *c.contact);
+    for (std::size_t i = 0; i < c.at_contact.size(); ++i) line("Gp{0} u{0} 0 push 0 {1}", i, c.at_contact[i]);
+  }
+  for (const auto& [pin, charge] : c.charges) line("Cq_{0} {0} g q='{1}'", pin, charge);
+  for (const auto& [pin, by_rate] : c.currents) {
+    for (std::size_t i = 0; i < by_rate.size(); ++i) line("Gi{0}_{1} {0} g u{1} 0 {2}", pin, i, by_rate[i]);
+  }
+  line("By y 0 v={}*v(at)\nBvel vel 0 v={}*v(rate)", 1e6 * c.gap, c.gap / c.tau);
+  line("Bforce force 0 v={}", c.contact ? fmt::format("{}*v(push)", 1e6 * c.force_scale) : "0");
+  line("Bs s d i=v(s,d)*(v(at)>1 ? 1/rc : 1/roff)");
+  return text + ".ends softland_switch\n";
+}
+
+const Dialect spice{.voltage = "v", .has_variables = false};
+const Dialect verilog{.voltage = "V", .has_variables = true};
+
+}  // namespace
+
+std::string why_no_circuit(const Switch& model) {
+  const Device& device = model.device();
+  if (device.gas && is_compressible(device.gas->model)) return "a compressible gas film, which has states of its own";
+  if (device.dispersion && device.dispersion->conductor == Conductor::gold &&
+      device.dispersion->model != DispersionModel::van_der_waals)
+    return "a Casimir force between gold, which is a table";
+  for (const Electrode& e : device.electrodes) {
+    if (e.fringing == Fringing::bao_2001) return "fringing by bao-2001, whose charge is an integral";
+  }
+  if (!model.has_contact()) return {};
+  if (model.has_pad_contact()) return "a contact along its pad";
+  const bool can = std::visit([](const auto& law) { return only_pushes<std::decay_t<decltype(law)>>; }, model.contact());
+  return can ? "" : "a contact law other than linear or asperity-uniform";
+}
+
+std::string spice_model(const Prepared& p) {
+  return fmt::format("* {}\n* pins: drives, their ground g, contact s and d, y [um], vel [m/s], force [uN]\n{}", title(p),
+                     subcircuit(Maker(p, spice).make()));
+}
+
+std::string spice_bench(const Prepared& p) {
+  const Circuit c = Maker(p, spice).make();
+  std::map<std::string, Signal> told;
+  const std::vector<std::string> names = p.drive_names();
+  const std::vector<Signal> signals = p.signals();
+  std::string sources, pins;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::string pin = pin_name(names[k]);
+    if (std::ranges::find(c.drives, pin) == c.drives.end()) continue;
+    told.emplace(names[k], signals[k]);
+    sources += fmt::format("Xdrive_{0} {0} 0 softland_{0}\n", pin);
+    pins += " " + pin;
+  }
+  // Of trapezoids: the first mode to 1e-6, the fastest one as it takes part; one mode alone is quick enough for ten times that.
+  const Eigen::VectorXd& omega = p.model.angular_frequencies();
+  const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 5000 : 1500) * omega[0]);
+  std::string text = title(p) + "\n" + subcircuit(c) + spice_pwl(told, p.duration) + sources;
+  text += fmt::format("Xswitch{} 0 s d y vel force softland_switch\nVs s 0 1\nRload d 0 50\n", pins);
+  text += ".options reltol=1e-6 abstol=1e-15 vntol=1e-9 chgtol=1e-21 method=trap itl4=100\n";
+  text += fmt::format(".tran {} {} 0 {} uic\n", step, p.duration, step);
+  text += fmt::format(
+      ".control\nrun\nmeas tran t_i when v(y)={0} rise=1\nmeas tran v_i find v(vel) when v(y)={0} rise=1\n"
+      "meas tran force max v(force)\nmeas tran t_s when v(y)={0} fall=1\nmeas tran lowest min v(y) from=$&t_s\n"
+      "let rebound = {0} - lowest\nprint rebound\n",
+      1e6 * c.gap);
+  return text + "quit\n.endc\n.end\n";
+}
+
+std::string verilog_a(const Prepared& p) {
+  const Circuit c = Maker(p, verilog).make();
+  const std::size_t modes = c.stiffness.size(), points = c.points.size();
+  std::string text = fmt::format("// {}\n// y [um], vel [m/s], force [uN] as volts\n`include \"disciplines.vams\"\n\n", title(p));
+  const Lines line{text};
+  const std::string pins = fmt::format("{}, g, s, d, y, vel, force", fmt::join(c.drives, ", "));
+  line("module softland_switch({0});\n  inout {0};\n  electrical {0};", pins);
+  line("  parameter real rc = 1, roff = 1e12;");
+  for (std::size_t i = 0; i < modes; ++i) line("  electrical y{0}, u{0};", i);
+  for (std::size_t k = 0; k < points; ++k) line("  real h{0}, w{0}, f{0};", k);
+  line("  real at, rate, push{};\n  analog begin", c.tension.empty() ? "" : ", line");
+  line("    at = {};\n    rate = {};\n    push = {};", c.deflection, c.rate, c.contact.value_or("0"));
+  if (!c.tension.empty()) line("    line = {};", c.tension.front());
+  for (std::size_t k = 0; k < points; ++k) {
+    const Point& point = c.points[k];
+    line("    h{0} = {1};\n    w{0} = {2};\n    f{0} = {3};", k, point.gap, point.velocity, point.load);
+  }
+  for (std::size_t i = 0; i < modes; ++i) {
+    std::string loads;
+    for (std::size_t k = 0; k < points; ++k) loads += fmt::format(" + ({})*f{}", c.points[k].share[i], k);
+    for (const auto& [pin, push] : c.pushes[i]) loads += fmt::format(" + ({})*V({},g)", push, pin);
+    if (!c.tension.empty()) loads += fmt::format(" - line*{}", c.tension[i + 1]);
+    line("    V(y{0}) <+ idt(V(u{0})/{1}, {2});", i, c.tau, c.start[i]);
+    line("    V(u{0}) <+ idt((-{2}*V(y{0}) - {3}*V(u{0}) - ({4})*push{5})/{1}, 0);", i, c.tau, c.stiffness[i], c.friction[i],
+         c.at_contact[i], loads);
+  }
+  for (const auto& [pin, charge] : c.charges) line("    I({0},g) <+ ddt({1});", pin, charge);
+  for (const auto& [pin, by_rate] : c.currents) {
+    for (std::size_t i = 0; i < by_rate.size(); ++i) line("    I({0},g) <+ ({1})*V(u{2});", pin, by_rate[i], i);
+  }
+  line("    V(y) <+ {}*at;\n    V(vel) <+ {}*rate;\n    V(force) <+ {}*push;", 1e6 * c.gap, c.gap / c.tau, 1e6 * c.force_scale);
+  line("    I(s,d) <+ V(s,d)*(at>1 ? 1/rc : 1/roff);\n  end\nendmodule");
+  return text;
+}
+
+}  // namespace softland
