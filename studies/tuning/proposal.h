@@ -70,15 +70,17 @@ class Outlook {
   /// Keeps a reference to `scene`.
   Outlook(const TunedScene& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Watch& watch);
   [[nodiscard]] std::size_t size() const { return devices_.size(); }
-  /// Of the first `count` devices.
-  [[nodiscard]] std::vector<ImaginedClosing> close(const std::vector<Waveform>& waveforms, std::size_t count) const;
-  [[nodiscard]] LandingCost expected(const std::vector<Waveform>& waveforms, std::size_t count) const;
+  /// The mean over the first `count` devices; over the first few of them alone where that is above `give_up`.
+  [[nodiscard]] LandingCost expected(const std::vector<Waveform>& waveforms, std::size_t count,
+                                     double give_up = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] PredictedRecord predicted(const std::vector<Waveform>& waveforms) const;
   /// The median of dt_i / d ln(volts) [s]; NaN where no device tells it.
   [[nodiscard]] double touch_slope(const std::vector<Waveform>& waveforms) const;
 
  private:
-  [[nodiscard]] std::vector<ImaginedClosing> close(const std::vector<Waveform>& waveforms, std::size_t count, double gain) const;
+  // Of the devices from `begin` to `end`.
+  [[nodiscard]] std::vector<ImaginedClosing> close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
+                                                   double gain = 1) const;
 
   const TunedScene& scene_;
   std::vector<ImaginedDevice> devices_;

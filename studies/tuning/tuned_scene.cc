@@ -226,7 +226,12 @@ std::vector<Signal> TunedScene::signals(const ImaginedShot& shot) const {
 }
 
 std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> shots, const Watch& watch) const {
-  constexpr std::size_t together = 16;
+  // All threads have something to do, and lanes are filled.
+  constexpr std::size_t lanes = 8, most_in_lanes = 64, most_by_itself = 4;
+  const auto jobs = static_cast<std::size_t>(options_.jobs);
+  const std::size_t share = (shots.size() + jobs - 1) / jobs;
+  const std::size_t together =
+      is_in_lanes() ? std::clamp(share, lanes, most_in_lanes) : std::clamp<std::size_t>(share, 1, most_by_itself);
   std::vector<ImaginedClosing> all(shots.size());
   const double t0 = scales_.closing_time;
   const auto task = [&](std::size_t n) {
