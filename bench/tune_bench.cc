@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -89,6 +90,7 @@ struct Course {
   std::vector<double> surprises;     // Tuner::surprises()
   int unexpected_bounces = 0;
   std::string broken;
+  std::optional<BelievedQuantity> gap_ratio;
   std::vector<double> repeated;  // highest rebound of each repetition [m]
 };
 
@@ -151,6 +153,7 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
   course.surprises = tuner.surprises();
   course.unexpected_bounces = tuner.unexpected_bounces();
   course.broken = tuner.broken_assumption().value_or("");
+  course.gap_ratio = tuner.belief().gap_ratio;
   constexpr int many = 1000;
   for (int k = 0; a.drift_of_1000 != 0 && k < many; ++k) {
     const PracticeClosing closing = lab.fire(tuner.next().waveforms);
@@ -380,6 +383,7 @@ int main(int count, char** words) try {
                  below(a.very_good), 1e9 * a.very_good);
     }
     fmt::print(" surprises {:.1f}, {} bounces", fmt::join(c.surprises, " "), c.unexpected_bounces);
+    if (c.gap_ratio) fmt::print(", gap ratio {:.4f} +- {:.4f}", c.gap_ratio->mean, c.gap_ratio->deviation);
     fmt::print("{}\n", c.broken.empty() ? "" : " BROKEN " + c.broken);
     std::fflush(stdout);
     broken += !c.broken.empty();

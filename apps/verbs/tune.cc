@@ -114,6 +114,7 @@ class Tuning {
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
 
  private:
+  void make_tuner(const SceneFile& file);
   [[nodiscard]] ToldShot told(const TunerShot& shot) const;
   [[nodiscard]] SentSignals sent(const TunerShot& shot) const { return sent_signals(tuner_->scene(), shot.waveforms); }
   void learn(const TunerShot& shot, const ContactRecord& record);
@@ -139,8 +140,19 @@ Tuning::Tuning(const Common& common, const SceneFile& file, TunerOptions options
   log_ = std::make_unique<TuningLog>(folder_->path() / log_file, origin_, request.resume);
   if (!log_->kept_aside().empty() && !common_.quiet)
     say(fmt::format("the closings of an earlier run are now in {}", log_->kept_aside().string()));
+  options_.recipes = log_->recipes();
+  make_tuner(file);
+  if (log_->recipes().empty()) log_->append(tuner_->recipes());
+}
+
+void Tuning::make_tuner(const SceneFile& file) {
   const WatchedWork work(common_.quiet, common_.stop);
-  tuner_.emplace(file, options_, work.watch());
+  try {
+    tuner_.emplace(file, options_, work.watch());
+  } catch (const InvalidInput& error) {
+    if (options_.recipes.empty()) throw;
+    throw InvalidInput(fmt::format("{}: {}", (folder_->path() / log_file).string(), error.what()));
+  }
 }
 
 ToldShot Tuning::told(const TunerShot& shot) const { return told_shot(shot.number, shot.hold_time, sent(shot).signals); }

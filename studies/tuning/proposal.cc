@@ -1,5 +1,7 @@
 #include "studies/tuning/proposal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +9,7 @@
 
 #include "base/executor.h"
 #include "base/random.h"
+#include "base/require.h"
 #include "optimizers/problem.h"
 #include "sampling/statistics.h"
 #include "studies/plain_step.h"
@@ -245,7 +248,9 @@ std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const st
 
 }  // namespace
 
-std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes, const Watch& watch) {
+namespace {
+
+std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shapes, std::size_t count, const Watch& watch) {
   constexpr double narrow = 0.1, narrow_nuisances = 0.5;  // devices, in standard deviations of the prior
   constexpr double headroom = 0.92;                       // of the driver's highest level
   constexpr double hopeless = 0.9;
@@ -261,8 +266,7 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
     for (Eigen::Index i = 0; i < scene.size(); ++i) apart.back()[i] *= scene.is_nuisance(i) ? narrow_nuisances : narrow;
   }
   std::vector<Recipe> recipes;
-  const auto count = std::min<std::size_t>(deviations.size(), static_cast<std::size_t>(scene.options().most_recipes));
-  for (std::size_t n = 0; n < (slope.isZero() ? 1 : count); ++n) {
+  for (std::size_t n = 0; n < std::min(count, deviations.size()); ++n) {
     watch.tell("recipes", static_cast<double>(n) / static_cast<double>(count));
     const Eigen::VectorXd centre =
         slope.isZero() ? Eigen::VectorXd(slope) : Eigen::VectorXd(deviations[n] / slope.norm() * slope);
@@ -282,11 +286,12 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
     if (n == 0) {
       for (const std::vector<double>& start : limited.starts()) add(limited.in_units(start, {}, {}));
     } else {
-      for (const Recipe& recipe : recipes) add(limited.in_units(recipe.x, recipe.units, units));
+      for (const Recipe& recipe : recipes) add(limited.in_units(recipe.x, units_of(recipe), units));
     }
     std::ranges::stable_sort(from, {}, [](const Proposal& one) { return one.cost.total(); });
     Recipe best{.x = from.empty() ? limited.in_units(shapes.starts().front(), {}, {}) : from.front().x,
-                .units = units,
+                .volts = units.volts,
+                .time = units.time,
                 .cost = from.empty() ? not_landed : from.front().cost.total()};
     from.resize(std::min<std::size_t>(from.size(), n == 0 ? 3 : 1));
     run_tasks(from.size(), scene.options().jobs, [&](std::size_t k) {
@@ -301,6 +306,23 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
     recipes.push_back(std::move(best));
   }
   return recipes;
+}
+
+}  // namespace
+
+std::vector<Recipe> recipes_of(const TunedScene& scene, const Shapes& shapes, const Watch& watch) {
+  const std::size_t count = scene.volts_slope().isZero() ? 1 : static_cast<std::size_t>(scene.options().most_recipes);
+  const std::vector<Recipe>& known = scene.options().recipes;
+  if (known.empty()) return searched_recipes(scene, shapes, count, watch);
+  require(known.size() == count, [&] { return fmt::format("there are {} recipes, and there must be {}", known.size(), count); });
+  for (const Recipe& recipe : known) {
+    require(recipe.x.size() == shapes.variables().size(),
+            [&] { return fmt::format("a recipe has {} numbers, and must have {}", recipe.x.size(), shapes.variables().size()); });
+    require(std::ranges::all_of(recipe.x, [](double x) { return std::isfinite(x); }) && recipe.volts > 0 && recipe.time > 0 &&
+                std::isfinite(recipe.volts) && std::isfinite(recipe.time),
+            "the numbers of a recipe must be finite, and its units above 0");
+  }
+  return known;
 }
 
 Proposal propose(const TunedScene& scene, const Shapes& shapes, const Outlook& outlook,

@@ -88,13 +88,10 @@ class Outlook {
   Watch watch_;
 };
 
-struct Recipe {
-  std::vector<double> x;
-  TunedScene::Units units;  ///< of the devices that it was searched for
-  double cost = 0;
-};
-/// That of the nominal device first. Throws Interrupted.
-[[nodiscard]] std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes, const Watch& watch);
+[[nodiscard]] inline TunedScene::Units units_of(const Recipe& recipe) { return {.volts = recipe.volts, .time = recipe.time}; }
+/// Those of the options, or else found. That of the nominal device first. Throws InvalidInput for recipes of other shapes,
+/// Interrupted.
+[[nodiscard]] std::vector<Recipe> recipes_of(const TunedScene& scene, const Shapes& shapes, const Watch& watch);
 
 struct Proposal {
   std::vector<double> x;

@@ -22,7 +22,7 @@ namespace softland {
 namespace {
 
 constexpr double belief_accuracy = 1e-4;  // of closings
-constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1, gap_ratio_deviation = 0.03;
+constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1;
 constexpr double delay_share = 0.003;  // of the closing time of the plain step
 
 // Of a closing, in closing times of the plain step: after the first touch, without a touch, and after the last breakpoint.
@@ -63,53 +63,9 @@ SceneFile with_nuisances(const Prepared& prepared, const TunerOptions& options) 
     if (file.written(key) && !varies(spread, key)) stiffness.emplace_back(key);
   }
   if (!stiffness.empty()) vary(file, "contact stiffness", stiffness, "lognormal", contact_deviation);
-  if (!varies(spread, "gap.contact")) vary(file, "gap.contact", {"gap.contact"}, "normal", gap_ratio_deviation);
+  if (!varies(spread, "gap.contact")) vary(file, "gap.contact", {"gap.contact"}, "normal", TunedScene::gap_ratio_deviation);
   file.assign("simulate.accuracy", belief_accuracy);
   return file;
-}
-
-// The contact gap leaves the factor that it shares with other gaps, and follows it but for a deviation of its own: correlated
-// normal factors.
-void loosen_contact_gap(DeviceSpread& spread) {
-  for (std::size_t i = 0; i < spread.variables.size(); ++i) {
-    SpreadVariable& shared = spread.variables[i];
-    const auto key = std::ranges::find(shared.keys, "gap.contact", &VariedKey::path);
-    const auto* normal = std::get_if<Normal>(&shared.distribution.parameters());
-    const Truncation& truncation = shared.distribution.truncation();
-    const bool is_free = !(truncation.low > -std::numeric_limits<double>::infinity()) &&
-                         !(truncation.high < std::numeric_limits<double>::infinity());
-    if (key == shared.keys.end() || shared.keys.size() < 2 || !shared.is_factor || normal == nullptr || !is_free) continue;
-    const double own = std::hypot(normal->standard_deviation, gap_ratio_deviation);
-    const double correlation = normal->standard_deviation / own;
-    SpreadVariable contact{.name = "gap.contact",
-                           .keys = {*key},
-                           .distribution = Distribution(Normal{.mean = normal->mean, .standard_deviation = own})};
-    shared.keys.erase(key);
-    const Eigen::Index n = spread.correlation.rows();
-    Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
-    all.topLeftCorner(n, n) = spread.correlation;
-    all.row(n).head(n) = correlation * spread.correlation.row(static_cast<Eigen::Index>(i));
-    all.col(n).head(n) = all.row(n).head(n).transpose();
-    spread.correlation = all;
-    spread.variables.push_back(std::move(contact));
-    return;
-  }
-}
-
-Prepared prepared_for_belief(const SceneFile& given, const TunerOptions& options, bool& spread_is_assumed, const Watch& watch) {
-  SceneFile file = given;
-  spread_is_assumed = assume_spread(file);
-  const Prepared prepared = prepare_and_choose(file, true, watch);
-  require(prepared.model.has_contact(),
-          [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
-  Prepared p = prepare(with_nuisances(prepared, options), true, watch);
-  DeviceSpread& spread = p.scene.spread;
-  for (std::size_t i = spread.variables.size(); i-- > 0;) {
-    if (spread.variables[i].is_drawn_per_edge) spread.leave_out(i);
-  }
-  loosen_contact_gap(spread);
-  spread.correlate(spread.correlation);
-  return p;
 }
 
 // The landing of one lane.
@@ -152,8 +108,56 @@ class SingleClosing final : public ClosingObserver {
 
 }  // namespace
 
+// The contact gap leaves the factor that it shares with other gaps, and follows it but for a deviation of its own: correlated
+// normal factors.
+void TunedScene::loosen_contact_gap(DeviceSpread& spread) {
+  for (std::size_t i = 0; i < spread.variables.size(); ++i) {
+    SpreadVariable& shared = spread.variables[i];
+    const auto key = std::ranges::find(shared.keys, "gap.contact", &VariedKey::path);
+    const auto* normal = std::get_if<Normal>(&shared.distribution.parameters());
+    const Truncation& truncation = shared.distribution.truncation();
+    const bool is_free = !(truncation.low > -std::numeric_limits<double>::infinity()) &&
+                         !(truncation.high < std::numeric_limits<double>::infinity());
+    if (key == shared.keys.end() || shared.keys.size() < 2 || !shared.is_factor || normal == nullptr || !is_free) continue;
+    const double own = std::hypot(normal->standard_deviation, gap_ratio_deviation);
+    const double correlation = normal->standard_deviation / own;
+    SpreadVariable contact{.name = "gap.contact",
+                           .keys = {*key},
+                           .distribution = Distribution(Normal{.mean = normal->mean, .standard_deviation = own})};
+    shared.keys.erase(key);
+    const Eigen::Index n = spread.correlation.rows();
+    Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
+    all.topLeftCorner(n, n) = spread.correlation;
+    all.row(n).head(n) = correlation * spread.correlation.row(static_cast<Eigen::Index>(i));
+    all.col(n).head(n) = all.row(n).head(n).transpose();
+    spread.correlation = all;
+    gap_ratio_ = {.contact = spread.variables.size(), .shared = i};
+    spread.variables.push_back(std::move(contact));
+    return;
+  }
+}
+
+Prepared TunedScene::prepared(const SceneFile& given, const Watch& watch) {
+  SceneFile file = given;
+  spread_is_assumed_ = assume_spread(file);
+  const Prepared chosen = prepare_and_choose(file, true, watch);
+  require(chosen.model.has_contact(),
+          [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
+  Prepared p = prepare(with_nuisances(chosen, options_), true, watch);
+  DeviceSpread& spread = p.scene.spread;
+  for (std::size_t i = spread.variables.size(); i-- > 0;) {
+    if (spread.variables[i].is_drawn_per_edge) spread.leave_out(i);
+  }
+  const auto contact = std::ranges::find(spread.variables, "gap.contact", &SpreadVariable::name);
+  if (contact != spread.variables.end() && !varies(chosen.scene.spread, "gap.contact"))
+    gap_ratio_ = {.contact = static_cast<std::size_t>(contact - spread.variables.begin()), .shared = {}};
+  loosen_contact_gap(spread);
+  spread.correlate(spread.correlation);
+  return p;
+}
+
 TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const Watch& watch)
-    : options_(options), nominal_(prepared_for_belief(file, options, spread_is_assumed_, watch)) {
+    : options_(options), nominal_(prepared(file, watch)) {
   const DeviceSpread& spread = nominal_.scene.spread;
   for (const SpreadVariable& variable : spread.variables)
     nuisances_.push_back(variable.name == "gas.viscosity" || variable.name == "contact stiffness");
@@ -201,6 +205,12 @@ std::vector<double> TunedScene::values(const Eigen::VectorXd& point) const {
     u[k] = standard_normal_cdf(std::clamp(z[static_cast<Eigen::Index>(k)], -furthest, furthest));
   nominal_.scene.spread.to_values(u);
   return u;
+}
+
+std::optional<double> TunedScene::gap_ratio(std::span<const double> values) const {
+  if (!gap_ratio_) return {};
+  const double contact = values[gap_ratio_->contact];
+  return gap_ratio_->shared ? contact / values[*gap_ratio_->shared] : contact;
 }
 
 std::vector<ImaginedDevice> TunedScene::devices(std::span<const Eigen::VectorXd> points, const Watch& watch) const {

@@ -43,6 +43,13 @@
 
 namespace softland {
 
+/// A waveform that proposals begin from, searched once for a scene.
+struct Recipe {
+  std::vector<double> x;       ///< numbers of its shape
+  double volts = 1, time = 1;  ///< units of the devices that it was searched for, over those of the nominal one
+  double cost = 0;             ///< expected of these devices
+};
+
 struct TunerOptions {
   Actuator actuator = Actuator::electrostatic;  ///< which drives are shaped
   std::uint64_t seed = 1;
@@ -52,6 +59,8 @@ struct TunerOptions {
   double effort = 1;     ///< evaluations of every search, over the usual
   /// Devices of the same wafer that were tuned before: what they tell is what is known of this one before its first closing.
   std::vector<TunedBelief> wafer = {};
+  /// What Tuner::recipes() gave for this scene and these options; empty: they are searched.
+  std::vector<Recipe> recipes = {};
   Vectors vectors = vectors_in_use();
 };
 
@@ -84,6 +93,8 @@ struct BelievedQuantity {
 
 struct BeliefSummary {
   std::vector<BelievedQuantity> quantities;
+  /// Contact gap over electrode gap, over that of the scene, where devices of the spread have that of the scene.
+  std::optional<BelievedQuantity> gap_ratio = {};
   double effective_devices = 0;         ///< of the weighted samples: 1 over the sum of the squares of the weights
   std::vector<std::string> correlated;  ///< sentences about quantities that the records do not tell apart
   /// For a tuning of another device of the wafer: in standard normal coordinates of the spread, of which the delay is the last.
@@ -93,8 +104,8 @@ struct BeliefSummary {
 class Tuner {
  public:
   /// Makes the scene ready and searches the recipes of its nominal device: seconds in lanes. Throws InvalidInput for a scene that
-  /// cannot be tuned (no contact, no drive to shape, options out of range), and for a wafer of other quantities, Interrupted
-  /// where `watch` asks to stop.
+  /// cannot be tuned (no contact, no drive to shape, options out of range), for a wafer of other quantities and for recipes of
+  /// other shapes, Interrupted where `watch` asks to stop.
   Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch = {});
   ~Tuner();
   Tuner(Tuner&&) noexcept;
@@ -105,6 +116,8 @@ class Tuner {
 
   /// The scene that the belief is about: nominal device, drives and limits.
   [[nodiscard]] const Prepared& scene() const;
+  /// That of the nominal device first.
+  [[nodiscard]] const std::vector<Recipe>& recipes() const;
   /// The first touch of the plain step on the nominal device [s].
   [[nodiscard]] double step_closing_time() const;
   /// Whether the scene said how devices differ, or it was assumed.
@@ -127,12 +140,14 @@ class Tuner {
   [[nodiscard]] int bounce_free_in_a_row() const;
   static constexpr int enough_in_a_row = 5;
   [[nodiscard]] bool is_done() const { return bounce_free_in_a_row() >= enough_in_a_row; }
-  /// How far the recorded first touch of each closing was from what the belief had predicted, in standard deviations; shots that
-  /// are repeated are left out as long as they do not bounce.
+  /// How far the recorded first touch of each closing was from what the belief had predicted, in standard deviations; 0 where the
+  /// belief was of too few devices to predict, or the contact closed or stayed open as it ought not to. Shots that are repeated
+  /// are left out as long as they do not bounce.
   [[nodiscard]] const std::vector<double>& surprises() const;
   /// Closings that bounced, where at most one in twenty devices of the belief did.
   [[nodiscard]] int unexpected_bounces() const;
-  /// In words, where records were not what the belief predicted before it saw them: the device does not behave like the scene.
+  /// In words, where records were not what the belief predicted before it saw them, or where the belief is that the gaps are in
+  /// another ratio than in the scene: the device does not behave like the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
  private:

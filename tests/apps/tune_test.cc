@@ -150,7 +150,7 @@ class TuneVerb : public testing::Test {
     return json::parse(read(here.path() / folder / "tune.json"), nullptr, false);
   }
   [[nodiscard]] std::size_t logged(const std::string& folder = "out") const {
-    return lines_of(read(here.path() / folder / "closings.jsonl")).size() - 1;
+    return lines_of(read(here.path() / folder / "closings.jsonl")).size() - 2;
   }
   Workplace here;
 };
@@ -194,6 +194,19 @@ TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
   const Outcome other = here.run(words(device(), {"--resume", "--seed", "2"}));
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("out/closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
+  // It begins from the recipes of the log.
+  json recipes = lines_of(whole)[1];
+  ASSERT_TRUE(recipes.contains("recipes"));
+  const auto resumed_with = [&](const std::string& line) {
+    const std::size_t begin = whole.find('\n') + 1, end = whole.find('\n', begin);
+    write(here.path() / "out/closings.jsonl", whole.substr(0, begin) + line + whole.substr(end));
+    return here.run(words(device(), {"--closings", "4", "--resume"})).err;
+  };
+  recipes["recipes"][0]["x"][1] = 1.02 * recipes["recipes"][0]["x"][1].get<double>();
+  EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("out/closings.jsonl:3: this program proposes another shot"));
+  recipes["recipes"][0]["x"].erase(0);
+  EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("out/closings.jsonl: a recipe has"));
+  EXPECT_THAT(resumed_with(R"({"recipes":[]})"), HasSubstr("out/closings.jsonl:2: recipes = []: must be a list of recipes"));
 }
 
 TEST_F(TuneVerb, BeginsWithWhatAnotherDeviceOfTheWaferTold_optimized) {
