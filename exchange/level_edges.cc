@@ -1,6 +1,11 @@
 #include "exchange/level_edges.h"
 
+#include <fmt/format.h>
+
 #include <cstddef>
+#include <utility>
+
+#include "base/require.h"
 
 namespace softland {
 namespace {
@@ -41,6 +46,27 @@ std::vector<LevelEdge> level_edges(const Trace& trace, const ThresholdKeys& keys
   }
   merge_short(edges, false, keys.merge);
   merge_short(edges, true, keys.merge);
+  return edges;
+}
+
+void shift_times(Trace& trace, const TimeShift& shift) {
+  const double by = shift.first_is_zero ? -trace.times.front() : shift.shift;
+  for (double& time : trace.times) time += by;
+}
+
+std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys) {
+  Trace trace = trace_of(read_recording(file, keys.file), keys.file, "contact");
+  shift_times(trace, keys.shift);
+  std::vector<LevelEdge> edges = level_edges(trace, keys.contact);
+  std::size_t before = 0;
+  while (before < edges.size() && (edges[before].time < 0 || (before == 0 && edges[0].time <= trace.times.front()))) ++before;
+  require(before == 0 || !edges[before - 1].closed, [&] {
+    return fmt::format(
+        "{}: the contact is closed at t = 0 already; closed = \"below\" takes voltages below the threshold for a closed one, and "
+        "shift moves t = 0 to where the drives begin",
+        file);
+  });
+  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(before));
   return edges;
 }
 

@@ -6,6 +6,7 @@
 // that last for less than `merge` are none: openings first, then touches.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "exchange/trace.h"
@@ -26,5 +27,21 @@ struct LevelEdge {
 
 /// In order, by turns closed and open. A trace that begins closed has its first edge at its first row.
 [[nodiscard]] std::vector<LevelEdge> level_edges(const Trace& trace, const ThresholdKeys& keys);
+
+/// What is added to the times of a file.
+struct TimeShift {
+  bool first_is_zero = false;  ///< the first row is at t = 0
+  double shift = 0;            ///< else [s]
+};
+void shift_times(Trace& trace, const TimeShift& shift);
+
+struct ContactTraceKeys {
+  ReadKeys file;
+  TimeShift shift = {};
+  ThresholdKeys contact;
+};
+/// The edges from t = 0 on, when the drives begin, of a voltage that the file of an instrument holds. Throws what
+/// read_recording() and trace_of() throw, and InvalidInput for a contact that is closed at t = 0 already.
+[[nodiscard]] std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys);
 
 }  // namespace softland

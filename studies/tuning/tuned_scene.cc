@@ -176,6 +176,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   scales_ = {.closing_time = closing.touches.front().begin,
              .gap = nominal_.scene.device.gap.contact,
              .rebound = nominal_.scene.metrics.significant_rebound};
+  if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
   constexpr double coarsest = 0.1;  // of the closing time
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",

@@ -36,6 +36,7 @@ struct TuningScales {
   double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
   double gap = 0;           ///< contact gap [m]
   double rebound = 0;       ///< significant rebound [m]
+  double latest_touch = std::numeric_limits<double>::infinity();     ///< that is asked for [s]
   [[nodiscard]] double speed() const { return gap / closing_time; }  ///< [m/s]
 };
 

@@ -14,6 +14,8 @@
 //
 //   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88)       3 where it does not close
 //
+// Where the first touch is to come by t_b, 10 max(0, t_i / t_b - 1) are added.
+//
 // No shot leaves the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would be
 // pulled through its contact. After two closings without a bounce, where none is expected, the same shot is repeated; its
 // volts then follow the touch time, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until it bounces. Then all records but the
@@ -34,6 +36,7 @@
 #include <vector>
 
 #include "base/watch.h"
+#include "config/criterion.h"
 #include "model/ensemble/fleet.h"
 #include "studies/prepared.h"
 #include "studies/search_space.h"
@@ -57,12 +60,17 @@ struct TunerOptions {
   LaboratoryErrors laboratory = {};
   int most_recipes = 1;  ///< units of volts that recipes are searched for, 1 to 5
   double effort = 1;     ///< evaluations of every search, over the usual
+  /// A condition on the first touch, which must come before or by its limit; none: it has no bound.
+  std::optional<Criterion> touch = {};
   /// Devices of the same wafer that were tuned before: what they tell is what is known of this one before its first closing.
   std::vector<TunedBelief> wafer = {};
   /// What Tuner::recipes() gave for this scene and these options; empty: they are searched.
   std::vector<Recipe> recipes = {};
   Vectors vectors = vectors_in_use();
 };
+
+/// Throws InvalidInput for options out of range.
+void check(const TunerOptions& options);
 
 /// What the belief expects of a shot.
 struct PredictedRecord {
@@ -144,7 +152,7 @@ class Tuner {
   /// belief was of too few devices to predict, or the contact closed or stayed open as it ought not to. Shots that are repeated
   /// are left out as long as they do not bounce.
   [[nodiscard]] const std::vector<double>& surprises() const;
-  /// Closings that bounced, where at most one in twenty devices of the belief did.
+  /// Closings that bounced for longer than an error of the model explains, where at most one in twenty devices of the belief did.
   [[nodiscard]] int unexpected_bounces() const;
   /// In words, where records were not what the belief predicted before it saw them, or where the belief is that the gaps are in
   /// another ratio than in the scene: the device does not behave like the scene.

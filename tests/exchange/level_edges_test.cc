@@ -26,7 +26,7 @@ void expect_edges(const std::vector<LevelEdge>& edges, const std::vector<double>
 
 TEST(LevelEdges, AreWhereStraightLinesCrossTheThreshold) {
   expect_edges(level_edges(trace({0, 0, 4, 4, 0, 0, 1, 3}), {.threshold = 1}), {1.25, 3.75, 6});
-  expect_edges(level_edges(trace({4, 4, 0, 0, 4, 4}), {.threshold = 1, .is_closed_below = true}), {1.75, 4.25});
+  expect_edges(level_edges(trace({4, 4, 0, 0, 4, 4}), {.threshold = 1, .is_closed_below = true}), {1.75, 3.25});
 }
 
 TEST(LevelEdges, NoiseWithinTheHysteresisIsNone) {
