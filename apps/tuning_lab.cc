@@ -74,7 +74,8 @@ struct Stopped {};
 class HandLab final : public TuningLab {
  public:
   // Shots that an earlier tuning has left are none of this one.
-  HandLab(std::filesystem::path folder, bool goes_on) : folder_(std::move(folder)) {
+  HandLab(std::filesystem::path folder, bool goes_on, std::optional<ContactTraceKeys> contact)
+      : folder_(std::move(folder)), contact_(std::move(contact)) {
     if (goes_on) return;
     std::vector<std::filesystem::path> left;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
@@ -117,10 +118,13 @@ class HandLab final : public TuningLab {
     return record;
   }
 
-  static ContactRecord closing(const std::string& text, double duration) {
+  [[nodiscard]] ContactRecord closing(const std::string& text, double duration) const {
     if (text == "never") return {};
     if (text == "failed") return {.error = "the shot failed"};
-    if (text.starts_with("file ")) return read_edges_file(std::string(trimmed(std::string_view(text).substr(5))));
+    if (text.starts_with("file ")) {
+      const std::string file(trimmed(std::string_view(text).substr(5)));
+      return contact_ ? read_contact_trace(file, *contact_) : read_edges_file(file);
+    }
     const Quantity time = parse_quantity(text);
     if (time.dimension != dimension::time || !(time.value >= 0))
       throw InvalidInput(fmt::format("{} is no time; write it with its unit, such as \"36.1 us\"", shown(text)));
@@ -151,6 +155,7 @@ class HandLab final : public TuningLab {
   }
 
   std::filesystem::path folder_;
+  std::optional<ContactTraceKeys> contact_;
   LineReader lines_{STDIN_FILENO, std::size_t{1} << 12};
 };
 
@@ -160,8 +165,8 @@ std::unique_ptr<TuningLab> command_lab(const std::string& command, milliseconds 
   return std::make_unique<CommandLab>(command, patience);
 }
 
-std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on) {
-  return std::make_unique<HandLab>(folder, goes_on);
+std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on, std::optional<ContactTraceKeys> contact) {
+  return std::make_unique<HandLab>(folder, goes_on, std::move(contact));
 }
 
 ContactRecord read_edges_file(const std::string& file) {
@@ -173,6 +178,12 @@ ContactRecord read_edges_file(const std::string& file) {
            });
   const std::string fault = record_fault(record);
   require(fault.empty(), [&] { return fmt::format("{}: {}", file, fault); });
+  return record;
+}
+
+ContactRecord read_contact_trace(const std::string& file, const ContactTraceKeys& keys) {
+  ContactRecord record;
+  for (const LevelEdge& edge : contact_edges(file, keys)) record.edges.push_back({.time = edge.time, .closed = edge.closed});
   return record;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/scenes.h"
+#include "exchange/level_edges.h"
 #include "reports/tuning_lines.h"
 
 namespace softland::apps {
@@ -31,11 +32,15 @@ class TuningLab {
 [[nodiscard]] std::unique_ptr<TuningLab> command_lab(const std::string& command, std::chrono::milliseconds patience);
 
 /// Writes the voltages of each shot to FOLDER/shot-N.csv, and asks on standard error for what was seen, until the answer on
-/// standard input can be one. Such files of an earlier tuning are removed unless this one `goes_on` with it.
-[[nodiscard]] std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on);
+/// standard input can be one. Such files of an earlier tuning are removed unless this one `goes_on` with it. `contact` says how
+/// records of the contact's voltage are read, where there are any.
+[[nodiscard]] std::unique_ptr<TuningLab> hand_lab(const std::filesystem::path& folder, bool goes_on,
+                                                  std::optional<ContactTraceKeys> contact = {});
 
 /// Closing and opening of a contact in a CSV file: a header time_s,closed and a row for each edge, 1 where it closes and 0 where
 /// it opens. Throws InvalidInput with file, line and rule.
 [[nodiscard]] ContactRecord read_edges_file(const std::string& file);
+/// The same of the voltage that an instrument recorded.
+[[nodiscard]] ContactRecord read_contact_trace(const std::string& file, const ContactTraceKeys& keys);
 
 }  // namespace softland::apps

@@ -73,6 +73,10 @@ std::size_t TuningLog::read(const json& origin) {
         require_origin(line, origin, place);
         continue;
       }
+      if (line.contains("recipes")) {
+        recipes_ = read_recipes(line);
+        continue;
+      }
       require(line.contains("shot") && line.contains("record"), "must have shot and record");
       closings_.push_back(
           {.shot = line["shot"], .record = read_record(line["record"], read_shot(line["shot"]).number), .line = number});
@@ -104,6 +108,8 @@ void TuningLog::write(const json& line) {
   }
   if (::fsync(descriptor_) != 0) throw lost();
 }
+
+void TuningLog::append(const std::vector<Recipe>& recipes) { write(recipes_json(recipes)); }
 
 void TuningLog::append(const ToldShot& shot, const ContactRecord& record) {
   write({{"shot", shot_json(shot)}, {"record", record_json(shot.number, record)}});

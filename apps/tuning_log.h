@@ -12,7 +12,8 @@ namespace softland::apps {
 /// Of what tells apart tunings that cannot go on with each other, in a file.
 inline constexpr const char* origin_key = "tuning";
 
-/// closings.jsonl: a line that says what is tuned, then one for each shot with what came of it.
+/// closings.jsonl: a line that says what is tuned, one with the recipes that its proposals begin from, then one for each shot
+/// with what came of it.
 class TuningLog {
  public:
   struct Closing {
@@ -31,9 +32,12 @@ class TuningLog {
 
   /// Those that the file held when it was opened.
   [[nodiscard]] const std::vector<Closing>& closings() const { return closings_; }
+  /// Those of the file; empty where it ended before they were found.
+  [[nodiscard]] const std::vector<Recipe>& recipes() const { return recipes_; }
   /// Where an earlier file went that was not gone on with; empty where there was none.
   [[nodiscard]] const std::filesystem::path& kept_aside() const { return kept_aside_; }
-  /// Throws OutputLost where the line is not on the disk.
+  /// Both throw OutputLost where the line is not on the disk.
+  void append(const std::vector<Recipe>& recipes);
   void append(const ToldShot& shot, const ContactRecord& record);
   /// "OUT/closings.jsonl:4"
   [[nodiscard]] std::string place(const Closing& closing) const;
@@ -45,6 +49,7 @@ class TuningLog {
 
   std::filesystem::path file_, kept_aside_;
   std::vector<Closing> closings_;
+  std::vector<Recipe> recipes_;
   int descriptor_ = -1;
 };
 

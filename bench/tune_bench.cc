@@ -15,12 +15,15 @@
 #include <cstdio>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/require.h"
+#include "config/criterion.h"
 #include "model/constants.h"
+#include "model/pull_in.h"
 #include "sampling/statistics.h"
 #include "studies/tuning/practice_device.h"
 #include "studies/tuning/tuner.h"
@@ -37,9 +40,16 @@ struct Arguments {
   double first_device = 1, stiffness = 1;
   LaboratoryErrors laboratory = {};
   double effort = 1;
+  std::string touch;  // condition on the first touch
+  double most_volts =
+      std::numeric_limits<double>::infinity();  // devices of higher static pull-in voltage, over the scene's, are passed over
   double drift_of_1000 = 0;  // relative, of the volts in 1000 closings: the kept waveform is then fired 1000 times
   double good = 10e-9, very_good = 1e-9;
   std::vector<std::string> sets, model_sets;
+  // The latest first touch that is asked for [s].
+  [[nodiscard]] double latest(double step_time) const {
+    return beside_step(parse_criterion(touch, all_figures), step_time).limit;
+  }
 };
 
 Arguments read(std::span<char*> words) {
@@ -56,6 +66,8 @@ Arguments read(std::span<char*> words) {
       {"--jobs", [&](const std::string& v) { a.jobs = std::stoi(v); }},
       {"--modes", [&](const std::string& v) { a.modes = std::stoi(v); }},
       {"--recipes", [&](const std::string& v) { a.recipes = std::stoi(v); }},
+      {"--constrain", [&](const std::string& v) { a.touch = v; }},
+      {"--most-volts", [&](const std::string& v) { a.most_volts = std::stod(v); }},
       {"--effort", [&](const std::string& v) { a.effort = std::stod(v); }},
       {"--first-device", [&](const std::string& v) { a.first_device = std::stod(v); }},
       {"--edge-error", [&](const std::string& v) { a.laboratory.edge_error = std::stod(v); }},
@@ -89,6 +101,7 @@ struct Course {
   std::vector<double> surprises;     // Tuner::surprises()
   int unexpected_bounces = 0;
   std::string broken;
+  std::optional<BelievedQuantity> gap_ratio;
   std::vector<double> repeated;  // highest rebound of each repetition [m]
 };
 
@@ -151,6 +164,7 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
   course.surprises = tuner.surprises();
   course.unexpected_bounces = tuner.unexpected_bounces();
   course.broken = tuner.broken_assumption().value_or("");
+  course.gap_ratio = tuner.belief().gap_ratio;
   constexpr int many = 1000;
   for (int k = 0; a.drift_of_1000 != 0 && k < many; ++k) {
     const PracticeClosing closing = lab.fire(tuner.next().waveforms);
@@ -312,6 +326,14 @@ void print_table(const Arguments& a, const std::vector<Course>& all, double step
     std::erase_if(v, [](double t) { return std::isnan(t); });
     return fmt::format("{:.2f} / {:.2f}", quantile(v, 0.5), quantile(v, 0.95));
   };
+  const auto in_time = [&](int n) {
+    const double latest = a.latest(step_time);
+    return fmt::format("{:.1f} %",
+                       100.0 *
+                           static_cast<double>(std::ranges::count_if(
+                               all, [&](const Course& c) { return c.kept_touch.at(n) <= latest && c.kept.at(n) < a.good; })) /
+                           static_cast<double>(all.size()));
+  };
   const auto on_the_way = [&](int n) {
     std::vector<double> v;
     for (const Course& c : all) v.push_back(c.on_the_way[static_cast<std::size_t>(n - 1)]);
@@ -324,6 +346,7 @@ void print_table(const Arguments& a, const std::vector<Course>& all, double step
       fmt::format("below {:g} nm", 1e9 * a.good).c_str(), [&](int n) { return share(n, a.good); }, a.closings);
   print_row(
       fmt::format("below {:g} nm", 1e9 * a.very_good).c_str(), [&](int n) { return share(n, a.very_good); }, a.closings);
+  if (!a.touch.empty()) print_row(fmt::format("below {:g} nm, and {}", 1e9 * a.good, a.touch).c_str(), in_time, a.closings);
   print_row("highest rebound, median / 95 %, nm", median, a.closings);
   print_row("first touch over the step's, median / 95 %", of_kept_touch, a.closings);
   print_row("highest rebound of the shot itself, 95 %, nm", on_the_way, a.closings);
@@ -340,9 +363,10 @@ int main(int count, char** words) try {
   require(actuator != nullptr, "--actuator: must be electrostatic, pzt or both");
   const auto begin = std::chrono::steady_clock::now();
   const auto since = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
-  const Tuner fresh(
-      file,
-      {.actuator = actuator->value, .jobs = a.jobs, .laboratory = a.laboratory, .most_recipes = a.recipes, .effort = a.effort});
+  TunerOptions options{
+      .actuator = actuator->value, .jobs = a.jobs, .laboratory = a.laboratory, .most_recipes = a.recipes, .effort = a.effort};
+  if (!a.touch.empty()) options.touch = parse_criterion(a.touch, all_figures);
+  const Tuner fresh(file, options);
   const std::vector<Waveform> recipe = fresh.next().waveforms;
   fmt::print("ready after {:.1f} s; expected cost {:.3f}; step touches at {:.2f} us\n", since(), fresh.next().expected_cost,
              1e6 * fresh.step_closing_time());
@@ -354,14 +378,19 @@ int main(int count, char** words) try {
   std::vector<Course> all;
   std::vector<double> seconds;
   int broken = 0;
-  for (int n = 0; n < a.devices; ++n) {
+  for (int n = 0; static_cast<int>(all.size()) < a.devices; ++n) {
     const PracticeDevice device(file,
                                 {.seed = static_cast<std::uint64_t>(a.first_device) + static_cast<std::uint64_t>(n),
                                  .laboratory = a.laboratory,
                                  .drift = (n % 2 == 0 ? 1 : -1) * a.drift_of_1000 / 1000,
                                  .model = {.more_modes = a.modes, .gas = a.gas, .stiffness = a.stiffness, .set = a.model_sets}});
-    Laboratory lab(device, fresh.next().hold_time);
     const Prepared& p = fresh.scene();
+    const auto volts = [](const Switch& model, std::size_t drive) { return static_pull_in(model, drive).voltage; };
+    if (std::isfinite(a.most_volts)) {
+      const std::size_t drive = searched_drive(p.scene.device);
+      if (volts(*device.device().model, drive) > a.most_volts * volts(p.model, drive)) continue;
+    }
+    Laboratory lab(device, fresh.next().hold_time);
     all.push_back(a.method == "knob"     ? by_one_knob(a, p, recipe, limit, lab)
                   : a.method == "secant" ? by_secant(a, p, recipe, p.signals()[searched_drive(p.scene.device)].hold_level(), lab)
                   : a.method == "nelder-mead" ? by_nelder_mead(a, p, recipe, lab)
@@ -380,6 +409,7 @@ int main(int count, char** words) try {
                  below(a.very_good), 1e9 * a.very_good);
     }
     fmt::print(" surprises {:.1f}, {} bounces", fmt::join(c.surprises, " "), c.unexpected_bounces);
+    if (c.gap_ratio) fmt::print(", gap ratio {:.4f} +- {:.4f}", c.gap_ratio->mean, c.gap_ratio->deviation);
     fmt::print("{}\n", c.broken.empty() ? "" : " BROKEN " + c.broken);
     std::fflush(stdout);
     broken += !c.broken.empty();

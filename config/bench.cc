@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "base/shortened.h"
+#include "config/drives.h"
 #include "config/scene_file_impl.h"
 #include "config/schema.h"
 
@@ -22,12 +24,17 @@ using internal::inline_text;
 
 constexpr std::size_t most_rows = 100'000;
 constexpr std::string_view of_contact = "contact";
+constexpr std::array of_threshold{"threshold", "hysteresis", "closed", "merge"};
+constexpr std::array of_file{"column", "time_column", "interval", "skip", "time_unit", "decimal", "shift", "unit"};
 
 // One [[measurement]].
 class MeasurementReader {
  public:
   MeasurementReader(const toml::table& table, const std::string& file, const std::filesystem::path& directory)
       : table_(table), file_(file), directory_(directory) {}
+  /// The keys of an option.
+  MeasurementReader(const toml::table& table, const std::string& option)
+      : table_(table), file_(option), directory_(option), is_option_(true) {}
 
   [[nodiscard]] BenchMeasurement read() {
     check_keys();
@@ -38,6 +45,7 @@ class MeasurementReader {
     if (has("mode")) m.mode = whole("mode", 1, 64);
     refuse_where(has("mode") && kind.name != "frequency", "mode", "is of a frequency only");
     refuse_where(has("edges") && kind.name != of_contact, "edges", "is of a contact record only");
+    check_trace_keys(kind);
     read_drive(kind, m);
     if (has("value") == has("file")) fail(fmt::format("must have one of 'value' and 'file' with the {}", noun(kind.dimension)));
     if (has("value")) {
@@ -53,12 +61,25 @@ class MeasurementReader {
 
  private:
   void check_keys() const {
-    static const std::vector<std::string_view> known{"quantity", "drive", "level", "waveform", "value",
-                                                     "file",     "error", "mode",  "edges",    "device"};
+    static const std::vector<std::string_view> known = [] {
+      std::vector<std::string_view> all{"quantity", "drive", "level", "waveform", "value",   "file",
+                                        "error",    "mode",  "edges", "device",   "per_volt"};
+      all.insert(all.end(), of_threshold.begin(), of_threshold.end());
+      all.insert(all.end(), of_file.begin(), of_file.end());
+      return all;
+    }();
     for (const auto& [key, node] : table_) {
       if (std::find(known.begin(), known.end(), key.str()) == known.end())
         refuse(std::string(key.str()), "unknown key" + hint(key.str(), known));
     }
+  }
+  void check_trace_keys(const BenchQuantity& kind) const {
+    for (const char* key : of_file)
+      refuse_where(has(key) && !(kind.is_over_time && has("file")), key, "is of a file over time only");
+    for (const char* key : of_threshold) refuse_where(has(key) && kind.name != of_contact, key, "is of a contact record only");
+    refuse_where(has("per_volt") && (!kind.is_over_time || kind.name == of_contact), "per_volt",
+                 "is of a position or velocity only");
+    refuse_where(has("per_volt") && has("unit"), "per_volt", "must not stand beside a unit");
   }
   [[nodiscard]] const BenchQuantity& kind_of(const std::string& name) const {
     std::vector<std::string_view> known;
@@ -125,45 +146,174 @@ class MeasurementReader {
     }
     return {};
   }
+  struct OwnColumns {
+    Column value;
+    std::optional<Column> beside;
+  };
   void read_rows(const BenchQuantity& kind, BenchMeasurement& m) {
     const std::string name = text("file");
     refuse_where(name.empty() || name.find('\0') != std::string::npos, "file", "must be the name of a file");
     const std::string path = (directory_ / name).string();
     try {
+      const bool says_how =
+          std::ranges::any_of(of_file, [&](const char* key) { return has(key); }) || has("threshold") || has("per_volt");
       const std::string content = read_file(path);
-      const std::vector<std::string> header = header_of(content);
-      const Dimension due = kind.name == of_contact ? dimension::none : kind.dimension;
-      const std::optional<Column> value = column_of(header, kind.name, due);
-      std::optional<Column> beside;
-      if (kind.is_over_time) {
-        beside = column_of(header, "time", dimension::time);
-      } else if (kind.has_level && !has("level") && !has("waveform")) {
-        beside = column_of(header, "level", dimension::voltage);
-        if (!beside) beside = column_of(header, "voltage", dimension::voltage);
+      const std::optional<OwnColumns> own = says_how ? std::nullopt : own_columns(kind, header_of(content));
+      if (own) {
+        read_own(kind, *own, path, content, m);
+      } else if (!kind.is_over_time || is_own(header_of(content))) {
+        throw InvalidInput(fmt::format("{}: its header must have columns such as {}", path, expected_columns(kind)));
+      } else {
+        read_foreign(kind, path, m);
       }
-      const std::string of_value = kind.name == of_contact ? "contact" : fmt::format("{}_{}", kind.name, unit_symbol(due));
-      const std::string expected = kind.is_over_time ? fmt::format("time_s and {}", of_value)
-                                   : kind.has_level  ? fmt::format("voltage_V and {}", of_value)
-                                                     : of_value;
-      require(value.has_value() && (beside || !kind.is_over_time),
-              [&] { return fmt::format("{}: its header must have columns such as {}", path, expected); });
-      std::vector<std::string> columns{value->name};
-      if (beside) columns.push_back(beside->name);
-      read_csv(content, path, columns, expected, [&](std::span<const double> row, const CsvPlace& at) {
-        require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows", at(), most_rows); });
-        m.values.push_back(row[0] * value->unit);
-        if (!beside) return;
-        std::vector<double>& other = kind.is_over_time ? m.times : m.levels;
-        const double next = row[1] * beside->unit;
-        require(!kind.is_over_time || (next >= 0 && (other.empty() || next > other.back())),
-                [&] { return fmt::format("{}: times must rise from 0 s on", at()); });
-        other.push_back(next);
-      });
     } catch (const InvalidInput& error) {
+      if (std::string_view(error.what()).find("measurement.") != std::string_view::npos) throw;  // it names the key already
       refuse("file", error.what());
     }
+  }
+  [[nodiscard]] static std::string expected_columns(const BenchQuantity& kind) {
+    const std::string value = kind.name == of_contact ? "contact" : fmt::format("{}_{}", kind.name, unit_symbol(kind.dimension));
+    return kind.is_over_time ? fmt::format("time_s and {}", value)
+           : kind.has_level  ? fmt::format("voltage_V and {}", value)
+                             : value;
+  }
+  // Whether a header is of our own form, with another quantity perhaps.
+  [[nodiscard]] bool is_own(const std::vector<std::string>& header) const {
+    return std::ranges::any_of(bench_quantities(), [&](const BenchQuantity& one) {
+      return column_of(header, one.name, one.name == of_contact ? dimension::none : one.dimension).has_value();
+    });
+  }
+  [[nodiscard]] std::optional<OwnColumns> own_columns(const BenchQuantity& kind, const std::vector<std::string>& header) const {
+    const std::optional<Column> value = column_of(header, kind.name, kind.name == of_contact ? dimension::none : kind.dimension);
+    std::optional<Column> beside;
+    if (kind.is_over_time) {
+      beside = column_of(header, "time", dimension::time);
+    } else if (kind.has_level && !has("level") && !has("waveform")) {
+      beside = column_of(header, "level", dimension::voltage);
+      if (!beside) beside = column_of(header, "voltage", dimension::voltage);
+    }
+    if (!value || (kind.is_over_time && !beside)) return {};
+    return OwnColumns{.value = *value, .beside = beside};
+  }
+  void read_own(const BenchQuantity& kind, const OwnColumns& own, const std::string& path, const std::string& content,
+                BenchMeasurement& m) const {
+    std::vector<std::string> columns{own.value.name};
+    if (own.beside) columns.push_back(own.beside->name);
+    read_csv(content, path, columns, expected_columns(kind), [&](std::span<const double> row, const CsvPlace& at) {
+      require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows", at(), most_rows); });
+      m.values.push_back(row[0] * own.value.unit);
+      if (!own.beside) return;
+      std::vector<double>& other = kind.is_over_time ? m.times : m.levels;
+      const double next = row[1] * own.beside->unit;
+      require(!kind.is_over_time || (next >= 0 && (other.empty() || next > other.back())),
+              [&] { return fmt::format("{}: times must rise from 0 s on", at()); });
+      other.push_back(next);
+    });
     if (kind.name == of_contact) find_edges(m);
   }
+
+  // ---- files of instruments
+
+ public:
+  [[nodiscard]] ContactTraceKeys contact_keys() const {
+    if (!has("threshold")) fail("missing key 'threshold': the voltage beyond which the contact is closed, such as \"1.5 V\"");
+    const std::string closed = has("closed") ? text("closed") : "above";
+    refuse_where(closed != "above" && closed != "below", "closed", "must be \"above\" or \"below\"");
+    ContactTraceKeys keys{.file = keys_of_file(), .shift = time_shift(), .contact = {}};
+    keys.contact = {.threshold = quantity("threshold", {dimension::voltage}).value,
+                    .hysteresis = not_negative("hysteresis", dimension::voltage),
+                    .is_closed_below = closed == "below",
+                    .merge = not_negative("merge", dimension::time)};
+    if (has("unit")) keys.file.unit = text("unit");
+    return keys;
+  }
+  void check_names() const { check_keys(); }
+
+ private:
+  [[nodiscard]] double not_negative(const std::string& key, const Dimension& due) const {
+    if (!has(key)) return 0;
+    const double value = quantity(key, {due}).value;
+    refuse_where(!(value >= 0), key, "must be at least 0");
+    return value;
+  }
+  void read_place(const std::string& key, std::string& name, int& number) const {
+    if (!has(key)) return;
+    if (table_.get(key)->is_integer()) {
+      number = whole(key, 1, 1'000'000);
+    } else {
+      name = text(key);
+      refuse_where(name.empty(), key, "must be the name or the number of a column");
+    }
+  }
+  [[nodiscard]] ReadKeys keys_of_file() const {
+    ReadKeys keys;
+    read_place("column", keys.column, keys.column_number);
+    read_place("time_column", keys.time_column, keys.time_column_number);
+    if (has("interval")) {
+      keys.uneven = text("interval") == internal::file_keys::uneven;
+      if (!keys.uneven) keys.interval = quantity("interval", {dimension::time}).value;
+      refuse_where(keys.interval && !(*keys.interval > 0), "interval", "must be above 0 s");
+    }
+    if (has("skip")) keys.skip = whole("skip", 0, 1'000'000);
+    if (has("time_unit")) keys.time_unit = text("time_unit");
+    if (has("decimal")) {
+      const std::string sign = text("decimal");
+      refuse_where(sign != "." && sign != ",", "decimal", "must be \".\" or \",\"");
+      keys.decimal = sign.front();
+    }
+    return keys;
+  }
+  [[nodiscard]] TimeShift time_shift() const {
+    if (!has("shift")) return {};
+    if (text("shift") == internal::file_keys::first) return {.first_is_zero = true};
+    return {.shift = quantity("shift", {dimension::time}).value};
+  }
+  void read_foreign(const BenchQuantity& kind, const std::string& path, BenchMeasurement& m) const {
+    if (kind.name == of_contact) {
+      const std::vector<LevelEdge> edges = contact_edges(path, contact_keys());
+      const auto due = static_cast<std::size_t>(has("edges") ? whole("edges", 1, 3) : 1);
+      refuse_where(edges.size() < due, "file",
+                   fmt::format("its voltage has {} edges from t = 0 on, fewer than the {} that count", edges.size(), due));
+      for (std::size_t k = 0; k < due; ++k) m.values.push_back(edges[k].time);
+      return;
+    }
+    const ReadKeys keys = keys_of_file();
+    const Recording recording = read_recording(path, keys);
+    Trace trace = trace_of(recording, keys, std::string(kind.name), true);
+    shift_times(trace, time_shift());
+    const double unit = unit_of_trace(kind, channel_of(recording, keys, std::string(kind.name)));
+    for (std::size_t k = 0; k < trace.times.size(); ++k) {
+      if (trace.times[k] < 0) continue;  // before the drives begin
+      require(m.values.size() < most_rows, [&] { return fmt::format("{}: more than {} rows from t = 0 on", path, most_rows); });
+      require(m.times.empty() || trace.times[k] > m.times.back(),
+              [&] { return fmt::format("{}: times must rise from row to row", path); });
+      m.times.push_back(trace.times[k]);
+      m.values.push_back(unit * trace.values[k]);
+    }
+    require(!m.values.empty(), [&] { return fmt::format("{}: all rows are before t = 0; shift moves them", path); });
+  }
+  // What a number of the trace stands for [SI unit]: those in volts are volts.
+  [[nodiscard]] double unit_of_trace(const BenchQuantity& kind, const Channel& channel) const {
+    if (has("per_volt")) {
+      refuse_where(!channel.is_voltage && !channel.unit.empty(), "per_volt",
+                   fmt::format("the file is in {}, not in volts", channel.unit));
+      return quantity("per_volt", {kind.dimension}).value;
+    }
+    const std::string unit = has("unit") ? text("unit") : channel.unit;
+    if (unit.empty()) fail("the file names no unit: say unit = \"...\", or per_volt = \"...\" where it is in volts");
+    Quantity one;
+    try {
+      one = parse_quantity("1 " + unit);
+    } catch (const InvalidInput& error) {
+      refuse(has("unit") ? "unit" : "file", error.what());
+    }
+    if (one.dimension != kind.dimension)
+      refuse(has("unit") ? "unit" : "file",
+             fmt::format("the {} is in {}: expected {}; per_volt = \"...\" says what a volt stands for", kind.name, unit,
+                         describe(kind.dimension)));
+    return one.value * (has("unit") ? channel.per_si : 1);
+  }
+
   // Halfway between the rows on either side, which are open and closed.
   void find_edges(BenchMeasurement& m) const {
     const int edges = has("edges") ? whole("edges", 1, 3) : 1;
@@ -196,15 +346,15 @@ class MeasurementReader {
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
   [[nodiscard]] std::string place_of(const toml::node& node) const {
-    return fmt::format("{}:{}", file_, node.source().begin.line);
+    return is_option_ ? file_ : fmt::format("{}:{}", file_, node.source().begin.line);
   }
   [[noreturn]] void fail(std::string_view rule) const {
-    throw InvalidInput(fmt::format("{}: [[measurement]]: {}", place_of(table_), rule));
+    throw InvalidInput(fmt::format("{}: {}{}", place_of(table_), is_option_ ? "" : "[[measurement]]: ", rule));
   }
   [[noreturn]] void refuse(const std::string& key, std::string_view rule) const {
     const toml::node& node = *table_.get(key);
-    throw InvalidInput(
-        fmt::format("{}: measurement.{} = {}: {}", place_of(node), shortened(key), shortened(inline_text(node)), rule));
+    throw InvalidInput(fmt::format("{}: {}{} = {}: {}", place_of(node), is_option_ ? "" : "measurement.", shortened(key),
+                                   shortened(inline_text(node)), rule));
   }
   void refuse_where(bool wrong, const std::string& key, std::string_view rule) const {
     if (wrong) refuse(key, rule);
@@ -248,8 +398,9 @@ class MeasurementReader {
   }
 
   const toml::table& table_;
-  const std::string& file_;
-  const std::filesystem::path& directory_;
+  const std::string file_;
+  const std::filesystem::path directory_;
+  bool is_option_ = false;
 };
 
 std::vector<std::string> changes_of(const toml::node& node, const std::string& name, const std::string& device) {
@@ -282,6 +433,23 @@ const std::vector<BenchQuantity>& bench_quantities() {
       {.name = "velocity", .dimension = dimension::velocity, .has_level = true, .has_waveform = true, .is_over_time = true},
   };
   return all;
+}
+
+ContactTraceKeys contact_trace_keys(const std::vector<std::string>& assignments) {
+  std::string written = "[contact]\n";
+  for (const std::string& assignment : assignments) {
+    const std::size_t sign = assignment.find('=');
+    require(sign != std::string::npos && sign > 0,
+            [&] { return fmt::format("--contact {}: must be KEY=VALUE, such as \"threshold=1.5 V\"", shortened(assignment)); });
+    const std::string value = assignment.substr(sign + 1);
+    const bool is_number = !value.empty() && std::ranges::all_of(value, [](char c) { return c >= '0' && c <= '9'; });
+    const bool is_quoted = value.starts_with('"') || value.starts_with('\'');
+    written += is_number || is_quoted ? assignment + "\n" : fmt::format("{} = '{}'\n", assignment.substr(0, sign), value);
+  }
+  const toml::table root = internal::parse_toml(written, "--contact");
+  const MeasurementReader reader(*root.get("contact")->as_table(), "--contact");
+  reader.check_names();
+  return reader.contact_keys();
 }
 
 Bench load_bench(const std::filesystem::path& path) { return parse_bench(read_file(path), path.string(), path.parent_path()); }

@@ -15,9 +15,18 @@
 //   [device.A7]
 //   set = ["gap.electrode=3.4 um"]   # what is known to be different of this device
 //
-// A file has the columns VALUE, LEVEL (voltage, level) or TIME (time): their names begin with the quantity, with "level" or
-// "voltage", and with "time", and end in the unit: "closing_time_us", "capacitance [fF]", "time_s". Of a contact record the
-// column is "contact", 0 open and 1 closed.
+// A file of our own has the columns VALUE, LEVEL (voltage, level) or TIME (time): their names begin with the quantity, with
+// "level" or "voltage", and with "time", and end in the unit: "closing_time_us", "capacitance [fF]", "time_s". Of a contact
+// record the column is "contact", 0 open and 1 closed. Contact, position and velocity are read from the files of instruments as
+// well (exchange/recording.h), by the keys of a waveform's file (column, time_column, interval, skip, time_unit, decimal, shift)
+// and
+//
+//   unit = "mm/s"                    # of a position or velocity, where the file names none, or
+//   per_volt = "50 mm/s"             # what one volt of it stands for
+//   threshold = "1.5 V"              # of a contact: closed where the voltage is above
+//   closed = "below"                 # or below
+//   hysteresis = "0.2 V"             # about the threshold
+//   merge = "100 ns"                 # states that last for less are none
 #pragma once
 
 #include <cstddef>
@@ -29,6 +38,7 @@
 #include <vector>
 
 #include "config/units.h"
+#include "exchange/level_edges.h"
 
 namespace softland {
 
@@ -61,6 +71,10 @@ struct Bench {
 };
 
 [[nodiscard]] const std::vector<BenchQuantity>& bench_quantities();
+
+/// Of assignments KEY=VALUE, such as `threshold=1.5 V`: how the voltage of a contact is read, by the keys above. Throws
+/// InvalidInput with the option `--contact`, the value and the rule.
+[[nodiscard]] ContactTraceKeys contact_trace_keys(const std::vector<std::string>& assignments);
 
 /// Throws InvalidInput with file, line, key, value and rule.
 [[nodiscard]] Bench load_bench(const std::filesystem::path& path);

@@ -76,9 +76,8 @@ Calibration read_calibration(const SceneFile::Impl& file, const Device& device) 
   for (const std::string& name : file.names_in("calibration")) {
     std::optional<double>* const measured = error_named(name);
     if (measured == nullptr) {
-      file.fail_section(
-          internal::join_path("calibration", name),
-          "unknown measurement" + internal::hint(name, {measured_pull_in, measured_frequency, measured_piezo, measured_time}));
+      file.fail_section(internal::join_path("calibration", name),
+                        "unknown measurement" + internal::hint(name, {measurement_names.begin(), measurement_names.end()}));
     }
     const SectionReader in(file, "calibration", name);
     const Quantity& error = in.quantities("error").front();

@@ -186,18 +186,24 @@ class Scale {
       for (const Quantity& one : in.quantities("values")) check("values", one.dimension);
     }
     if (in.is_given("unit")) check("unit", unit().dimension);
+    if (in.is_given("weights")) {
+      check_weights();
+      return;
+    }
     if (is_factor_) return;
     in_.require(ratio_.empty() || nominal() != 0, ratio_, "is a ratio to a value that is 0");
     const auto& first = keys_.front().varied.drive;
     const bool are_one_error = first && std::all_of(keys_.begin(), keys_.end(), [&](const FoundKey& key) {
                                  return key.varied.drive && key.varied.drive->error == first->error;
                                });
-    in_.require(keys_.size() == 1 || are_one_error, blamed_, "several keys vary by one factor: give a percentage");
+    in_.require(keys_.size() == 1 || are_one_error, blamed_,
+                "several keys vary by one factor: give a percentage, or weights with which one amount is added to them");
   }
 
   [[nodiscard]] bool is_factor() const { return is_factor_; }
+  [[nodiscard]] bool is_added() const { return in_.is_given("weights"); }
   /// The scene's value of what varies.
-  [[nodiscard]] double nominal() const { return is_factor_ ? 1 : keys_.front().varied.nominal; }
+  [[nodiscard]] double nominal() const { return is_factor_ ? 1 : is_added() ? 0 : keys_.front().varied.nominal; }
   [[nodiscard]] double of(const Quantity& q) const {
     return is_factor_ || q.dimension != dimension::none ? q.value : q.value * keys_.front().varied.nominal;
   }
@@ -216,6 +222,21 @@ class Scale {
   }
 
  private:
+  // One amount in a unit is added to keys that have it.
+  void check_weights() const {
+    const std::vector<Quantity> weights = in_.quantities("weights");
+    in_.require(weights.size() == keys_.size(), "weights",
+                fmt::format("there are {} of them for {} keys", weights.size(), keys_.size()));
+    in_.require(std::all_of(weights.begin(), weights.end(), [](const Quantity& one) { return one.value != 0; }), "weights",
+                "must not be 0");
+    in_.require(!is_factor_ && ratio_.empty() && !in_.is_given("cov"), "weights",
+                "add an amount that is 0 in this scene: give the numbers of its distribution in a unit");
+    for (const FoundKey& key : keys_) {
+      const bool fits = !key.varied.drive && key.varied.measured_in == keys_.front().varied.measured_in;
+      in_.require(fits, "keys",
+                  fmt::format("one amount cannot be added to {} and {}", keys_.front().varied.name(), key.varied.name()));
+    }
+  }
   // A plain number is a ratio, whatever the key; anything else must be of its dimension.
   void check(std::string_view key, const Dimension& given) {
     if (given == dimension::none) {
@@ -307,9 +328,15 @@ SpreadVariable read_variable(const SceneFile::Impl& file, Scene& scene, const st
   std::vector<FoundKey> keys;
   for (const std::string& path : paths) keys.push_back(find_key(file, scene, in, path));
   const Scale scale(in, keys);
-  SpreadVariable variable{.name = name, .keys = {}, .is_factor = scale.is_factor(), .distribution = Distribution(Normal{1, 1})};
-  for (FoundKey& key : keys) {
+  SpreadVariable variable{.name = name,
+                          .keys = {},
+                          .is_factor = scale.is_factor(),
+                          .is_added = scale.is_added(),
+                          .distribution = Distribution(Normal{1, 1})};
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    FoundKey& key = keys[i];
     const VariedKey& varied = key.varied;
+    if (scale.is_added()) key.varied.weight = in.quantities("weights")[i].value;
     if (scale.is_factor() && varied.nominal == 0) {
       in.fail(varied.drive ? fmt::format("{} is nominally 0, and stays 0 by any factor: give it a distribution in {}",
                                          varied.name(), varied.unit)

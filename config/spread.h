@@ -40,6 +40,7 @@ struct VariedKey {
   std::string unit;            ///< SI unit
   double nominal = 0;          ///< the scene's value
   Dimension measured_in = {};  ///< among the dimensions that the key may have
+  double weight = 1;           ///< of an amount that is added to the value
   /// The member of a scene with the same sections. Null where the key sets no member by itself: then the scene has to be read
   /// anew with this value.
   std::function<double&(Scene&)> member;
@@ -56,11 +57,15 @@ struct VariedKey {
 struct SpreadVariable {
   std::string name;  ///< of its entry in [spread]
   std::vector<VariedKey> keys;
-  bool is_factor = true;  ///< it multiplies the scene's values; else it is the value of its one key
+  bool is_factor = true;  ///< it multiplies the scene's values; else it is the value of its one key, or
+  bool is_added = false;  ///< is added to the scene's values, times the weights of the keys
   Distribution distribution;
   /// Of jitter: the distribution is that of every edge of every device. What a device has is a number in (0, 1), from which the
   /// generator draws for its edges.
   bool is_drawn_per_edge = false;
+
+  /// What the scene itself has [SI unit, or factor].
+  [[nodiscard]] double nominal() const { return is_factor ? 1 : is_added ? 0 : keys.front().nominal; }
 };
 
 struct DeviceSpread {
@@ -80,6 +85,7 @@ struct DeviceSpread {
   void to_values(std::span<double> u) const;
   /// The value of a key where its variable has the value `x` [SI unit].
   [[nodiscard]] static double value(const SpreadVariable& variable, const VariedKey& key, double x) {
+    if (variable.is_added) return key.nominal + key.weight * x;
     return variable.is_factor ? key.nominal * x : x;
   }
   /// The time by which an edge is late [s], where the value of its variable is `x`; edges are numbered over all drives.

@@ -190,6 +190,29 @@ json record_json(int shot, const ContactRecord& record) {
   return line;
 }
 
+json recipes_json(const std::vector<Recipe>& recipes) {
+  json all = json::array();
+  for (const Recipe& recipe : recipes)
+    all.push_back({{"x", recipe.x}, {"volts", recipe.volts}, {"time", recipe.time}, {"cost", recipe.cost}});
+  return {{"recipes", std::move(all)}};
+}
+
+std::vector<Recipe> read_recipes(const json& line) {
+  const json& value = needed(line, "recipes");
+  require_value(value.is_array() && !value.empty(), "recipes", value, "must be a list of recipes");
+  std::vector<Recipe> all;
+  for (const json& one : value) {
+    require_value(one.is_object(), "recipes", one, R"(must be {"x":[...],"volts":1,"time":1,"cost":0})");
+    require_known(one, "recipes.", {"x", "volts", "time", "cost"});
+    const auto number = [&](const char* key) { return finite_number(needed(one, key, "recipes."), key, "must be a number"); };
+    all.push_back({.x = numbers(needed(one, "x", "recipes."), "recipes.x"),
+                   .volts = number("volts"),
+                   .time = number("time"),
+                   .cost = number("cost")});
+  }
+  return all;
+}
+
 json end_json() { return {{"done", true}}; }
 
 std::string line_text(const json& line) { return line.dump(-1, ' ', false, json::error_handler_t::replace) + "\n"; }

@@ -16,8 +16,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "studies/tuning/contact_record.h"
+#include "studies/tuning/tuner.h"
 #include "waveforms/signal.h"
 #include "waveforms/table.h"
 
@@ -55,6 +57,9 @@ inline constexpr std::size_t longest_line = std::size_t{16} << 20;
 [[nodiscard]] nlohmann::json shot_json(const ToldShot& shot);
 [[nodiscard]] nlohmann::json record_json(int shot, const ContactRecord& record);
 [[nodiscard]] nlohmann::json end_json();
+/// Of the log of a tuning: {"recipes":[{"x":[...],"volts":1,"time":1,"cost":0.8}]}, to the last bit.
+[[nodiscard]] nlohmann::json recipes_json(const std::vector<Recipe>& recipes);
+[[nodiscard]] std::vector<Recipe> read_recipes(const nlohmann::json& line);
 /// With its line feed; what is not UTF-8 becomes U+FFFD.
 [[nodiscard]] std::string line_text(const nlohmann::json& line);
 

@@ -88,17 +88,20 @@ NormalBelief normal_of(const json& written) {
   return belief;
 }
 
+json quantity_json(const BelievedQuantity& q) {
+  return {{"name", q.name},
+          {"unit", q.unit},
+          {"prior_mean", json_number(q.prior_mean)},
+          {"prior_deviation", json_number(q.prior_deviation)},
+          {"mean", json_number(q.mean)},
+          {"deviation", json_number(q.deviation)}};
+}
+
 json belief_json(const BeliefSummary& belief) {
   json quantities = json::array();
-  for (const BelievedQuantity& q : belief.quantities) {
-    quantities.push_back({{"name", q.name},
-                          {"unit", q.unit},
-                          {"prior_mean", json_number(q.prior_mean)},
-                          {"prior_deviation", json_number(q.prior_deviation)},
-                          {"mean", json_number(q.mean)},
-                          {"deviation", json_number(q.deviation)}});
-  }
+  for (const BelievedQuantity& q : belief.quantities) quantities.push_back(quantity_json(q));
   return {{"quantities", quantities},
+          {"gap_ratio", belief.gap_ratio ? quantity_json(*belief.gap_ratio) : json()},
           {"effective_devices", json_number(belief.effective_devices)},
           {"correlated", belief.correlated},
           {"coordinates", belief_json(belief.coordinates)}};
@@ -199,7 +202,9 @@ std::string believed_text(double mean, double deviation, const BelievedQuantity&
 
 std::string belief_section(const BeliefSummary& belief) {
   std::vector<internal::TableRow> rows;
-  for (const BelievedQuantity& q : belief.quantities) {
+  std::vector<BelievedQuantity> shown = belief.quantities;
+  if (belief.gap_ratio) shown.push_back(*belief.gap_ratio);
+  for (const BelievedQuantity& q : shown) {
     rows.push_back({escaped(q.name), escaped(believed_text(q.prior_mean, q.prior_deviation, q)),
                     internal::Cell(escaped(believed_text(q.mean, q.deviation, q)), "own"),
                     internal::Cell(belief_bar(q), "picture")});

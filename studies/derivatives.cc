@@ -97,7 +97,7 @@ std::vector<Derivatives::Variable> variables_of(const DeviceSpread& spread) {
   std::vector<Derivatives::Variable> all;
   for (const SpreadVariable& v : spread.variables) {
     all.push_back({.name = v.name,
-                   .nominal = v.is_factor ? 1 : v.keys.front().nominal,
+                   .nominal = v.nominal(),
                    .deviation = v.distribution.standard_deviation(),
                    .why_none = v.is_drawn_per_edge ? "it is drawn anew for every edge" : ""});
   }

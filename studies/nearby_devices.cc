@@ -4,11 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/require.h"
 
 namespace softland {
+namespace {
+
+// What a small change of a variable is small against [SI unit, or factor].
+double size_of(const SpreadVariable& variable, double value) {
+  double size = variable.is_added ? std::numeric_limits<double>::infinity() : std::abs(value);
+  for (const VariedKey& key : variable.keys) {
+    if (variable.is_added && key.nominal != 0) size = std::min(size, std::abs(key.nominal / key.weight));
+  }
+  return size > 0 && std::isfinite(size) ? size : variable.distribution.standard_deviation();
+}
+
+}  // namespace
 
 NearbyDevices::NearbyDevices(const Prepared& nominal, const EnsembleDrive& drive) : NearbyDevices(nominal) {
   drive_ = &drive;
@@ -21,17 +34,14 @@ NearbyDevices::NearbyDevices(const Prepared& nominal, const EnsembleDrive& drive
 NearbyDevices::NearbyDevices(const Prepared& nominal)
     : nominal_(nominal), ensemble_(nominal, 1), builder_(ensemble_), drives_(nominal) {
   std::vector<double> values;
-  for (const SpreadVariable& v : variables()) values.push_back(v.is_factor ? 1 : v.keys.front().nominal);
+  for (const SpreadVariable& v : variables()) values.push_back(v.nominal());
   move_to(values);
 }
 
 void NearbyDevices::move_to(const std::vector<double>& values) {
   values_ = values;
   steps_.clear();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    steps_.push_back(values[i] != 0 ? SwitchSlopes::step * std::abs(values[i])
-                                    : SwitchSlopes::step * variables()[i].distribution.standard_deviation());
-  }
+  for (std::size_t i = 0; i < values.size(); ++i) steps_.push_back(SwitchSlopes::step * size_of(variables()[i], values[i]));
 }
 
 bool NearbyDevices::changes_switch(std::size_t i) const {

@@ -19,7 +19,6 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "config/assumed_spread.h"
-#include "config/edited_scene.h"
 #include "reports/fit_report.h"
 
 namespace softland::apps {
@@ -33,32 +32,6 @@ struct FitRequest {
 
 // The file as it is written, or, where --set changed it, the scene without its comments.
 std::string text_of(const Common& c, const SceneFile& file) { return c.set.empty() ? read_file(c.scene) : file.text(); }
-
-// The scene with what was found of this device; of several devices, with the middle of their population and its spread.
-std::string fitted_text(const Common& c, const SceneFile& file, const Fit& fit, const std::string& device) {
-  const bool is_population = fit.population.has_value();
-  Fit shown = fit;
-  if (is_population) {
-    for (std::size_t i = 0; i < fit.population->names.size(); ++i) {
-      const std::string& name = fit.population->names[i];
-      const SpreadVariable& variable = fit.scene.scene.spread.variables[fit.population->variables[i]];
-      const double unit = variable.is_factor && variable.keys.size() == 1 ? variable.keys.front().nominal : 1;
-      for (FittedUnknown& u : shown.unknowns) {
-        if (u.name == name) u.value = unit * fit.population->mean[i];
-      }
-    }
-  }
-  std::vector<SceneEdit> edits;
-  for (const Fit::FittedKey& key : shown.keys(device))
-    edits.push_back({.path = key.path, .element = key.element, .value = key.value, .remark = "fitted"});
-  std::string text = edited_scene(text_of(c, file), c.scene, edits);
-  if (is_population) {
-    SceneFile with_spread = SceneFile::parse(text, c.scene, std::filesystem::path(c.scene).parent_path());
-    set_spread(with_spread, fit);
-    text = with_spread_of(text, c.scene, with_spread);
-  }
-  return text;
-}
 
 int fit_verb(const Common& given, const FitRequest& request) {
   Common c = given;
@@ -82,7 +55,7 @@ int fit_verb(const Common& given, const FitRequest& request) {
   folder->write("fit.json", json_text(data, 1) + "\n");
   folder->write("fit.html", fit_html(found, {.command = c.command}));
   if (found.found) {
-    folder->write("fitted.toml", fitted_text(c, file, found, found.devices.front()));
+    folder->write("fitted.toml", fitted_text(found, text_of(c, file), c.scene, found.devices.front()));
     left.insert(left.begin(), "fitted.toml");
   }
   const std::string text = fit_text(found) + left_in(folder->destination(false), left);

@@ -26,6 +26,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "config/assumed_spread.h"
+#include "config/bench.h"
 #include "reports/tuning_lines.h"
 #include "reports/tuning_report.h"
 #include "store/study_store.h"
@@ -44,8 +45,9 @@ constexpr int usual_closings = 30;
 struct TuneRequest {
   std::string device, actuator = "electrostatic";
   bool by_hand = false, resume = false;
-  std::vector<std::string> wafer;  ///< folders of earlier tunings
-  std::optional<std::string> closings, recipes, effort, timeout, seed, jobs;
+  std::vector<std::string> wafer;    ///< folders of earlier tunings
+  std::vector<std::string> contact;  ///< how recorded voltages of the contact are read
+  std::optional<std::string> touch, closings, recipes, effort, timeout, seed, jobs;
   LaboratoryRequest laboratory;
 };
 
@@ -55,8 +57,16 @@ TunerOptions tuner_options(const TuneRequest& request, const SceneFile& file) {
   TunerOptions options{
       .actuator = actuator->value, .jobs = job_count(request.jobs), .laboratory = laboratory_errors(request.laboratory, file)};
   options.seed = seed_of(request.seed, options.seed);
+  if (request.touch) {
+    try {
+      options.touch = parse_criterion(*request.touch, all_figures);
+    } catch (const InvalidInput& error) {
+      throw InvalidInput(fmt::format("--constrain: {}", error.what()));
+    }
+  }
   if (request.recipes) options.most_recipes = whole_number("--recipes", *request.recipes, 1);
   if (request.effort) options.effort = quantity_of("--effort", *request.effort, dimension::none);
+  check(options);
   return options;
 }
 
@@ -70,7 +80,8 @@ json origin_of(const SceneFile& file, const TunerOptions& options) {
           {"edge_error_s", options.laboratory.edge_error},
           {"unseen_s", options.laboratory.unseen},
           {"gain_error", options.laboratory.gain_error},
-          {"shot_error", options.laboratory.shot_error}};
+          {"shot_error", options.laboratory.shot_error},
+          {"constrain", options.touch ? json(options.touch->text) : json()}};
 }
 
 // What a tuning began with and found, in the folder that --out named.
@@ -114,6 +125,7 @@ class Tuning {
   [[nodiscard]] const ResultFolder& folder() const { return *folder_; }
 
  private:
+  void make_tuner(const SceneFile& file);
   [[nodiscard]] ToldShot told(const TunerShot& shot) const;
   [[nodiscard]] SentSignals sent(const TunerShot& shot) const { return sent_signals(tuner_->scene(), shot.waveforms); }
   void learn(const TunerShot& shot, const ContactRecord& record);
@@ -139,8 +151,19 @@ Tuning::Tuning(const Common& common, const SceneFile& file, TunerOptions options
   log_ = std::make_unique<TuningLog>(folder_->path() / log_file, origin_, request.resume);
   if (!log_->kept_aside().empty() && !common_.quiet)
     say(fmt::format("the closings of an earlier run are now in {}", log_->kept_aside().string()));
+  options_.recipes = log_->recipes();
+  make_tuner(file);
+  if (log_->recipes().empty()) log_->append(tuner_->recipes());
+}
+
+void Tuning::make_tuner(const SceneFile& file) {
   const WatchedWork work(common_.quiet, common_.stop);
-  tuner_.emplace(file, options_, work.watch());
+  try {
+    tuner_.emplace(file, options_, work.watch());
+  } catch (const InvalidInput& error) {
+    if (options_.recipes.empty()) throw;
+    throw InvalidInput(fmt::format("{}: {}", (folder_->path() / log_file).string(), error.what()));
+  }
 }
 
 ToldShot Tuning::told(const TunerShot& shot) const { return told_shot(shot.number, shot.hold_time, sent(shot).signals); }
@@ -211,6 +234,9 @@ int tune_verb(const Common& given, const TuneRequest& request) {
   require(request.by_hand == request.device.empty(),
           "--device COMMAND or --by-hand says where the shots are fired: give one of them");
   const std::chrono::milliseconds patience = patience_of(request.timeout);
+  require(request.contact.empty() || request.by_hand, "--contact says how files are read that --by-hand is told of");
+  std::optional<ContactTraceKeys> contact;
+  if (!request.contact.empty()) contact = contact_trace_keys(request.contact);
   const int closings = request.closings ? whole_number("--closings", *request.closings, 1) : usual_closings;
   const SceneFile file = load_scene(c);
   Tuning tuning(c, file, tuner_options(request, file), request);
@@ -219,7 +245,7 @@ int tune_verb(const Common& given, const TuneRequest& request) {
   TuningEnd end = TuningEnd::interrupted;
   try {
     const std::unique_ptr<TuningLab> lab =
-        request.by_hand ? hand_lab(tuning.folder().path(), request.resume) : command_lab(request.device, patience);
+        request.by_hand ? hand_lab(tuning.folder().path(), request.resume, contact) : command_lab(request.device, patience);
     tuning.learn_log();
     try {
       end = tuning.run(*lab, closings);
@@ -249,6 +275,10 @@ void add_tune(Verb& verb) {
   verb.option("--device", request->device, "COMMAND",
               "what fires the shots: the shell runs it, it reads one JSON object a line and answers each by one");
   verb.flag("--by-hand", request->by_hand, "write each waveform to a file, and ask what the oscilloscope showed");
+  verb.repeated(
+      "--contact", request->contact, "KEY=VALUE",
+      "how the voltage of the contact is read from files of an oscilloscope, by hand: threshold=\"1.5 V\", closed=below, "
+      "hysteresis=\"0.2 V\", merge=\"100 ns\", and column, shift and the like (docs/files.md); may be repeated");
   verb.optional("--closings", request->closings, "N",
                 fmt::format("closings at most (default: {}); it ends before where {} in a row were without a bounce",
                             usual_closings, Tuner::enough_in_a_row));
@@ -258,6 +288,9 @@ void add_tune(Verb& verb) {
                 "tuning of another device of the same wafer, in the folder that its --out named: what they all tell of the next "
                 "device is known before its first closing; may be repeated");
   verb.option("--actuator", request->actuator, "NAME", "drives that are shaped: " + first_is_default(listed(actuators)));
+  verb.optional("--constrain", request->touch, "CONDITION",
+                "when the contact is to touch, such as \"initial_contact_time < 33 us\", or beside a plain step on the drawing, "
+                "\"initial_contact_time < 1.1 step\"");
   with_laboratory(verb, request->laboratory);
   verb.optional(
       "--recipes", request->recipes, "N",
@@ -278,6 +311,7 @@ void add_tune(Verb& verb) {
       "Examples:\n  softland tune scenes/mem-gold.toml --device \"softland device scenes/mem-gold.toml --seed 7\"\n"
       "  softland tune my.toml --device \"python3 scpi_device.py --generator 192.168.1.10 --oscilloscope 192.168.1.11\"\n"
       "  softland tune my.toml --by-hand --closings 12 --out device-17\n"
+      "  softland tune my.toml --by-hand --contact threshold=\"1.5 V\" --contact closed=below --contact column=CH2\n"
       "  softland tune my.toml --by-hand --resume --out device-17\n"
       "  softland tune my.toml --by-hand --wafer device-17 --wafer device-18 --out device-19");
   verb.runs([request](const Common& common) { return tune_verb(common, *request); });

@@ -19,6 +19,7 @@ Section spread_section() {
           .beside = correlation_key,
           .selector = "distribution",
           .keys = {{.name = "keys", .type = KeyType::texts, .about = "all varied by one factor; absent: the one key NAME"},
+                   numbers("weights", {dimension::none}, any, "of the keys: one amount, times these, is added to all of them"),
                    one_of("distribution", names_of(distribution_kinds), "of what varies; its mean is the scene's value").needed(),
                    number("cov", {dimension::none}, up_to_one, "standard deviation over the scene's value")
                        .needed()

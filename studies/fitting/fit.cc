@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -16,6 +17,7 @@
 #include "base/require.h"
 #include "base/standard_normal.h"
 #include "config/assumed_spread.h"
+#include "config/edited_scene.h"
 #include "config/schema.h"
 #include "model/constants.h"
 #include "sampling/points.h"
@@ -445,7 +447,7 @@ class EndOfFit {
       const bool as_value = variable.is_factor && variable.keys.size() == 1;
       const double unit = as_value ? variable.keys.front().nominal : 1;
       if (as_value) one.unit = variable.keys.front().unit;
-      one.nominal = as_value ? unit : variable.is_factor ? 1 : variable.keys.front().nominal;
+      one.nominal = as_value ? unit : variable.nominal();
       one.scale = std::abs(unit) * p.scale;
       one.value = unit * (p.mean + p.scale * z_[static_cast<Index>(i)]);
       one.standard_error = one.scale * fit_.estimate.deviation(i);
@@ -626,7 +628,8 @@ std::vector<Fit::FittedKey> Fit::keys(const std::string& device) const {
         unknowns, [&](const FittedUnknown& u) { return u.name == variable.name && (u.device.empty() || u.device == device); });
     if (one == unknowns.end()) continue;
     for (const VariedKey& key : variable.keys) {
-      const double value = variable.is_factor && variable.keys.size() > 1 ? key.nominal * one->value : one->value;
+      const bool is_value_already = variable.is_factor && variable.keys.size() == 1;
+      const double value = is_value_already ? one->value : DeviceSpread::value(variable, key, one->value);
       all.push_back({.path = key.path, .element = key.element, .value = {.value = value, .dimension = key.measured_in}});
     }
   }
@@ -639,14 +642,19 @@ void set_spread(SceneFile& file, const Fit& fit) {
   std::vector<std::string> pairs;
   for (std::size_t i = 0; i < all.names.size(); ++i) {
     const SpreadVariable& variable = fit.scene.scene.spread.variables[all.variables[i]];
-    std::vector<std::string> keys;
-    for (const VariedKey& key : variable.keys) keys.push_back('"' + key.name() + '"');
+    std::vector<std::string> keys, weights;
+    for (const VariedKey& key : variable.keys) {
+      keys.push_back('"' + key.name() + '"');
+      weights.push_back(number_text(key.weight));
+    }
     // A share of the middle, which is the scene's value now.
     const std::string width =
         variable.is_factor
             ? fmt::format("cov=\"{:.4g} %\"", 100 * all.deviation[i] / all.mean[i])
             : fmt::format("standard_deviation=\"{}\"", quantity_text(all.deviation[i], variable.keys.front().measured_in));
-    file.set(fmt::format("spread.\"{}\"={{keys=[{}],distribution=\"normal\",{}}}", all.names[i], fmt::join(keys, ","), width));
+    const std::string added = variable.is_added ? fmt::format("weights=[{}],", fmt::join(weights, ",")) : "";
+    file.set(fmt::format("spread.\"{}\"={{keys=[{}],{}distribution=\"normal\",{}}}", all.names[i], fmt::join(keys, ","), added,
+                         width));
     for (std::size_t j = 0; j < i; ++j) {
       constexpr double most = 0.999;  // beyond, two would be one
       const double correlation = all.correlation(static_cast<Index>(i), static_cast<Index>(j));
@@ -654,6 +662,34 @@ void set_spread(SceneFile& file, const Fit& fit) {
     }
   }
   if (!pairs.empty()) file.set(fmt::format("spread.correlation=[{}]", fmt::join(pairs, ",")));
+}
+
+namespace {
+
+// With the middle of the population in the place of each device's own values.
+Fit of_population(Fit fit) {
+  if (!fit.population) return fit;
+  for (std::size_t i = 0; i < fit.population->names.size(); ++i) {
+    const SpreadVariable& variable = fit.scene.scene.spread.variables[fit.population->variables[i]];
+    const double unit = variable.is_factor && variable.keys.size() == 1 ? variable.keys.front().nominal : 1;
+    for (FittedUnknown& u : fit.unknowns) {
+      if (u.name == fit.population->names[i]) u.value = unit * fit.population->mean[i];
+    }
+  }
+  return fit;
+}
+
+}  // namespace
+
+std::string fitted_text(const Fit& fit, std::string_view text, const std::string& path, const std::string& device) {
+  std::vector<SceneEdit> edits;
+  for (const Fit::FittedKey& key : of_population(fit).keys(device))
+    edits.push_back({.path = key.path, .element = key.element, .value = key.value, .remark = "fitted"});
+  std::string fitted = edited_scene(text, path, edits);
+  if (!fit.population) return fitted;
+  SceneFile with_spread = SceneFile::parse(fitted, path, std::filesystem::path(path).parent_path());
+  set_spread(with_spread, fit);
+  return with_spread_of(fitted, path, with_spread);
 }
 
 Fit fit(const SceneFile& given, const Bench& bench, const FitOptions& options, const Watch& watch) {

@@ -17,6 +17,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/watch.h"
@@ -106,6 +107,10 @@ struct Fit {
 /// Gives [spread] of the scene the deviations and correlations of the population that was fitted: normal, about the scene's
 /// values.
 void set_spread(SceneFile& file, const Fit& fit);
+
+/// A scene of this text, which stands in the file `path`, with what was found of this device; of several devices, with the middle
+/// of their population and its spread. Comments, sources and units stay. Throws InvalidInput for a text that is no scene.
+[[nodiscard]] std::string fitted_text(const Fit& fit, std::string_view text, const std::string& path, const std::string& device);
 
 /// Throws InvalidInput for unknowns that no device can have, measurements that the scene cannot have, and where the scene itself
 /// or a device of the bench file does not allow any of it; Interrupted.

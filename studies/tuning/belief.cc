@@ -149,11 +149,21 @@ class Learner {
     }
     return scene_.close(all, watch_);
   }
+  // A point that stands among them several times is closed once.
   [[nodiscard]] std::vector<double> log_posteriors(std::span<const VectorXd> points) const {
-    const std::vector<ImaginedClosing> closings = close(points);
+    std::vector<VectorXd> distinct;
+    std::vector<std::size_t> places;
+    for (const VectorXd& point : points) {
+      const auto known = std::ranges::find(distinct, point);
+      places.push_back(static_cast<std::size_t>(known - distinct.begin()));
+      if (known == distinct.end()) distinct.push_back(point);
+    }
+    const std::vector<ImaginedClosing> closings = close(distinct);
     std::vector<double> all;
-    for (std::size_t k = 0; k < points.size(); ++k)
-      all.push_back(likelihood_.of(std::span(closings).subspan(k * shots_.size(), shots_.size())) - points[k].squaredNorm() / 2);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto own = std::span(closings).subspan(places[k] * shots_.size(), shots_.size());
+      all.push_back(likelihood_.of(own) - points[k].squaredNorm() / 2);
+    }
     return all;
   }
 
@@ -231,6 +241,7 @@ void Learner::climb_from(const std::vector<VectorXd>& starts, std::size_t most, 
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return before[a] > before[b]; });
   for (std::size_t q = 0; q < std::min(most, order.size()); ++q) {
     const VectorXd& start = starts[order[q]];
+    if (q > 0 && start == starts[order[q - 1]]) continue;  // its end is known
     auto [z, curvature] = fitted(start);
     double value = log_posteriors(std::span(&z, 1)).front();
     if (value < before[order[q]]) z = start, value = before[order[q]];

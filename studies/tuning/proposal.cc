@@ -1,5 +1,7 @@
 #include "studies/tuning/proposal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +9,7 @@
 
 #include "base/executor.h"
 #include "base/random.h"
+#include "base/require.h"
 #include "optimizers/problem.h"
 #include "sampling/statistics.h"
 #include "studies/plain_step.h"
@@ -14,11 +17,12 @@
 namespace softland {
 
 LandingCost landing_cost(const ImaginedClosing& closing, const TuningScales& s) {
-  constexpr double time_price = 0.34, free_time = 0.88;
+  constexpr double time_price = 0.34, free_time = 0.88, late_price = 10;
   if (!closing.closes()) return {.landing = not_landed};
   const double middle = std::sqrt(s.rebound * s.gap / 20), height = closing.highest;
   return {.landing = (height / (height + middle) + height / (height + s.rebound)) / 2 + 10 * height / s.gap,
-          .time = time_price * std::max(0.0, closing.touch / s.closing_time - free_time)};
+          .time = time_price * std::max(0.0, closing.touch / s.closing_time - free_time) +
+                  late_price * std::max(0.0, closing.touch / s.latest_touch - 1)};
 }
 
 namespace {
@@ -131,26 +135,31 @@ Outlook::Outlook(const TunedScene& scene, const std::vector<Eigen::VectorXd>& po
   for (std::size_t k = 0; k < devices_.size(); ++k) gains_.push_back(1 + scene.options().laboratory.shot_error * draws.normal());
 }
 
-std::vector<ImaginedClosing> Outlook::close(const std::vector<Waveform>& waveforms, std::size_t count, double gain) const {
+std::vector<ImaginedClosing> Outlook::close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
+                                            double gain) const {
   std::vector<ImaginedShot> shots;
-  for (std::size_t k = 0; k < std::min(count, size()); ++k)
+  for (std::size_t k = begin; k < std::min(end, size()); ++k)
     shots.push_back({.device = &devices_[k], .waveforms = &waveforms, .gain = gain * gains_[k]});
   return scene_.close(shots, watch_);
 }
 
-std::vector<ImaginedClosing> Outlook::close(const std::vector<Waveform>& waveforms, std::size_t count) const {
-  return close(waveforms, count, 1);
-}
-
-LandingCost Outlook::expected(const std::vector<Waveform>& waveforms, std::size_t count) const {
-  LandingCost sum;
-  const std::vector<ImaginedClosing> closings = close(waveforms, count);
-  for (const ImaginedClosing& closing : closings) {
-    const LandingCost one = landing_cost(closing, scene_.scales());
-    sum.landing += one.landing / static_cast<double>(closings.size());
-    sum.time += one.time / static_cast<double>(closings.size());
-  }
-  return sum;
+LandingCost Outlook::expected(const std::vector<Waveform>& waveforms, std::size_t count, double give_up) const {
+  constexpr std::size_t first_devices = 8;
+  const auto mean = [&](const std::vector<ImaginedClosing>& closings) {
+    LandingCost sum;
+    for (const ImaginedClosing& closing : closings) {
+      const LandingCost one = landing_cost(closing, scene_.scales());
+      sum.landing += one.landing / static_cast<double>(closings.size());
+      sum.time += one.time / static_cast<double>(closings.size());
+    }
+    return sum;
+  };
+  const bool tries_few = std::isfinite(give_up) && count > first_devices;
+  std::vector<ImaginedClosing> closings = close(waveforms, 0, tries_few ? first_devices : count);
+  if (!tries_few) return mean(closings);
+  if (const LandingCost of_few = mean(closings); of_few.total() > give_up) return of_few;
+  std::ranges::move(close(waveforms, first_devices, count), std::back_inserter(closings));
+  return mean(closings);
 }
 
 namespace {
@@ -171,7 +180,7 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
   constexpr double both_sides = 1.96, unset = Metrics::unset;
   std::vector<double> touches, speeds, heights;
   double bouncing = 0;
-  for (const ImaginedClosing& closing : close(waveforms, size())) {
+  for (const ImaginedClosing& closing : close(waveforms, 0, size())) {
     if (!closing.closes()) continue;
     touches.push_back(closing.touch);
     speeds.push_back(closing.speed);
@@ -196,7 +205,7 @@ PredictedRecord Outlook::predicted(const std::vector<Waveform>& waveforms) const
 
 double Outlook::touch_slope(const std::vector<Waveform>& waveforms) const {
   constexpr double apart = 5e-4;
-  const std::vector<ImaginedClosing> less = close(waveforms, size(), 1 - apart), more = close(waveforms, size(), 1 + apart);
+  const std::vector<ImaginedClosing> less = close(waveforms, 0, size(), 1 - apart), more = close(waveforms, 0, size(), 1 + apart);
   std::vector<double> slopes;
   for (std::size_t k = 0; k < less.size(); ++k) {
     if (less[k].closes() && more[k].closes()) slopes.push_back((more[k].touch - less[k].touch) / (2 * apart));
@@ -218,7 +227,6 @@ struct Search {
 std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const std::vector<double>& start, const Search& search,
                           double effort, std::uint64_t seed, const Watch& watch,
                           double give_up = std::numeric_limits<double>::infinity()) {
-  constexpr std::size_t first_devices = 8;
   Problem problem{.variables = shapes.variables()};
   for (std::size_t k = 0; k < start.size(); ++k) {
     if (search.fine && shapes.is_coarse(k)) problem.variables[k].lower = problem.variables[k].upper = start[k];
@@ -226,9 +234,7 @@ std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const st
   problem.objective = [&](std::span<const double> x) {
     const std::vector<Waveform> waveforms = shapes.waveforms({x.begin(), x.end()});
     if (!shapes.is_allowed(waveforms)) return std::numeric_limits<double>::infinity();
-    const double first = outlook.expected(waveforms, std::min(first_devices, search.devices)).total();
-    if (search.devices <= first_devices || first > give_up) return first;
-    return outlook.expected(waveforms, search.devices).total();
+    return outlook.expected(waveforms, search.devices, give_up).total();
   };
   problem.starts = {start};
   const double evaluations = effort * static_cast<double>(search.evaluations);
@@ -243,7 +249,9 @@ std::vector<double> found(const Shapes& shapes, const Outlook& outlook, const st
 
 }  // namespace
 
-std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes, const Watch& watch) {
+namespace {
+
+std::vector<Recipe> searched_recipes(const TunedScene& scene, const Shapes& shapes, std::size_t count, const Watch& watch) {
   constexpr double narrow = 0.1, narrow_nuisances = 0.5;  // devices, in standard deviations of the prior
   constexpr double headroom = 0.92;                       // of the driver's highest level
   constexpr double hopeless = 0.9;
@@ -259,8 +267,7 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
     for (Eigen::Index i = 0; i < scene.size(); ++i) apart.back()[i] *= scene.is_nuisance(i) ? narrow_nuisances : narrow;
   }
   std::vector<Recipe> recipes;
-  const auto count = std::min<std::size_t>(deviations.size(), static_cast<std::size_t>(scene.options().most_recipes));
-  for (std::size_t n = 0; n < (slope.isZero() ? 1 : count); ++n) {
+  for (std::size_t n = 0; n < std::min(count, deviations.size()); ++n) {
     watch.tell("recipes", static_cast<double>(n) / static_cast<double>(count));
     const Eigen::VectorXd centre =
         slope.isZero() ? Eigen::VectorXd(slope) : Eigen::VectorXd(deviations[n] / slope.norm() * slope);
@@ -280,11 +287,12 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
     if (n == 0) {
       for (const std::vector<double>& start : limited.starts()) add(limited.in_units(start, {}, {}));
     } else {
-      for (const Recipe& recipe : recipes) add(limited.in_units(recipe.x, recipe.units, units));
+      for (const Recipe& recipe : recipes) add(limited.in_units(recipe.x, units_of(recipe), units));
     }
     std::ranges::stable_sort(from, {}, [](const Proposal& one) { return one.cost.total(); });
     Recipe best{.x = from.empty() ? limited.in_units(shapes.starts().front(), {}, {}) : from.front().x,
-                .units = units,
+                .volts = units.volts,
+                .time = units.time,
                 .cost = from.empty() ? not_landed : from.front().cost.total()};
     from.resize(std::min<std::size_t>(from.size(), n == 0 ? 3 : 1));
     run_tasks(from.size(), scene.options().jobs, [&](std::size_t k) {
@@ -301,9 +309,26 @@ std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes
   return recipes;
 }
 
+}  // namespace
+
+std::vector<Recipe> recipes_of(const TunedScene& scene, const Shapes& shapes, const Watch& watch) {
+  const std::size_t count = scene.volts_slope().isZero() ? 1 : static_cast<std::size_t>(scene.options().most_recipes);
+  const std::vector<Recipe>& known = scene.options().recipes;
+  if (known.empty()) return searched_recipes(scene, shapes, count, watch);
+  require(known.size() == count, [&] { return fmt::format("there are {} recipes, and there must be {}", known.size(), count); });
+  for (const Recipe& recipe : known) {
+    require(recipe.x.size() == shapes.variables().size(),
+            [&] { return fmt::format("a recipe has {} numbers, and must have {}", recipe.x.size(), shapes.variables().size()); });
+    require(std::ranges::all_of(recipe.x, [](double x) { return std::isfinite(x); }) && recipe.volts > 0 && recipe.time > 0 &&
+                std::isfinite(recipe.volts) && std::isfinite(recipe.time),
+            "the numbers of a recipe must be finite, and its units above 0");
+  }
+  return known;
+}
+
 Proposal propose(const TunedScene& scene, const Shapes& shapes, const Outlook& outlook,
                  const std::vector<std::vector<double>>& candidates, std::uint64_t seed, const Watch& watch) {
-  constexpr double far_off = 0.3, not_good = 0.03, bad = 0.05;
+  constexpr double far_off = 0.3, not_good = 0.03, hopeless = 0.3;
   const std::size_t all = outlook.size();
   const auto priced = [&](std::vector<double> x) -> Proposal {
     const std::vector<Waveform> waveforms = shapes.waveforms(x);
@@ -327,7 +352,7 @@ Proposal propose(const TunedScene& scene, const Shapes& shapes, const Outlook& o
   const auto numbers = static_cast<long>(shapes.variables().size());
   if (best.cost.landing > not_good)
     search({.optimizer = "nelder-mead", .devices = 12, .evaluations = 12 * numbers, .step = 0.013, .fine = false}, 2);
-  if (best.cost.landing > bad) {
+  if (best.cost.landing > hopeless) {
     const long budget = scene.is_in_lanes() ? 250 : 100;
     const std::vector<std::vector<double>> starts{best.x, ranked[ranked.size() > 1 ? 1 : 0].x};
     std::vector<Proposal> ends(starts.size());

@@ -70,15 +70,17 @@ class Outlook {
   /// Keeps a reference to `scene`.
   Outlook(const TunedScene& scene, const std::vector<Eigen::VectorXd>& points, Draws& draws, const Watch& watch);
   [[nodiscard]] std::size_t size() const { return devices_.size(); }
-  /// Of the first `count` devices.
-  [[nodiscard]] std::vector<ImaginedClosing> close(const std::vector<Waveform>& waveforms, std::size_t count) const;
-  [[nodiscard]] LandingCost expected(const std::vector<Waveform>& waveforms, std::size_t count) const;
+  /// The mean over the first `count` devices; over the first few of them alone where that is above `give_up`.
+  [[nodiscard]] LandingCost expected(const std::vector<Waveform>& waveforms, std::size_t count,
+                                     double give_up = std::numeric_limits<double>::infinity()) const;
   [[nodiscard]] PredictedRecord predicted(const std::vector<Waveform>& waveforms) const;
   /// The median of dt_i / d ln(volts) [s]; NaN where no device tells it.
   [[nodiscard]] double touch_slope(const std::vector<Waveform>& waveforms) const;
 
  private:
-  [[nodiscard]] std::vector<ImaginedClosing> close(const std::vector<Waveform>& waveforms, std::size_t count, double gain) const;
+  // Of the devices from `begin` to `end`.
+  [[nodiscard]] std::vector<ImaginedClosing> close(const std::vector<Waveform>& waveforms, std::size_t begin, std::size_t end,
+                                                   double gain = 1) const;
 
   const TunedScene& scene_;
   std::vector<ImaginedDevice> devices_;
@@ -86,13 +88,10 @@ class Outlook {
   Watch watch_;
 };
 
-struct Recipe {
-  std::vector<double> x;
-  TunedScene::Units units;  ///< of the devices that it was searched for
-  double cost = 0;
-};
-/// That of the nominal device first. Throws Interrupted.
-[[nodiscard]] std::vector<Recipe> search_recipes(const TunedScene& scene, const Shapes& shapes, const Watch& watch);
+[[nodiscard]] inline TunedScene::Units units_of(const Recipe& recipe) { return {.volts = recipe.volts, .time = recipe.time}; }
+/// Those of the options, or else found. That of the nominal device first. Throws InvalidInput for recipes of other shapes,
+/// Interrupted.
+[[nodiscard]] std::vector<Recipe> recipes_of(const TunedScene& scene, const Shapes& shapes, const Watch& watch);
 
 struct Proposal {
   std::vector<double> x;

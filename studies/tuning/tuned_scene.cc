@@ -22,7 +22,7 @@ namespace softland {
 namespace {
 
 constexpr double belief_accuracy = 1e-4;  // of closings
-constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1, gap_ratio_deviation = 0.03;
+constexpr double viscosity_deviation = 0.05, contact_deviation = 0.1;
 constexpr double delay_share = 0.003;  // of the closing time of the plain step
 
 // Of a closing, in closing times of the plain step: after the first touch, without a touch, and after the last breakpoint.
@@ -63,53 +63,9 @@ SceneFile with_nuisances(const Prepared& prepared, const TunerOptions& options) 
     if (file.written(key) && !varies(spread, key)) stiffness.emplace_back(key);
   }
   if (!stiffness.empty()) vary(file, "contact stiffness", stiffness, "lognormal", contact_deviation);
-  if (!varies(spread, "gap.contact")) vary(file, "gap.contact", {"gap.contact"}, "normal", gap_ratio_deviation);
+  if (!varies(spread, "gap.contact")) vary(file, "gap.contact", {"gap.contact"}, "normal", TunedScene::gap_ratio_deviation);
   file.assign("simulate.accuracy", belief_accuracy);
   return file;
-}
-
-// The contact gap leaves the factor that it shares with other gaps, and follows it but for a deviation of its own: correlated
-// normal factors.
-void loosen_contact_gap(DeviceSpread& spread) {
-  for (std::size_t i = 0; i < spread.variables.size(); ++i) {
-    SpreadVariable& shared = spread.variables[i];
-    const auto key = std::ranges::find(shared.keys, "gap.contact", &VariedKey::path);
-    const auto* normal = std::get_if<Normal>(&shared.distribution.parameters());
-    const Truncation& truncation = shared.distribution.truncation();
-    const bool is_free = !(truncation.low > -std::numeric_limits<double>::infinity()) &&
-                         !(truncation.high < std::numeric_limits<double>::infinity());
-    if (key == shared.keys.end() || shared.keys.size() < 2 || !shared.is_factor || normal == nullptr || !is_free) continue;
-    const double own = std::hypot(normal->standard_deviation, gap_ratio_deviation);
-    const double correlation = normal->standard_deviation / own;
-    SpreadVariable contact{.name = "gap.contact",
-                           .keys = {*key},
-                           .distribution = Distribution(Normal{.mean = normal->mean, .standard_deviation = own})};
-    shared.keys.erase(key);
-    const Eigen::Index n = spread.correlation.rows();
-    Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
-    all.topLeftCorner(n, n) = spread.correlation;
-    all.row(n).head(n) = correlation * spread.correlation.row(static_cast<Eigen::Index>(i));
-    all.col(n).head(n) = all.row(n).head(n).transpose();
-    spread.correlation = all;
-    spread.variables.push_back(std::move(contact));
-    return;
-  }
-}
-
-Prepared prepared_for_belief(const SceneFile& given, const TunerOptions& options, bool& spread_is_assumed, const Watch& watch) {
-  SceneFile file = given;
-  spread_is_assumed = assume_spread(file);
-  const Prepared prepared = prepare_and_choose(file, true, watch);
-  require(prepared.model.has_contact(),
-          [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
-  Prepared p = prepare(with_nuisances(prepared, options), true, watch);
-  DeviceSpread& spread = p.scene.spread;
-  for (std::size_t i = spread.variables.size(); i-- > 0;) {
-    if (spread.variables[i].is_drawn_per_edge) spread.leave_out(i);
-  }
-  loosen_contact_gap(spread);
-  spread.correlate(spread.correlation);
-  return p;
 }
 
 // The landing of one lane.
@@ -152,8 +108,56 @@ class SingleClosing final : public ClosingObserver {
 
 }  // namespace
 
+// The contact gap leaves the factor that it shares with other gaps, and follows it but for a deviation of its own: correlated
+// normal factors.
+void TunedScene::loosen_contact_gap(DeviceSpread& spread) {
+  for (std::size_t i = 0; i < spread.variables.size(); ++i) {
+    SpreadVariable& shared = spread.variables[i];
+    const auto key = std::ranges::find(shared.keys, "gap.contact", &VariedKey::path);
+    const auto* normal = std::get_if<Normal>(&shared.distribution.parameters());
+    const Truncation& truncation = shared.distribution.truncation();
+    const bool is_free = !(truncation.low > -std::numeric_limits<double>::infinity()) &&
+                         !(truncation.high < std::numeric_limits<double>::infinity());
+    if (key == shared.keys.end() || shared.keys.size() < 2 || !shared.is_factor || normal == nullptr || !is_free) continue;
+    const double own = std::hypot(normal->standard_deviation, gap_ratio_deviation);
+    const double correlation = normal->standard_deviation / own;
+    SpreadVariable contact{.name = "gap.contact",
+                           .keys = {*key},
+                           .distribution = Distribution(Normal{.mean = normal->mean, .standard_deviation = own})};
+    shared.keys.erase(key);
+    const Eigen::Index n = spread.correlation.rows();
+    Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n + 1, n + 1);
+    all.topLeftCorner(n, n) = spread.correlation;
+    all.row(n).head(n) = correlation * spread.correlation.row(static_cast<Eigen::Index>(i));
+    all.col(n).head(n) = all.row(n).head(n).transpose();
+    spread.correlation = all;
+    gap_ratio_ = {.contact = spread.variables.size(), .shared = i};
+    spread.variables.push_back(std::move(contact));
+    return;
+  }
+}
+
+Prepared TunedScene::prepared(const SceneFile& given, const Watch& watch) {
+  SceneFile file = given;
+  spread_is_assumed_ = assume_spread(file);
+  const Prepared chosen = prepare_and_choose(file, true, watch);
+  require(chosen.model.has_contact(),
+          [&] { return fmt::format("{}: without [contact] there is no record to tune by", given.name()); });
+  Prepared p = prepare(with_nuisances(chosen, options_), true, watch);
+  DeviceSpread& spread = p.scene.spread;
+  for (std::size_t i = spread.variables.size(); i-- > 0;) {
+    if (spread.variables[i].is_drawn_per_edge) spread.leave_out(i);
+  }
+  const auto contact = std::ranges::find(spread.variables, "gap.contact", &SpreadVariable::name);
+  if (contact != spread.variables.end() && !varies(chosen.scene.spread, "gap.contact"))
+    gap_ratio_ = {.contact = static_cast<std::size_t>(contact - spread.variables.begin()), .shared = {}};
+  loosen_contact_gap(spread);
+  spread.correlate(spread.correlation);
+  return p;
+}
+
 TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const Watch& watch)
-    : options_(options), nominal_(prepared_for_belief(file, options, spread_is_assumed_, watch)) {
+    : options_(options), nominal_(prepared(file, watch)) {
   const DeviceSpread& spread = nominal_.scene.spread;
   for (const SpreadVariable& variable : spread.variables)
     nuisances_.push_back(variable.name == "gas.viscosity" || variable.name == "contact stiffness");
@@ -172,6 +176,7 @@ TunedScene::TunedScene(const SceneFile& file, const TunerOptions& options, const
   scales_ = {.closing_time = closing.touches.front().begin,
              .gap = nominal_.scene.device.gap.contact,
              .rebound = nominal_.scene.metrics.significant_rebound};
+  if (options.touch) scales_.latest_touch = beside_step(*options.touch, scales_.closing_time).limit;
   constexpr double coarsest = 0.1;  // of the closing time
   require(options.laboratory.edge_error < coarsest * scales_.closing_time, [&] {
     return fmt::format("the error of edges, {}, must be below a tenth of the closing time of the plain step, {}",
@@ -203,6 +208,12 @@ std::vector<double> TunedScene::values(const Eigen::VectorXd& point) const {
   return u;
 }
 
+std::optional<double> TunedScene::gap_ratio(std::span<const double> values) const {
+  if (!gap_ratio_) return {};
+  const double contact = values[gap_ratio_->contact];
+  return gap_ratio_->shared ? contact / values[*gap_ratio_->shared] : contact;
+}
+
 std::vector<ImaginedDevice> TunedScene::devices(std::span<const Eigen::VectorXd> points, const Watch& watch) const {
   constexpr std::size_t together = 16;
   std::vector<ImaginedDevice> all(points.size());
@@ -226,7 +237,12 @@ std::vector<Signal> TunedScene::signals(const ImaginedShot& shot) const {
 }
 
 std::vector<ImaginedClosing> TunedScene::close(std::span<const ImaginedShot> shots, const Watch& watch) const {
-  constexpr std::size_t together = 16;
+  // All threads have something to do, and lanes are filled.
+  constexpr std::size_t lanes = 8, most_in_lanes = 64, most_by_itself = 4;
+  const auto jobs = static_cast<std::size_t>(options_.jobs);
+  const std::size_t share = (shots.size() + jobs - 1) / jobs;
+  const std::size_t together =
+      is_in_lanes() ? std::clamp(share, lanes, most_in_lanes) : std::clamp<std::size_t>(share, 1, most_by_itself);
   std::vector<ImaginedClosing> all(shots.size());
   const double t0 = scales_.closing_time;
   const auto task = [&](std::size_t n) {

@@ -36,6 +36,7 @@ struct TuningScales {
   double closing_time = 0;  ///< T_0: first touch of the plain step on the nominal device [s]
   double gap = 0;           ///< contact gap [m]
   double rebound = 0;       ///< significant rebound [m]
+  double latest_touch = std::numeric_limits<double>::infinity();     ///< that is asked for [s]
   [[nodiscard]] double speed() const { return gap / closing_time; }  ///< [m/s]
 };
 
@@ -95,6 +96,11 @@ class TunedScene {
 
   /// Values of the varying quantities, as DeviceSpread::to_values, at z.
   [[nodiscard]] std::vector<double> values(const Eigen::VectorXd& z) const;
+  /// Contact gap over electrode gap of a device with these values, over that of the scene; none where [spread] has the contact
+  /// gap as a quantity of its own.
+  [[nodiscard]] std::optional<double> gap_ratio(std::span<const double> values) const;
+  /// One standard deviation of that ratio, of which a device of the spread has none.
+  static constexpr double gap_ratio_deviation = 0.03;
   [[nodiscard]] std::vector<ImaginedDevice> devices(std::span<const Eigen::VectorXd> points, const Watch& watch = {}) const;
   /// What the sources of a device give.
   [[nodiscard]] std::vector<Signal> signals(const ImaginedShot& shot) const;
@@ -116,6 +122,8 @@ class TunedScene {
   [[nodiscard]] double safe_level(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) const;
 
  private:
+  [[nodiscard]] Prepared prepared(const SceneFile& given, const Watch& watch);
+  void loosen_contact_gap(DeviceSpread& spread);
   void find_units(const Watch& watch);
   [[nodiscard]] Eigen::VectorXd spread_point(const Eigen::VectorXd& z) const {
     return prior_ ? Eigen::VectorXd(prior_->mean + prior_factor_ * z) : z;
@@ -123,6 +131,11 @@ class TunedScene {
 
   TunerOptions options_;
   bool spread_is_assumed_ = false;
+  struct GapRatio {
+    std::size_t contact;                // variable of the contact gap
+    std::optional<std::size_t> shared;  // of the other gaps, where it moves with them
+  };
+  std::optional<GapRatio> gap_ratio_;
   Prepared nominal_;
   std::vector<bool> nuisances_;
   std::unique_ptr<const Ensemble> ensemble_;

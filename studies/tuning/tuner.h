@@ -14,6 +14,8 @@
 //
 //   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88)       3 where it does not close
 //
+// Where the first touch is to come by t_b, 10 max(0, t_i / t_b - 1) are added.
+//
 // No shot leaves the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would be
 // pulled through its contact. After two closings without a bounce, where none is expected, the same shot is repeated; its
 // volts then follow the touch time, s <- s [1 - 0.2 (t_i - t_ref) / (dt_i / d ln s)], until it bounces. Then all records but the
@@ -34,6 +36,7 @@
 #include <vector>
 
 #include "base/watch.h"
+#include "config/criterion.h"
 #include "model/ensemble/fleet.h"
 #include "studies/prepared.h"
 #include "studies/search_space.h"
@@ -43,6 +46,13 @@
 
 namespace softland {
 
+/// A waveform that proposals begin from, searched once for a scene.
+struct Recipe {
+  std::vector<double> x;       ///< numbers of its shape
+  double volts = 1, time = 1;  ///< units of the devices that it was searched for, over those of the nominal one
+  double cost = 0;             ///< expected of these devices
+};
+
 struct TunerOptions {
   Actuator actuator = Actuator::electrostatic;  ///< which drives are shaped
   std::uint64_t seed = 1;
@@ -50,10 +60,17 @@ struct TunerOptions {
   LaboratoryErrors laboratory = {};
   int most_recipes = 1;  ///< units of volts that recipes are searched for, 1 to 5
   double effort = 1;     ///< evaluations of every search, over the usual
+  /// A condition on the first touch, which must come before or by its limit; none: it has no bound.
+  std::optional<Criterion> touch = {};
   /// Devices of the same wafer that were tuned before: what they tell is what is known of this one before its first closing.
   std::vector<TunedBelief> wafer = {};
+  /// What Tuner::recipes() gave for this scene and these options; empty: they are searched.
+  std::vector<Recipe> recipes = {};
   Vectors vectors = vectors_in_use();
 };
+
+/// Throws InvalidInput for options out of range.
+void check(const TunerOptions& options);
 
 /// What the belief expects of a shot.
 struct PredictedRecord {
@@ -84,6 +101,8 @@ struct BelievedQuantity {
 
 struct BeliefSummary {
   std::vector<BelievedQuantity> quantities;
+  /// Contact gap over electrode gap, over that of the scene, where devices of the spread have that of the scene.
+  std::optional<BelievedQuantity> gap_ratio = {};
   double effective_devices = 0;         ///< of the weighted samples: 1 over the sum of the squares of the weights
   std::vector<std::string> correlated;  ///< sentences about quantities that the records do not tell apart
   /// For a tuning of another device of the wafer: in standard normal coordinates of the spread, of which the delay is the last.
@@ -93,8 +112,8 @@ struct BeliefSummary {
 class Tuner {
  public:
   /// Makes the scene ready and searches the recipes of its nominal device: seconds in lanes. Throws InvalidInput for a scene that
-  /// cannot be tuned (no contact, no drive to shape, options out of range), and for a wafer of other quantities, Interrupted
-  /// where `watch` asks to stop.
+  /// cannot be tuned (no contact, no drive to shape, options out of range), for a wafer of other quantities and for recipes of
+  /// other shapes, Interrupted where `watch` asks to stop.
   Tuner(const SceneFile& file, const TunerOptions& options, const Watch& watch = {});
   ~Tuner();
   Tuner(Tuner&&) noexcept;
@@ -105,6 +124,8 @@ class Tuner {
 
   /// The scene that the belief is about: nominal device, drives and limits.
   [[nodiscard]] const Prepared& scene() const;
+  /// That of the nominal device first.
+  [[nodiscard]] const std::vector<Recipe>& recipes() const;
   /// The first touch of the plain step on the nominal device [s].
   [[nodiscard]] double step_closing_time() const;
   /// Whether the scene said how devices differ, or it was assumed.
@@ -127,12 +148,14 @@ class Tuner {
   [[nodiscard]] int bounce_free_in_a_row() const;
   static constexpr int enough_in_a_row = 5;
   [[nodiscard]] bool is_done() const { return bounce_free_in_a_row() >= enough_in_a_row; }
-  /// How far the recorded first touch of each closing was from what the belief had predicted, in standard deviations; shots that
-  /// are repeated are left out as long as they do not bounce.
+  /// How far the recorded first touch of each closing was from what the belief had predicted, in standard deviations; 0 where the
+  /// belief was of too few devices to predict, or the contact closed or stayed open as it ought not to. Shots that are repeated
+  /// are left out as long as they do not bounce.
   [[nodiscard]] const std::vector<double>& surprises() const;
-  /// Closings that bounced, where at most one in twenty devices of the belief did.
+  /// Closings that bounced for longer than an error of the model explains, where at most one in twenty devices of the belief did.
   [[nodiscard]] int unexpected_bounces() const;
-  /// In words, where records were not what the belief predicted before it saw them: the device does not behave like the scene.
+  /// In words, where records were not what the belief predicted before it saw them, or where the belief is that the gaps are in
+  /// another ratio than in the scene: the device does not behave like the scene.
   [[nodiscard]] std::optional<std::string> broken_assumption() const;
 
  private:

@@ -150,7 +150,7 @@ class TuneVerb : public testing::Test {
     return json::parse(read(here.path() / folder / "tune.json"), nullptr, false);
   }
   [[nodiscard]] std::size_t logged(const std::string& folder = "out") const {
-    return lines_of(read(here.path() / folder / "closings.jsonl")).size() - 1;
+    return lines_of(read(here.path() / folder / "closings.jsonl")).size() - 2;
   }
   Workplace here;
 };
@@ -194,6 +194,19 @@ TEST_F(TuneVerb, GoesOnAfterAKillToTheSameBits_optimized) {
   const Outcome other = here.run(words(device(), {"--resume", "--seed", "2"}));
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("out/closings.jsonl:1: its closings are of another seed: 1 instead of 2"));
+  // It begins from the recipes of the log.
+  json recipes = lines_of(whole)[1];
+  ASSERT_TRUE(recipes.contains("recipes"));
+  const auto resumed_with = [&](const std::string& line) {
+    const std::size_t begin = whole.find('\n') + 1, end = whole.find('\n', begin);
+    write(here.path() / "out/closings.jsonl", whole.substr(0, begin) + line + whole.substr(end));
+    return here.run(words(device(), {"--closings", "4", "--resume"})).err;
+  };
+  recipes["recipes"][0]["x"][1] = 1.02 * recipes["recipes"][0]["x"][1].get<double>();
+  EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("out/closings.jsonl:3: this program proposes another shot"));
+  recipes["recipes"][0]["x"].erase(0);
+  EXPECT_THAT(resumed_with(recipes.dump()), HasSubstr("out/closings.jsonl: a recipe has"));
+  EXPECT_THAT(resumed_with(R"({"recipes":[]})"), HasSubstr("out/closings.jsonl:2: recipes = []: must be a list of recipes"));
 }
 
 TEST_F(TuneVerb, BeginsWithWhatAnotherDeviceOfTheWaferTold_optimized) {
@@ -283,6 +296,30 @@ TEST_F(TuneVerb, AsksAPersonWhatTheOscilloscopeShowed_optimized) {
   EXPECT_TRUE(fs::exists(here.path() / "out/shot-of-mine.csv"));
 }
 
+// The voltage of the contact, as an oscilloscope has saved it.
+TEST_F(TuneVerb, TakesTheFileOfAnOscilloscope_optimized) {
+  write(here.path() / "scope.csv", "time (us),CH1 (V)\n0,3.3\n20,3.3\n22,0.1\n24,0.1\n26,3.3\n28,0.1\n30,0.1\n");
+  write(here.path() / "stdin.txt", "file none.csv\nfile scope.csv\nstop\n");
+  const auto words = [](const std::vector<std::string>& more) {
+    return std::vector<std::string>{"tune",   "plate.toml", "--by-hand", "--effort", "0.2",
+                                    "--jobs", "1",          "--out",     "out",      "--quiet"} +
+           more;
+  };
+  const Outcome o = here.run(words({"--contact", "threshold=1.7 V", "--contact", "closed=below"}));
+  EXPECT_EQ(o.status, 4) << o.err;
+  EXPECT_THAT(o.err, HasSubstr("none.csv"));
+  const json edges = tune_json()["closings"][0]["record"]["edges_s"];
+  ASSERT_EQ(edges.size(), 3U);
+  const std::vector<double> due{21e-6, 25e-6, 27e-6};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(edges[k][0].get<double>(), due[k], 1e-12);
+    EXPECT_EQ(edges[k][1], k % 2 == 0 ? 1 : 0);
+  }
+  EXPECT_THAT(here.run(words({"--contact", "closed=below"})).err, HasSubstr("--contact: missing key 'threshold'"));
+  EXPECT_THAT(here.run({"tune", "plate.toml", "--device", "x", "--contact", "threshold=1 V"}).err,
+              HasSubstr("--contact says how files are read that --by-hand is told of"));
+}
+
 // A switch of nanoseconds: the errors of its instruments follow it.
 TEST_F(TuneVerb, TakesASwitchThatIsQuickerThanAnOscilloscope_slow) {
   fs::copy_file(fs::path(SOFTLAND_SOURCE_DIR) / "scenes/nem-tin.toml", here.path() / "nem.toml");
@@ -299,6 +336,9 @@ TEST_F(TuneVerb, NamesTheOptionThatItCannotTake) {
       {{"--device", "x", "--closings", "0"}, "--closings 0: must be a whole number from 1 on"},
       {{"--device", "x", "--timeout", "0 s"}, "--timeout 0 s: must be above 0 s"},
       {{"--device", "x", "--timeout", "3"}, "--timeout 3: must be a time [s]"},
+      {{"--device", "x", "--constrain", "initial_contact_time < 33"}, "--constrain: "},
+      {{"--device", "x", "--constrain", "impact_velocity < 1 mm/s"},
+       "a condition must be that initial_contact_time is below a time"},
       {{"--device", "x", "--actuator", "hand"}, "--actuator hand: must be electrostatic"},
       {{"--device", "x", "--resume"}, "closings.jsonl: there is no such file"}};
   for (const auto& [words, rule] : refused) {

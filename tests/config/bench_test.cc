@@ -82,6 +82,146 @@ error = "1 mm/s"
   EXPECT_EQ(bench.measurements[2].times, (std::vector<double>{0, 1e-6}));
   for (const std::size_t moves : {1U, 2U}) EXPECT_EQ(bench.measurements[moves].levels, (std::vector<double>{20, 20}));
 }
+// A Tektronix export: 10 ns rows from 2 us before the trigger on, the contact's voltage low where it is closed.
+constexpr const char* scope_file = R"(Record Length,8
+Sample Interval,1e-06
+Vertical Units,V
+TIME,CH1,CH2
+-2e-06,0,3.3
+-1e-06,0,3.3
+0,5,3.3
+1e-06,5,3.3
+2e-06,5,0.3
+3e-06,5,0.1
+4e-06,5,3.1
+5e-06,5,0.1
+)";
+constexpr const char* vibrometer_file = R"(    -1
+    58
+vibrometer
+NONE
+26-Nov-26 12:00:00
+NONE
+NONE
+    1         0    0         0 NONE               0   0 NONE               0   0
+         2         4         1  0.00000E+00  1.00000E-06  0.00000E+00
+        17    0    0    0 Time                 s
+        11    0    0    0 tip                  mm/s
+         0    0    0    0 NONE                 NONE
+         0    0    0    0 NONE                 NONE
+  0.00000E+00  1.50000E+00  4.00000E+00  9.00000E+00
+    -1
+)";
+
+TEST(Bench, ReadsWhatInstrumentsWrite) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "scope.csv") << scope_file;
+  std::ofstream(folder.path() / "tip.uff") << vibrometer_file;
+  std::ofstream(folder.path() / "decoder.csv") << "time (us),decoder (mV)\n-1,0\n0,0\n1,100\n2,300\n";
+  const Bench bench = parse_bench(R"(
+[[measurement]]
+quantity = "contact"
+file = "scope.csv"
+column = "CH2"
+threshold = "1.3 V"
+closed = "below"
+hysteresis = "0.2 V"
+level = "20 V"
+edges = 3
+error = "50 ns"
+[[measurement]]
+quantity = "contact"
+file = "scope.csv"
+column = 3
+threshold = "1.3 V"
+closed = "below"
+merge = "1.5 us"
+shift = "1 us"
+level = "20 V"
+error = "50 ns"
+[[measurement]]
+quantity = "velocity"
+file = "tip.uff"
+level = "20 V"
+error = "1 mm/s"
+[[measurement]]
+quantity = "velocity"
+file = "tip.uff"
+unit = "m/s"
+level = "20 V"
+error = "1 mm/s"
+[[measurement]]
+quantity = "position"
+file = "decoder.csv"
+per_volt = "2 um"
+level = "20 V"
+error = "1 nm"
+)",
+                                  "bench.toml", folder.path());
+  constexpr double rounding = 1e-15;
+  const auto expect_near = [](const std::vector<double>& found, const std::vector<double>& due, double most) {
+    ASSERT_EQ(found.size(), due.size());
+    for (std::size_t k = 0; k < due.size(); ++k) EXPECT_NEAR(found[k], due[k], most) << k;
+  };
+  expect_near(bench.measurements[0].values, {1e-6 + 2e-6 / 3, 3.4e-6, 4.6e-6}, rounding);
+  expect_near(bench.measurements[1].values, {2e-6 + 2e-6 / 3}, rounding);
+  EXPECT_EQ(bench.measurements[2].times, (std::vector<double>{0, 1e-6, 2e-6, 3e-6}));
+  expect_near(bench.measurements[2].values, {0, 1.5e-3, 4e-3, 9e-3}, rounding);
+  expect_near(bench.measurements[3].values, {0, 1.5, 4, 9}, rounding);
+  expect_near(bench.measurements[4].times, {0, 1e-6, 2e-6}, rounding);
+  expect_near(bench.measurements[4].values, {0, 0.2e-6, 0.6e-6}, rounding);
+}
+TEST(Bench, NamesTheKeyThatAFileOfAnInstrumentLacks) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "scope.csv") << scope_file;
+  std::ofstream(folder.path() / "plain.csv") << "t,x\n0,1\n1e-6,2\n";
+  const auto expect_so = [&](const std::string& quantity, const std::string& keys, const std::string& words) {
+    try {
+      (void)parse_bench("[[measurement]]\nquantity = \"" + quantity + "\"\nlevel = \"9 V\"\nerror = \"1 %\"\n" + keys, "b.toml",
+                        folder.path());
+      ADD_FAILURE() << keys;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  const std::string scope = "file = \"scope.csv\"\n", low = scope + "column = \"CH2\"\nthreshold = \"1 V\"\n";
+  expect_so("contact", scope, "missing key 'threshold'");
+  expect_so("contact", scope + "threshold = \"1 V\"", "column");
+  expect_so("contact", low, "the contact is closed at t = 0 already; closed = \"below\"");
+  expect_so("contact", low + "closed = \"under\"", "b.toml:8: measurement.closed = \"under\": must be \"above\" or \"below\"");
+  expect_so("contact", low + "closed = \"below\"\nmerge = \"9 us\"\nedges = 2", "its voltage has 1 edges");
+  expect_so("contact", low + "hysteresis = \"-1 V\"", "must be at least 0");
+  expect_so("contact", low + "thresold = \"1 V\"", "did you mean 'threshold'?");
+  expect_so("contact", low + "per_volt = \"1 um\"", "is of a position or velocity only");
+  expect_so("velocity", scope + "threshold = \"1 V\"", "is of a contact record only");
+  expect_so("velocity", scope + "column = \"CH2\"", "the velocity is in V: expected a velocity [m/s]; per_volt");
+  expect_so("velocity", scope + "column = 2\nunit = \"um\"", "the velocity is in um: expected a velocity");
+  expect_so("velocity", scope + "column = 2\nunit = \"m/s\"\nper_volt = \"1 m/s\"", "must not stand beside a unit");
+  expect_so("velocity", "file = \"plain.csv\"", "the file names no unit: say unit");
+  expect_so("capacitance", scope + "column = 2", "is of a file over time only");
+}
+TEST(Bench, ContactKeysOfAnOptionAreThoseOfAMeasurement) {
+  const ContactTraceKeys keys =
+      contact_trace_keys({"threshold=1.5 V", "closed=below", "column=2", "merge=\"100 ns\"", "shift=first"});
+  EXPECT_EQ(keys.contact.threshold, 1.5);
+  EXPECT_TRUE(keys.contact.is_closed_below);
+  EXPECT_EQ(keys.contact.merge, 100e-9);
+  EXPECT_EQ(keys.file.column_number, 2);
+  EXPECT_TRUE(keys.shift.first_is_zero);
+  const auto refused = [](const std::vector<std::string>& assignments) -> std::string {
+    try {
+      (void)contact_trace_keys(assignments);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_EQ(refused({"threshold"}), "--contact threshold: must be KEY=VALUE, such as \"threshold=1.5 V\"");
+  EXPECT_EQ(refused({"closed=below"}),
+            "--contact: missing key 'threshold': the voltage beyond which the contact is closed, such as \"1.5 V\"");
+  EXPECT_EQ(refused({"threshold=1.5 A"}), "--contact: threshold = \"1.5 A\": expected a voltage [V], got a current [A]");
+  EXPECT_NE(refused({"threshold=1 V", "thershold=1 V"}).find("did you mean 'threshold'?"), std::string::npos);
+}
 TEST(Bench, RefusesWhatItCannotMean) {
   const std::string begin = "[[measurement]]\nquantity = \"pull_in\"\n";
   expect_refused("", "there is no [[measurement]]");

@@ -65,6 +65,30 @@ TEST(Spread, OfSeveralKeysIsOneFactorOfAll) {
   EXPECT_NEAR(v.distribution.standard_deviation(), 0.1, 1e-9);
 }
 
+TEST(Spread, WithWeightsIsOneAmountThatIsAddedToAll) {
+  const DeviceSpread spread = spread_of(
+      R"(undercut = { keys = ["gap.contact", "structure.thickness"], weights = [1, -2], distribution = "normal", standard_deviation = "50 nm" })");
+  const SpreadVariable& v = spread.variables.at(0);
+  EXPECT_FALSE(v.is_factor);
+  EXPECT_EQ(v.nominal(), 0);
+  EXPECT_EQ(v.distribution.mean(), 0);
+  EXPECT_EQ(v.distribution.standard_deviation(), 50e-9);
+  constexpr double amount = 30e-9;
+  EXPECT_DOUBLE_EQ(DeviceSpread::value(v, v.keys[0], amount), v.keys[0].nominal + amount);
+  EXPECT_DOUBLE_EQ(DeviceSpread::value(v, v.keys[1], amount), v.keys[1].nominal - 2 * amount);
+  const auto refused = [](const std::string& more, const std::string& keys = R"("gap.contact", "structure.thickness")") {
+    return message(with_spread("undercut = { keys = [" + keys + "], distribution = \"normal\", " + more + " }"));
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refused(R"(weights = [1], standard_deviation = "50 nm")"), HasSubstr("there are 1 of them for 2 keys"));
+  EXPECT_THAT(refused(R"(weights = [1, 0], standard_deviation = "50 nm")"), HasSubstr("must not be 0"));
+  EXPECT_THAT(refused(R"(weights = [1, 1], cov = "2 %")"), HasSubstr("add an amount that is 0 in this scene"));
+  EXPECT_THAT(refused(R"(weights = [1, 1], standard_deviation = "50 V")"), HasSubstr("expected a length"));
+  EXPECT_THAT(refused(R"(weights = [1, 1], standard_deviation = "50 nm")", R"("gap.contact", "structure.youngs_modulus")"),
+              HasSubstr("one amount cannot be added to gap.contact and structure.youngs_modulus"));
+  EXPECT_THAT(refused(R"(standard_deviation = "50 nm")"), HasSubstr("or weights with which one amount is added to them"));
+}
+
 TEST(Spread, SetsTheMembersOfADevice) {
   Scene scene = read_scene(SceneFile::parse(with_spread(R"("electrode.main.span" = 1)").substr(0, small_scene.size()), "x.toml"));
   const DeviceSpread spread = spread_of(R"(

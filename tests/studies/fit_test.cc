@@ -87,6 +87,38 @@ TEST(Fit, FindsTheDeviceThatWasMeasured) {
   EXPECT_EQ(found.minima, 1U);
   EXPECT_LT(found.chi_squared(), 1e-3 * found.chi_squared_before());
 }
+// An etch that widens both gaps by the same amount.
+TEST(Fit, FindsOneAmountThatIsAddedToSeveralKeys) {
+  SKIP_WITHOUT_CERES();
+  SceneFile file = spring_plate();
+  file.set(R"(spread={"structure.stiffness"={distribution="normal",cov="4 %"},)"
+           R"(undercut={keys=["gap.electrode","gap.contact"],weights=[1,1],distribution="normal",standard_deviation="100 nm"}})");
+  const Prepared p = prepare(file);
+  constexpr double stiffness = 1.03, undercut = 80e-9, sharp = 1e-7;
+  DeviceReader reader(p);
+  ASSERT_TRUE(reader.move_to({stiffness, undercut}));
+  Bench bench{.name = "bench.toml", .measurements = {}, .changes = {}};
+  for (const Measured& one : all_kinds) {
+    const double value = reader.read(one.instrument, false).values[0];
+    bench.measurements.push_back(
+        {.quantity = one.quantity, .values = {value}, .errors = {sharp * value}, .place = "bench.toml:1"});
+    if (one.instrument.level != 0) bench.measurements.back().levels = {one.instrument.level};
+  }
+  const Fit found = fit(file, bench, {.starts = 2});
+  ASSERT_TRUE(found.found);
+  constexpr double tolerance = 1e-4;  // relative
+  EXPECT_NEAR(unknown(found, "undercut").value, undercut, tolerance * undercut);
+  EXPECT_EQ(unknown(found, "undercut").nominal, 0);
+  EXPECT_EQ(unknown(found, "undercut").unit, "m");
+  const double contact = p.scene.device.gap.contact;
+  bool is_there = false;
+  for (const Fit::FittedKey& key : found.keys("")) {
+    if (key.path != "gap.contact") continue;
+    is_there = true;
+    EXPECT_NEAR(key.value.value, contact + undercut, tolerance * undercut);
+  }
+  EXPECT_TRUE(is_there);
+}
 TEST(Fit, IsTheSameForAnyNumberOfThreads) {
   SKIP_WITHOUT_CERES();
   const Bench bench = bench_of(all_kinds, {}, 1);

@@ -30,7 +30,7 @@ Prepared prepared(SceneFile file, const std::vector<std::string>& keys) {
 
 std::vector<double> nominal_values(const Prepared& p) {
   std::vector<double> values;
-  for (const SpreadVariable& v : p.scene.spread.variables) values.push_back(v.is_factor ? 1 : v.keys.front().nominal);
+  for (const SpreadVariable& v : p.scene.spread.variables) values.push_back(v.nominal());
   return values;
 }
 

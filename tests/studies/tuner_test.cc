@@ -69,6 +69,24 @@ TEST(Tuners, ALogThatIsLearnedAgainGivesTheSameBitsWithAnyJobs_optimized) {
   EXPECT_EQ(bits(restarted.next()), proposed[0]);
 }
 
+TEST(Tuners, RecipesThatAreKnownAreNotSearchedAgain_optimized) {
+  const Tuner searched(gold_with_two_modes(), cheap());
+  TunerOptions options = cheap();
+  options.recipes = searched.recipes();
+  ASSERT_EQ(options.recipes.size(), 1U);
+  EXPECT_EQ(bits(Tuner(gold_with_two_modes(), options).next()), bits(searched.next()));
+  constexpr double longer = 1.1;
+  options.recipes[0].x[1] *= longer;
+  EXPECT_NE(bits(Tuner(gold_with_two_modes(), options).next()), bits(searched.next()));
+  options.recipes[0].x.pop_back();
+  EXPECT_THROW(Tuner(gold_with_two_modes(), options), InvalidInput);
+  options.recipes = {searched.recipes()[0], searched.recipes()[0]};
+  EXPECT_THROW(Tuner(gold_with_two_modes(), options), InvalidInput);
+  options.recipes = {searched.recipes()[0]};
+  options.recipes[0].x[0] = std::nan("");
+  EXPECT_THROW(Tuner(gold_with_two_modes(), options), InvalidInput);
+}
+
 TEST(Tuners, ARecordThatIsNoneTeachesNothing_optimized) {
   Tuner tuner(gold_with_two_modes(), cheap());
   const std::vector<std::uint64_t> first = bits(tuner.next());
@@ -123,6 +141,58 @@ TEST(Tuners, ADeviceUnlikeTheSceneIsCalledSo_optimized) {
   const PracticeDevice right(gold_with_two_modes(), {.seed = 8});
   other.learn(fired(right, other.next(), 1).record);
   EXPECT_FALSE(other.broken_assumption());
+}
+
+// The belief has the ratio of the gaps as a quantity, predicts such records, and lands the device: it knows all the same.
+TEST(Tuners, GapsOfAnotherRatioThanTheSceneAreFound_slow) {
+  constexpr int closings = 4, devices = 4;
+  const Tuner fresh(gold_with_two_modes(), {.jobs = 2, .effort = 0.3});
+  const auto tuned = [&](const PracticeDevice& device) {
+    Tuner tuner = fresh.restarted();
+    for (std::uint64_t k = 1; k <= closings; ++k) tuner.learn(fired(device, tuner.next(), k).record);
+    return tuner;
+  };
+  int found = 0;
+  for (std::uint64_t seed = 11; seed < 11 + devices; ++seed) {
+    const Tuner wide = tuned(PracticeDevice(gold_with_two_modes(), {.seed = seed, .model = {.set = {"gap.contact=2.16 um"}}}));
+    ASSERT_TRUE(wide.belief().gap_ratio);
+    if (wide.broken_assumption()) {
+      ++found;
+      EXPECT_THAT(*wide.broken_assumption(),
+                  testing::AllOf(testing::HasSubstr("its contact gap is"), testing::HasSubstr("wider")));
+    }
+    EXPECT_FALSE(tuned(PracticeDevice(gold_with_two_modes(), {.seed = seed})).broken_assumption()) << seed;
+  }
+  EXPECT_GE(found, 1) << "of the searches of little effort here, and of most others";
+}
+
+TEST(Tuners, AnEarlierTouchIsFoundWhereItIsAskedFor_optimized) {
+  TunerOptions options{.effort = 0.1};
+  const Tuner usual(gold_with_two_modes(), options);
+  options.touch = parse_criterion("initial_contact_time < 0.88 step", all_figures);
+  const Tuner bound(gold_with_two_modes(), options);
+  constexpr double clearly = 0.985;
+  EXPECT_LT(bound.next().predicted.touch_median, clearly * usual.next().predicted.touch_median);
+  for (const char* other : {"initial_contact_time > 20 us", "impact_velocity < 1 mm/s"}) {
+    options.touch = parse_criterion(other, all_figures);
+    EXPECT_THROW(Tuner(gold_with_two_modes(), options), InvalidInput) << other;
+  }
+}
+
+// One closing that stays open may be of a device that is rare; a second one is not.
+TEST(Tuners, ContactsThatTwiceStayOpenAreUnexpected_optimized) {
+  Tuner tuner(gold_with_two_modes(), cheap());
+  ASSERT_GT(tuner.next().predicted.touches, 0.97);
+  tuner.learn({});
+  EXPECT_FALSE(tuner.broken_assumption());
+  EXPECT_EQ(tuner.surprises(), std::vector<double>{0});
+  while (!tuner.broken_assumption() && tuner.closings() < 4) {
+    const bool is_sure = tuner.next().predicted.touches >= 0.97;
+    tuner.learn({});
+    if (is_sure) break;
+  }
+  ASSERT_TRUE(tuner.broken_assumption());
+  EXPECT_THAT(*tuner.broken_assumption(), testing::HasSubstr("closed or stayed open"));
 }
 
 // Devices of a wafer that is 4 % too thick, and differ by 0.1 %: closings up to the second of two in a row without a bounce.

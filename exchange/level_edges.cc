@@ -1,0 +1,73 @@
+#include "exchange/level_edges.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <utility>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+// Leaves out what lasts for less than `least` from an edge to `state` on.
+void merge_short(std::vector<LevelEdge>& edges, bool state, double least) {
+  std::vector<LevelEdge> kept;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const bool is_short = edges[k].closed == state && k + 1 < edges.size() && edges[k + 1].time - edges[k].time < least;
+    if (is_short) {
+      ++k;  // its end
+    } else {
+      kept.push_back(edges[k]);
+    }
+  }
+  edges = std::move(kept);
+}
+
+}  // namespace
+
+std::vector<LevelEdge> level_edges(const Trace& trace, const ThresholdKeys& keys) {
+  const double sign = keys.is_closed_below ? -1 : 1;
+  const auto beyond = [&](std::size_t i) { return sign * (trace.values[i] - keys.threshold); };
+  std::vector<LevelEdge> edges;
+  bool closed = false;
+  double crossing = 0;
+  for (std::size_t i = 0; i < trace.times.size(); ++i) {
+    const double now = beyond(i), before = i == 0 ? now : beyond(i - 1);
+    if (i == 0) {
+      crossing = trace.times[0];
+    } else if ((now > 0) != (before > 0)) {
+      crossing = trace.times[i - 1] + (trace.times[i] - trace.times[i - 1]) * before / (before - now);
+    }
+    const bool changes = closed ? now <= -keys.hysteresis / 2 : now > 0 && now >= keys.hysteresis / 2;
+    if (!changes) continue;
+    closed = !closed;
+    edges.push_back({.time = crossing, .closed = closed});
+  }
+  merge_short(edges, false, keys.merge);
+  merge_short(edges, true, keys.merge);
+  return edges;
+}
+
+void shift_times(Trace& trace, const TimeShift& shift) {
+  const double by = shift.first_is_zero ? -trace.times.front() : shift.shift;
+  for (double& time : trace.times) time += by;
+}
+
+std::vector<LevelEdge> contact_edges(const std::string& file, const ContactTraceKeys& keys) {
+  Trace trace = trace_of(read_recording(file, keys.file), keys.file, "contact");
+  shift_times(trace, keys.shift);
+  std::vector<LevelEdge> edges = level_edges(trace, keys.contact);
+  std::size_t before = 0;
+  while (before < edges.size() && (edges[before].time < 0 || (before == 0 && edges[0].time <= trace.times.front()))) ++before;
+  require(before == 0 || !edges[before - 1].closed, [&] {
+    return fmt::format(
+        "{}: the contact is closed at t = 0 already; closed = \"below\" takes voltages below the threshold for a closed one, and "
+        "shift moves t = 0 to where the drives begin",
+        file);
+  });
+  edges.erase(edges.begin(), edges.begin() + static_cast<std::ptrdiff_t>(before));
+  return edges;
+}
+
+}  // namespace softland
