@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/executor.h"
+#include "base/require.h"
 #include "config/assumed_spread.h"
 #include "sampling/statistics.h"
 #include "studies/family_search.h"
@@ -608,6 +609,10 @@ class DevicesStudy {
 }  // namespace
 
 ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices) {
+  require(
+      options.own_waveforms.empty(),
+      "own waveforms are searched for the drawing, or over devices by one measure: the race of families over devices does not "
+      "take them");
   return DevicesStudy(file, options, devices).run();
 }
 

@@ -62,13 +62,15 @@ namespace {
 
 bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
   const auto is_about = [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::steady_force_time); };
-  return setting.target.is_about(Target::steady) || (aim.measure.yield && is_about(*aim.measure.yield)) ||
-         std::ranges::any_of(aim.conditions, is_about);
+  return setting.target.is_about(Target::steady) || setting.target.has_own_objective() ||
+         (aim.measure.yield && is_about(*aim.measure.yield)) || std::ranges::any_of(aim.conditions, is_about);
 }
 
 }  // namespace
 
-Vectors vectors_for(const Aim& target, Vectors vectors) { return target.is_about(Target::drive) ? Vectors::none : vectors; }
+Vectors vectors_for(const Aim& target, Vectors vectors) {
+  return target.is_about(Target::drive) || target.has_own_objective() ? Vectors::none : vectors;
+}
 
 GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
@@ -205,10 +207,8 @@ ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Si
 double RobustCost::score(const DeviceOutcome& outcome) const {
   if (fails(outcome)) return worst_score;
   const Shares shares{.own = outcome.metrics, .step = step_.metrics, .window = window_};
-  const double score = setting_.target.mean([&](Target target) {
-    const TargetRow& row = row_of(targets, target);
-    return row.in(row.robust, shares);
-  });
+  const double score =
+      setting_.target.mean(shares.own, shares.step, [&](const TargetRow& row) { return row.in(row.robust, shares); });
   return std::isnan(score) ? worst_score : score;
 }
 
