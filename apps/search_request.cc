@@ -114,17 +114,15 @@ OptimizeRequest with_known(OptimizeRequest r, const json& known, const SceneFile
 OptimizeOptions read_options(const Common& c, const OptimizeRequest& request, const SceneFile& scene) {
   const Named<Actuator>* actuator = find_named(actuators, request.actuator);
   require(actuator != nullptr, [&] { return fmt::format("--actuator {}: must be {}", request.actuator, listed(actuators)); });
-  OptimizeOptions options{.target = read("--target " + request.target, [&] { return parse_aim(request.target); }),
-                          .actuator = actuator->value,
-                          .family = request.waveform,
-                          .optimizer = request.optimizer,
-                          .stop = c.stop};
+  const Aim target = read("--target " + request.target, [&] { return parse_aim(request.target); });
+  OptimizeOptions options = usual_options(scene, target, actuator->value);
+  options.family = request.waveform;
+  options.optimizer = request.optimizer;
+  options.stop = c.stop;
   options.jobs = job_count(request.jobs);
   options.seed = seed_of(request.seed, options.seed);
-  const bool is_nominal = !is_by_measure(request);
-  options.max_evaluations =
-      is_nominal ? default_budget(options.target, shaped_drives(scene, options.actuator)) : default_closings;
-  if (is_nominal && !request.budget) options.more_evaluations = options.max_evaluations / 2;
+  if (is_by_measure(request)) options.max_evaluations = default_closings;
+  if (is_by_measure(request) || request.budget) options.more_evaluations = 0;
   if (request.robust == nominal_alone) options.conditions = read_conditions(request, conditioned_figures);
   if (request.budget) read_budget(*request.budget, options);
   // Other methods go on where they were; the plan of a search of one seed holds that number.

@@ -1,15 +1,24 @@
 # `cmake --install BUILD --prefix PREFIX`: the program with its scenes, manual page and completions; the libraries with their headers,
-# which find each other from include/softland; a CMake package and a pkg-config file. Everything is found relative to its own place.
+# all of them below include/softland and by that name; a CMake package and a pkg-config file. Everything is found relative to its own
+# place.
 include(CMakePackageConfigHelpers)
 
 set(libraries base sampling store integrators waveforms exchange model objectives config optimizers studies tuning fitting reports)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/softland)
 
+# The program is softland::program outside; softland::softland is all that softland/softland.h needs.
+set_target_properties(softland PROPERTIES EXPORT_NAME program)
 install(TARGETS softland EXPORT softland)
+add_library(softland_public INTERFACE)
+target_link_libraries(softland_public INTERFACE softland_studies)
+target_include_directories(softland_public INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
+set_target_properties(softland_public PROPERTIES EXPORT_NAME softland)
+add_library(softland::softland ALIAS softland_public)
+install(TARGETS softland_public EXPORT softland INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/softland)
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md")
-install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.py")
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES reports/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.uPlot)
 
 # What the program says of itself with --help is written as a manual page and as completions when it is installed.
@@ -28,12 +37,13 @@ endforeach()
 
 foreach(name ${libraries})
   set_target_properties(softland_${name} PROPERTIES EXPORT_NAME ${name})
-  install(TARGETS softland_${name} EXPORT softland INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
-  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${name}) # studies/tuning and studies/fitting come with studies
-    install(DIRECTORY ${name} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland
-            FILES_MATCHING PATTERN "*.h" PATTERN page EXCLUDE PATTERN uplot EXCLUDE)
-  endif()
+  install(TARGETS softland_${name} EXPORT softland INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endforeach()
+set(public_headers ${PROJECT_BINARY_DIR}/package/include)
+install(CODE "
+  execute_process(COMMAND \"${CMAKE_COMMAND}\" \"-DFROM=${PROJECT_SOURCE_DIR}\" \"-DTO=${public_headers}\" \"-DFOLDERS=${libraries}\"
+                          -P \"${PROJECT_SOURCE_DIR}/cmake/public_headers.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
+install(DIRECTORY ${public_headers}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
 install(FILES ${PROJECT_BINARY_DIR}/generated/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/softland)
 
 install(EXPORT softland NAMESPACE softland:: FILE softlandTargets.cmake DESTINATION ${package_folder})

@@ -13,20 +13,42 @@ Aim::Aim(std::vector<Part> parts) : parts_(std::move(parts)) {
   require(!parts_.empty(), "a search needs a target");
   for (auto part = parts_.begin(); part != parts_.end(); ++part) {
     require(part->weight > 0 && std::isfinite(part->weight),
-            fmt::format("the weight of {} is {}; it must be finite and > 0", to_string(part->target), part->weight));
-    require(std::none_of(parts_.begin(), part, [&](const Part& other) { return other.target == part->target; }),
-            fmt::format("{} stands twice in a sum of targets", to_string(part->target)));
+            fmt::format("the weight of {} is {}; it must be finite and > 0", part->name(), part->weight));
+    const auto is_same = [&](const Part& other) { return other.own == part->own && (other.own || other.target == part->target); };
+    require(std::none_of(parts_.begin(), part, is_same), fmt::format("{} stands twice in a sum of targets", part->name()));
   }
 }
 
+std::shared_ptr<const OwnObjective> Aim::refuse_null(std::shared_ptr<const OwnObjective> objective) {
+  require(objective != nullptr, "an own objective is null");
+  return objective;
+}
+
+double Aim::own_value(const OwnObjective& objective, const Metrics& closing, const Metrics& step) {
+  const double value = objective.value(closing, step);
+  require(!(value < 0), [&] { return fmt::format("the own objective '{}' gives {}; it must be >= 0", objective.name(), value); });
+  return value;
+}
+
+bool Aim::has_own_cost() const {
+  if (is_sum()) return true;
+  return parts_[0].own ? parts_[0].own->lands_first() : softland::has_own_cost(parts_[0].target);
+}
+
+bool Aim::has_own_objective() const {
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.own != nullptr; });
+}
+
+const OwnObjective* Aim::from_the_start() const { return has_own_cost() ? nullptr : parts_[0].own.get(); }
+
 bool Aim::is_about(Target target) const {
-  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.target == target; });
+  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) { return !part.own && part.target == target; });
 }
 
 std::string Aim::text() const {
-  if (!is_sum()) return std::string(to_string(parts_[0].target));
+  if (!is_sum()) return std::string(parts_[0].name());
   std::string text;
-  for (const Part& part : parts_) text += fmt::format("{}{} {}", text.empty() ? "" : " + ", part.weight, to_string(part.target));
+  for (const Part& part : parts_) text += fmt::format("{}{} {}", text.empty() ? "" : " + ", part.weight, part.name());
   return text;
 }
 
@@ -45,13 +67,12 @@ double cost(const Aim& aim, const Metrics& m, const CostScale& scale, const Metr
   shares.lead = 0.2 * h + 0.15 * v * v + 0.45 * k + 0.1 * s * s + 0.05 * p + 0.02 * late;
   // What lets go again is no landing, however softly it came: behind all that stay, before what never touches.
   const double reopening = m.reopened ? 5 : 0;
-  if (!aim.has_own_cost()) return reopening + shares.lead;
-  const double own = aim.mean([&](Target target) {
-    const TargetRow& row = row_of(targets, target);
-    return row.in(row.nominal, shares);
-  });
+  if (!aim.has_own_cost() && aim.from_the_start() == nullptr) return reopening + shares.lead;
+  const double own = aim.mean(m, scale.step, [&](const TargetRow& row) { return row.in(row.nominal, shares); });
   double judged = 1 + (shares.lead + own) / 2;
-  if (!(m.major_bounce_height > options.significant_rebound / 2)) {
+  if (aim.from_the_start() != nullptr) {
+    judged = own / (1 + own);
+  } else if (!(m.major_bounce_height > options.significant_rebound / 2)) {
     const double ordered = own + shares.lead / 1000;
     judged = ordered / (1 + ordered);
   }

@@ -21,7 +21,8 @@
 //                              within the score; steady: from when on the contact force is steady over first touch of the
 //                              step, the end of the score where it is not
 //
-// A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B.
+// A weighted sum of targets has the weighted mean of their F, those of bounce, rebound and count being B. The F of a user's own
+// objective is its value (own_objective.h); of one that does not ask for a landing first the cost is F / (1 + F).
 //
 // K leads B: it is smooth where the rebounds are a chaotic sequence, and where it is small there are none. Squares make the sum
 // flat and well-conditioned near a soft landing. Lateness costs little up to T_free and much beyond: the softest landing is a
@@ -32,13 +33,16 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/choice.h"
 #include "objectives/figures.h"
 #include "objectives/metrics.h"
+#include "objectives/own_objective.h"
 
 namespace softland {
 
@@ -136,34 +140,52 @@ static_assert(is_complete<targets>());
 /// The figure that a target is about.
 [[nodiscard]] constexpr const Figure& figure_of(Target target) { return figure_of(row_of(targets, target).figure); }
 
-/// What a search minimises: one target, or a sum of several with weights.
+/// What a search minimises: one target or own objective, or a sum of several with weights.
 class Aim {
  public:
   struct Part {
-    Target target;
+    Target target = Target::bounce;
     double weight = 1;
+    std::shared_ptr<const OwnObjective> own = nullptr;  ///< stands in the place of the target
+
+    [[nodiscard]] std::string_view name() const { return own ? own->name() : to_string(target); }
   };
   Aim(Target target) : parts_{{.target = target}} {}  // NOLINT(google-explicit-constructor): a target is an aim
-  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target stands twice.
+  /// Throws InvalidInput where it is null.
+  explicit Aim(std::shared_ptr<const OwnObjective> objective)
+      : Aim(std::vector<Part>{{.own = refuse_null(std::move(objective))}}) {}
+  /// Throws InvalidInput unless there is a part, weights are finite and > 0, and no target or own objective stands twice.
   explicit Aim(std::vector<Part> parts);
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] bool is_sum() const { return parts_.size() > 1; }
-  /// Of one target its own; a sum always has one.
-  [[nodiscard]] bool has_own_cost() const { return is_sum() || softland::has_own_cost(parts_[0].target); }
+  /// Whether a search for it goes on by a cost of its own once it has followed that of `bounce`. Of one target its own; a sum
+  /// always has one.
+  [[nodiscard]] bool has_own_cost() const;
   [[nodiscard]] bool is_about(Target target) const;
+  /// Whether it holds an own objective.
+  [[nodiscard]] bool has_own_objective() const;
+  /// The own objective by which a search goes from its first evaluation on; null: there is none.
+  [[nodiscard]] const OwnObjective* from_the_start() const;
   /// "bounce", "0.7 bounce + 0.3 energy"
   [[nodiscard]] std::string text() const;
-  /// The sum of value(target) with these weights, over the sum of the weights.
+  /// The sum of value(row of the target) with these weights, over the sum of the weights; of an own objective its value for this
+  /// closing beside the plain step. Throws InvalidInput where that is below 0.
   template <class Value>
-  [[nodiscard]] double mean(const Value& value) const {
-    if (!is_sum()) return value(parts_[0].target);
+  [[nodiscard]] double mean(const Metrics& closing, const Metrics& step, const Value& value) const {
+    const auto of = [&](const Part& part) {
+      return part.own ? own_value(*part.own, closing, step) : value(row_of(targets, part.target));
+    };
+    if (!is_sum()) return of(parts_[0]);
     double sum = 0, weights = 0;
-    for (const Part& part : parts_) sum += part.weight * value(part.target), weights += part.weight;
+    for (const Part& part : parts_) sum += part.weight * of(part), weights += part.weight;
     return sum / weights;
   }
 
  private:
+  [[nodiscard]] static std::shared_ptr<const OwnObjective> refuse_null(std::shared_ptr<const OwnObjective> objective);
+  [[nodiscard]] static double own_value(const OwnObjective& objective, const Metrics& closing, const Metrics& step);
+
   std::vector<Part> parts_;
 };
 

@@ -248,6 +248,7 @@ CostSlopes cost_slopes(const Switch& model, std::span<const Signal> signals, con
 std::optional<FigureSlope> cost_slope(const Aim& aim, const Metrics& figures, const CostScale& scale,
                                       const MetricsOptions& options, const CostSlopes& slopes) {
   const bool has_slope = std::ranges::all_of(aim.parts(), [&](const Aim::Part& part) {
+    if (part.own) return false;
     const TargetRow& row = row_of(targets, part.target);
     return row.no_gradient.empty() && slopes.why_none[row.figure].empty();
   });

@@ -1,10 +1,14 @@
 #include "reports/result_maker.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>
+#include <variant>
 
+#include "base/require.h"
 #include "integrators/quintic.h"
 #include "reports/devices_report.h"
 #include "reports/made_with.h"
@@ -70,6 +74,10 @@ std::map<std::string, PullInVoltages> pull_in(const Prepared& p) {
 
 // What is the same for every study: of its scene, and of this program.
 Result started(const Prepared& p, const Provenance& provenance) {
+  for (const auto& [drive, waveform] : p.drives.waveforms) {
+    if (const Own* own = std::get_if<Own>(&waveform))
+      throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a result", drive, described(*own)));
+  }
   const SceneFile file = resolved(p.scene, p.voltage_units());
   Result r{.title = p.scene.title,
            .scene = read_result_scene(file.json(), file.text()),

@@ -37,6 +37,7 @@ LastClosing& FamilySearch::last_of_thread() const {
 
 PriceSlopes FamilySearch::slopes() const {
   using Slope = std::function<std::vector<double>(std::span<const double>)>;
+  if (setting_.target.from_the_start() != nullptr) return {};
   std::vector<ParameterGroup> groups;
   const auto of = [&](const Aim& aim) -> Slope {
     if (!setting_.gradient_refusal(aim).empty()) return {};
@@ -92,6 +93,11 @@ Evaluation FamilySearch::among_all(Evaluation e) const {
 
 std::map<std::string, Waveform> FamilySearch::waveforms(const Evaluation& e) const {
   return setting_.space.waveforms(block_.own(e.x));
+}
+
+std::optional<SceneFile> FamilySearch::scene(const Evaluation& e) const {
+  const std::map<std::string, Waveform> all = waveforms(e);
+  return can_be_written(all) ? std::optional(setting_.scene(all)) : std::nullopt;
 }
 
 std::map<std::string, double> FamilySearch::named(const Evaluation& e) const {

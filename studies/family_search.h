@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -75,7 +76,10 @@ class FamilySearch {
   /// The point of these waveforms; empty where the family has none.
   [[nodiscard]] std::vector<double> point(const std::map<std::string, Waveform>& waveforms) const;
   [[nodiscard]] std::map<std::string, Waveform> waveforms(const Evaluation& e) const;
-  [[nodiscard]] SceneFile scene(const Evaluation& e) const { return setting_.scene(waveforms(e)); }
+  /// Ready to run.
+  [[nodiscard]] Prepared prepared(const Evaluation& e) const { return setting_.prepared(waveforms(e)); }
+  /// None where a scene cannot hold the waveforms.
+  [[nodiscard]] std::optional<SceneFile> scene(const Evaluation& e) const;
   /// The parameters by drive.name.
   [[nodiscard]] std::map<std::string, double> named(const Evaluation& e) const;
   /// Every evaluation, in order.

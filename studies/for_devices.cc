@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/executor.h"
+#include "base/require.h"
 #include "config/assumed_spread.h"
 #include "sampling/statistics.h"
 #include "studies/family_search.h"
@@ -346,6 +347,7 @@ class DevicesStudy {
     return {.samples = devices_.verdict,
             .seed = options_.seed,
             .jobs = options_.jobs,
+            .vectors = vectors_for(options_.target),
             .measures_drive_energy = options_.target.is_about(Target::drive)};
   }
   // The searched drives of a candidate, and the others as in the plain step.
@@ -611,6 +613,10 @@ class DevicesStudy {
 }  // namespace
 
 ForDevicesResult optimize_for_devices(const SceneFile& file, const OptimizeOptions& options, const ForDevicesOptions& devices) {
+  require(
+      options.own_waveforms.empty(),
+      "own waveforms are searched for the drawing, or over devices by one measure: the race of families over devices does not "
+      "take them");
   return DevicesStudy(file, options, devices).run();
 }
 

@@ -27,7 +27,7 @@ bool make_gentle(SearchSetting& setting) {
 }  // namespace
 
 std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& settings, Actuator actuator,
-                                             const std::string& families) {
+                                             const std::string& families, const OwnWaveforms& own) {
   const SearchSetting& first = settings.front();
   if (with_more_modes(first.given.scene.device).empty()) return {};
   const std::vector<std::string> names = families_of(families);
@@ -36,7 +36,7 @@ std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& s
     SearchSetting changed = settings[k];
     if (!make_gentle(changed)) return {};
     try {
-      changed.space = SearchSpace(changed.within_limits(), actuator, names[k], first.scale.step.initial_contact_time);
+      changed.space = SearchSpace(changed.within_limits(), actuator, names[k], first.scale.step.initial_contact_time, own);
     } catch (const InvalidInput&) {
       continue;
     }

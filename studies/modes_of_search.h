@@ -13,7 +13,7 @@ namespace softland {
 /// more slowly. Empty where that changes nothing: of a plate, whose one mode is all, and where every searched driver has a
 /// max_slew of its own. Families that find no room for it are left as they are.
 [[nodiscard]] std::vector<SearchSetting> with_gentle_edges(const std::vector<SearchSetting>& settings, Actuator actuator,
-                                                           const std::string& families);
+                                                           const std::string& families, const OwnWaveforms& own = {});
 /// Whether a search is to have gentle edges from the start: it shapes a piezo, which rings every mode it has an edge for, and
 /// begins with no waveform that is steeper.
 [[nodiscard]] bool begins_gently(const std::vector<SearchSetting>& gentle, const std::vector<StartingWaveforms>& starts);

@@ -86,10 +86,11 @@ class Search {
   void begin() {
     const SearchSetting& setting = settings_.front();
     if (!setting.begins_plainly())
-      refine(setting.given.signals(), setting.given.drives.waveforms, with_waveforms(setting.given, {}));
+      refine(setting.given.signals(), setting.given.drives.waveforms,
+             [&] { return prepared_with(setting.given, {}, setting.given); });
     for (const StartingWaveforms& start : options_.starts) {
       const std::map<std::string, Waveform> searched = setting.space.searched(start.waveforms);
-      refine(setting.given.driven(setting.drives(searched)), searched, setting.scene(searched));
+      refine(setting.given.driven(setting.drives(searched)), searched, [&] { return setting.prepared(searched); });
     }
     if (!is_divided(options_.max_evaluations)) begin_at_rest();
     for (const auto& swing : joint_swings(setting.given, setting.space)) {
@@ -257,7 +258,7 @@ class Search {
 
   [[nodiscard]] FoundWaveform found(const Evaluation& e) const {
     const std::size_t k = family_of(e);
-    return {.text = families_[k].scene(e),
+    return {.scene = families_[k].prepared(e),
             .cost = settings_[k].richer.empty() ? e.value : own_cost(k, e),
             .family = names_[k],
             .variables = settings_[k].space.variables(),
@@ -279,21 +280,25 @@ class Search {
     return go_on(leader(costs), rest, all_seconds - (seconds() - begun), options_.more_evaluations, costs, true);
   }
 
-  void refine(const std::vector<Signal>& drives, const std::map<std::string, Waveform>& waveforms, const SceneFile& scene) {
+  // `prepared()` is the scene under these waveforms.
+  template <class MakePrepared>
+  void refine(const std::vector<Signal>& drives, const std::map<std::string, Waveform>& waveforms, const MakePrepared& prepared) {
     const double cost = settings_.front().price(drives).own;
     for (FamilySearch& family : families_) family.begin_at(waveforms);
     if (!(cost < never_touched)) return;
     Evaluation given{.index = given_index, .value = cost, .x = {}};
-    FoundWaveform landing{
-        .text = scene, .cost = cost, .family = names_[0], .variables = settings_[0].space.variables(), .parameters = {}};
+    FoundWaveform& landing = landings_.emplace_back(FoundWaveform{
+        .scene = prepared(), .cost = cost, .family = names_[0], .variables = settings_[0].space.variables(), .parameters = {}});
     for (std::size_t k = 0; k < families_.size() && given.x.empty(); ++k) {
       given.x = families_[k].point(waveforms);
-      if (!given.x.empty()) landing = {scene, cost, names_[k], settings_[k].space.variables(), families_[k].named(given)};
+      if (given.x.empty()) continue;
+      landing.family = names_[k];
+      landing.variables = settings_[k].space.variables();
+      landing.parameters = families_[k].named(given);
     }
-    landings_.push_back(std::move(landing));
     if (progress_.best_cost <= cost) return;
     progress_.best_cost = cost;
-    if (options_.on_improvement) options_.on_improvement(given, scene);
+    if (options_.on_improvement && can_be_written(waveforms)) options_.on_improvement(given, landing.scene.scene.file);
   }
 
   void evaluated(const Evaluation& e) {
@@ -301,8 +306,8 @@ class Search {
     const bool improves = std::isfinite(e.value) && !(progress_.best_cost <= e.value);
     if (improves) progress_.best_cost = e.value;
     if (options_.on_evaluation) options_.on_evaluation(e, progress_);
-    if (improves && options_.on_improvement && e.value < never_touched)
-      options_.on_improvement(e, families_[family_of(e)].scene(e));
+    if (!improves || !options_.on_improvement || !(e.value < never_touched)) return;
+    if (const std::optional<SceneFile> scene = families_[family_of(e)].scene(e)) options_.on_improvement(e, *scene);
   }
 
   [[nodiscard]] std::size_t family_of(const Evaluation& e) const {
@@ -458,6 +463,14 @@ long default_budget(const Aim& target, Shaped drives) {
   return target.has_own_cost() ? by_bounce + by_bounce / 2 : by_bounce;
 }
 
+OptimizeOptions usual_options(const SceneFile& scene, const Aim& target, Actuator actuator) {
+  const Shaped drives = shaped_drives(scene, actuator);
+  OptimizeOptions options{.target = target, .actuator = actuator, .family = std::string(default_families(drives))};
+  options.max_evaluations = default_budget(target, drives);
+  options.more_evaluations = options.max_evaluations / 2;
+  return options;
+}
+
 double OptimizeResult::parameter(std::string_view name) const {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (!name.starts_with(prefix)) return none;
@@ -471,10 +484,10 @@ OptimizeResult optimize(const SceneFile& file, const OptimizeOptions& options) {
   const auto seconds = [begin] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const std::vector<SearchSetting> settings =
       search_settings(file, options.target, options.actuator, options.family,
-                      {.stop = options.stop, .progress = options.on_preparation}, options.conditions);
+                      {.stop = options.stop, .progress = options.on_preparation}, options.conditions, options.own_waveforms);
   const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
-  const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family);
+  const std::vector<SearchSetting> gentle = with_gentle_edges(settings, options.actuator, options.family, options.own_waveforms);
   const bool is_gentle = begins_gently(gentle, options.starts);
   const bool may_go_on = !with_more_modes(setting.given.scene.device).empty();
   const double max_seconds =

@@ -46,6 +46,8 @@ struct OptimizeOptions {
   std::vector<Criterion> conditions = {};
   Actuator actuator = Actuator::electrostatic;
   std::string family = "pulse";  ///< or several, see families_of(): of these the best; default_families()
+  /// That `family` names beside the families. Their gradients are not known; and no scene file holds what is found.
+  OwnWaveforms own_waveforms = {};
   std::string optimizer = "auto";
   long max_evaluations = 2500;  ///< see default_budget()
   /// Evaluations on top of those, from the best points so far, where they have found no landing without a significant rebound.
@@ -77,9 +79,14 @@ struct OptimizeOptions {
   std::function<void(const OptimizeProgress&)> on_progress = {};
   /// Called under the same lock at every improvement that touches, with the scene file that gives it. The first may be the
   /// scene's own waveform, or one of `starts`, before the search: their index is given_index, and x is empty where the searched
-  /// family cannot describe it.
+  /// family cannot describe it. Not called for own waveforms, which no scene can hold.
   std::function<void(const Evaluation&, const SceneFile&)> on_improvement = {};
 };
+
+/// What a search on the nominal device is asked for where nothing else is said: the families and the budget that suit target,
+/// actuator and scene. That of `softland optimize SCENE --robust none` on one thread.
+[[nodiscard]] OptimizeOptions usual_options(const SceneFile& scene, const Aim& target = Target::bounce,
+                                            Actuator actuator = Actuator::electrostatic);
 
 /// What the search within one family came to.
 struct SearchedFamilyResult {

@@ -62,11 +62,15 @@ namespace {
 
 bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
   const auto is_about = [](const Criterion& one) { return one.figure.member == Figure::Member(&Metrics::steady_force_time); };
-  return setting.target.is_about(Target::steady) || (aim.measure.yield && is_about(*aim.measure.yield)) ||
-         std::ranges::any_of(aim.conditions, is_about);
+  return setting.target.is_about(Target::steady) || setting.target.has_own_objective() ||
+         (aim.measure.yield && is_about(*aim.measure.yield)) || std::ranges::any_of(aim.conditions, is_about);
 }
 
 }  // namespace
+
+Vectors vectors_for(const Aim& target, Vectors vectors) {
+  return target.has_own_objective() ? Vectors::none : vectors;
+}
 
 GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
@@ -115,7 +119,7 @@ RobustCost::RobustCost(const SearchSetting& setting, const RobustAim& aim, Built
       aim_(aim),
       ensemble_(std::move(ensemble)),
       drives_(setting.given),
-      vectors_(vectors),
+      vectors_(vectors_for(setting.target, vectors)),
       measures_steady_force_(is_about_steady_force(setting, aim)) {
   const Switch& model = setting.given.model;
   const double period = 2 * pi / model.angular_frequencies()[0], in_contact = model.in_contact_period();
@@ -206,10 +210,8 @@ ClosingOptions RobustCost::run(const SampledDevice& device, const std::vector<Si
 double RobustCost::score(const DeviceOutcome& outcome) const {
   if (fails(outcome)) return worst_score;
   const Shares shares{.own = outcome.metrics, .step = step_.metrics, .window = window_};
-  const double score = setting_.target.mean([&](Target target) {
-    const TargetRow& row = row_of(targets, target);
-    return row.in(row.robust, shares);
-  });
+  const double score =
+      setting_.target.mean(shares.own, shares.step, [&](const TargetRow& row) { return row.in(row.robust, shares); });
   return std::isnan(score) ? worst_score : score;
 }
 

@@ -5,6 +5,7 @@
 //           rebound            highest rebound               impact    largest touch speed
 //           count              rebounds                      settling  permanent contact, over first contact of the step
 //           energy             impact energy                 steady    steady force time, over first contact of the step
+//           of a user's own objective its value
 //         3, or more than any that closes, where the device does not close or its hold levels do not keep it closed, where its
 //         closing cannot be followed, or no such device can be described: it fails
 //   cost  R(s) + (share of devices that fail) + 0.02 (median of first contact over that of the step)
@@ -117,6 +118,9 @@ class RobustCost {
   std::vector<bool> kept_closed_;                    // each device, under them
   double window_, tail_, wait_;                      // after first touch, after the last breakpoint, for a touch [s]
 };
+
+/// What devices may close in when a search is about `target`: no vectors where it may ask for a figure that lanes do not measure.
+[[nodiscard]] Vectors vectors_for(const Aim& target, Vectors vectors = vectors_in_use());
 
 /// Whether a device does not close and stay closed, cannot be followed, or cannot be described.
 [[nodiscard]] bool fails(const DeviceOutcome& outcome);

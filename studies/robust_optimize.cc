@@ -153,7 +153,9 @@ class RobustSearch {
     if (improves) progress_.best_cost = value;
     progress_.evaluations = closings_;
     if (options_.on_evaluation) options_.on_evaluation(e, progress_);
-    if (improves && options_.on_improvement) options_.on_improvement(e, setting_.scene(setting_.space.waveforms(x)));
+    if (!improves || !options_.on_improvement) return;
+    if (const auto waveforms = setting_.space.waveforms(x); can_be_written(waveforms))
+      options_.on_improvement(e, setting_.scene(waveforms));
   }
 
   void tell() {
@@ -301,6 +303,7 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
                  {.samples = robust.verdict,
                   .seed = options.seed,
                   .jobs = options.jobs,
+                  .vectors = vectors_for(options.target),
                   .measures_drive_energy = options.target.is_about(Target::drive),
                   .worth_of_measuring = true},
                  watch);
@@ -332,7 +335,8 @@ void require_one_family(const OptimizeOptions& options) {
 RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& options, const RobustOptions& asked) {
   require_one_family(options);
   const Watch watch{.stop = options.stop, .progress = options.on_preparation};
-  const SearchSetting setting = search_setting(file, options.target, options.actuator, options.family, watch);
+  const SearchSetting setting =
+      search_setting(file, options.target, options.actuator, options.family, watch, {}, options.own_waveforms);
   setting.check_starts(options.starts);
   const KnownUnits known = known_units(setting.given, std::array{setting.given.scene.calibration}, options.jobs, watch).front();
   RobustOptions robust = asked;
@@ -369,7 +373,7 @@ RobustResult robust_optimize(const SceneFile& file, const OptimizeOptions& optio
   }
   result.cost_on_searched = out.best_cost = winner.value;
   out.better_than_baseline = out.best_cost < out.baseline_cost;
-  out.best_scene = read_back(setting.scene(setting.space.waveforms(winner.x)), "best.toml", setting.given);
+  out.best_scene = setting.prepared(setting.space.waveforms(winner.x));
   out.best = simulate(*out.best_scene, true, {.progress = options.on_preparation});
   for (std::size_t k = 0; k < names.size(); ++k) out.parameters[names[k]] = winner.x[k];
   if (out.search.termination == Termination::interrupted) return result;
@@ -385,7 +389,7 @@ SearchedParameters searched_parameters(const SceneFile& file, const OptimizeOpti
                                        const Watch& watch) {
   static_cast<void>(optimizer_description(options.optimizer));
   const std::vector<SearchSetting> settings =
-      search_settings(file, options.target, options.actuator, options.family, watch, options.conditions);
+      search_settings(file, options.target, options.actuator, options.family, watch, options.conditions, options.own_waveforms);
   const SearchSetting& setting = settings.front();
   setting.check_starts(options.starts);
   if (over_devices) {

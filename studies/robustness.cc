@@ -16,6 +16,7 @@
 #include "sampling/confidence.h"
 #include "sampling/statistics.h"
 #include "studies/plain_step.h"
+#include "studies/search_space.h"
 
 namespace softland {
 namespace {
@@ -67,7 +68,7 @@ std::vector<Waveform> waveforms_of(const Prepared& nominal, const NamedDrive& dr
     const auto limits = nominal.drives.limits.find(name);
     if (limits == nominal.drives.limits.end()) continue;
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    const DriverLimits& own = limits->second;
+    const DriverLimits own = limits_for(waveform, limits->second);
     const bool may_be_samples = std::holds_alternative<Table>(waveform);
     const std::string broken =
         violation(nominal.told(k, waveform), may_be_samples ? limits_of_samples(own, nominal.source(k)) : own);

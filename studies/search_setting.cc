@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
+#include <variant>
 
 #include "base/engineering.h"
 #include "base/require.h"
@@ -90,6 +92,23 @@ SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, W
   return file;
 }
 
+bool can_be_written(const std::map<std::string, Waveform>& waveforms) {
+  return std::ranges::none_of(waveforms, [](const auto& one) { return std::holds_alternative<Own>(one.second); });
+}
+
+Prepared prepared_with(const Prepared& prepared, std::map<std::string, Waveform> waveforms, const Prepared& given) {
+  std::map<std::string, Waveform> own;
+  for (auto one = waveforms.begin(); one != waveforms.end();) {
+    const auto next = std::next(one);
+    if (std::holds_alternative<Own>(one->second)) own.insert(waveforms.extract(one));
+    one = next;
+  }
+  Prepared read = read_back(with_waveforms(prepared, waveforms), "best.toml", given);
+  own.merge(std::move(read.drives.waveforms));
+  read.drives.waveforms = std::move(own);
+  return read;
+}
+
 Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
   Prepared p = choose(prepare(SceneFile::parse(file.text(), name)));
   p.scene.warnings = given.scene.warnings;
@@ -99,6 +118,10 @@ Prepared read_back(const SceneFile& file, const std::string& name, const Prepare
 
 SceneFile SearchSetting::scene(const std::map<std::string, Waveform>& searched) const {
   return with_waveforms(baseline_scene, searched);
+}
+
+Prepared SearchSetting::prepared(const std::map<std::string, Waveform>& searched) const {
+  return prepared_with(baseline_scene, searched, given);
 }
 
 std::vector<Waveform> SearchSetting::drives(const std::map<std::string, Waveform>& searched) const {
@@ -111,7 +134,9 @@ bool SearchSetting::is_allowed(const std::map<std::string, Waveform>& searched) 
   const std::vector<std::string> names = given.drive_names();
   return std::all_of(searched.begin(), searched.end(), [&](const auto& one) {
     const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), one.first) - names.begin());
-    return violation(given.told(k, one.second), limits.at(one.first)).empty();
+    const Signal told = given.told(k, one.second);
+    if (std::holds_alternative<Own>(one.second) && !space.drive(one.first).holds(told)) return false;
+    return violation(told, limits_for(one.second, limits.at(one.first))).empty();
   });
 }
 
@@ -129,7 +154,7 @@ Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
   Prices worst = price_of(closing);
   if (richer.empty()) return worst;
   const auto with_speed = [this](Prices prices, const RecordedClosing& run) {
-    if (target.has_own_cost()) return prices;
+    if (target.has_own_cost() || target.from_the_start() != nullptr) return prices;
     prices.own = prices.leading += weight_of_speed * run.metrics.largest_impact_velocity / scale.step.largest_impact_velocity;
     return prices;
   };
@@ -145,10 +170,18 @@ Prices SearchSetting::worst_price(const RecordedClosing& closing) const {
   return worst;
 }
 
+Metrics SearchSetting::with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const {
+  metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
+  metrics.capacitance = baseline.metrics.capacitance;
+  set_drive_figures(metrics, given, signals);
+  return metrics;
+}
+
 Prices SearchSetting::price_of(const RecordedClosing& closing) const {
-  const Metrics& figures = closing.metrics;
+  const bool needs_all = !conditions.empty() || target.has_own_objective();
+  const Metrics figures = needs_all ? with_rest_and_drives(closing.metrics, closing.signals) : closing.metrics;
   const auto by = [&](const Aim& one) { return cost(one, figures, scale, given.scene.metrics); };
-  Prices prices{.leading = by(Target::bounce)};
+  Prices prices{.leading = by(target.has_own_cost() ? Target::bounce : target)};
   prices.own = target.has_own_cost() ? by(target) : prices.leading;
   prices.lands = prices.leading < never_touched && figures.major_bounce_height <= given.scene.metrics.significant_rebound;
   if (conditions.empty()) return prices;
@@ -157,13 +190,9 @@ Prices SearchSetting::price_of(const RecordedClosing& closing) const {
     prices.apart->excess.assign(followed_conditions().size(), most_broken);
     return prices;
   }
-  Metrics metrics = figures;
-  metrics.hold_force = baseline.metrics.hold_force;  // of the hold levels, which a search never changes
-  metrics.capacitance = baseline.metrics.capacitance;
-  set_drive_figures(metrics, given, closing.signals);
   prices.apart = {.leading = prices.leading, .own = prices.own, .excess = {}};
-  for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, metrics));
-  const double violation = broken(conditions, metrics);
+  for (const Criterion& one : followed_conditions()) prices.apart->excess.push_back(excess(one, figures));
+  const double violation = broken(conditions, figures);
   if (!(violation > 0)) return prices;
   // Less than what separates a landing from none, and for the own cost more than any landing that fulfils them costs.
   const double penalty = 3 * violation / (1 + violation);
@@ -189,6 +218,10 @@ Prices SearchSetting::price_at(std::span<const double> x, EvaluationMemory* memo
 
 std::string SearchSetting::gradient_refusal(const Aim& aim) const {
   if (!richer.empty()) return "the worst of several beams has no gradient";
+  if (aim.has_own_objective()) return "an own objective has no gradient";
+  for (const DriveSearch& drive : space.drives()) {
+    if (drive.own) return fmt::format("{} has no gradient", described({.waveform = drive.own}));
+  }
   for (const TargetRow& row : targets) {
     if (aim.is_about(row.value) && !row.no_gradient.empty()) return std::string(row.no_gradient);
   }
@@ -270,7 +303,7 @@ Prepared SearchSetting::within_limits() const {
 }
 
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
-                             const Watch& watch, std::vector<Criterion> conditions) {
+                             const Watch& watch, std::vector<Criterion> conditions, const OwnWaveforms& own) {
   for (const Criterion& one : conditions)
     require(one.figure.conditioning != Conditioning::open,
             [&] { return fmt::format("--constrain \"{}\": a switch that closes has no such figure", one.text); });
@@ -298,7 +331,11 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
   const Hold hold = hold_of(given.model, plain);
   if (hold.closed) run.closed_potential = hold.closed->potential;
   run.steady_force = hold.steady_force(given.scene.metrics);
-  const Metrics step = metrics(simulate_closing(given.model, plain, run), given.scene.metrics);
+  Metrics step = metrics(simulate_closing(given.model, plain, run), given.scene.metrics);
+  if (target.has_own_objective()) {
+    step.hold_force = baseline.metrics.hold_force, step.capacitance = baseline.metrics.capacitance;
+    set_drive_figures(step, given, plain);
+  }
   scale.step = step.touched() && step.is_complete() ? step : imagined_step(given, period);
   const double baseline_cost = cost(target, step, scale, given.scene.metrics);
   // A landing so late that the window ends before the switch could bounce would look like a soft one.
@@ -309,7 +346,7 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
                        engineering(given.duration, "s", 3), engineering(2 * given.model.in_contact_period(), "s", 3));
   });
   run.duration = std::max(run.duration, run.no_contact_before + scale.score_window);
-  SearchSpace space(given, actuator, family, scale.step.initial_contact_time);
+  SearchSpace space(given, actuator, family, scale.step.initial_contact_time, own);
   std::map<std::string, DriverLimits> limits = given.drives.limits;
   return {.target = target,
           .conditions = std::move(beside),
@@ -324,12 +361,13 @@ SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator 
 }
 
 std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
-                                           const std::string& families, const Watch& watch, std::vector<Criterion> conditions) {
+                                           const std::string& families, const Watch& watch, std::vector<Criterion> conditions,
+                                           const OwnWaveforms& own) {
   const std::vector<std::string> names = families_of(families);
-  std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), watch, std::move(conditions))};
+  std::vector<SearchSetting> all = {search_setting(file, target, actuator, names.front(), watch, std::move(conditions), own)};
   for (std::size_t k = 1; k < names.size(); ++k) {
     all.push_back(all.front());
-    all.back().space = SearchSpace(all.front().given, actuator, names[k], all.front().scale.step.initial_contact_time);
+    all.back().space = SearchSpace(all.front().given, actuator, names[k], all.front().scale.step.initial_contact_time, own);
   }
   return all;
 }

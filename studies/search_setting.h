@@ -54,8 +54,11 @@ struct SearchSetting {
   /// Where there are any, a candidate is priced by the worst of its closings with the scene's modes and with these.
   std::vector<RicherBeam> richer = {};
 
-  /// The scene with these waveforms of the searched drives; the others stand as in the baseline.
+  /// The scene with these waveforms of the searched drives; the others stand as in the baseline. Throws InvalidInput where one
+  /// cannot be written into a scene.
   [[nodiscard]] SceneFile scene(const std::map<std::string, Waveform>& searched) const;
+  /// The same ready to run: prepared_with().
+  [[nodiscard]] Prepared prepared(const std::map<std::string, Waveform>& searched) const;
   /// One waveform per drive of the switch, in its order.
   [[nodiscard]] std::vector<Waveform> drives(const std::map<std::string, Waveform>& searched) const;
   /// Whether the searched drives stay inside their limits.
@@ -89,18 +92,21 @@ struct SearchSetting {
   [[nodiscard]] Prepared within_limits() const;
 
  private:
+  /// With the figures that a run of a search does not measure.
+  [[nodiscard]] Metrics with_rest_and_drives(Metrics metrics, const std::vector<Signal>& signals) const;
   [[nodiscard]] Prices price_of(const RecordedClosing& closing) const;
   [[nodiscard]] Prices worst_price(const RecordedClosing& closing) const;
 };
 
 /// Throws InvalidInput for a scene or a family that cannot be searched; Interrupted where `watch` asks to stop.
 [[nodiscard]] SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
-                                           const Watch& watch, std::vector<Criterion> conditions = {});
+                                           const Watch& watch, std::vector<Criterion> conditions = {},
+                                           const OwnWaveforms& own = {});
 
 /// One for each of the families that are named: families_of(). They differ in their space alone.
 [[nodiscard]] std::vector<SearchSetting> search_settings(const SceneFile& file, const Aim& target, Actuator actuator,
                                                          const std::string& families, const Watch& watch,
-                                                         std::vector<Criterion> conditions = {});
+                                                         std::vector<Criterion> conditions = {}, const OwnWaveforms& own = {});
 /// The parameters of all families, by drive.name, of several by family.drive.name.
 [[nodiscard]] std::vector<std::string> searched_names(const std::vector<SearchSetting>& settings, const std::string& families);
 
@@ -112,6 +118,11 @@ struct SearchSetting {
 
 /// The scene of `prepared` in volts, with other waveforms on some drives.
 [[nodiscard]] SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms);
+/// Whether a scene file can hold them all: none is a user's own.
+[[nodiscard]] bool can_be_written(const std::map<std::string, Waveform>& waveforms);
+/// The scene of `prepared` with other waveforms on some drives, ready to run: read_back() of its text, with what no text can hold
+/// put in beside it.
+[[nodiscard]] Prepared prepared_with(const Prepared& prepared, std::map<std::string, Waveform> waveforms, const Prepared& given);
 /// Text of the scene, read back: what a user's `simulate best.toml` will run. Warnings stay those about the file that the user
 /// wrote.
 [[nodiscard]] Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given);

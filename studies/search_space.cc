@@ -192,7 +192,19 @@ std::vector<std::string> braking_electrodes(const Prepared& prepared) {
   return names;
 }
 
-Waveform DriveSearch::waveform(std::span<const double> x) const { return family->at(*this, x); }
+DriverLimits limits_for(const Waveform& waveform, DriverLimits limits) {
+  if (!std::holds_alternative<Own>(waveform)) return limits;
+  constexpr double of_slew = 1e-3;
+  const double missed = own_waveform_accuracy * std::max(std::abs(limits.min_voltage), std::abs(limits.max_voltage));
+  return {.min_voltage = limits.min_voltage - missed,
+          .max_voltage = limits.max_voltage + missed,
+          .max_slew = limits.max_slew * (1 + of_slew)};
+}
+
+Waveform DriveSearch::waveform(std::span<const double> x) const {
+  if (own) return Own{.waveform = own, .x = {x.begin(), x.end()}};
+  return family->at(*this, x);
+}
 
 bool DriveSearch::is_within_bounds(const std::vector<double>& x) const {
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -203,15 +215,22 @@ bool DriveSearch::is_within_bounds(const std::vector<double>& x) const {
 }
 
 std::optional<std::vector<double>> DriveSearch::parameters(const Waveform& waveform) const {
-  if (softland::family(waveform) != family->waveform) return std::nullopt;
-  std::optional<std::vector<double>> x = family->parameters(*this, waveform);
+  std::optional<std::vector<double>> x;
+  if (own) {
+    const Own* given = std::get_if<Own>(&waveform);
+    if (given == nullptr || given->waveform != own || given->volts != 1 || given->time != 1) return std::nullopt;
+    x = given->x;
+  } else {
+    if (softland::family(waveform) != family->waveform) return std::nullopt;
+    x = family->parameters(*this, waveform);
+  }
   if (!x || !is_within_bounds(*x)) return std::nullopt;
   for (std::size_t k = 0; k < x->size(); ++k) (*x)[k] = std::clamp((*x)[k], variables[k].lower, variables[k].upper);
   return x;
 }
 
 std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
-  if (std::optional<std::vector<double>> own = parameters(waveform)) return *own;
+  if (std::optional<std::vector<double>> exact = parameters(waveform)) return *exact;
   constexpr int instants = 250;
   constexpr double beyond = 1.25, least = 2.5;  // of its last breakpoint; of the first touch
   constexpr double near_enough = 0.01;          // of the squares of what the waveform does about its hold level
@@ -251,16 +270,41 @@ std::vector<double> DriveSearch::nearest(const Waveform& waveform) const {
   return best;
 }
 
+bool DriveSearch::holds(const Signal& signal) const {
+  return std::abs(signal.hold_level() - hold) <= rounding * (limits.max_voltage - limits.min_voltage);
+}
+
 std::string DriveSearch::misfit(const Waveform& waveform) const {
-  const double held = signal(waveform).hold_level();
-  if (!(std::abs(held - hold) <= rounding * (limits.max_voltage - limits.min_voltage)))
+  const Signal from_zero = signal(waveform);
+  const double held = from_zero.hold_level();
+  if (!holds(from_zero))
     return fmt::format("drive '{}' ends on {}, and the scene holds {}, which no search changes", drive, engineering(held, "V", 6),
                        engineering(hold, "V", 6));
-  const std::string broken = violation(signal(waveform, before), limits);
+  const std::string broken = violation(signal(waveform, before), limits_for(waveform, limits));
   return broken.empty() ? broken : fmt::format("drive '{}': {}", drive, broken);
 }
 
-SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch) {
+namespace {
+
+// The own waveform of this name, or null.
+std::shared_ptr<const OwnWaveform> own_of(const OwnWaveforms& all, const std::string& name) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one != nullptr && one->name() == name; });
+  return found == all.end() ? nullptr : *found;
+}
+
+void add_own(DriveSearch& s) {
+  const Own start = softland::own(s.own);
+  require(!start.x.empty(), [&] { return described(start) + " has no parameters that a search could vary"; });
+  for (const OwnParameter& p : s.own->parameters()) s.variables.push_back({p.name, p.lower, p.upper});
+  s.starts = {start.x};
+  const std::string reason = s.misfit(start);
+  require(reason.empty(), [&] { return fmt::format("{}, where its search begins: {}", described(start), reason); });
+}
+
+}  // namespace
+
+SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch,
+                         const OwnWaveforms& own) {
   FamilyOfDrives families(family);
   const auto add = [&](const std::string& drive, bool brakes) {
     const auto limits = prepared.drives.limits.find(drive);
@@ -277,8 +321,13 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
                   .starts = {}};
     require(s.limits.max_voltage > s.limits.min_voltage,
             fmt::format("driver.{}: max_voltage must exceed min_voltage to search between them", drive));
-    choose_family(s, families.of(drive));
-    s.family->add(s, prepared, first_touch);
+    s.own = own_of(own, families.of(drive));
+    if (s.own) {
+      add_own(s);
+    } else {
+      choose_family(s, families.of(drive));
+      s.family->add(s, prepared, first_touch);
+    }
     for (std::vector<double>& start : s.starts) {
       for (std::size_t k = 0; k < start.size(); ++k) start[k] = std::clamp(start[k], s.variables[k].lower, s.variables[k].upper);
     }
@@ -293,6 +342,10 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
     add(std::string(piezo_drive), false);
   }
   families.check_all_used(drives_);
+}
+
+const DriveSearch& SearchSpace::drive(const std::string& name) const {
+  return *std::find_if(drives_.begin(), drives_.end(), [&](const DriveSearch& one) { return one.drive == name; });
 }
 
 std::vector<Variable> SearchSpace::variables() const {

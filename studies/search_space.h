@@ -30,6 +30,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,13 +62,20 @@ enum class Shaped { electrode, piezo, several };
 [[nodiscard]] std::string prefix_of(const std::string& families, const std::string& family);
 
 struct SearchedFamily;
+/// Waveforms from outside softland, which a search names by their own names beside the families.
+using OwnWaveforms = std::vector<std::shared_ptr<const OwnWaveform>>;
 /// "step, pulse, ..., bspline:N or sines:N"
 [[nodiscard]] std::string listed_searched_families();
+
+/// The limits of a driver that the signal of a waveform is held against: of an own one, which is followed to
+/// own_waveform_accuracy, wider by as much, and its slew by 1e-3.
+[[nodiscard]] DriverLimits limits_for(const Waveform& waveform, DriverLimits limits);
 
 /// The waveform parameters of one drive.
 struct DriveSearch {
   std::string drive;
-  const SearchedFamily* family = nullptr;
+  const SearchedFamily* family = nullptr;            ///< null: an own waveform
+  std::shared_ptr<const OwnWaveform> own = nullptr;  ///< instead of a family
   std::size_t count = 0;   ///< of levels, knots, pulses or sines, where the family has any number of them
   double hold = 0;         ///< [V]
   double before = 0;       ///< what it stands at before t = 0 [V]
@@ -86,6 +94,8 @@ struct DriveSearch {
   /// Why a search cannot begin with a waveform, in words: it holds another level, or leaves the driver's limits. Empty where it
   /// can.
   [[nodiscard]] std::string misfit(const Waveform& waveform) const;
+  /// Whether a signal ends on the hold level, to rounding.
+  [[nodiscard]] bool holds(const Signal& signal) const;
 
  private:
   [[nodiscard]] bool is_within_bounds(const std::vector<double>& x) const;
@@ -94,11 +104,14 @@ struct DriveSearch {
 class SearchSpace {
  public:
   /// `family` names that of all drives ("pulse", "knots:8") or of each ("main=step,pzt=pulse"; pulse where it says nothing);
-  /// `first_touch` of the plain step [s]. Throws InvalidInput when the scene lacks the drive, a piezo limit, or the family cannot
-  /// be searched.
-  SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch);
+  /// `first_touch` of the plain step [s]; `own` may be named too. Throws InvalidInput when the scene lacks the drive, a piezo
+  /// limit, or the family cannot be searched; of an own waveform where it does not end on the hold level at its start.
+  SearchSpace(const Prepared& prepared, Actuator actuator, const std::string& family, double first_touch,
+              const OwnWaveforms& own = {});
 
   [[nodiscard]] const std::vector<DriveSearch>& drives() const { return drives_; }
+  /// The one of this name, which must be among them.
+  [[nodiscard]] const DriveSearch& drive(const std::string& name) const;
   [[nodiscard]] std::vector<Variable> variables() const;
   [[nodiscard]] std::vector<std::vector<double>> starts() const;
   /// Waveforms of the searched drives.

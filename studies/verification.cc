@@ -16,8 +16,8 @@ namespace {
 // The target's own figure, infinite where the closing has none; of a sum, the mean of figures over their units of
 // the baseline.
 double figure(const Aim& aim, const Metrics& m, const Metrics& baseline) {
-  const double value = aim.mean([&](Target target) {
-    const TargetRow& row = row_of(targets, target);
+  if (aim.has_own_objective() && !m.touched()) return std::numeric_limits<double>::infinity();
+  const double value = aim.mean(m, baseline, [&](const TargetRow& row) {
     const double own = figure_of(row.figure).value(m), unit = figure_of(row.unit).value(baseline);
     return aim.is_sum() && unit > 0 ? own / unit : own;
   });
@@ -46,14 +46,13 @@ std::optional<Varied> Verification::undone_by(const Prepared& scene) const {
   return std::nullopt;
 }
 
-void Verification::add(const FoundWaveform& candidate) {
-  Prepared scene = read_back(candidate.text, "best.toml", given_);
-  Closing closing = simulate(scene, true, watch_);
+void Verification::add(FoundWaveform candidate) {
+  const double cost = candidate.cost;
+  Closing closing = simulate(candidate.scene, true, watch_);
   const Metrics& m = closing.metrics;
-  Verified now{.scene = std::move(scene),
+  Verified now{.found = std::move(candidate),
                .closing = closing,
-               .found = candidate,
-               .cost = candidate.cost,
+               .cost = cost,
                .figure = figure(target_, m, baseline_),
                .broken = broken(conditions_, m),
                .belief = met(m)                             ? Belief::meets_goal
@@ -63,8 +62,8 @@ void Verification::add(const FoundWaveform& candidate) {
   if (!target_.is_sum() && (target_.is_about(Target::bounce) || target_.is_about(Target::rebound)))
     now.figure = std::max(now.figure, given_.scene.metrics.significant_rebound);
   if (now.belief == Belief::meets_goal) {
-    now.failed = undone_by(now.scene);
-    if (!now.failed) now.belief = Belief::confirmed, now.cost = worst_.price(now.scene.signals()).own;
+    now.failed = undone_by(now.found.scene);
+    if (!now.failed) now.belief = Belief::confirmed, now.cost = worst_.price(now.found.scene.signals()).own;
   }
   if (!best_ || now.better_than(*best_)) best_ = std::move(now);
 }
@@ -81,14 +80,15 @@ void Verification::move_to(OptimizeResult& result) {
   // Where the plain step does not bounce either, what is left to gain is in the cost.
   const double own = figure(target_, m, baseline_), of_step = figure(target_, baseline_, baseline_);
   // What has not settled can only be better than a plain step that touches and has not settled either.
-  const bool may_be_better = m.settled || (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
+  const bool may_be_better = (target_.from_the_start() != nullptr && m.touched()) || m.settled ||
+                             (!baseline_.settled && std::isfinite(baseline_.initial_contact_time));
   result.better_than_baseline =
       may_be_better && (own < of_step || (own == of_step && result.goal_met && best_->found.cost < result.baseline_cost));
   for (const Criterion& one : conditions_) {
     if (softland::broken({one}, m) > 0) result.broken_conditions.push_back(one.text);
   }
-  result.checks = confirm(best_->scene);
-  result.best_scene = std::move(best_->scene);
+  result.checks = confirm(best_->found.scene);
+  result.best_scene = std::move(best_->found.scene);
   result.best = std::move(best_->closing);
   result.family = std::move(best_->found.family);
   result.variables = std::move(best_->found.variables);
@@ -108,6 +108,8 @@ std::vector<Criterion> Verification::known(const Metrics& m) const {
 }
 
 bool goal_met(const Aim& target, const Metrics& best, const Metrics& baseline) {
+  if (target.from_the_start() != nullptr)
+    return best.touched() && figure(target, best, baseline) < figure(target, baseline, baseline);
   if (!best.settled || best.bounce_count > 0) return false;
   if (!target.has_own_cost()) return true;
   // The plain step bounces for many times its closing: what counts is how soon contact can begin for good.

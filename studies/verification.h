@@ -14,7 +14,7 @@ namespace softland {
 
 /// What a search came upon.
 struct FoundWaveform {
-  SceneFile text;
+  Prepared scene;  ///< as its file says
   double cost = 0;
   std::string family;
   std::vector<Variable> variables;           ///< of the family
@@ -27,7 +27,7 @@ class Verification {
   /// Keeps references to `setting`.
   Verification(const SearchSetting& setting, const OptimizeOptions& options);
 
-  void add(const FoundWaveform& candidate);
+  void add(FoundWaveform candidate);
   /// The cost of the best so far, by the worst of beams where it is confirmed; infinite where there is none.
   [[nodiscard]] double best_cost() const;
   /// Whether the best was confirmed by a tighter integrator and a richer beam.
@@ -43,11 +43,10 @@ class Verification {
   // How far a candidate is believed.
   enum class Belief { touches, settles, lands, meets_goal, confirmed };
 
-  // A candidate after its run over the whole window, as its file says, at the accuracy the scene asks for.
+  // A candidate after its run over the whole window, at the accuracy the scene asks for.
   struct Verified {
-    Prepared scene;
-    Closing closing;
     FoundWaveform found;
+    Closing closing;
     double cost = 0;    // the search's own; of what is confirmed the worst of beams
     double figure = 0;  // the target's own; rebounds that are not significant are equal
     double broken = 0;  // by how much it breaks the conditions

@@ -34,6 +34,11 @@ void scale(Family& family, double volts, double time) {
   }
 }
 
+void scale(Own& own, double volts, double time) {
+  own.volts *= volts;
+  own.time *= time;
+}
+
 }  // namespace
 
 Signal signal(const Waveform& waveform, double before) {
@@ -52,6 +57,7 @@ Waveform scaled(Waveform waveform, double volts, double time) {
 }
 
 std::string_view family(const Waveform& waveform) {
+  if (const Own* own = std::get_if<Own>(&waveform)) return own->waveform->name();
   return std::visit([](const auto& member) { return FamilyOf<std::decay_t<decltype(member)>>::name; }, waveform);
 }
 

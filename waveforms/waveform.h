@@ -11,6 +11,7 @@
 #include "waveforms/bspline.h"
 #include "waveforms/chirp.h"
 #include "waveforms/harmonic.h"
+#include "waveforms/own_waveform.h"
 #include "waveforms/pulse.h"
 #include "waveforms/s_curve.h"
 #include "waveforms/signal.h"
@@ -20,7 +21,9 @@
 
 namespace softland {
 
-using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines>;
+using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpline, Sines, Own>;
+/// Those that a scene can hold: all but what is made outside softland, which is the last.
+inline constexpr std::size_t families_of_scenes = std::variant_size_v<Waveform> - 1;
 
 /// The waveform from t = 0 on, and `before` until then [V], where an edge that begins it begins too. Throws InvalidInput naming
 /// the parameter, its value and the rule.
@@ -28,14 +31,14 @@ using Waveform = std::variant<Step, Harmonic, Pulse, Table, SCurve, Chirp, BSpli
 [[nodiscard]] std::vector<Signal> signals_of(const std::vector<Waveform>& waveforms);
 /// The waveform with its voltages times `volts` and its times times `time` (frequencies over it), both positive.
 [[nodiscard]] Waveform scaled(Waveform waveform, double volts, double time);
-/// step | harmonic | pulse | table | s-curve | chirp | bspline | sines
+/// step | harmonic | pulse | table | s-curve | chirp | bspline | sines; of an own waveform its name
 [[nodiscard]] std::string_view family(const Waveform& waveform);
 
-/// Calls f with a default waveform of every family, in the order of the variant.
+/// Calls f with a default waveform of every family that a scene can hold, in the order of the variant.
 template <class F>
 void for_each_family(F&& f) {
   [&]<std::size_t... i>(std::index_sequence<i...>) { (f(std::variant_alternative_t<i, Waveform>{}), ...); }
-  (std::make_index_sequence<std::variant_size_v<Waveform>>());
+  (std::make_index_sequence<families_of_scenes>());
 }
 
 }  // namespace softland

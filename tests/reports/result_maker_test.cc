@@ -50,6 +50,25 @@ TEST(ResultOf, ACertifiedClosingIsReportedLikeItsJson) {
   expect_the_same_reports(made);
 }
 
+TEST(ResultOf, AClosingUnderAWaveformThatNoSceneHoldsIsRefusedByItsName) {
+  class Mine final : public OwnWaveform {
+   public:
+    [[nodiscard]] std::string_view name() const override { return "mine"; }
+    [[nodiscard]] std::vector<double> breakpoints(std::span<const double>) const override { return {}; }
+    [[nodiscard]] double voltage(double, std::span<const double>) const override { return 20; }
+  };
+  Prepared prepared = prepare(shipped("mem-gold.toml", {"simulate.duration=50 us"}));
+  prepared.drives.waveforms["main"] = own(std::make_shared<Mine>());
+  const Closing closing = simulate(prepared, false);
+  EXPECT_TRUE(closing.metrics.touched());
+  try {
+    (void)result_of(prepared, closing, provenance);
+    ADD_FAILURE() << "accepted";
+  } catch (const InvalidInput& error) {
+    EXPECT_STREQ(error.what(), "waveform.main: the own waveform 'mine' cannot be written into a result");
+  }
+}
+
 TEST(ResultOf, ARunWithoutContactIsReportedLikeItsJson) {
   const auto made = [](const char* change) {
     const Prepared prepared = prepare(shipped("mem-gold.toml", {change}));

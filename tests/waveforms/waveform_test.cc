@@ -59,7 +59,7 @@ TEST(Waveform, ScaledIsTheSameCourseInOtherUnits) {
             .decay_time = 3},
       BSpline{.levels = {1, -2, 0.5, 3, 0.7}, .duration = 7},
       Sines{.base = 1, .rise_time = 0.5, .amplitudes = {2, 0, -1}, .start = 0.3, .duration = 6}};
-  ASSERT_EQ(all.size(), std::variant_size_v<Waveform>) << "one of each family";
+  ASSERT_EQ(all.size(), families_of_scenes) << "one of each family";
   constexpr double volts = 1.04, time = 0.97;
   for (const Waveform& waveform : all) {
     const Waveform other = scaled(waveform, volts, time);

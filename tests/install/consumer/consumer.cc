@@ -1,8 +1,8 @@
 // A user's program against the installed libraries: when does the switch of a scene first touch, and where is a parabola lowest?
-#include <cstdio>
+#include <softland/optimizers/problem.h>
+#include <softland/studies/simulate.h>
 
-#include "optimizers/problem.h"
-#include "studies/simulate.h"
+#include <cstdio>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

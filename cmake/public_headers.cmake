@@ -1,0 +1,16 @@
+# cmake -DFROM=ROOT -DTO=FOLDER -DFOLDERS="base;model;..." -P public_headers.cmake: the headers as they are installed. Inside the tree
+# they find each other as "model/switch.h"; outside, where others have folders of such names too, as "softland/model/switch.h".
+list(JOIN FOLDERS "|" any)
+file(REMOVE_RECURSE ${TO})
+foreach(folder include/softland ${FOLDERS})
+  file(GLOB_RECURSE headers RELATIVE ${FROM} ${FROM}/${folder}/*.h)
+  foreach(header ${headers})
+    if(header MATCHES "^reports/(page|uplot)/")
+      continue()
+    endif()
+    file(READ ${FROM}/${header} text)
+    string(REGEX REPLACE "#include \"((${any})/[^\"]*|version\\.h)\"" "#include \"softland/\\1\"" text "${text}")
+    string(REGEX REPLACE "^include/softland/" "" place ${header})
+    file(WRITE ${TO}/${place} "${text}")
+  endforeach()
+endforeach()

@@ -1,0 +1,52 @@
+// softland as a library: what is meant to be called from outside. docs/library.md is the way in, examples/ its programs.
+//
+// Numbers are in SI units. Names are in the namespace `softland`; `softland::internal` is not for callers, nor is any header that
+// is not reached from here.
+//
+// Threads. Objects are values that share nothing that changes: one object may be read by several threads at once, and different
+// objects used by different threads. Exceptions are said where they are: Switch::Workspace, steppers and observers belong to one
+// thread. Functions with a `jobs` start that many threads by themselves, and what they find does not depend on it. What is
+// handed to them is called from these: OwnWaveform, OwnObjective, EvaluationMemory and `Watch`.
+//
+// Errors. InvalidInput: what was given breaks a rule; the message names value and rule, of a scene file, line and key, too.
+// Interrupted: a Watch asked to stop. Trouble of the computation is a Status in a result, whose figures are then NaN. Nothing
+// else is thrown on purpose but what a user's own class throws, and std::bad_alloc.
+#pragma once
+
+#include "base/engineering.h"  // engineering(2.5e-05, "s"): "25 us"
+#include "base/require.h"      // InvalidInput, InvalidParameter
+#include "base/watch.h"        // Watch, Interrupted
+
+// A scene: from a file, from text, or from a Device made here.
+#include "config/aim.h"             // parse_aim("0.7 bounce + 0.3 energy")
+#include "config/assumed_spread.h"  // how devices differ, where a scene does not say
+#include "config/criterion.h"       // conditions: "permanent_contact_time < 60 us"
+#include "config/scene.h"           // SceneFile, Scene
+#include "model/device.h"           // Device
+
+// Its pieces: the switch, its pull-in voltages, waveforms and one closing.
+#include "model/closing.h"       // simulate_closing
+#include "model/pull_in.h"       // static_pull_in, dynamic_pull_in, release_voltage
+#include "model/switch.h"        // Switch
+#include "objectives/figures.h"  // figure_table: every figure of merit, its name and unit
+#include "waveforms/export.h"    // CSV and SPICE for a generator
+#include "waveforms/waveform.h"  // Waveform: the families
+
+// What the verbs of the program do.
+#include "studies/certify.h"          // simulate --certify
+#include "studies/choices.h"          // prepare_and_choose: a scene made ready to run
+#include "studies/derivatives.h"      // figures by what the scene says
+#include "studies/effects.h"          // effects
+#include "studies/for_devices.h"      // optimize: for the drawing, and for devices that differ
+#include "studies/limit.h"            // limit
+#include "studies/optimize.h"         // optimize --robust none
+#include "studies/prepared.h"         // Prepared
+#include "studies/release.h"          // release
+#include "studies/robust_optimize.h"  // optimize --robust MEASURE
+#include "studies/robustness.h"       // robustness
+#include "studies/simulate.h"         // simulate
+#include "studies/sweep.h"            // pull-in --sweep
+
+// The doors for what softland does not have.
+#include "objectives/own_objective.h"
+#include "waveforms/own_waveform.h"

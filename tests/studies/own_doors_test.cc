@@ -1,0 +1,286 @@
+// A user's own objective and waveform in the studies: where they say what a built-in one says, they are it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "objectives/own_objective.h"
+#include "studies/for_devices.h"
+#include "studies/optimize.h"
+#include "studies/robust_cost.h"
+#include "studies/search_setting.h"
+#include "studies/simulate.h"
+#include "tests/studies/scenes.h"
+#include "waveforms/own_waveform.h"
+
+namespace softland {
+namespace {
+
+using testing::HasSubstr;
+
+class By final : public OwnObjective {
+ public:
+  using Value = std::function<double(const Metrics&, const Metrics&)>;
+  explicit By(Value value, bool lands_first = true) : value_(std::move(value)), lands_first_(lands_first) {}
+  [[nodiscard]] std::string_view name() const override { return "by"; }
+  [[nodiscard]] double value(const Metrics& closing, const Metrics& step) const override { return value_(closing, step); }
+  [[nodiscard]] bool lands_first() const override { return lands_first_; }
+
+ private:
+  Value value_;
+  bool lands_first_;
+};
+
+Aim by(By::Value value, bool lands_first = true) { return Aim(std::make_shared<By>(std::move(value), lands_first)); }
+
+double share_of_drive(const Metrics& m, const Metrics& step) { return m.drive_energy / step.drive_energy; }
+
+// A ramp to a level that is held, by its rise time.
+class Ramp final : public OwnWaveform {
+ public:
+  Ramp(double hold, OwnParameter rise) : hold_(hold), rise_(std::move(rise)) {}
+  [[nodiscard]] std::string_view name() const override { return "own-ramp"; }
+  [[nodiscard]] std::vector<OwnParameter> parameters() const override { return {rise_}; }
+  [[nodiscard]] std::vector<double> breakpoints(std::span<const double> x) const override {
+    return x[0] > 0 ? std::vector<double>{x[0]} : std::vector<double>{};
+  }
+  [[nodiscard]] double voltage(double time, std::span<const double> x) const override {
+    return time < x[0] ? hold_ * (time / x[0]) : hold_;
+  }
+
+ private:
+  double hold_;
+  OwnParameter rise_;
+};
+
+std::string refusal(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return {};
+}
+
+SceneFile quick_gold() { return gold_at_17_volts({"structure.modes=2"}); }
+
+// The search of a built-in step, and an own one of the same bounds.
+struct SameRamp {
+  SceneFile scene = quick_gold();
+  SearchSetting built_in = search_setting(scene, Target::bounce, Actuator::electrostatic, "step", {});
+  Variable rise = built_in.space.variables().front();
+  std::shared_ptr<const OwnWaveform> ramp = std::make_shared<Ramp>(
+      built_in.space.drives().front().hold,
+      OwnParameter{
+          .name = "rise_time_s", .lower = rise.lower, .upper = rise.upper, .start = built_in.space.starts().front().front()});
+};
+
+TEST(OwnObjective, OfAFigureIsTheTargetOfThatFigure) {
+  const SearchSetting built_in = search_setting(quick_gold(), Target::drive, Actuator::electrostatic, "pulse", {});
+  SearchSetting own = built_in;
+  own.target = by(share_of_drive);
+  for (const std::vector<double>& x : built_in.space.starts()) {
+    const Prices a = built_in.price_at(x), b = own.price_at(x);
+    EXPECT_EQ(a.own, b.own);
+    EXPECT_EQ(a.leading, b.leading);
+  }
+}
+
+TEST(OwnObjective, IsSearchedAsTheTargetOfItsFigure_long) {
+  OptimizeOptions options{.target = Target::drive, .family = "pulse", .max_evaluations = 300};
+  const OptimizeResult built_in = optimize(quick_gold(), options);
+  options.target = by(share_of_drive);
+  const OptimizeResult own = optimize(quick_gold(), options);
+  ASSERT_TRUE(own.best);
+  EXPECT_EQ(own.parameters, built_in.parameters);
+  EXPECT_EQ(own.best_cost, built_in.best_cost);
+  EXPECT_EQ(own.goal_met, built_in.goal_met);
+}
+
+TEST(OwnObjective, TakesTheShareOfASumThatItsWeightSays) {
+  const Aim sum({{.target = Target::drive, .weight = 3}, {.weight = 1, .own = std::make_shared<By>(share_of_drive)}});
+  EXPECT_EQ(sum.text(), "3 drive + 1 by");
+  const SearchSetting one = search_setting(quick_gold(), Target::drive, Actuator::electrostatic, "pulse", {});
+  SearchSetting both = one;
+  both.target = sum;
+  const std::vector<double> x = one.space.starts().front();
+  EXPECT_NEAR(both.price_at(x).own, one.price_at(x).own, 1e-12 * one.price_at(x).own);
+}
+
+TEST(OwnObjective, ThatDoesNotAskForALandingIsAllThatCounts) {
+  const SearchSetting plain = search_setting(quick_gold(), Target::bounce, Actuator::electrostatic, "pulse", {});
+  SearchSetting own = plain;
+  Metrics seen;
+  own.target = by(
+      [&](const Metrics& m, const Metrics&) {
+        seen = m;
+        return 3.0;
+      },
+      false);
+  const Prices prices = own.price_at(plain.space.starts().front());
+  EXPECT_EQ(prices.own, 0.75);
+  EXPECT_EQ(prices.leading, prices.own);
+  for (const double known : {seen.initial_contact_time, seen.hold_force, seen.capacitance, seen.peak_voltage, seen.peak_slew,
+                             seen.drive_energy, seen.landing_excess})
+    EXPECT_TRUE(std::isfinite(known));
+}
+
+TEST(OwnObjective, ThatIsNegativeIsRefusedAndWhatIsNotKnownIsInfeasible) {
+  SearchSetting own =
+      search_setting(quick_gold(), by([](const Metrics&, const Metrics&) { return 1.0; }), Actuator::electrostatic, "pulse", {});
+  const std::vector<double> x = own.space.starts().front();
+  own.target = by([](const Metrics&, const Metrics&) { return -0.1; });
+  EXPECT_EQ(refusal([&] { (void)own.price_at(x); }), "the own objective 'by' gives -0.1; it must be >= 0");
+  own.target = by([](const Metrics&, const Metrics&) { return std::numeric_limits<double>::quiet_NaN(); });
+  EXPECT_EQ(own.price_at(x).own, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(own.gradient_refusal(own.target), "an own objective has no gradient");
+  EXPECT_EQ(refusal([] { (void)Aim(std::shared_ptr<const OwnObjective>()); }), "an own objective is null");
+}
+
+TEST(OwnObjective, ThatThrowsEndsNoSearchAndIsToldOf) {
+  const OptimizeResult found = optimize(quick_gold(), {.target = by([](const Metrics& m, const Metrics& step) -> double {
+                                                         if (m.impact_velocity != step.impact_velocity)
+                                                           throw std::domain_error("no such");
+                                                         return 1;
+                                                       }),
+                                                       .family = "pulse",
+                                                       .max_evaluations = 30});
+  EXPECT_THAT(found.search.first_exception, HasSubstr("no such"));
+  EXPECT_FALSE(found.best);
+}
+
+TEST(OwnObjective, ThatDoesNotAskForALandingIsFollowedByDifferences) {
+  const auto late = [](const Metrics& m, const Metrics& step) {
+    const double off = m.initial_contact_time / step.initial_contact_time - 1.2;
+    return 100 * off * off;
+  };
+  const OptimizeResult found =
+      optimize(quick_gold(), {.target = by(late, false), .family = "step", .optimizer = "slsqp", .max_evaluations = 60});
+  ASSERT_TRUE(found.best);
+  constexpr double near = 1e-3;
+  EXPECT_NEAR(found.best->metrics.initial_contact_time, 1.2 * found.baseline.metrics.initial_contact_time,
+              near * found.baseline.metrics.initial_contact_time);
+  EXPECT_TRUE(found.goal_met) << "better than the plain step, however it bounces";
+}
+
+TEST(OwnObjective, OfDevicesIsTheTargetOfItsFigureAndClosesThemOneByOne) {
+  const SceneFile scene = quick_gold();
+  const SearchSetting built_in = search_setting(scene, Target::drive, Actuator::electrostatic, "pulse", {});
+  SearchSetting own = built_in;
+  own.target = by(share_of_drive);
+  EXPECT_EQ(vectors_for(own.target), Vectors::none);
+  const RobustAim aim{.measure = parse_robust_measure("worst", device_figures), .conditions = {}};
+  const auto value = [&](const SearchSetting& setting) {
+    const RobustCost cost(setting, aim, own_devices(setting, {}, 8, 1, 0, 1, {}));
+    return cost.value(cost.close(setting.drives({}), 0, 8, 1));
+  };
+  EXPECT_EQ(value(own), value(built_in));
+}
+
+TEST(OwnWaveform, ClosesASwitchAsTheFamilyOfItsVoltages) {
+  const Prepared given = prepare(gold_at_17_volts());
+  const SCurve curve{.levels = {20, 17.771}, .times = {25e-6}, .edge = 6e-6};
+  const Signal of_curve = signal(Waveform(curve));
+  class Copy final : public OwnWaveform {
+   public:
+    explicit Copy(Signal signal) : signal_(std::move(signal)) {}
+    [[nodiscard]] std::string_view name() const override { return "copy"; }
+    [[nodiscard]] std::vector<double> breakpoints(std::span<const double>) const override {
+      std::vector<double> times = signal_.breakpoints();
+      times.erase(times.begin());
+      return times;
+    }
+    [[nodiscard]] double voltage(double time, std::span<const double>) const override { return signal_.voltage(time); }
+
+   private:
+    Signal signal_;
+  };
+  Prepared built_in = given, own_one = given;
+  built_in.drives.waveforms["main"] = curve;
+  own_one.drives.waveforms["main"] = own(std::make_shared<Copy>(of_curve));
+  const Metrics a = simulate(built_in, false).metrics, b = simulate(own_one, false).metrics;
+  constexpr double near = 1e-5;  // an accuracy of 1e-4, and a voltage to 1e-7
+  EXPECT_NEAR(b.initial_contact_time, a.initial_contact_time, near * a.initial_contact_time);
+  EXPECT_NEAR(b.impact_velocity, a.impact_velocity, near * a.impact_velocity);
+  EXPECT_NEAR(b.major_bounce_height, a.major_bounce_height, 1e-3 * a.major_bounce_height);
+  EXPECT_NEAR(b.peak_voltage, a.peak_voltage, near * a.peak_voltage);
+}
+
+TEST(OwnWaveform, IsSearchedAsTheFamilyOfItsVoltages_long) {
+  const SameRamp same;
+  OptimizeOptions options{.family = "step", .optimizer = "cma-es", .max_evaluations = 60};
+  const OptimizeResult built_in = optimize(same.scene, options);
+  options.own_waveforms = {same.ramp};
+  options.family = "own-ramp";
+  bool is_written = false;
+  options.on_improvement = [&](const Evaluation&, const SceneFile&) { is_written = true; };
+  const OptimizeResult own = optimize(same.scene, options);
+  ASSERT_TRUE(own.best);
+  EXPECT_EQ(own.family, "own-ramp");
+  EXPECT_FALSE(is_written);
+  constexpr double near = 1e-6;  // what it is verified with is read back from text, and an own one is not
+  const double rise = own.parameters.at("main.rise_time_s");
+  EXPECT_NEAR(rise, built_in.parameters.at("main.rise_time_s"), near * rise);
+  EXPECT_NEAR(own.best_cost, built_in.best_cost, near * built_in.best_cost);
+  EXPECT_NEAR(own.best->metrics.impact_velocity, built_in.best->metrics.impact_velocity,
+              1e-3 * built_in.best->metrics.impact_velocity);
+}
+
+TEST(OwnWaveform, IsSearchedBesideFamilies) {
+  const SameRamp same;
+  const OptimizeResult found =
+      optimize(same.scene, {.family = "own-ramp+pulse", .own_waveforms = {same.ramp}, .max_evaluations = 60, .keep_tried = true});
+  std::vector<std::string> names;
+  for (const SearchedFamilyResult& one : found.families) names.push_back(one.family);
+  EXPECT_EQ(names, (std::vector<std::string>{"own-ramp", "pulse"}));
+  for (const SearchedFamilyResult& one : found.families) EXPECT_GT(one.evaluations, 0) << one.family;
+}
+
+TEST(OwnWaveform, IsRefusedWhereItDoesNotEndOnTheHoldLevelOrCannotBeWritten) {
+  const SameRamp same;
+  const auto search = [&](double hold) {
+    const auto other = std::make_shared<Ramp>(hold, OwnParameter{"rise_s", 0, 1e-5, 1e-6});
+    return refusal([&] { (void)optimize(same.scene, {.family = "own-ramp", .own_waveforms = {other}, .max_evaluations = 1}); });
+  };
+  EXPECT_THAT(search(12), HasSubstr("the own waveform 'own-ramp', where its search begins: drive 'main' ends on 12 V"));
+  EXPECT_THAT(search(26), HasSubstr("'own-ramp'"));
+  EXPECT_EQ(search(17.771), "");
+  class Fixed final : public OwnWaveform {
+   public:
+    [[nodiscard]] std::string_view name() const override { return "fixed"; }
+    [[nodiscard]] std::vector<double> breakpoints(std::span<const double>) const override { return {}; }
+    [[nodiscard]] double voltage(double, std::span<const double>) const override { return 17.771; }
+  };
+  EXPECT_EQ(refusal([&] { (void)optimize(same.scene, {.family = "fixed", .own_waveforms = {std::make_shared<Fixed>()}}); }),
+            "the own waveform 'fixed' has no parameters that a search could vary");
+  SceneFile file = same.scene;
+  EXPECT_EQ(refusal([&] { file.set_waveform("main", own(same.ramp)); }),
+            "waveform.main: the own waveform 'own-ramp' cannot be written into a scene file");
+  EXPECT_THAT(refusal([&] { (void)optimize_for_devices(same.scene, {.family = "own-ramp", .own_waveforms = {same.ramp}}, {}); }),
+              HasSubstr("own waveforms"));
+  SearchSetting setting = search_setting(same.scene, Target::bounce, Actuator::electrostatic, "own-ramp", {}, {}, {same.ramp});
+  EXPECT_EQ(setting.gradient_refusal(Target::bounce), "the own waveform 'own-ramp' has no gradient");
+}
+
+TEST(OwnWaveform, DrivesDevicesInLanesAsTheFamilyOfItsVoltages) {
+  const SameRamp same;
+  const Prepared nominal = prepare(gold_at_17_volts({"structure.modes=2"}), true);
+  const std::map<std::string, Waveform> step{{"main", Step{.level = 17.771, .rise_time = 9e-6}}},
+      own_one{{"main", Own{.waveform = same.ramp, .x = {9e-6}}}};
+  const Robustness found =
+      robustness(nominal, {{.name = "step", .waveforms = step}, {.name = "own", .waveforms = own_one}}, {.samples = 32});
+  ASSERT_EQ(found.drives.size(), 3u);
+  for (std::size_t k = 0; k < 32; ++k) {
+    const Metrics &a = found.drives[1].outcomes[k].metrics, &b = found.drives[2].outcomes[k].metrics;
+    EXPECT_NEAR(b.initial_contact_time, a.initial_contact_time, 1e-9 * a.initial_contact_time) << k;
+    EXPECT_NEAR(b.impact_velocity, a.impact_velocity, 1e-9 * a.impact_velocity) << k;
+  }
+}
+
+}  // namespace
+}  // namespace softland
