@@ -68,9 +68,7 @@ bool is_about_steady_force(const SearchSetting& setting, const RobustAim& aim) {
 
 }  // namespace
 
-Vectors vectors_for(const Aim& target, Vectors vectors) {
-  return target.has_own_objective() ? Vectors::none : vectors;
-}
+Vectors vectors_for(const Aim& target, Vectors vectors) { return target.has_own_objective() ? Vectors::none : vectors; }
 
 GaugedEnsemble gauge_all(const Ensemble& ensemble, const Gauges& gauges, int jobs, const Watch& watch) {
   constexpr std::size_t together = 16;
