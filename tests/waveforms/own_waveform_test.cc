@@ -66,6 +66,14 @@ TEST(OwnWaveform, DoesNotJumpWhereItsVoltageDoesNot) {
   EXPECT_LT(followed.peak_slew(), 2 * 12 / 1_us);
 }
 
+TEST(OwnWaveform, DoesNotJumpWhereItFallsSteeplyToAKinkLate) {
+  // One step of the time's last bit before the kink the voltage is more than the rounding of what ends there.
+  const auto falling = [](double t) { return t < 40_us ? 20 : t < 41_us ? 20 * (41_us - t) / 1_us : 0; };
+  const Signal followed = signal(made(falling, {40_us, 41_us}), 20);
+  EXPECT_EQ(followed.voltage_before(41_us), followed.voltage(41_us));
+  EXPECT_LT(followed.peak_slew(100_us) - 20 / 1_us, 1);
+}
+
 TEST(OwnWaveform, JumpsAtABreakpointToTheValueThereAndFromThatBefore) {
   const Signal followed = signal(made([](double t) { return t < 3_us ? 2 * t / 3_us : t < 5_us ? 7 : -1; }, {3_us, 5_us}));
   EXPECT_NEAR(followed.voltage_before(3_us), 2, 1e-12);
