@@ -103,19 +103,19 @@ void add_omissible_gas(const Prepared& prepared, std::vector<Omissible>& list) {
        .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.model.gas(), closed)},
        .group = {.name = "squeeze number, closed"},
        .instead = {}});
-  if (d.gas->model != GasModel::linear) list.back().group.value = squeeze_number(*d.gas, width, closed, omega);
-  if (!std::isnan(d.gas->far_gap)) {
+  if (const FilmState* const film = film_of(*d.gas)) list.back().group.value = squeeze_number(*film, width, closed, omega);
+  if (!std::isnan(far_gap(*d.gas))) {
     list.push_back({.effect = "gas.far_gap",
                     .magnitude = {.name = "damping, at rest",
                                   .unit = "N s/m^2",
-                                  .value = damping_per_length(*prepared.model.gas(), d.gas->far_gap)},
-                    .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / d.gas->far_gap, 3)},
+                                  .value = damping_per_length(*prepared.model.gas(), far_gap(*d.gas))},
+                    .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / far_gap(*d.gas), 3)},
                     .instead = {}});
   }
-  if (!std::isnan(d.gas->film_length)) {
+  if (!std::isnan(film_length(*d.gas))) {
     list.push_back({.effect = "gas.film_length",
-                    .magnitude = {.name = "damping kept", .value = end_flow(width / d.gas->film_length)},
-                    .group = {.name = "width / length", .value = width / d.gas->film_length},
+                    .magnitude = {.name = "damping kept", .value = end_flow(width / film_length(*d.gas))},
+                    .group = {.name = "width / length", .value = width / film_length(*d.gas)},
                     .instead = {}});
   }
 }
@@ -131,10 +131,10 @@ void add_omissible_contact(const Prepared& prepared, std::vector<Omissible>& lis
                     .instead = std::string(name_of(contact_distributions, ContactDistribution::centre)),
                     .automatic = false});
   }
-  if (contact.damping > 0) {
+  if (const double damping = number_of(contact.model, "damping", 0); damping > 0) {
     list.push_back({.effect = "contact.damping",
-                    .magnitude = {.name = "damping", .unit = "s/m", .value = contact.damping},
-                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * contact.damping},
+                    .magnitude = {.name = "damping", .unit = "s/m", .value = damping},
+                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * damping},
                     .instead = {}});
   }
 }
@@ -162,7 +162,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
 
 Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects) {
   const SceneFile frozen = resolved(prepared.scene, prepared.voltage_units());
-  SceneFile file = SceneFile::parse(frozen.text(), prepared.scene.file.name());
+  SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
   for (const Omissible& e : effects) {
     // A key of a section that goes goes with it.

@@ -110,7 +110,7 @@ Prepared prepared_with(const Prepared& prepared, std::map<std::string, Waveform>
 }
 
 Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
-  Prepared p = choose(prepare(SceneFile::parse(file.text(), name)));
+  Prepared p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
   p.scene.standing = given.scene.standing;  // of the file in volts all hold levels would count
   return p;

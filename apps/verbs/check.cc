@@ -76,10 +76,11 @@ std::string closed_state_words(const ClosedState& state) {
 // How many of the summits touch under the hold levels; empty where they are not of one height distribution to a closed form.
 std::string summits_words(const Prepared& p, const ClosedState& state) {
   const std::optional<Contact>& contact = p.scene.device.contact;
-  if (!contact || contact->model != ContactModel::asperity_uniform) return {};
+  const auto* const rough = contact ? std::get_if<UniformAsperities>(&contact->model) : nullptr;
+  if (rough == nullptr) return {};
   if (!state.exists || !std::holds_alternative<UniformAsperityContact>(p.model.contact())) return {};
   const auto& law = std::get<UniformAsperityContact>(p.model.contact());
-  const double all = internal::summits(*contact, p.scene.device.structure.width);
+  const double all = rough->summits.count({.width = p.scene.device.structure.width, .length = contact->pad_length});
   const double touching = all * std::min(1.0, law.interference(state.contact_force) / law.height);
   return fmt::format(
       "{} of {} summits touch under the hold levels{}", plain_number(touching, 2), plain_number(all, 3),
@@ -190,17 +191,16 @@ int check_verb(const Common& c) {
     add("dispersion force", dispersion_words(p, work->watch()));
     add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
   }
-  if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
-    const Gas& gas = *p.scene.device.gas;
+  if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
     const double g = p.scene.device.gap.electrode;
-    const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
+    const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(*film);
     const double omega = p.model.angular_frequencies()[0];
-    const GasRow& law = row_of(gas_laws, gas.model);
+    const double most = limits_of(*p.scene.device.gas).most_squeeze;
     const std::string holds =
-        std::isfinite(law.most_squeeze) ? fmt::format("; {} holds below about {}", law.name, plain_number(law.most_squeeze)) : "";
+        std::isfinite(most) ? fmt::format("; {} holds below about {}", name_of(*p.scene.device.gas), plain_number(most)) : "";
     add("squeeze number",
-        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(gas, s.width, g, omega)),
-                    plain_number(squeeze_number(gas, s.width, closed, omega)), holds));
+        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(*film, s.width, g, omega)),
+                    plain_number(squeeze_number(*film, s.width, closed, omega)), holds));
     add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
                                       plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }

@@ -39,25 +39,20 @@ void add_modes(SceneFile& file, const Scene& scene, int more) {
 
 void change_gas(SceneFile& file, const Scene& scene, const std::string& name) {
   require(scene.device.gas.has_value(), [&] { return fmt::format("gas={}: {}: there is no [gas]", name, scene.file.name()); });
-  const GasRow* const law = find_named(gas_laws, name);
-  require(law != nullptr, [&] { return fmt::format("gas={}: must be {}", name, listed(gas_laws)); });
+  const std::optional<Gas> law = law_named<Gas>(name);
+  require(law.has_value(), [&] { return fmt::format("gas={}: must be {}", name, listed_laws<Gas>()); });
   for (const std::string& key : file.keys("gas")) {
-    if (key != "model" && !law->keys.contain(key)) file.erase("gas." + key);
+    if (key != "model" && !has_key(*law, key)) file.erase("gas." + key);
   }
   file.assign("gas.model", name);
 }
 
 void stiffen(SceneFile& file, const Scene& scene, double factor) {
-  const Contact& c = *scene.device.contact;
-  const std::array forces{std::pair{"contact.stiffness", c.stiffness},
-                          std::pair{"contact.unloading_stiffness", c.unloading_stiffness},
-                          std::pair{"contact.effective_modulus", c.effective_modulus},
-                          std::pair{"contact.asperity_pressure", c.pressure.asperity_pressure},
-                          std::pair{"contact.wall_pressure", c.pressure.wall_pressure}};
+  const ContactModel& law = scene.device.contact->model;
   bool is_stiff = false;
-  for (const auto& [key, value] : forces) {
-    if (!file.written(key)) continue;
-    file.assign(key, value * factor);
+  for (const std::string key : {"stiffness", "unloading_stiffness", "effective_modulus", "asperity_pressure", "wall_pressure"}) {
+    if (!file.written("contact." + key)) continue;
+    file.assign("contact." + key, number_of(law, key, 0) * factor);
     is_stiff = true;
   }
   require(is_stiff,
