@@ -179,7 +179,7 @@ class Maker {
     std::visit(
         [&](const auto& law) {
           load += law.load(gap, velocity);
-          if (const double far = device_.gas->far_gap; !std::isnan(far)) {
+          if (const double far = far_gap(*device_.gas); !std::isnan(far)) {
             load += FarSide<std::decay_t<decltype(law)>>{.law = law, .both_gaps = device_.gap.electrode + far, .floor = far / 100}
                         .load(gap, velocity);
           }
@@ -297,7 +297,7 @@ const Dialect verilog{.voltage = "V", .has_variables = true};
 
 std::string why_no_circuit(const Switch& model) {
   const Device& device = model.device();
-  if (device.gas && is_compressible(device.gas->model)) return "a compressible gas film, which has states of its own";
+  if (device.gas && is_compressible(*device.gas)) return "a compressible gas film, which has states of its own";
   if (device.dispersion && device.dispersion->conductor == Conductor::gold &&
       device.dispersion->model != DispersionModel::van_der_waals)
     return "a Casimir force between gold, which is a table";
