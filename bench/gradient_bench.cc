@@ -109,9 +109,9 @@ constexpr DeviceNumber device_numbers[] = {
     {[](Device& d) -> double& { return d.structure.width; }},
     {[](Device& d) -> double& { return d.structure.length; }},
     {[](Device& d) -> double& { return d.gas->viscosity; }},
-    {[](Device& d) -> double& { return d.contact->effective_modulus; }, false},
-    {[](Device& d) -> double& { return d.contact->asperity_height; }, false},
-    {[](Device& d) -> double& { return d.contact->asperity_radius; }, false},
+    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).summits.effective_modulus; }, false},
+    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).height; }, false},
+    {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).summits.radius; }, false},
     {[](Device& d) -> double& { return d.contact->pad_length; }, false},
 };
 

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/range.h"
 #include "config/units.h"
 
 namespace softland {
@@ -25,18 +25,6 @@ class SectionReader;
 inline constexpr std::string_view tip = "tip";
 
 enum class KeyType { text, texts, flag, integer, choice, quantity, quantities };
-
-/// An interval in SI units; an end that is open is not part of it.
-struct Range {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-  bool least_open = false;
-  bool most_open = false;
-
-  [[nodiscard]] bool contains(double value) const;
-  /// "must be in [1 pm, 1 m]", "must be in [0, 1)"
-  [[nodiscard]] std::string rule(std::string_view unit) const;
-};
 
 /// The member of a scene that a key sets, by its kind: of these at most one is there. The second argument tells which electrode
 /// is meant, that of a place which element of the list.

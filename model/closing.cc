@@ -213,10 +213,11 @@ class Run {
     for (std::string& warning : gas_warnings(model_.device(), out_.smallest_gap, parts_.course.largest_squeeze())) {
       out_.warnings.push_back(std::move(warning));
     }
-    if (const auto& contact = model_.device().contact; contact && out_.deepest_penetration > largest_interference(*contact)) {
+    if (const auto& contact = model_.device().contact;
+        contact && out_.deepest_penetration > largest_interference(contact->model)) {
       out_.warnings.push_back(fmt::format("contact law {}: interference {} exceeds the asperity height {}",
-                                          name_of(contact_laws, contact->model), engineering(out_.deepest_penetration, "m", 3),
-                                          engineering(largest_interference(*contact), "m", 3)));
+                                          name_of(contact->model), engineering(out_.deepest_penetration, "m", 3),
+                                          engineering(largest_interference(contact->model), "m", 3)));
     }
   }
 

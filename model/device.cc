@@ -8,7 +8,6 @@
 #include "base/engineering.h"
 #include "base/require.h"
 #include "model/beam.h"
-#include "model/contact/contact_law.h"
 #include "model/forces/electrostatic.h"
 #include "model/gas/gas_law.h"
 #include "model/surface.h"
@@ -26,28 +25,6 @@ void span(double begin, double end, double length, const std::string& name) {
   require(begin >= 0 && end > begin && end <= length * (1 + 1e-12), [&] {
     return fmt::format("{} = [{}, {}]: must increase and lie on the beam, from 0 m to {}", name, engineering(begin, "m"),
                        engineering(end, "m"), engineering(length, "m"));
-  });
-}
-
-void validate(const SurfacePressure& p, double contact_gap) {
-  positive(p.asperity_pressure, "Pa", "contact.asperity_pressure");
-  positive(p.asperity_distance, "m", "contact.asperity_distance");
-  positive(p.wall_pressure, "Pa", "contact.wall_pressure");
-  positive(p.wall_range, "m", "contact.wall_range");
-  positive(p.adhesion_pressure, "Pa", "contact.adhesion_pressure");
-  positive(p.adhesion_range, "m", "contact.adhesion_range");
-  positive(p.hamaker_constant, "J", "contact.hamaker_constant");
-  positive(p.smoothing_distance, "m", "contact.smoothing_distance");
-  const double meet = p.asperity_distance + p.adhesion_range;
-  require(p.reach > meet && p.reach <= 1, [&] {
-    return fmt::format("contact.reach = {}: must exceed asperity_distance + adhesion_range = {} and be at most 1 m",
-                       engineering(p.reach, "m"), engineering(meet, "m"));
-  });
-  const AdhesiveRepulsiveContact law(p, 1);
-  require(law.touch_distance() > 0, "contact: these pressures never turn from attraction to repulsion");
-  require(law.reach() < contact_gap, [&] {
-    return fmt::format("contact.reach = {}: acts {} above the plane of first touch, which must be less than gap.contact = {}",
-                       engineering(p.reach, "m"), engineering(law.reach(), "m"), engineering(contact_gap, "m"));
   });
 }
 
@@ -127,59 +104,57 @@ void check_gas(const Gas& g, const Structure& s) {
           "gas.model = linear: needs either damping or quality_factor");
 }
 
-void check_contact_quantities(const Contact& c, const ContactRow& law) {
-  const auto positive_if_used = [&](const char* key, double value, const char* unit) {
-    if (law.keys.contain(key)) positive(value, unit, (std::string("contact.") + key).c_str());
-  };
-  positive_if_used("stiffness", c.stiffness, "N/m");
-  positive_if_used("asperity_radius", c.asperity_radius, "m");
-  positive_if_used("asperity_density", c.asperity_density, "1/m^2");
-  positive_if_used("effective_modulus", c.effective_modulus, "Pa");
-  positive_if_used("asperity_deviation", c.asperity_deviation, "m");
-  positive_if_used("asperity_height", c.asperity_height, "m");
-  positive_if_used("hardness", c.hardness, "Pa");
-  positive_if_used("adhesion_energy", c.adhesion_energy, "J/m^2");
-  if (law.keys.contain("unloading_stiffness")) {
-    require(c.unloading_stiffness >= c.stiffness && c.unloading_stiffness < 1e30, [&] {
-      return fmt::format("contact.unloading_stiffness = {}: must not be below contact.stiffness = {}, and below 1e30 N/m",
-                         engineering(c.unloading_stiffness, "N/m"), engineering(c.stiffness, "N/m"));
-    });
+/// The numbers of a part's law; those that a scene may leave out may be as an Owner{} has them.
+template <class Law>
+void check_fields(const std::string& part, Law law) {
+  Law unset{};
+  for (const Field<Law>& field : fields_of<Law>) {
+    if (field.in == nullptr) continue;
+    const double value = field.in(law), missing = field.in(unset);
+    if (!field.required && (value == missing || (std::isnan(value) && std::isnan(missing)))) continue;
+    const std::string name = part + "." + std::string(field.key), unit(field.unit);
+    const auto refuse_unless = [&](bool right, const auto& rule) {
+      require(right, [&] { return fmt::format("{} = {}: {}", name, engineering(value, unit), rule()); });
+    };
+    if (const double* least = number_of(law, field.not_below)) {
+      refuse_unless(value >= *least && value < 1e30, [&] {
+        return fmt::format("must not be below {}.{} = {}, and below 1e30 {}", part, field.not_below, engineering(*least, unit),
+                           unit);
+      });
+    } else if (field.range == softland::positive) {
+      positive(value, unit.c_str(), name.c_str());
+    } else {
+      refuse_unless(field.range.contains(value), [&] { return field.range.rule(unit); });
+    }
   }
-  if (law.keys.contain("restitution")) {
-    require(c.restitution >= 0 && c.restitution < 1,
-            [&] { return fmt::format("contact.restitution = {}: must be in [0, 1)", c.restitution); });
-  }
-}
-
-void check_contact_damping(const Contact& c, const ContactRow& law) {
-  require(c.damping >= 0 && c.damping < 1e6,
-          [&] { return fmt::format("contact.damping = {}: must be in [0 s/m, 1e6 s/m)", engineering(c.damping, "s/m")); });
-  require(c.damping == 0 || law.keys.contain("damping"), [&] {
-    return fmt::format("contact.damping = {}: not with contact.model = \"{}\"", engineering(c.damping, "s/m"), law.name);
-  });
 }
 
 void check_contact(const Device& d) {
   const Contact& c = *d.contact;
   const Structure& s = d.structure;
   const bool plate = s.kind == StructureKind::plate;
-  const bool rigid = c.model == ContactModel::rigid;
+  const bool rigid = std::holds_alternative<RigidStop>(c.model);
   require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
   require(!rigid || !d.gas || !is_compressible(d.gas->model),
           "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
-  const ContactRow& law = row_of(contact_laws, c.model);
-  const bool no_pad = plate && !law.per_area && c.pad_length == 0;  // only its area would count
+  const bool no_pad = plate && !acts_per_area(c.model) && c.pad_length == 0;  // only its area would count
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {
     return fmt::format("contact.pad_length = {}: must be positive and below structure.length = {}",
                        engineering(c.pad_length, "m"), engineering(s.length, "m"));
   });
-  check_contact_quantities(c, law);
-  if (law.keys.contain("reach")) validate(c.pressure, d.gap.contact);
+  std::visit(
+      [&](const auto& law) {
+        check_fields("contact", law);
+        if constexpr (requires { law.why_invalid(d.gap.contact); }) {
+          const std::string wrong = law.why_invalid(d.gap.contact);
+          require(wrong.empty(), wrong);
+        }
+      },
+      c.model);
   if (c.distribution == ContactDistribution::pad) {
     const std::string wrong = why_not_along_pad(s, c);
     require(wrong.empty(), [&] { return "contact.distribution = pad: " + wrong; });
   }
-  check_contact_damping(c, law);
 }
 
 void check_piezo(const Piezo& p, const Structure& s) {
@@ -205,6 +180,12 @@ void check_dispersion(const Dispersion& v, const Gap& gap) {
 }
 
 }  // namespace
+
+double Device::contact_position() const {
+  if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;
+  if (!contact || contact->distribution == ContactDistribution::pad) return structure.length;
+  return structure.length - contact->pad_length / 2;
+}
 
 std::vector<Stretch> Electrode::pads(double length) const {
   std::vector<Stretch> all{{begin.on(length), end.on(length)}};
@@ -253,9 +234,8 @@ std::string why_not_along_pad(const Structure& structure, const Contact& contact
     return "needs a cantilever, whose tilted pad is straight and touches first with its free end; between two clamps the pad "
            "lies flat about the middle";
   }
-  const ContactRow& law = row_of(contact_laws, contact.model);
-  if (!law.not_along_pad.empty()) {
-    return fmt::format("not with model = \"{}\"{} {}", law.name, law.not_along_pad == many_dents ? ":" : ",", law.not_along_pad);
+  if (const std::string_view why = why_not_along_pad(contact.model); !why.empty()) {
+    return fmt::format("not with model = \"{}\"{} {}", name_of(contact.model), why == many_dents ? ":" : ",", why);
   }
   if (contact.pad_length > longest * structure.length * (1 + 1e-12)) {
     return fmt::format("the pad counts as straight, so pad_length must not exceed a tenth of the beam's length, {}",

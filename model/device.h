@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/choice.h"
+#include "model/contact/contact.h"
 
 namespace softland {
 
@@ -122,64 +123,6 @@ struct Gas {
   double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };
 
-/// Laws of the contact force: their table is in model/contact/contact_law.h.
-enum class ContactModel {
-  linear,
-  asperity_uniform,
-  asperity_gaussian,
-  adhesive,
-  hysteretic,
-  elastic_plastic,
-  rigid,
-  adhesive_repulsive
-};
-/// Law of one asperity of an elastic-plastic contact.
-enum class Plasticity { zmc, kogut_etsion };
-inline constexpr auto plasticities =
-    std::to_array<Named<Plasticity>>({{Plasticity::zmc, "zmc"}, {Plasticity::kogut_etsion, "ke"}});
-static_assert(is_complete<plasticities>());
-
-/// Pressure between the surfaces of an adhesive-repulsive contact: see model/contact/adhesive_repulsive.h. Pressures of
-/// asperities and adhesion at a nanometre of approach.
-template <class P>
-struct SurfacePressureOf {
-  P asperity_pressure = 1.2e3;     ///< c1 [Pa]
-  P asperity_distance = 110e-9;    ///< dc [m]
-  P wall_pressure = 0.5e9;         ///< c2 [Pa]
-  P wall_range = 8.5e-9;           ///< tR [m]
-  P adhesion_pressure = 1e3;       ///< c3 [Pa]
-  P adhesion_range = 2e-9;         ///< ta [m]
-  P hamaker_constant = 0.215e-18;  ///< A [J]
-  P smoothing_distance = 30e-9;    ///< ds [m]
-  P reach = 1e-6;                  ///< xr [m]
-};
-using SurfacePressure = SurfacePressureOf<double>;
-
-/// Where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
-enum class ContactDistribution { centre, pad };
-inline constexpr auto contact_distributions =
-    std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
-static_assert(is_complete<contact_distributions>());
-
-struct Contact {
-  ContactModel model = ContactModel::asperity_uniform;
-  ContactDistribution distribution = ContactDistribution::centre;
-  double pad_length = 0;           ///< lt [m]: see Device::contact_position()
-  double stiffness = 0;            ///< linear; hysteretic: of loading [N/m]
-  double unloading_stiffness = 0;  ///< hysteretic [N/m]
-  Plasticity plasticity = Plasticity::zmc;
-  double hardness = 0;            ///< elastic_plastic: of the softer surface [Pa]
-  double asperity_radius = 0;     ///< R [m]
-  double asperity_density = 0;    ///< eta [1/m^2]
-  double asperity_height = 0;     ///< Hm [m]: heights uniform on [0, Hm]
-  double asperity_deviation = 0;  ///< asperity_gaussian: standard deviation of the heights [m]
-  double effective_modulus = 0;   ///< E* [Pa]
-  double adhesion_energy = 0;     ///< adhesive: work of adhesion W [J/m^2]
-  double restitution = 0;         ///< rigid: e
-  double damping = 0;             ///< of Hunt and Crossley [s/m]; linear, asperity_uniform, asperity_gaussian
-  SurfacePressure pressure = {};  ///< adhesive_repulsive
-};
-
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.
 struct Piezo {
   Place begin;                                            ///< Lp1
@@ -241,10 +184,7 @@ struct Device {
   /// x_c, the centre of the pad [m]: the contact force acts and all figures of merit are taken there. The pad ends at the free
   /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle. Of a contact along
   /// the pad: the free end, which touches first.
-  [[nodiscard]] double contact_position() const {
-    if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;
-    return structure.length - (contact && contact->distribution == ContactDistribution::centre ? contact->pad_length / 2 : 0);
-  }
+  [[nodiscard]] double contact_position() const;
   /// Where the pad begins and ends [m]; of a device with a contact.
   [[nodiscard]] std::pair<double, double> pad() const {
     const double end =

@@ -131,10 +131,10 @@ void add_omissible_contact(const Prepared& prepared, std::vector<Omissible>& lis
                     .instead = std::string(name_of(contact_distributions, ContactDistribution::centre)),
                     .automatic = false});
   }
-  if (contact.damping > 0) {
+  if (const double damping = number_of(contact.model, "damping", 0); damping > 0) {
     list.push_back({.effect = "contact.damping",
-                    .magnitude = {.name = "damping", .unit = "s/m", .value = contact.damping},
-                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * contact.damping},
+                    .magnitude = {.name = "damping", .unit = "s/m", .value = damping},
+                    .group = {.name = "1 - restitution, at 0.1 m/s", .value = 0.1 * damping},
                     .instead = {}});
   }
 }

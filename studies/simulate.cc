@@ -344,9 +344,7 @@ Hold hold_of(const Switch& model, const std::vector<Signal>& signals, const std:
   const bool stays = keeps_closed(model, hold.closed);
   if (stays) hold.force = hold.closed->contact_force;
   const std::optional<Contact>& contact = model.device().contact;
-  const bool may_stick =
-      contact && (contact->model == ContactModel::adhesive || contact->model == ContactModel::adhesive_repulsive);
-  hold.is_held = stays || !contact || (may_stick && !hold.closed);
+  hold.is_held = stays || !contact || (may_stick(contact->model) && !hold.closed);
   return hold;
 }
 

@@ -76,10 +76,11 @@ std::string closed_state_words(const ClosedState& state) {
 // How many of the summits touch under the hold levels; empty where they are not of one height distribution to a closed form.
 std::string summits_words(const Prepared& p, const ClosedState& state) {
   const std::optional<Contact>& contact = p.scene.device.contact;
-  if (!contact || contact->model != ContactModel::asperity_uniform) return {};
+  const auto* const rough = contact ? std::get_if<UniformAsperities>(&contact->model) : nullptr;
+  if (rough == nullptr) return {};
   if (!state.exists || !std::holds_alternative<UniformAsperityContact>(p.model.contact())) return {};
   const auto& law = std::get<UniformAsperityContact>(p.model.contact());
-  const double all = internal::summits(*contact, p.scene.device.structure.width);
+  const double all = rough->summits.count({.width = p.scene.device.structure.width, .length = contact->pad_length});
   const double touching = all * std::min(1.0, law.interference(state.contact_force) / law.height);
   return fmt::format(
       "{} of {} summits touch under the hold levels{}", plain_number(touching, 2), plain_number(all, 3),

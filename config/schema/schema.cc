@@ -63,15 +63,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-bool Range::contains(double value) const {
-  return (least_open ? value > least : value >= least) && (most_open ? value < most : value <= most);
-}
-
-std::string Range::rule(std::string_view unit) const {
-  return fmt::format("must be in {}{}, {}{}", least_open ? '(' : '[', engineering(least, unit), engineering(most, unit),
-                     most_open ? ')' : ']');
-}
-
 Range Key::range_of(const Dimension& dimension) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const auto found =

@@ -15,10 +15,8 @@ namespace softland::internal {
 
 // Ends that these leave open are closed by the extent of the dimension.
 inline constexpr Range any{};
-inline constexpr Range positive{.least = 0, .least_open = true};
 inline constexpr Range not_negative{.least = 0};
 inline constexpr Range small_error{.least = 0, .most = 0.1, .least_open = true};
-inline constexpr Range below_one{.least = 0, .most = 1, .most_open = true};
 
 /// Structures that bend.
 inline const std::vector<std::string_view> beams{"cantilever", "clamped-clamped"};

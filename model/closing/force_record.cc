@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <type_traits>
 #include <variant>
 
 #include "integrators/roots.h"
@@ -11,15 +10,14 @@
 namespace softland {
 namespace {
 
-template <class Law>
-constexpr bool presses_harder_the_deeper =
-    std::is_same_v<Law, UniformAsperityContact> || std::is_same_v<Law, LinearContact> ||
-    std::is_same_v<Law, GaussianAsperityContact> || std::is_same_v<Law, PlasticAsperityContact<ZmcAsperity>> ||
-    std::is_same_v<Law, PlasticAsperityContact<KogutEtsionAsperity>>;
-
 bool rises_with_depth(const Switch& model) {
-  return !model.has_contact() ||
-         std::visit([](const auto& law) { return presses_harder_the_deeper<std::decay_t<decltype(law)>>; }, model.contact());
+  if (!model.has_contact()) return true;
+  return std::visit(
+      [](const auto& law) {
+        if constexpr (requires { law.grows_with_depth; }) return law.grows_with_depth;
+        return false;
+      },
+      model.contact());
 }
 
 }  // namespace

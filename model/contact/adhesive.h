@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "model/constants.h"
+#include "model/contact/adhesive_asperities.h"
 #include "model/contact/asperity_uniform.h"
 
 namespace softland {
@@ -39,5 +40,10 @@ struct AdhesiveAsperityContactOf {
   }
 };
 using AdhesiveAsperityContact = AdhesiveAsperityContactOf<double>;
+
+inline AdhesiveAsperityContact AdhesiveAsperities::law(const ContactPad& pad) const {
+  return {.repulsion = uniform_contact(summits, height, pad),
+          .attraction = 2 * pi * summits.radius * adhesion_energy * summits.count(pad) / height};
+}
 
 }  // namespace softland

@@ -1,5 +1,8 @@
 #include "model/contact/adhesive_repulsive.h"
 
+#include <fmt/format.h>
+
+#include "base/engineering.h"
 #include "integrators/roots.h"
 
 namespace softland {
@@ -40,6 +43,19 @@ double AdhesiveRepulsiveContact::energy(double d) const {
   const double near = std::max(0.0, law_.asperity_distance + law_.adhesion_range - x) / unit;
   sum += unit * (law_.asperity_pressure * depth * depth * std::sqrt(depth) / 2.5 - law_.adhesion_pressure * near * near / 2);
   return area_ * sum;
+}
+
+std::string AdhesiveRepulsiveSurfaces::why_invalid(double contact_gap) const {
+  const double meet = pressure.asperity_distance + pressure.adhesion_range;
+  if (!(pressure.reach > meet && pressure.reach <= 1))
+    return fmt::format("contact.reach = {}: must exceed asperity_distance + adhesion_range = {} and be at most 1 m",
+                       engineering(pressure.reach, "m"), engineering(meet, "m"));
+  const AdhesiveRepulsiveContact of_an_area(pressure, 1);
+  if (!(of_an_area.touch_distance() > 0)) return "contact: these pressures never turn from attraction to repulsion";
+  if (!(of_an_area.reach() < contact_gap))
+    return fmt::format("contact.reach = {}: acts {} above the plane of first touch, which must be less than gap.contact = {}",
+                       engineering(pressure.reach, "m"), engineering(of_an_area.reach(), "m"), engineering(contact_gap, "m"));
+  return {};
 }
 
 }  // namespace softland

@@ -26,7 +26,7 @@
 
 #include "base/select.h"
 #include "model/constants.h"
-#include "model/device.h"
+#include "model/contact/adhesive_repulsive_surfaces.h"
 #include "model/dual.h"
 
 namespace softland {
@@ -103,5 +103,13 @@ template <>
 std::vector<double> AdhesiveRepulsiveContact::kinks() const;
 template <>
 double AdhesiveRepulsiveContact::find_touch(const SurfacePressure& law);
+
+inline double AdhesiveRepulsiveSurfaces::largest_interference() const {
+  return AdhesiveRepulsiveContact(pressure, 1).touch_distance();
+}
+
+inline AdhesiveRepulsiveContact AdhesiveRepulsiveSurfaces::law(const ContactPad& pad) const {
+  return AdhesiveRepulsiveContact(pressure, pad.width * pad.length);
+}
 
 }  // namespace softland

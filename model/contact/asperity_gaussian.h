@@ -23,6 +23,7 @@
 #include <cstddef>
 
 #include "base/select.h"
+#include "model/contact/gaussian_asperities.h"
 
 namespace softland {
 namespace internal {
@@ -103,6 +104,8 @@ struct GaussianAsperityContactOf {
   /// F_2.5(h) = 1.5 F_0.5(h) - h F_1.5(h), and F_1.5' = -1.5 F_0.5
   static double next_tail(double h);
 
+  static constexpr bool grows_with_depth = true;  ///< so that the force is largest where the contact is deepest
+
   template <class S>
   S force(S d) const {
     return S(strength) * (tail(S(first_touch) - d / S(deviation)) - S(tail(first_touch)));
@@ -112,9 +115,17 @@ struct GaussianAsperityContactOf {
     return strength * deviation * ((next_tail(first_touch - x) - next_tail(first_touch)) / 2.5 - tail(first_touch) * x);
   }
 };
-using GaussianAsperityContact = GaussianAsperityContactOf<double>;
 
 template <>
 double GaussianAsperityContact::next_tail(double h);
+
+inline double GaussianAsperities::largest_interference() const { return GaussianAsperityContact::first_touch * deviation; }
+
+inline std::variant<GaussianAsperityContact, HuntCrossley<GaussianAsperityContact>> GaussianAsperities::law(
+    const ContactPad& pad) const {
+  return damped(GaussianAsperityContact{.strength = 4.0 / 3 * summits.hertz(pad) * deviation * std::sqrt(deviation),
+                                        .deviation = deviation},
+                damping);
+}
 
 }  // namespace softland

@@ -12,6 +12,7 @@
 
 #include <cmath>
 
+#include "model/contact/uniform_asperities.h"
 #include "model/dual.h"
 
 namespace softland {
@@ -21,6 +22,8 @@ template <class P>
 struct UniformAsperityContactOf {
   P strength = 0;  ///< eta An E* sqrt(R) / Hm [N / m^2.5]
   P height = 0;    ///< Hm [m]
+
+  static constexpr bool grows_with_depth = true;  ///< so that the force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {
@@ -56,6 +59,15 @@ struct UniformAsperityContactOf {
     return d;
   }
 };
-using UniformAsperityContact = UniformAsperityContactOf<double>;
+
+/// Of these summits, with heights up to `height` [m].
+[[nodiscard]] inline UniformAsperityContact uniform_contact(const Summits& summits, double height, const ContactPad& pad) {
+  return {.strength = summits.hertz(pad) / height, .height = height};
+}
+
+inline std::variant<UniformAsperityContact, HuntCrossley<UniformAsperityContact>> UniformAsperities::law(
+    const ContactPad& pad) const {
+  return damped(uniform_contact(summits, height, pad), damping);
+}
 
 }  // namespace softland

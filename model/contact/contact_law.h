@@ -3,155 +3,62 @@
 // built.
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <limits>
-#include <string_view>
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "base/choice.h"
-#include "model/constants.h"
 #include "model/contact/adhesive.h"
 #include "model/contact/adhesive_repulsive.h"
 #include "model/contact/asperity_gaussian.h"
 #include "model/contact/asperity_uniform.h"
+#include "model/contact/contact.h"
 #include "model/contact/hunt_crossley.h"
 #include "model/contact/linear.h"
 #include "model/contact/memory.h"
 #include "model/contact/rigid.h"
-#include "model/device.h"
 
 namespace softland {
 
-using ContactLaw = std::variant<UniformAsperityContact, LinearContact, GaussianAsperityContact, AdhesiveAsperityContact,
-                                HuntCrossley<LinearContact>, HuntCrossley<UniformAsperityContact>,
-                                HuntCrossley<GaussianAsperityContact>, HystereticContact, PlasticAsperityContact<ZmcAsperity>,
-                                PlasticAsperityContact<KogutEtsionAsperity>, RigidContact, AdhesiveRepulsiveContact>;
-
-/// A law of the contact force: its name and its own keys in a scene, its limits, and its maker, which takes the width of the pad.
-struct ContactRow {
-  ContactModel value;
-  std::string_view name;
-  Words keys;
-  /// Why it cannot act along the pad; empty when it can.
-  std::string_view not_along_pad = {};
-  /// Acts per area of the pad, so that a plate needs a width and a length of the pad.
-  bool per_area = false;
-  /// Interference up to which it is physics [m].
-  double (*largest_interference)(const Contact&) = [](const Contact&) { return std::numeric_limits<double>::infinity(); };
-  ContactLaw (*make)(const Contact&, double width);
-};
-
 namespace internal {
-/// Summits under the pad.
-[[nodiscard]] inline double summits(const Contact& c, double width) { return c.asperity_density * width * c.pad_length; }
-/// Force of all summits over d^1.5, by Hertz [N/m^1.5].
-[[nodiscard]] inline double hertz(const Contact& c, double width) {
-  return summits(c, width) * c.effective_modulus * std::sqrt(c.asperity_radius);
-}
-[[nodiscard]] inline UniformAsperityContact uniform(const Contact& c, double width) {
-  return {.strength = hertz(c, width) / c.asperity_height, .height = c.asperity_height};
-}
-template <class Elastic>
-[[nodiscard]] ContactLaw damped(Elastic law, const Contact& c) {
-  if (c.damping > 0) return HuntCrossley<Elastic>{.elastic = law, .damping = c.damping};
-  return law;
-}
-template <class Asperity>
-[[nodiscard]] ContactLaw plastic(const Contact& c, double width) {
-  return PlasticAsperityContact<Asperity>{
-      .loading = {summits(c, width), c.asperity_height, c.asperity_radius, c.hardness, c.effective_modulus},
-      .elastic = uniform(c, width)};
-}
-[[nodiscard]] constexpr double asperity_height(const Contact& c) { return c.asperity_height; }
+/// A variant with further alternatives, those that it has already left out.
+template <class Variant, class... More>
+struct WithKernels;
+template <class... Kernels>
+struct WithKernels<std::variant<Kernels...>> {
+  using Type = std::variant<Kernels...>;
+};
+template <class... Kernels, class Next, class... More>
+struct WithKernels<std::variant<Kernels...>, Next, More...>
+    : WithKernels<
+          std::conditional_t<(std::is_same_v<Kernels, Next> || ...), std::variant<Kernels...>, std::variant<Kernels..., Next>>,
+          More...> {};
+template <class... Kernels, class... Two, class... More>
+struct WithKernels<std::variant<Kernels...>, std::variant<Two...>, More...>
+    : WithKernels<std::variant<Kernels...>, Two..., More...> {};
+
+template <class Model>
+struct KernelsOf;
+template <class... Models>
+struct KernelsOf<std::variant<Models...>>
+    : WithKernels<std::variant<>, decltype(std::declval<const Models&>().law(std::declval<const ContactPad&>()))...> {};
 }  // namespace internal
 
-/// What describes a rough surface.
-inline constexpr Words summit_keys{"asperity_radius", "asperity_density", "effective_modulus"};
-inline constexpr std::string_view many_dents = "every point of the pad would keep a dent of its own";
+/// The force of every law of ContactModel: what its parameters' law(pad) gives, one or one of several.
+using ContactLaw = internal::KernelsOf<ContactModel>::Type;
 
-inline constexpr auto contact_laws = std::to_array<ContactRow>({
-    {.value = ContactModel::linear,
-     .name = "linear",
-     .keys = {"stiffness", "damping"},
-     .make = [](const Contact& c, double) { return internal::damped(LinearContact{.stiffness = c.stiffness}, c); }},
-    {.value = ContactModel::asperity_uniform,
-     .name = "asperity-uniform",
-     .keys = summit_keys + Words{"asperity_height", "damping"},
-     .per_area = true,
-     .largest_interference = internal::asperity_height,
-     .make = [](const Contact& c, double width) { return internal::damped(internal::uniform(c, width), c); }},
-    {.value = ContactModel::asperity_gaussian,
-     .name = "asperity-gaussian",
-     .keys = summit_keys + Words{"asperity_deviation", "damping"},
-     .per_area = true,
-     .largest_interference = [](const Contact& c) { return GaussianAsperityContact::first_touch * c.asperity_deviation; },
-     .make =
-         [](const Contact& c, double width) {
-           const double sigma = c.asperity_deviation;
-           return internal::damped(
-               GaussianAsperityContact{.strength = 4.0 / 3 * internal::hertz(c, width) * sigma * std::sqrt(sigma),
-                                       .deviation = sigma},
-               c);
-         }},
-    {.value = ContactModel::adhesive,
-     .name = "adhesive",
-     .keys = summit_keys + Words{"asperity_height", "adhesion_energy"},
-     .per_area = true,
-     .largest_interference = internal::asperity_height,
-     .make = [](const Contact& c, double width) -> ContactLaw {
-       return AdhesiveAsperityContact{
-           .repulsion = internal::uniform(c, width),
-           .attraction = 2 * pi * c.asperity_radius * c.adhesion_energy * internal::summits(c, width) / c.asperity_height};
-     }},
-    {.value = ContactModel::hysteretic,
-     .name = "hysteretic",
-     .keys = {"stiffness", "unloading_stiffness"},
-     .not_along_pad = many_dents,
-     .make = [](const Contact& c, double) -> ContactLaw {
-       return HystereticContact{.loading = {.stiffness = c.stiffness}, .elastic = {.stiffness = c.unloading_stiffness}};
-     }},
-    {.value = ContactModel::elastic_plastic,
-     .name = "elastic-plastic",
-     .keys = summit_keys + Words{"asperity_height", "hardness", "plasticity"},
-     .not_along_pad = many_dents,
-     .per_area = true,
-     .largest_interference = internal::asperity_height,
-     .make =
-         [](const Contact& c, double width) {
-           return c.plasticity == Plasticity::zmc ? internal::plastic<ZmcAsperity>(c, width)
-                                                  : internal::plastic<KogutEtsionAsperity>(c, width);
-         }},
-    {.value = ContactModel::rigid,
-     .name = "rigid",
-     .keys = {"restitution"},
-     .not_along_pad = "whose impacts have no force",
-     .make = [](const Contact& c, double) -> ContactLaw { return RigidContact{.restitution = c.restitution}; }},
-    {.value = ContactModel::adhesive_repulsive,
-     .name = "adhesive-repulsive",
-     .keys = {"asperity_pressure", "asperity_distance", "wall_pressure", "wall_range", "adhesion_pressure", "adhesion_range",
-              "hamaker_constant", "smoothing_distance", "reach"},
-     .not_along_pad = "which acts before the free end touches",
-     .per_area = true,
-     .largest_interference = [](const Contact& c) { return AdhesiveRepulsiveContact(c.pressure, 1).touch_distance(); },
-     .make = [](const Contact& c, double width) -> ContactLaw {
-       return AdhesiveRepulsiveContact(c.pressure, width * c.pad_length);
-     }},
-});
-static_assert(is_complete<contact_laws>());
-
-/// The law of a valid device's contact.
+/// The law of a valid device's contact, whose moving part has this width [m].
 [[nodiscard]] inline ContactLaw contact_law(const Contact& contact, double width) {
-  return row_of(contact_laws, contact.model).make(contact, width);
-}
-
-/// Interference at which all asperities of a law touch, or four standard deviations of Gaussian ones [m]: beyond, the law is no
-/// longer physics. Infinite for a spring.
-[[nodiscard]] inline double largest_interference(const Contact& contact) {
-  return row_of(contact_laws, contact.model).largest_interference(contact);
+  const auto as_law = [](auto kernel) -> ContactLaw {
+    if constexpr (requires { kernel.valueless_by_exception(); }) {
+      return std::visit([](auto& one) -> ContactLaw { return std::move(one); }, kernel);
+    } else {
+      return kernel;
+    }
+  };
+  const ContactPad pad{.width = width, .length = contact.pad_length};
+  return std::visit([&](const auto& model) { return as_law(model.law(pad)); }, contact.model);
 }
 
 /// std::visit for the hot path: with more than eleven laws that one calls through a table, which the compiler cannot see through.
@@ -239,13 +146,21 @@ struct Dent {
 }
 /// How far above the plane of first touch a law acts [m]; 0 for most.
 [[nodiscard]] inline double contact_reach(const ContactLaw& law) {
-  const auto* far = std::get_if<AdhesiveRepulsiveContact>(&law);
-  return far != nullptr ? far->reach() : 0;
+  return std::visit(
+      [](const auto& l) {
+        if constexpr (requires { l.reach(); }) return l.reach();
+        return 0.0;
+      },
+      law);
 }
 /// Interferences beyond touch at which a law is continuous, but not smooth, in order [m]; none for most.
 [[nodiscard]] inline std::vector<double> contact_kinks(const ContactLaw& law) {
-  const auto* far = std::get_if<AdhesiveRepulsiveContact>(&law);
-  return far != nullptr ? far->kinks() : std::vector<double>{};
+  return std::visit(
+      [](const auto& l) {
+        if constexpr (requires { l.kinks(); }) return l.kinks();
+        return std::vector<double>();
+      },
+      law);
 }
 [[nodiscard]] inline bool is_rate_dependent(const ContactLaw& law) {
   return std::visit(

@@ -10,6 +10,10 @@
 // property of the pair. Source: Hunt & Crossley 1975, eqs. 8 to 11.
 #pragma once
 
+#include <array>
+#include <variant>
+
+#include "base/field.h"
 #include "base/select.h"
 
 namespace softland {
@@ -34,5 +38,22 @@ struct HuntCrossley {
   }
   [[nodiscard]] double energy(double d) const { return elastic.energy(d); }
 };
+
+/// The law with damping, where there is some.
+template <class Elastic>
+[[nodiscard]] std::variant<Elastic, HuntCrossley<Elastic>> damped(const Elastic& elastic, double damping) {
+  if (damping > 0) return HuntCrossley<Elastic>{.elastic = elastic, .damping = damping};
+  return elastic;
+}
+
+// clang-format off
+/// The member `damping` of a law's parameters: 0 where there is none.
+template <class Law>
+[[nodiscard]] consteval auto damping_fields() {
+  return std::to_array<Field<Law>>({
+      {.key = "damping", .unit = "s/m", .about = "of Hunt and Crossley: restitution about 1 over 1 + damping times impact velocity; absent: none", .in = reach<Law, &Law::damping>},
+  });
+}
+// clang-format on
 
 }  // namespace softland

@@ -6,12 +6,22 @@
 // any d; for d < 0 the law is its own smooth continuation past the event that ends contact. Source: McCarthy et al. 2002.
 #pragma once
 
+#include <array>
+#include <string_view>
+#include <variant>
+
+#include "base/field.h"
+#include "model/contact/hunt_crossley.h"
+#include "model/contact/summits.h"
+
 namespace softland {
 
 /// Over the scalar of its parameters; that of the state is one they convert to.
 template <class P>
 struct LinearContactOf {
   P stiffness = 0;  ///< [N/m]
+
+  static constexpr bool grows_with_depth = true;  ///< so that the force is largest where the contact is deepest
 
   template <class S>
   S force(S d) const {
@@ -22,5 +32,25 @@ struct LinearContactOf {
   [[nodiscard]] double energy(double d) const { return stiffness * d * d / 2; }
 };
 using LinearContact = LinearContactOf<double>;
+
+/// In a scene.
+struct LinearSpring {
+  static constexpr std::string_view name = "linear";
+  double stiffness = 0;  ///< [N/m]
+  double damping = 0;    ///< of Hunt and Crossley [s/m]
+
+  static consteval auto fields() {
+    using Law = LinearSpring;
+    // clang-format off
+    return joined(std::to_array<Field<Law>>({
+        {.key = "stiffness", .unit = "N/m", .about = "contact force per penetration; hysteretic: while loading", .in = reach<Law, &Law::stiffness>, .required = true},
+    }), damping_fields<Law>());
+    // clang-format on
+  }
+  [[nodiscard]] static constexpr LinearSpring example() { return {.stiffness = 1e4}; }
+  [[nodiscard]] std::variant<LinearContact, HuntCrossley<LinearContact>> law(const ContactPad&) const {
+    return damped(LinearContact{.stiffness = stiffness}, damping);
+  }
+};
 
 }  // namespace softland

@@ -19,10 +19,14 @@
 #pragma once
 
 #include <concepts>
+#include <type_traits>
+#include <variant>
 
 #include "base/select.h"
 #include "model/contact/asperity_uniform.h"
+#include "model/contact/hysteretic_spring.h"
 #include "model/contact/linear.h"
+#include "model/contact/plastic_asperities.h"
 #include "model/contact/plastic_asperity.h"
 
 namespace softland {
@@ -44,7 +48,8 @@ struct ContactWithMemory {
   Loading loading = {};
   Elastic elastic = {};
 
-  static constexpr bool heals = Heals;  ///< whether the dent is forgotten when contact ends
+  static constexpr bool heals = Heals;              ///< whether the dent is forgotten when contact ends
+  static constexpr bool grows_with_depth = !Heals;  ///< from touch to touch too: a dent that stays is only made deeper
 
   /// First loading and its work.
   template <class S>
@@ -69,8 +74,19 @@ struct ContactWithMemory {
   }
 };
 
-using HystereticContact = ContactWithMemory<LinearContact, LinearContact, true>;
-template <class Asperity>
-using PlasticAsperityContact = ContactWithMemory<PlasticAsperityLoading<Asperity>, UniformAsperityContact, false>;
+inline HystereticContact HystereticSpring::law(const ContactPad&) const {
+  return {.loading = {.stiffness = stiffness}, .elastic = {.stiffness = unloading_stiffness}};
+}
+
+inline std::variant<PlasticAsperityContact<ZmcAsperity>, PlasticAsperityContact<KogutEtsionAsperity>> PlasticAsperities::law(
+    const ContactPad& pad) const {
+  const auto of = [&]<class Asperity>(std::type_identity<Asperity>) {
+    return PlasticAsperityContact<Asperity>{
+        .loading = {summits.count(pad), height, summits.radius, hardness, summits.effective_modulus},
+        .elastic = uniform_contact(summits, height, pad)};
+  };
+  if (plasticity == Plasticity::zmc) return of(std::type_identity<ZmcAsperity>());
+  return of(std::type_identity<KogutEtsionAsperity>());
+}
 
 }  // namespace softland

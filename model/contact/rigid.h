@@ -14,6 +14,12 @@
 // Brogliato, Nonsmooth Mechanics, 2016, secs. 1.3 and 4.1.
 #pragma once
 
+#include <array>
+#include <string_view>
+
+#include "base/field.h"
+#include "model/contact/summits.h"
+
 namespace softland {
 
 /// Over the scalar of its parameters; that of the state is one they convert to.
@@ -36,5 +42,22 @@ struct RigidContactOf {
   [[nodiscard]] double energy(double) const { return 0; }
 };
 using RigidContact = RigidContactOf<double>;
+
+/// In a scene.
+struct RigidStop {
+  static constexpr std::string_view name = "rigid", not_along_pad = "whose impacts have no force";
+  double restitution = 0;  ///< e
+
+  static consteval auto fields() {
+    using Law = RigidStop;
+    // clang-format off
+    return std::to_array<Field<Law>>({
+        {.key = "restitution", .about = "velocity after an impact over that before", .in = reach<Law, &Law::restitution>, .required = true, .range = below_one},
+    });
+    // clang-format on
+  }
+  [[nodiscard]] static constexpr RigidStop example() { return {.restitution = 0.5}; }
+  [[nodiscard]] RigidContact law(const ContactPad&) const { return {.restitution = restitution}; }
+};
 
 }  // namespace softland

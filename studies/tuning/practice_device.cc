@@ -48,16 +48,11 @@ void change_gas(SceneFile& file, const Scene& scene, const std::string& name) {
 }
 
 void stiffen(SceneFile& file, const Scene& scene, double factor) {
-  const Contact& c = *scene.device.contact;
-  const std::array forces{std::pair{"contact.stiffness", c.stiffness},
-                          std::pair{"contact.unloading_stiffness", c.unloading_stiffness},
-                          std::pair{"contact.effective_modulus", c.effective_modulus},
-                          std::pair{"contact.asperity_pressure", c.pressure.asperity_pressure},
-                          std::pair{"contact.wall_pressure", c.pressure.wall_pressure}};
+  const ContactModel& law = scene.device.contact->model;
   bool is_stiff = false;
-  for (const auto& [key, value] : forces) {
-    if (!file.written(key)) continue;
-    file.assign(key, value * factor);
+  for (const std::string key : {"stiffness", "unloading_stiffness", "effective_modulus", "asperity_pressure", "wall_pressure"}) {
+    if (!file.written("contact." + key)) continue;
+    file.assign("contact." + key, number_of(law, key, 0) * factor);
     is_stiff = true;
   }
   require(is_stiff,

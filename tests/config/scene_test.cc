@@ -67,9 +67,8 @@ TEST(Scene, EverySectionOfTheSmallSceneArrives) {
   EXPECT_EQ(scene.device.gas->model, GasModel::strip);
   EXPECT_EQ(scene.device.gas->viscosity, 1.86e-5);
   ASSERT_TRUE(scene.device.contact);
-  EXPECT_EQ(scene.device.contact->model, ContactModel::linear);
+  EXPECT_EQ(std::get<LinearSpring>(scene.device.contact->model).stiffness, 100);
   EXPECT_EQ(scene.device.contact->pad_length, 5e-6);
-  EXPECT_EQ(scene.device.contact->stiffness, 100);
   ASSERT_TRUE(scene.device.piezo);
   EXPECT_EQ(scene.device.piezo->begin, 5e-6);
   EXPECT_EQ(scene.device.piezo->end, 240e-6);
@@ -284,12 +283,11 @@ TEST(Scene, EveryFringingLawHasAName) {
 }
 
 TEST(Scene, AsperitiesArrive) {
-  const Contact contact = *read_file("mem-gold.toml").device.contact;
-  EXPECT_EQ(contact.model, ContactModel::asperity_uniform);
-  EXPECT_EQ(contact.asperity_radius, 100e-9);
-  EXPECT_EQ(contact.asperity_density, 1e11);
-  EXPECT_EQ(contact.asperity_height, 100e-9);
-  EXPECT_EQ(contact.effective_modulus, 48e9);
+  const auto contact = std::get<UniformAsperities>(read_file("mem-gold.toml").device.contact->model);
+  EXPECT_EQ(contact.summits.radius, 100e-9);
+  EXPECT_EQ(contact.summits.density, 1e11);
+  EXPECT_EQ(contact.height, 100e-9);
+  EXPECT_EQ(contact.summits.effective_modulus, 48e9);
 }
 
 TEST(Scene, EveryContactLawArrives) {
@@ -298,32 +296,25 @@ TEST(Scene, EveryContactLawArrives) {
   };
   const std::string summits =
       "pad_length = \"5 um\"\nasperity_radius = \"100 nm\"\nasperity_density = \"1e11 1/m^2\"\neffective_modulus = \"48 GPa\"\n";
-  const Contact gaussian =
-      contact(summits + "model = \"asperity-gaussian\"\nasperity_deviation = \"30 nm\"\ndamping = \"0.2 s/m\"");
-  EXPECT_EQ(gaussian.model, ContactModel::asperity_gaussian);
-  EXPECT_EQ(gaussian.asperity_deviation, 30e-9);
-  EXPECT_EQ(gaussian.effective_modulus, 48e9);
+  const Contact rough = contact(summits + "model = \"asperity-gaussian\"\nasperity_deviation = \"30 nm\"\ndamping = \"0.2 s/m\"");
+  const auto gaussian = std::get<GaussianAsperities>(rough.model);
+  EXPECT_EQ(gaussian.deviation, 30e-9);
+  EXPECT_EQ(gaussian.summits.effective_modulus, 48e9);
   EXPECT_EQ(gaussian.damping, 0.2);
-  EXPECT_EQ(gaussian.distribution, ContactDistribution::centre);
+  EXPECT_EQ(rough.distribution, ContactDistribution::centre);
   EXPECT_EQ(contact("model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"\ndistribution = \"pad\"").distribution,
             ContactDistribution::pad);
-  const Contact adhesive =
-      contact(summits + "model = \"adhesive\"\nasperity_height = \"100 nm\"\nadhesion_energy = \"0.05 J/m^2\"");
-  EXPECT_EQ(adhesive.model, ContactModel::adhesive);
-  EXPECT_EQ(adhesive.asperity_height, 100e-9);
+  const auto adhesive = std::get<AdhesiveAsperities>(
+      contact(summits + "model = \"adhesive\"\nasperity_height = \"100 nm\"\nadhesion_energy = \"0.05 J/m^2\"").model);
+  EXPECT_EQ(adhesive.height, 100e-9);
   EXPECT_EQ(adhesive.adhesion_energy, 0.05);
-  EXPECT_EQ(adhesive.damping, 0);
-  const Contact plastic = contact(summits + "model = \"elastic-plastic\"\nasperity_height = \"100 nm\"\nhardness = \"1 GPa\"");
-  EXPECT_EQ(plastic.model, ContactModel::elastic_plastic);
+  const std::string yields = summits + "model = \"elastic-plastic\"\nasperity_height = \"100 nm\"\nhardness = \"1 GPa\"";
+  const auto plastic = std::get<PlasticAsperities>(contact(yields).model);
   EXPECT_EQ(plastic.hardness, 1e9);
   EXPECT_EQ(plastic.plasticity, Plasticity::zmc);
-  EXPECT_EQ(
-      contact(summits + "model = \"elastic-plastic\"\nasperity_height = \"100 nm\"\nhardness = \"1 GPa\"\nplasticity = \"ke\"")
-          .plasticity,
-      Plasticity::kogut_etsion);
-  const Contact hysteretic =
-      contact("pad_length = \"5 um\"\nmodel = \"hysteretic\"\nstiffness = \"1e4 N/m\"\nunloading_stiffness = \"2e4 N/m\"");
-  EXPECT_EQ(hysteretic.model, ContactModel::hysteretic);
+  EXPECT_EQ(std::get<PlasticAsperities>(contact(yields + "\nplasticity = \"ke\"").model).plasticity, Plasticity::kogut_etsion);
+  const auto hysteretic = std::get<HystereticSpring>(
+      contact("pad_length = \"5 um\"\nmodel = \"hysteretic\"\nstiffness = \"1e4 N/m\"\nunloading_stiffness = \"2e4 N/m\"").model);
   EXPECT_EQ(hysteretic.stiffness, 1e4);
   EXPECT_EQ(hysteretic.unloading_stiffness, 2e4);
 }
@@ -373,9 +364,9 @@ TEST(Scene, SurfacesArrive) {
 
 TEST(Scene, AdhesiveRepulsiveContactHasThePublishedNumbersUnlessTold) {
   const auto pressure = [](const std::string& keys) {
-    return read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"",
-                       "model = \"adhesive-repulsive\"\npad_length = \"5 um\"" + keys))
-        .device.contact->pressure;
+    const Scene scene = read(edited(small_scene, "model = \"linear\"\npad_length = \"5 um\"\nstiffness = \"100 N/m\"",
+                                    "model = \"adhesive-repulsive\"\npad_length = \"5 um\"" + keys));
+    return std::get<AdhesiveRepulsiveSurfaces>(scene.device.contact->model).pressure;
   };
   const SurfacePressure published, read_back = pressure("");
   EXPECT_DOUBLE_EQ(read_back.asperity_pressure, published.asperity_pressure);

@@ -25,7 +25,7 @@ Device soft_plate(double stiffness) {
   return {.structure = {.kind = StructureKind::plate, .length = side, .width = side, .mass = 1e-10, .stiffness = stiffness},
           .gap = {.electrode = 10_um, .contact = 2_um},
           .electrodes = {{.name = "main", .begin = 0, .end = side, .fringing = Fringing::none}},
-          .contact = Contact{.model = ContactModel::adhesive_repulsive, .pad_length = pad_length}};
+          .contact = Contact{.model = AdhesiveRepulsiveSurfaces(), .pad_length = pad_length}};
 }
 
 /// The published pressure, without reach [Pa].

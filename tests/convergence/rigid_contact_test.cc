@@ -27,7 +27,7 @@ Device falling(double restitution) {
   return {.structure = {.kind = StructureKind::plate, .length = 100_um, .width = 100_um, .mass = mass, .stiffness = stiffness},
           .gap = {.electrode = electrode, .contact = gap},
           .electrodes = {{.name = "main", .begin = 0, .end = 100_um, .fringing = Fringing::none}},
-          .contact = Contact{.model = ContactModel::rigid, .restitution = restitution}};
+          .contact = Contact{.model = RigidStop{.restitution = restitution}}};
 }
 
 // At rest, and at the plane; where the two are the same (no springs) the rebounds' times are a geometric series too.
@@ -101,7 +101,7 @@ TEST(RigidContact, HundredsOfReboundsAreHundredsOfEventsAndNoMore) {
 /// A plate with a film and two electrodes on a rigid contact.
 Device stopped_plate(double restitution) {
   Device d = test::full_plate();
-  d.contact = Contact{.model = ContactModel::rigid, .restitution = restitution};
+  d.contact = Contact{.model = RigidStop{.restitution = restitution}};
   return d;
 }
 
@@ -212,16 +212,16 @@ TEST(RigidContact, LandingExcessIsTheSameWhateverTheImpactTakes) {
 
 TEST(RigidContact, IsTheLimitOfStiffDampedSprings) {
   // Hysteretic contact: e^2 = loading over unloading stiffness.
-  const auto run = [](ContactModel model, double spring) {
+  const auto spring = [](double stiffness) {
+    return HystereticSpring{.stiffness = stiffness, .unloading_stiffness = 4 * stiffness};
+  };
+  const auto run = [](const ContactModel& law) {
     Device d = stopped_plate(0.5);
-    d.contact->model = model;
-    d.contact->stiffness = spring;
-    d.contact->unloading_stiffness = 4 * spring;
+    d.contact->model = law;
     const std::vector<Signal> drives{Signal::constant(110), Signal()};
     return metrics(simulate_closing(Switch(d), drives, {.duration = 60_us, .tolerance = 1e-8}));
   };
-  const Metrics rigid = run(ContactModel::rigid, 0), soft = run(ContactModel::hysteretic, 1e5),
-                stiff = run(ContactModel::hysteretic, 1e7);
+  const Metrics rigid = run(RigidStop{.restitution = 0.5}), soft = run(spring(1e5)), stiff = run(spring(1e7));
   EXPECT_EQ(rigid.initial_contact_time, stiff.initial_contact_time);
   const double near = std::abs(stiff.major_bounce_height / rigid.major_bounce_height - 1);
   EXPECT_LT(near, 0.05);

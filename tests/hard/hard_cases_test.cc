@@ -43,9 +43,7 @@ Device gold_on(const Contact& contact, bool gas = false) {
   d.contact = contact;
   return d;
 }
-Device gold_on_spring(double stiffness) {
-  return gold_on({.model = ContactModel::linear, .pad_length = 5_um, .stiffness = stiffness});
-}
+Device gold_on_spring(double stiffness) { return gold_on({.model = LinearSpring{.stiffness = stiffness}, .pad_length = 5_um}); }
 
 double bending_stiffness(const Device& d) { return 2 * Switch(d).bending_energy() / (d.gap.contact * d.gap.contact); }
 
@@ -60,11 +58,11 @@ std::vector<Case> cases() {
   }
   for (const double times : {1e-2, 1e2, 1e4}) {
     Device d = test::gold_cantilever();
-    d.contact->effective_modulus *= times;
+    test::rough(d).summits.effective_modulus *= times;
     all.push_back({fmt::format("asperities {:g} times as stiff", times), d, {Signal::constant(step_level)}, 70_us});
   }
   for (const Contact& contact : test::contacts()) {
-    all.push_back({fmt::format("no gas, no damping, contact {} {}", name_of(contact_laws, contact.model), contact.damping),
+    all.push_back({fmt::format("no gas, no damping, contact {}", test::described(contact)),
                    gold_on(contact),
                    {Signal::constant(step_level)},
                    120_us});
@@ -111,8 +109,8 @@ std::vector<Case> cases() {
     Device d = test::nano_cantilever();
     d.dispersion.reset();
     d.gap = {.electrode = 6_nm, .contact = 5_nm};
-    d.contact->asperity_height = 0.1_nm;
-    d.contact->effective_modulus *= 10;
+    test::rough(d).height = 0.1_nm;
+    test::rough(d).summits.effective_modulus *= 10;
     all.push_back({"a gap of 5 nm", d, {Signal::constant(static_pull_in(Switch(d), 0).voltage)}, 30_ns});
     d = test::gold_cantilever();
     d.gap = {.electrode = 80_um, .contact = 50_um};
@@ -124,9 +122,9 @@ std::vector<Case> cases() {
     d.dispersion->model = DispersionModel::van_der_waals;
     d.dispersion->equilibrium_distance = repulsion;
     d.contact->pad_length = 2_nm;
-    d.contact->asperity_density = 1e17;
-    d.contact->asperity_height = 0.02_nm;
-    d.contact->effective_modulus = 1e12;
+    test::rough(d).summits.density = 1e17;
+    test::rough(d).height = 0.02_nm;
+    test::rough(d).summits.effective_modulus = 1e12;
     const Signal drives = Signal::constant(static_pull_in(Switch(d), 0).voltage);
     all.push_back({fmt::format("van der Waals force to a gap of 0.2 nm, repulsion at {:g} m", repulsion),
                    d,
@@ -145,7 +143,7 @@ std::vector<Case> cases() {
   {
     Device plate = test::full_plate();
     plate.gap.contact = 1_um;
-    plate.contact->stiffness = 1e9;
+    plate.contact->model = LinearSpring{.stiffness = 1e9};
     const double pull_in = static_pull_in(Switch(plate), 0).voltage;
     all.push_back({"a plate under 1000 times its pull-in voltage", plate, {Signal::constant(1000 * pull_in), Signal()}, 100_ns});
   }
@@ -153,13 +151,13 @@ std::vector<Case> cases() {
     const Pulse to_and_fro{.levels = {step_level, 0, step_level, 0}, .times = {45_us, 80_us, 125_us}, .edge = 1_us};
     all.push_back({"released and closed again", test::gold_cantilever(), {signal(to_and_fro)}, 160_us});
     Device plate = test::full_plate();
-    plate.contact = Contact{.model = ContactModel::rigid, .restitution = 0.3};
+    plate.contact = Contact{.model = RigidStop{.restitution = 0.3}};
     const Pulse plates{.levels = {110, 0, 110, 0}, .times = {90_us, 120_us, 200_us}, .edge = 1_us};
     all.push_back({"a plate released from a rigid contact and closed again", plate, {signal(plates), Signal()}, 250_us});
   }
   for (const double restitution : {0.0, 0.99}) {  // more than 600 impacts, after which the plate rests
     Device plate = test::full_plate();
-    plate.contact = Contact{.model = ContactModel::rigid, .restitution = restitution};
+    plate.contact = Contact{.model = RigidStop{.restitution = restitution}};
     all.push_back({fmt::format("a plate on a rigid contact with restitution {:g}", restitution),
                    plate,
                    {Signal::constant(150), Signal()},

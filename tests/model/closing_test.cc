@@ -52,7 +52,7 @@ TEST(Closing, BeginsAtRestAndKeepsItsKnotsInOrder) {
 TEST(Closing, BeginsOnTheContactWhereItIsTold) {
   int closed_ones = 0;
   for (const Contact& contact : test::contacts()) {
-    SCOPED_TRACE(name_of(contact_laws, contact.model));
+    SCOPED_TRACE(name_of(contact.model));
     Device device = test::gold_cantilever();
     device.contact = contact;
     const Switch model(device);
@@ -267,8 +267,7 @@ TEST(Closing, GivesUpWaitingForContactWhenTold) {
 
 TEST(Closing, EndsWhereTheBeamReachesTheElectrode) {
   Device d = test::gold_cantilever();
-  d.contact->model = ContactModel::linear;
-  d.contact->stiffness = 1_N_m;  // far too soft to hold the beam
+  d.contact->model = LinearSpring{.stiffness = 1_N_m};  // far too soft to hold the beam
   const Switch device(d);
   for (const Integrator integrator :
        {Integrator::lawson, Integrator::arkode_erk, Integrator::esdirk, Integrator::bdf, Integrator::adams}) {
@@ -343,7 +342,7 @@ TEST(Closing, WithoutAContactLawEndsAtFirstTouch) {
 
 TEST(Closing, WarnsWhenTheAsperitiesAreCrushed) {
   Device d = test::gold_cantilever();
-  d.contact->asperity_height = 2_nm;
+  test::rough(d).height = 2_nm;
   const Trajectory t = simulate_closing(Switch(d), step(), {.duration = 60_us});
   ASSERT_EQ(t.warnings.size(), 1u);
   EXPECT_EQ(t.warnings[0].rfind("contact law asperity-uniform: interference ", 0), 0u) << t.warnings[0];
@@ -351,14 +350,12 @@ TEST(Closing, WarnsWhenTheAsperitiesAreCrushed) {
 }
 
 TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
-  for (const ContactModel model : {ContactModel::hysteretic, ContactModel::elastic_plastic}) {
+  const HystereticSpring spring{.stiffness = 1e5_N_m, .unloading_stiffness = 2e5_N_m};
+  for (const ContactModel& law : {ContactModel(spring), ContactModel(PlasticAsperities::example())}) {
     Device d = test::gold_cantilever();
     d.gas.reset();
     d.structure.modes = 1;
-    d.contact->model = model;
-    d.contact->stiffness = 1e5_N_m;
-    d.contact->unloading_stiffness = 2e5_N_m;
-    d.contact->hardness = 1_GPa;
+    d.contact->model = law;
     const Switch device(d);
     // One undamped mode, kicked at the contact and then left alone.
     const std::vector<Signal> kick{Signal::piecewise_linear({{0, 0}, {0, 300}, {0.3_us, 300}, {0.3_us, 0}})};
@@ -375,7 +372,7 @@ TEST(ContactMemory, TakesFromTheMotionWhatTheDentSays) {
     EXPECT_NEAR(mass * (before * before - after * after) / 2, expected, 1e-6 * expected);
     // On its way back the beam passes rest and, driven no more, returns as fast as it left.
     EXPECT_NEAR(t.touches[1].impact_velocity, -after, 1e-6 * before);
-    if (model == ContactModel::hysteretic) {
+    if (std::holds_alternative<HystereticSpring>(law)) {
       // The beam's own spring works beside the contact, by a share of the interference over the gap.
       EXPECT_NEAR(std::pow(after / before, 2), 0.5, 0.01);
       EXPECT_NEAR(std::pow(speed(t.touches[1].end) / after, 2), 0.5, 0.02) << "the dent heals";
@@ -398,8 +395,7 @@ TEST(ThroughContact, IsTheSameClosingUnderEveryLawWithoutMemory) {
     const Switch with(device);
     if (!why_always_restarted(with).empty()) continue;
     ++tried;
-    SCOPED_TRACE(
-        fmt::format("{} {} {}", name_of(contact_laws, contact.model), contact.damping, static_cast<int>(contact.distribution)));
+    SCOPED_TRACE(test::described(contact));
     ClosingOptions options{.duration = 60_us, .tolerance = 1e-9};
     const Trajectory restarted = simulate_closing(with, step(), options);
     options.restart_at_contact = false;
@@ -440,13 +436,11 @@ TEST(ThroughContact, IsRefusedWhereTheContactIsNoFunctionOfTheState) {
     return [=] { (void)simulate_closing(Switch(device), step(), {.duration = 1e-4, .restart_at_contact = false}); };
   };
   Device device = test::gold_cantilever();
-  device.contact->model = ContactModel::hysteretic;
-  device.contact->stiffness = 1e4;
-  device.contact->unloading_stiffness = 2e4;
+  device.contact->model = HystereticSpring{.stiffness = 1e4, .unloading_stiffness = 2e4};
   test::expect_refused(run(device), "restart_at_contact = false: a contact law with memory turns at the deepest point");
   device = test::full_plate();
   device.electrodes.pop_back();
-  device.contact = Contact{.model = ContactModel::rigid, .restitution = 0.5};
+  device.contact = Contact{.model = RigidStop{.restitution = 0.5}};
   test::expect_refused(run(device), "restart_at_contact = false: an impact on a rigid contact is no force");
 }
 

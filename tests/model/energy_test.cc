@@ -58,16 +58,17 @@ void expect_balanced(bool layer, const Loss& loss, const Contact& contact, int k
   const Switch model(d);
   const Trajectory t =
       simulate_closing(model, waveforms(kind, layer ? 28_V : step_level, layer), {.duration = 150_us, .tolerance = tolerance});
-  const std::string name = fmt::format("piezo {}, loss {}, contact {} {}, waveform {}", layer, loss.name,
-                                       name_of(contact_laws, contact.model), contact.damping, kind);
+  const std::string name =
+      fmt::format("piezo {}, loss {}, contact {}, waveform {}", layer, loss.name, test::described(contact), kind);
   ASSERT_EQ(t.status, Status::done) << name;
-  EXPECT_GE(t.touches.size(), contact.model == ContactModel::adhesive_repulsive ? 2u : 3u) << name;  // it also holds
+  EXPECT_GE(t.touches.size(), std::holds_alternative<AdhesiveRepulsiveSurfaces>(contact.model) ? 2u : 3u)
+      << name;  // it also holds
   EXPECT_GT(t.energy.source_work, 0) << name;
   EXPECT_LT(std::abs(t.energy.residual()), balance * t.energy.source_work) << name;
   EXPECT_LT(std::abs(t.energy.residual()), measured * t.energy.source_work) << name;
   if (loss.gas || loss.damping_ratio > 0) {
     EXPECT_GT(t.energy.dissipated, 0.01 * t.energy.source_work) << name;
-  } else if (contact.damping > 0 || has_memory(model.contact())) {
+  } else if (test::damping(contact) > 0 || has_memory(model.contact())) {
     EXPECT_GT(t.energy.dissipated, 1e-4 * t.energy.source_work) << name;
   } else {
     EXPECT_EQ(t.energy.dissipated, 0) << name;
@@ -89,8 +90,9 @@ void for_every_switch(F&& f) {
 TEST(EnergyBalance, ClosesOverSeveralBouncesForEveryPair) {
   std::map<std::string, int> next;  // waveform, per contact
   for_every_switch([&](bool layer, const Loss& loss, const Contact& contact) {
+    const auto* const plastic = std::get_if<PlasticAsperities>(&contact.model);
     const std::string name =
-        fmt::format("{} {} {}", name_of(contact_laws, contact.model), contact.damping, static_cast<int>(contact.plasticity));
+        fmt::format("{} {}", test::described(contact), plastic ? name_of(plasticities, plastic->plasticity) : "");
     const auto [at, fresh] = next.try_emplace(name, static_cast<int>(next.size()));
     expect_balanced(layer, loss, contact, at->second++ % 3);
   });
@@ -109,11 +111,11 @@ TEST(EnergyBalance, ClosesForEveryContactAlongThePad) {
       if (!gas) d.gas.reset();
       d.contact = contact;
       const Trajectory t = simulate_closing(Switch(d), waveforms(1, step_level, false), {.duration = 100_us, .tolerance = 1e-9});
-      const std::string name = fmt::format("gas {}, contact {} {}", gas, name_of(contact_laws, contact.model), contact.damping);
+      const std::string name = fmt::format("gas {}, contact {}", gas, test::described(contact));
       ASSERT_EQ(t.status, Status::done) << name;
       EXPECT_GE(t.touches.size(), 2u) << name;
       EXPECT_LT(std::abs(t.energy.residual()), 1e-7 * t.energy.source_work) << name;
-      EXPECT_EQ(t.energy.dissipated > 1e-4 * t.energy.source_work, gas || contact.damping > 0) << name;
+      EXPECT_EQ(t.energy.dissipated > 1e-4 * t.energy.source_work, gas || test::damping(contact) > 0) << name;
     }
   }
 }
@@ -169,7 +171,7 @@ TEST(EnergyBalance, ClosesForThePlate) {
         Device d = test::full_plate();
         if (!gas) d.gas.reset();
         const bool rigid = restitution >= 0;
-        if (rigid) d.contact = Contact{.model = ContactModel::rigid, .restitution = restitution};
+        if (rigid) d.contact = Contact{.model = RigidStop{.restitution = restitution}};
         d.structure.damping_ratio = damping;
         const std::vector<Signal> drives{Signal::constant(110),
                                          signal(Pulse{.levels = {50_V, 0_V}, .times = {10_us}, .edge = 2_us})};
@@ -307,8 +309,7 @@ TEST(EnergyBalance, OfEveryRunIsCheckedAtEveryTouch) {
 
 TEST(EnergyBalance, ShowsWhatTooLooseATolerancePutsIn) {
   Device d = test::gold_cantilever();
-  d.contact->model = ContactModel::linear;
-  d.contact->stiffness = 1e9_N_m;
+  d.contact->model = LinearSpring{.stiffness = 1e9_N_m};
   const Switch model(d);
   const std::vector<Signal> drives{Signal::constant(step_level)};
   const auto run = [&](Integrator integrator, double tolerance) {
@@ -394,8 +395,7 @@ TEST(Contact, StoresNoMoreThanTheFieldHasGiven) {
   for (const double stiffness : {1e5, 1e7, 1e9}) {
     Device d = test::gold_cantilever();
     d.gas.reset();
-    d.contact->model = ContactModel::linear;
-    d.contact->stiffness = stiffness;
+    d.contact->model = LinearSpring{.stiffness = stiffness};
     const Switch model(d);
     Switch::Workspace work = model.workspace();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());

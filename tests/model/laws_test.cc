@@ -24,6 +24,7 @@
 #include "model/forces/electrostatic.h"
 #include "model/forces/gold_casimir.h"
 #include "model/gas/gas_law.h"
+#include "tests/support/devices.h"
 
 namespace softland {
 namespace {
@@ -556,47 +557,43 @@ TEST(NearContactFilm, GoesOnSmoothlyWhereItsTangentBegins) {
 
 // ---- contact
 
-constexpr Contact gold_pad{.model = ContactModel::asperity_uniform,
-                           .pad_length = 5_um,
-                           .asperity_radius = 100_nm,
-                           .asperity_density = 1e11_per_m2,
-                           .asperity_height = 100_nm,
-                           .effective_modulus = 48_GPa};
+const Contact gold_pad = test::gold_contact(UniformAsperities::example());
 constexpr double beam_width = 20_um;
 
-Contact pad(ContactModel model, double damping) {
-  Contact c = gold_pad;
-  c.model = model;
-  c.stiffness = 1e4_N_m;
-  c.unloading_stiffness = 2.5e4_N_m;
-  c.hardness = 1_GPa;
-  c.asperity_deviation = 30_nm;
-  c.adhesion_energy = 0.05_N_m;
-  c.damping = damping;
-  return c;
+template <class Law>
+ContactLaw law_of(const Law& law) {
+  return contact_law(test::gold_contact(law), beam_width);
+}
+ContactLaw law_of(const ContactModel& model, double damping) {
+  ContactModel own = model;
+  *number_of(own, "damping") = damping;
+  return law_of(own);
 }
 
-constexpr std::array damping_contacts{ContactModel::linear, ContactModel::asperity_uniform, ContactModel::asperity_gaussian};
-
-ContactLaw plastic_law(Plasticity plasticity) {
-  Contact c = pad(ContactModel::elastic_plastic, 0);
-  c.plasticity = plasticity;
-  return contact_law(c, beam_width);
-}
-
+const std::array<ContactModel, 3> damping_contacts{LinearSpring::example(), UniformAsperities::example(),
+                                                   GaussianAsperities::example()};
+constexpr HystereticSpring hysteretic{.stiffness = 1e4_N_m, .unloading_stiffness = 2.5e4_N_m};
 constexpr std::array plasticities{Plasticity::zmc, Plasticity::kogut_etsion};
 
-std::vector<ContactLaw> remembering() {
-  return {contact_law(pad(ContactModel::hysteretic, 0), beam_width), plastic_law(Plasticity::zmc),
-          plastic_law(Plasticity::kogut_etsion)};
+ContactLaw plastic_law(Plasticity plasticity) {
+  PlasticAsperities law = PlasticAsperities::example();
+  law.plasticity = plasticity;
+  return law_of(law);
 }
 
+std::vector<ContactLaw> remembering() {
+  return {law_of(hysteretic), plastic_law(Plasticity::zmc), plastic_law(Plasticity::kogut_etsion)};
+}
+
+/// Under every law that acts in contact alone and has a force, with damping where it takes it.
 std::vector<ContactLaw> every_contact_law() {
-  std::vector<ContactLaw> laws = remembering();
-  laws.push_back(contact_law(pad(ContactModel::adhesive, 0), beam_width));
-  for (const ContactModel model : damping_contacts) {
-    for (const double damping : {0.0, 0.4}) laws.push_back(contact_law(pad(model, damping), beam_width));
-  }
+  std::vector<ContactLaw> laws;
+  for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
+    for (const Law& law : test::examples<Law>(0.4)) {
+      const ContactLaw own = law_of(law);
+      if (contact_reach(own) == 0 && contact_force(own, 1_nm) != 0) laws.push_back(own);
+    }
+  });
   return laws;
 }
 
@@ -640,8 +637,9 @@ TEST(ContactLaw, BeginsAtZero) {
 
 TEST(ContactLaw, OfClosedFormIsOddAndTheGaussianOneTendsToItsTail) {
   std::vector<ContactLaw> laws = remembering();
-  for (const ContactModel model : {ContactModel::linear, ContactModel::asperity_uniform, ContactModel::adhesive}) {
-    laws.push_back(contact_law(pad(model, 0), beam_width));
+  for (const ContactModel& model : {ContactModel(LinearSpring::example()), ContactModel(UniformAsperities::example()),
+                                    ContactModel(AdhesiveAsperities::example())}) {
+    laws.push_back(law_of(model));
   }
   for (const ContactLaw& law : laws) {
     for (const double d : interferences) {
@@ -649,15 +647,15 @@ TEST(ContactLaw, OfClosedFormIsOddAndTheGaussianOneTendsToItsTail) {
       EXPECT_DOUBLE_EQ(contact_energy(law, -d), contact_energy(law, d));
     }
   }
-  const ContactLaw gaussian = contact_law(pad(ContactModel::asperity_gaussian, 0), beam_width);
+  const ContactLaw gaussian = law_of(GaussianAsperities::example());
   const double tail = contact_force(gaussian, -200_nm);
   EXPECT_LT(tail, 0);
   EXPECT_LT(-tail, 2e-5 * contact_force(gaussian, 120_nm)) << "the header says 1e-5 of the force at the mean";
 }
 
 TEST(ContactLaw, PushesEverMoreUnlessItIsAdhesive) {
-  for (const ContactModel model : damping_contacts) {
-    const ContactLaw law = contact_law(pad(model, 0), beam_width);
+  for (const ContactModel& model : damping_contacts) {
+    const ContactLaw law = law_of(model, 0);
     double last = 0;
     for (const double d : interferences) {
       EXPECT_GT(contact_force(law, d), last);
@@ -667,17 +665,17 @@ TEST(ContactLaw, PushesEverMoreUnlessItIsAdhesive) {
 }
 
 TEST(ContactLaw, KnowsHowFarItHolds) {
-  EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::linear, 0))));
-  EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::hysteretic, 0))));
-  EXPECT_TRUE(std::isinf(largest_interference(pad(ContactModel::rigid, 0))));
-  EXPECT_EQ(largest_interference(pad(ContactModel::elastic_plastic, 0)), 100_nm);
-  EXPECT_EQ(largest_interference(pad(ContactModel::asperity_uniform, 0)), 100_nm);
-  EXPECT_EQ(largest_interference(pad(ContactModel::adhesive, 0)), 100_nm);
-  EXPECT_EQ(largest_interference(pad(ContactModel::asperity_gaussian, 0)), 4 * 30_nm);
+  EXPECT_TRUE(std::isinf(largest_interference(LinearSpring::example())));
+  EXPECT_TRUE(std::isinf(largest_interference(HystereticSpring::example())));
+  EXPECT_TRUE(std::isinf(largest_interference(RigidStop::example())));
+  EXPECT_DOUBLE_EQ(largest_interference(PlasticAsperities::example()), 100_nm);
+  EXPECT_DOUBLE_EQ(largest_interference(UniformAsperities::example()), 100_nm);
+  EXPECT_DOUBLE_EQ(largest_interference(AdhesiveAsperities::example()), 100_nm);
+  EXPECT_DOUBLE_EQ(largest_interference(GaussianAsperities::example()), 4 * 30_nm);
 }
 
 TEST(ContactLaw, LinearIsASpring) {
-  const ContactLaw law = contact_law(pad(ContactModel::linear, 0), beam_width);
+  const ContactLaw law = law_of(LinearSpring::example());
   EXPECT_DOUBLE_EQ(contact_force(law, 2_nm), 1e4 * 2e-9);
   EXPECT_DOUBLE_EQ(contact_energy(law, 2_nm), 1e4 * 4e-18 / 2);
 }
@@ -769,7 +767,7 @@ TEST(GaussianAsperities, IntegralsAreTheTabulatedOnes) {
 }
 
 TEST(GaussianAsperities, CarryTheHertzLawIntegratedOverTheirHeights) {
-  const ContactLaw law = contact_law(pad(ContactModel::asperity_gaussian, 0), beam_width);
+  const ContactLaw law = law_of(GaussianAsperities::example());
   const double sigma = 30_nm;
   const double strength = 1e11 * beam_width * 5_um * 4.0 / 3 * 48e9 * std::sqrt(100_nm) * std::pow(sigma, 1.5);
   for (const double d : {20_nm, 60_nm, 120_nm}) {
@@ -797,9 +795,9 @@ double rebound(const ContactLaw& law, double mass, double v) {
 TEST(HuntCrossley, HasTheRestitutionOfItsClosedFormWhateverTheElasticLaw) {
   constexpr double mass = 1e-11;  // [kg]
   constexpr double end = 1e-4;    // relative: the last step is not finished, and the force there is next to nothing
-  for (const ContactModel model : damping_contacts) {
+  for (const ContactModel& model : damping_contacts) {
     for (const double c : {0.4, 4.0}) {
-      const ContactLaw law = contact_law(pad(model, c), beam_width);
+      const ContactLaw law = law_of(model, c);
       const double v = 0.1, g = 1.5 * c;
       const auto invariant = [&](double u) { return u / g - std::log1p(g * u) / (g * g); };
       double low = 0, high = std::min(v, 0.999999 / g);  // bisection of invariant(-w) = invariant(v)
@@ -807,19 +805,19 @@ TEST(HuntCrossley, HasTheRestitutionOfItsClosedFormWhateverTheElasticLaw) {
         const double w = (low + high) / 2;
         (invariant(-w) < invariant(v) ? low : high) = w;
       }
-      EXPECT_NEAR(rebound(law, mass, v), low, end * v) << static_cast<int>(model) << " c = " << c;
+      EXPECT_NEAR(rebound(law, mass, v), low, end * v) << name_of(model) << " c = " << c;
     }
     // e = 1 - c v + O(c^2 v^2)
     const double c = 0.4, v = 0.05;
-    const double e = rebound(contact_law(pad(model, c), beam_width), mass, v) / v;
-    EXPECT_NEAR(e, 1 - c * v, std::pow(c * v, 2) + end) << static_cast<int>(model);
-    EXPECT_NEAR(rebound(contact_law(pad(model, 0), beam_width), mass, v), v, end * v) << "without damping nothing is lost";
+    const double e = rebound(law_of(model, c), mass, v) / v;
+    EXPECT_NEAR(e, 1 - c * v, std::pow(c * v, 2) + end) << name_of(model);
+    EXPECT_NEAR(rebound(law_of(model, 0), mass, v), v, end * v) << "without damping nothing is lost";
   }
 }
 
 TEST(HuntCrossley, NeverPullsAndAlwaysTakes) {
-  for (const ContactModel model : damping_contacts) {
-    const ContactLaw law = contact_law(pad(model, 4), beam_width);
+  for (const ContactModel& model : damping_contacts) {
+    const ContactLaw law = law_of(model, 4);
     ASSERT_TRUE(is_rate_dependent(law));
     for (const double d : interferences) {
       for (const double rate : {-10.0, -0.3, -0.01, 0.01, 0.3}) {
@@ -830,13 +828,13 @@ TEST(HuntCrossley, NeverPullsAndAlwaysTakes) {
       }
       EXPECT_EQ(contact_dissipation(law, d, 0), 0);
     }
-    EXPECT_FALSE(is_rate_dependent(contact_law(pad(model, 0), beam_width)));
+    EXPECT_FALSE(is_rate_dependent(law_of(model, 0)));
   }
 }
 
 TEST(Adhesion, IsTheDmtForceOfEverySummitInTouch) {
-  const ContactLaw law = contact_law(pad(ContactModel::adhesive, 0), beam_width);
-  const ContactLaw repulsion = contact_law(pad(ContactModel::asperity_uniform, 0), beam_width);
+  const ContactLaw law = law_of(AdhesiveAsperities::example());
+  const ContactLaw repulsion = law_of(UniformAsperities::example());
   const double one = 2 * pi * 100_nm * 0.05, summits = 1e11 * beam_width * 5_um;  // ten
   for (const double d : interferences) {
     const double pull = one * summits * std::min(d, 100_nm) / 100_nm;
@@ -869,7 +867,7 @@ TEST(ContactMemory, ForceAndEnergyAreContinuousFromLoadingToUnloadingToTheDent) 
       EXPECT_GT(dent(law, deepest).lost, 0);
     }
   }
-  for (const ContactModel model : damping_contacts) EXPECT_FALSE(has_memory(contact_law(pad(model, 0), beam_width)));
+  for (const ContactModel& model : damping_contacts) EXPECT_FALSE(has_memory(law_of(model, 0)));
 }
 
 TEST(ContactMemory, UnloadingForceIsTheSlopeOfWhatIsStored) {
@@ -897,7 +895,7 @@ TEST(ContactMemory, DeeperDentsHaveTakenMore) {
 }
 
 TEST(Hysteretic, ReturnsTheShareOfTheWorkThatTheStiffnessesSay) {
-  const ContactLaw law = contact_law(pad(ContactModel::hysteretic, 0), beam_width);
+  const ContactLaw law = law_of(hysteretic);
   for (const double deepest : interferences) {
     EXPECT_NEAR(dent(law, deepest).lost / contact_energy(law, deepest), 1 - 1e4 / 2.5e4, 1e-12);
   }
@@ -1023,7 +1021,7 @@ TEST(ElasticPlastic, GivesBackMoreThanAFlattenedSummitByWhatTheDocumentationSays
 }
 
 TEST(ElasticPlastic, IsElasticBelowFirstYieldAndSofterAbove) {
-  const ContactLaw elastic = contact_law(pad(ContactModel::asperity_uniform, 0), beam_width);
+  const ContactLaw elastic = law_of(UniformAsperities::example());
   for (const Plasticity plasticity : plasticities) {
     const ContactLaw law = plastic_law(plasticity);
     const double w1 = yield(plasticity).first;
@@ -1108,14 +1106,14 @@ TEST(AdhesiveRepulsive, BeginsSmoothlyAtItsReachAndTouchesWhereItsAttractionEnds
   EXPECT_NEAR(law.force(0.0), 0, 1e-9 * area);
   for (double d = -law.reach() + 1_nm; d < -0.1_nm; d += 1_nm) EXPECT_LT(law.force(d), 0) << d;
   EXPECT_GT(law.force(1_nm), 0);
-  EXPECT_EQ(contact_reach(contact_law(pad(ContactModel::adhesive_repulsive, 0), beam_width)), law.reach());
+  EXPECT_EQ(contact_reach(law_of(AdhesiveRepulsiveSurfaces())), law.reach());
   EXPECT_EQ(contact_reach(contact_law(gold_pad, beam_width)), 0);
 }
 
 TEST(AdhesiveRepulsive, SaysWhereItIsNotSmooth) {
   const AdhesiveRepulsiveContact law(SurfacePressure{}, beam_width * 5_um);
   const auto slope = [&](double d) { return law.force(Dual(d, 1)).slope; };
-  const std::vector<double> kinks = contact_kinks(contact_law(pad(ContactModel::adhesive_repulsive, 0), beam_width));
+  const std::vector<double> kinks = contact_kinks(law_of(AdhesiveRepulsiveSurfaces()));
   ASSERT_EQ(kinks.size(), 2u);
   const double jump = slope(kinks[0] + 1e-15) - slope(kinks[0] - 1e-15);
   const double adhesion = beam_width * 5_um * SurfacePressure{}.adhesion_pressure / 1_nm;

@@ -162,8 +162,7 @@ TEST(StaticPullIn, OfFacesOnBothSidesIsTheMaximumOfTheBalance) {
 TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishes) {
   constexpr double margin = 1e-5;
   Device spring = test::gold_cantilever();
-  spring.contact->model = ContactModel::linear;
-  spring.contact->stiffness = 1e3_N_m;
+  spring.contact->model = LinearSpring{.stiffness = 1e3_N_m};
   for (const Switch& model : {gold(), Switch(spring), contact_first()}) {
     const double release = release_voltage(model, 0);
     EXPECT_FALSE(closed_equilibrium(model, std::vector<double>{(1 - margin) * release}));
@@ -177,7 +176,7 @@ TEST(ReleaseVoltage, IsWhereAClosedSwitchOpens) {
   Device gold_damped = test::gold_cantilever();
   gold_damped.structure.damping_ratio = 0.5;
   Device soft = gold_damped;
-  soft.contact->asperity_density = 1e6;  // so soft that the branch falls well below the plane before contact turns it up
+  test::rough(soft).summits.density = 1e6;  // so soft that the branch falls well below the plane before contact turns it up
   for (const Device& d : {gold_damped, soft}) {
     const Switch model(d);
     const double release = release_voltage(model, 0), high = 1.2 * static_pull_in(model, 0).voltage;
@@ -201,12 +200,11 @@ std::vector<Device> contacts_of_every_stiffness() {
   };
   for (int k = 0; k < 30; ++k) {
     Device d = k % 3 == 0 ? contact_first().device() : test::gold_cantilever();
-    d.contact->model = ContactModel::linear;
-    d.contact->stiffness = log_uniform(0.01_N_m, 1e8_N_m);
+    d.contact->model = LinearSpring{.stiffness = log_uniform(0.01_N_m, 1e8_N_m)};
     all.push_back(d);
-    d.contact->model = ContactModel::asperity_uniform;
-    d.contact->asperity_density = log_uniform(1e4, 1e14);
-    d.contact->asperity_height = log_uniform(3_nm, 1_um);
+    d.contact->model = UniformAsperities::example();
+    test::rough(d).summits.density = log_uniform(1e4, 1e14);
+    test::rough(d).height = log_uniform(3_nm, 1_um);
     all.push_back(d);
   }
   return all;
@@ -219,10 +217,10 @@ TEST(ReleaseVoltage, IsWhereTheClosedEquilibriumVanishesForEveryContact_optimize
     const Switch model(d);
     const double release = release_voltage(model, 0);
     const auto closed = [&](double volts) { return closed_equilibrium(model, std::vector<double>{volts}); };
-    const std::string name =
-        d.contact->model == ContactModel::linear
-            ? fmt::format("linear, {} N/m", d.contact->stiffness)
-            : fmt::format("asperities, {} 1/m^2, {} m", d.contact->asperity_density, d.contact->asperity_height);
+    const std::string name = std::holds_alternative<LinearSpring>(d.contact->model)
+                                 ? fmt::format("linear, {} N/m", std::get<LinearSpring>(d.contact->model).stiffness)
+                                 : fmt::format("asperities, {} 1/m^2, {} m", number_of(d.contact->model, "asperity_density", 0),
+                                               number_of(d.contact->model, "asperity_height", 0));
     if (std::isnan(release)) {  // too soft to keep the beam off the electrode at any voltage
       ++never;
       for (double volts = 1; volts < 40; volts *= 1.05) EXPECT_FALSE(closed(volts)) << name << ", " << volts << " V";
@@ -277,8 +275,7 @@ TEST(ClosedEquilibrium, IsAnEquilibrium) {
 TEST(ClosedEquilibrium, IsFoundBetweenASoftContactAndTheElectrode) {
   // A spring softer than the beam gives way by much of what is left between contact plane and electrode.
   Device d = test::gold_cantilever();
-  d.contact->model = ContactModel::linear;
-  d.contact->stiffness = 0.15_N_m;
+  d.contact->model = LinearSpring{.stiffness = 0.15_N_m};
   d.electrodes[0].begin = 0;
   d.electrodes[0].end = d.structure.length / 2;
   const Switch model(d);
@@ -324,15 +321,15 @@ TEST(ClosedEquilibrium, IsOneForEveryContactLaw) {
     d.contact = contact;
     const Switch model(d);
     const auto closed = closed_equilibrium(model, volts);
-    ASSERT_TRUE(closed.has_value()) << name_of(contact_laws, contact.model);
+    ASSERT_TRUE(closed.has_value()) << name_of(contact.model);
     EXPECT_GT(closed->contact_force, 0);
     Switch::Workspace work = model.workspace();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
     Eigen::VectorXd left(model.modes());
     model.accelerations(closed->q.data(), rest.data(), volts, true, work, left.data());
     constexpr double digits = 1e-6;  // of the contact force
-    EXPECT_LT(left.norm(), digits * closed->contact_force * model.contact_shape().norm()) << name_of(contact_laws, contact.model);
-    EXPECT_GT(release_voltage(model, 0), 0) << name_of(contact_laws, contact.model);
+    EXPECT_LT(left.norm(), digits * closed->contact_force * model.contact_shape().norm()) << name_of(contact.model);
+    EXPECT_GT(release_voltage(model, 0), 0) << name_of(contact.model);
   }
 }
 

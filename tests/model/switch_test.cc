@@ -37,9 +37,10 @@ std::vector<Combination> combinations() {
             d.structure.damping_ratio = damping;
             if (!gas) d.gas.reset();
             d.contact = contact;
-            d.contact->pressure.asperity_distance = 60_nm;  // its corners lie beyond the states looked at
-            all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {} {}", fringing.name, layer, gas,
-                                       damping, name_of(contact_laws, contact.model), contact.damping),
+            if (double* const corners = number_of(d.contact->model, "asperity_distance"))
+              *corners = 60_nm;  // they lie beyond the states looked at
+            all.push_back({fmt::format("fringing {}, piezo {}, gas {}, damping {}, contact {}", fringing.name, layer, gas,
+                                       damping, test::described(contact)),
                            d});
           }
         }
@@ -315,8 +316,9 @@ TEST(Switch, DissipatedPowerIsWhatTheVelocityDependentForcesTakeOut) {
     if (in_contact) power += device.contact_dissipation(s.q.data(), s.v.data());
     EXPECT_NEAR(power, -s.v.dot(moving - still), rounding * (std::abs(power) + s.v.norm() * still.norm())) << c.name;
     EXPECT_GE(power, 0) << c.name;
-    EXPECT_EQ(device.damped(), c.device.gas || c.device.structure.damping_ratio > 0 || c.device.contact->damping > 0) << c.name;
-    if (!c.device.gas && c.device.structure.damping_ratio == 0 && !(in_contact && c.device.contact->damping > 0)) {
+    EXPECT_EQ(device.damped(), c.device.gas || c.device.structure.damping_ratio > 0 || test::damping(*c.device.contact) > 0)
+        << c.name;
+    if (!c.device.gas && c.device.structure.damping_ratio == 0 && !(in_contact && test::damping(*c.device.contact) > 0)) {
       EXPECT_EQ(power, 0) << c.name;
     } else {
       EXPECT_GT(power, 0) << c.name;
@@ -418,8 +420,7 @@ TEST(Switch, PiezoForceBelongsToItsCharge) {
 
 TEST(Switch, PenetrationScaleCarriesTheForceThatBendsTheBeamByTheGap) {
   Device d = test::gold_cantilever();
-  d.contact->model = ContactModel::linear;
-  d.contact->stiffness = 1e4;
+  d.contact->model = LinearSpring{.stiffness = 1e4};
   d.structure.modes = 1;
   const Switch device(d);
   const double stiffness = std::pow(device.angular_frequencies()[0] / device.contact_shape()[0], 2);
@@ -431,8 +432,7 @@ TEST(Switch, InContactItVibratesAsTheBeamPinnedAtTheContact) {
   Device d = test::gold_cantilever();
   d.electrodes.clear();
   d.structure.modes = 20;
-  d.contact->model = ContactModel::linear;
-  d.contact->stiffness = 1e9;
+  d.contact->model = LinearSpring{.stiffness = 1e9};
   const Switch device(d);
   Switch::Workspace work = device.workspace();
   const Eigen::Index n = device.modes();

@@ -1,6 +1,12 @@
 // The devices that tests share, as data sheets.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "base/literals.h"
@@ -18,39 +24,55 @@ namespace softland::test {
       .gap = {.electrode = 3.5_um, .contact = 2_um},
       .electrodes = {{.name = "main", .begin = 60_um, .end = 240_um, .fringing = Fringing::meijs_fokkema}},
       .gas = Gas{.model = GasModel::strip, .viscosity = 1.86e-5_Pa_s},
-      .contact = Contact{.model = ContactModel::asperity_uniform,
-                         .pad_length = 5_um,
-                         .asperity_radius = 100_nm,
-                         .asperity_density = 1e11_per_m2,
-                         .asperity_height = 100_nm,
-                         .effective_modulus = 48_GPa},
+      .contact =
+          Contact{.model = UniformAsperities{.summits = {.radius = 100_nm, .density = 1e11_per_m2, .effective_modulus = 48_GPa},
+                                             .height = 100_nm},
+                  .pad_length = 5_um},
   };
 }
 
-/// The contact of that device under every contact law, in the order of ContactModel, with damping where the law takes it, and for
-/// both laws of yield.
-[[nodiscard]] inline std::vector<Contact> contacts() {
-  using namespace literals;
-  std::vector<Contact> all;
-  for (const ContactRow& law : contact_laws) {
-    for (const double damping : {0.0, 0.5}) {
-      if (damping > 0 && !law.keys.contain("damping")) continue;
-      if (law.value == ContactModel::rigid) continue;  // a plate's only
-      Contact c = *gold_cantilever().contact;
-      c.model = law.value;
-      c.stiffness = 1e4_N_m;
-      c.unloading_stiffness = 1.5e4_N_m;
-      c.hardness = 1_GPa;
-      c.asperity_deviation = 30_nm;
-      c.adhesion_energy = 0.05_N_m;
-      c.damping = damping;
-      all.push_back(c);
-      if (law.value == ContactModel::elastic_plastic) {
-        c.plasticity = Plasticity::kogut_etsion;
-        all.push_back(c);
-      }
+/// A contact of that device's pad under this law.
+[[nodiscard]] inline Contact gold_contact(const ContactModel& model) {
+  return {.model = model, .pad_length = gold_cantilever().contact->pad_length};
+}
+/// The summits of a contact of the law asperity-uniform.
+[[nodiscard]] inline UniformAsperities& rough(Device& device) { return std::get<UniformAsperities>(device.contact->model); }
+
+/// The law's example, and that with damping and with every word, where it takes them.
+template <class Law>
+[[nodiscard]] std::vector<Law> examples(double damping) {
+  std::vector<Law> all{Law::example()};
+  for (const Field<Law>& field : fields_of<Law>) {
+    if (field.key == "damping") {
+      all.push_back(Law::example());
+      field.in(all.back()) = damping;
+    }
+    if (field.words == nullptr) continue;
+    all.clear();
+    for (const std::string_view word : field.words()) {
+      all.push_back(Law::example());
+      field.choose(all.back(), word);
     }
   }
+  return all;
+}
+
+[[nodiscard]] inline double damping(const Contact& contact) { return number_of(contact.model, "damping", 0); }
+/// For messages.
+[[nodiscard]] inline std::string described(const Contact& contact) {
+  return fmt::format("{}, damping {}{}", name_of(contact.model), damping(contact),
+                     contact.distribution == ContactDistribution::pad ? ", along the pad" : "");
+}
+
+/// The contact of that device under every contact law, in their order, with damping where the law takes it, and for both laws of
+/// yield.
+[[nodiscard]] inline std::vector<Contact> contacts() {
+  std::vector<Contact> all;
+  for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
+    if constexpr (!std::is_same_v<Law, RigidStop>) {  // a plate's only
+      for (const Law& law : examples<Law>(0.5)) all.push_back(gold_contact(law));
+    }
+  });
   return all;
 }
 
@@ -60,7 +82,7 @@ namespace softland::test {
   std::vector<Contact> all;
   for (Contact c : contacts()) {
     c.distribution = ContactDistribution::pad;
-    c.asperity_height = 400_nm;
+    if (double* const height = number_of(c.model, "asperity_height")) *height = 400_nm;
     if (why_not_along_pad(gold_cantilever().structure, c).empty()) all.push_back(c);
   }
   return all;
@@ -124,7 +146,7 @@ namespace softland::test {
       .electrodes = {{.name = "main", .begin = 0, .end = 70_um, .fringing = Fringing::meijs_fokkema},
                      {.name = "second", .begin = 0, .end = 30_um, .fringing = Fringing::linear}},
       .gas = Gas{.model = GasModel::strip, .viscosity = 1e-6_Pa_s},
-      .contact = Contact{.model = ContactModel::linear, .stiffness = 1e4_N_m}};
+      .contact = Contact{.model = LinearSpring{.stiffness = 1e4_N_m}}};
 }
 
 /// Titanium nitride nano-cantilever: the device of scenes/nem-tin.toml.
@@ -140,12 +162,10 @@ namespace softland::test {
                     .damping_ratio = 0.01},
       .gap = {.electrode = 20_nm, .contact = 15_nm},
       .electrodes = {{.name = "main", .begin = 0, .end = 300_nm, .fringing = Fringing::meijs_fokkema}},
-      .contact = Contact{.model = ContactModel::asperity_uniform,
-                         .pad_length = 30_nm,
-                         .asperity_radius = 10_nm,
-                         .asperity_density = 4e15_per_m2,
-                         .asperity_height = 2_nm,
-                         .effective_modulus = 120_GPa},
+      .contact =
+          Contact{.model = UniformAsperities{.summits = {.radius = 10_nm, .density = 4e15_per_m2, .effective_modulus = 120_GPa},
+                                             .height = 2_nm},
+                  .pad_length = 30_nm},
       .dispersion = Dispersion{.model = DispersionModel::automatic, .hamaker_constant = 4e-19, .equilibrium_distance = 0.3_nm},
   };
 }
@@ -162,12 +182,10 @@ namespace softland::test {
                     .modes = 4,
                     .damping_ratio = 0.01},
       .gap = {.electrode = 50_nm, .contact = 30_nm},
-      .contact = Contact{.model = ContactModel::asperity_uniform,
-                         .pad_length = 200_nm,
-                         .asperity_radius = 20_nm,
-                         .asperity_density = 1e14_per_m2,
-                         .asperity_height = 4_nm,
-                         .effective_modulus = 48_GPa},
+      .contact =
+          Contact{.model = UniformAsperities{.summits = {.radius = 20_nm, .density = 1e14_per_m2, .effective_modulus = 48_GPa},
+                                             .height = 4_nm},
+                  .pad_length = 200_nm},
       .dispersion = Dispersion{.model = DispersionModel::casimir, .conductor = Conductor::gold},
   };
 }

@@ -157,20 +157,20 @@ void put_summits(SceneFile& file, Dice& dice, const Device& d, const std::string
   const double radius = height * dice.log_between(0.5, 5);
   const double modulus = dice.log_between(20e9, 200e9);
   const double carries = height * dice.log_between(0.01, 0.1);
-  Contact one{.pad_length = d.structure.length * dice.log_between(0.01, 0.1),
-              .asperity_radius = radius,
-              .asperity_density = 1,
-              .asperity_height = height,
-              .asperity_deviation = height / 4,
-              .effective_modulus = modulus};
-  one.model = model == "asperity-gaussian" ? ContactModel::asperity_gaussian : ContactModel::asperity_uniform;
+  const Summits summits{.radius = radius, .density = 1, .effective_modulus = modulus};
+  Contact one{.pad_length = d.structure.length * dice.log_between(0.01, 0.1)};
+  if (model == "asperity-gaussian") {
+    one.model = GaussianAsperities{.summits = summits, .deviation = height / 4};
+  } else {
+    one.model = UniformAsperities{.summits = summits, .height = height};
+  }
   const double density = force / contact_force(contact_law(one, d.structure.width), carries);
   put(file, "contact.pad_length", one.pad_length, "m");
   put(file, "contact.asperity_radius", radius, "m");
   put(file, "contact.asperity_density", density, "1/m^2");
   put(file, "contact.effective_modulus", modulus, "Pa");
   if (model == "asperity-gaussian") {
-    put(file, "contact.asperity_deviation", one.asperity_deviation, "m");
+    put(file, "contact.asperity_deviation", height / 4, "m");
   } else {
     put(file, "contact.asperity_height", height, "m");
   }
@@ -184,6 +184,31 @@ void put_summits(SceneFile& file, Dice& dice, const Device& d, const std::string
   }
 }
 
+/// Contact laws that get numbers of the device's own size. Others get those of their example, more or less.
+constexpr std::array<std::string_view, 8> sized_contacts{"linear",   "asperity-uniform",  "asperity-gaussian",
+                                                         "adhesive", "hysteretic",        "elastic-plastic",
+                                                         "rigid",    "adhesive-repulsive"};
+
+std::vector<std::string> other_contacts() {
+  std::vector<std::string> names;
+  for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
+    if (std::ranges::find(sized_contacts, Law::name) == sized_contacts.end()) names.emplace_back(Law::name);
+  });
+  return names;
+}
+
+void put_example(SceneFile& file, Dice& dice, const std::string& model) {
+  for_each_law<ContactModel>([&]<class Law>(std::type_identity<Law>) {
+    Law law = Law::example();
+    for (const Field<Law>& field : fields_of<Law>) {
+      if (Law::name != model || !field.required || field.in == nullptr) continue;
+      const std::string key = "contact." + std::string(field.key);
+      const double value = field.in(law)*dice.about();
+      field.unit.empty() ? put(file, key, value) : put(file, key, value, field.unit);
+    }
+  });
+}
+
 void vary_contact(SceneFile& file, Dice& dice) {
   file.erase("contact");
   if (dice.chance(0.1)) return;
@@ -194,8 +219,14 @@ void vary_contact(SceneFile& file, Dice& dice) {
                                   "adhesive", "hysteretic",       "elastic-plastic"};
   if (d.structure.kind == StructureKind::plate && !open.film_states()) models.emplace_back("rigid");
   if (d.gap.contact > 1.2e-6) models.emplace_back("adhesive-repulsive");
+  const std::vector<std::string> others = other_contacts();
+  models.insert(models.end(), others.begin(), others.end());
   const std::string model = dice.one_of(models);
   put(file, "contact.model", model);
+  if (std::ranges::find(others, model) != others.end()) {
+    put(file, "contact.pad_length", d.structure.length * dice.log_between(0.01, 0.1), "m");
+    return put_example(file, dice, model);
+  }
   if (model == "rigid") return put(file, "contact.restitution", dice.between(0, 0.95));
   if (model == "linear" || model == "hysteretic") {
     const double loading = stiffness * dice.log_between(1e2, 1e6);
@@ -345,7 +376,7 @@ SceneFile random_scene(std::uint64_t seed, std::uint64_t index) {
 std::optional<SceneFile> random_film_scene(std::uint64_t seed, std::uint64_t index) {
   SceneFile file = random_scene(seed, index);
   const Device d = device_of(file);
-  if (d.contact && d.contact->model == ContactModel::rigid) return std::nullopt;
+  if (d.contact && std::holds_alternative<RigidStop>(d.contact->model)) return std::nullopt;
   Dice dice(seed, index, most_draws);  // a draw that the scene itself does not use
   file.erase("gas");
   put(file, "gas.model", "reynolds");

@@ -11,13 +11,9 @@ namespace {
 
 using namespace literals;
 
-Switch gold_with(ContactModel model) {
+Switch gold_with(const ContactModel& model) {
   Device device = test::gold_cantilever();
-  Contact& contact = *device.contact;
-  contact.model = model;
-  contact.stiffness = 1e4_N_m;
-  contact.unloading_stiffness = 4e4_N_m;
-  contact.hardness = 1_GPa;
+  device.contact->model = model;
   return Switch(device);
 }
 
@@ -30,7 +26,7 @@ void expect_edge(const Edge& edge, double level, double side, Phase next) {
 }
 
 TEST(ContactPhase, WithoutMemoryIsFlightOrLoading) {
-  const Switch model = gold_with(ContactModel::linear);
+  const Switch model = gold_with(LinearSpring::example());
   ContactPhase phase(model);
   EXPECT_FALSE(phase.in_contact());
   EXPECT_FALSE(phase.law().active);
@@ -48,7 +44,7 @@ TEST(ContactPhase, WithoutMemoryIsFlightOrLoading) {
 }
 
 TEST(ContactPhase, ThatRemembersTurnsUnloadsAndHeals) {
-  const Switch model = gold_with(ContactModel::hysteretic);
+  const Switch model = gold_with(HystereticSpring{.stiffness = 1e4_N_m, .unloading_stiffness = 4e4_N_m});
   ContactPhase phase(model);
   phase.enter(Phase::loading);
   EXPECT_TRUE(phase.ends_at_turn());
@@ -76,7 +72,7 @@ TEST(ContactPhase, ThatRemembersTurnsUnloadsAndHeals) {
 }
 
 TEST(ContactPhase, KeepsTheDentOfAPlasticContact) {
-  const Switch model = gold_with(ContactModel::elastic_plastic);
+  const Switch model = gold_with(PlasticAsperities::example());
   ContactPhase phase(model);
   phase.enter(Phase::loading);
   phase.turn(40_nm);
@@ -89,7 +85,7 @@ TEST(ContactPhase, KeepsTheDentOfAPlasticContact) {
 }
 
 TEST(ContactPhase, GoesThroughTheReachAndTheKinksOfALaw) {
-  const Switch model = gold_with(ContactModel::adhesive_repulsive);
+  const Switch model = gold_with(AdhesiveRepulsiveSurfaces());
   const std::vector<double> kinks = contact_kinks(model.contact());
   ASSERT_FALSE(kinks.empty());
   ContactPhase phase(model);
@@ -126,7 +122,7 @@ TEST(ContactPhase, OfAPadActsAlways) {
 }
 
 TEST(ContactPhase, AtRestHasNoEdge) {
-  const Switch model = gold_with(ContactModel::linear);
+  const Switch model = gold_with(LinearSpring::example());
   ContactPhase phase(model);
   phase.enter(Phase::rest);
   EXPECT_TRUE(phase.in_contact());

@@ -115,7 +115,7 @@ TEST(EnergyAudit, IntegratesTheDissipationOfADampedMode) {
 
 Device on_stop(double restitution) {
   Device device = test::nickel_plate();
-  device.contact = Contact{.model = ContactModel::rigid, .restitution = restitution};
+  device.contact = Contact{.model = RigidStop{.restitution = restitution}};
   return device;
 }
 

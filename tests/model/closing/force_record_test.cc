@@ -54,8 +54,7 @@ TEST(ForceRecord, IsBracketedByTheKnotsUnderEveryLaw) {
     device.contact = contact;
     const Switch model(device);
     for (const std::vector<Signal>& drives : {std::vector{Signal::constant(test::step_level)}, thrown()}) {
-      SCOPED_TRACE(fmt::format("{}, damping {}, {} pieces", name_of(contact_laws, contact.model), contact.damping,
-                               drives[0].pieces().size()));
+      SCOPED_TRACE(fmt::format("{}, {} pieces", test::described(contact), drives[0].pieces().size()));
       const auto closed = closed_equilibrium(model, hold_levels(drives));
       const double threshold = 0.1 * (closed ? closed->contact_force : 1e-7);
       const Trajectory t = simulate_closing(model, drives, {.duration = 150_us, .tolerance = 1e-7, .steady_force = threshold});
@@ -124,8 +123,9 @@ TEST(ForceRecord, IsThatOfTheLawAlongTheMotion) {
 TEST(ForceRecord, OfAContactThatPullsIsTheMostThatItPulls) {
   for (const double energy : {0.05, 0.2}) {
     Device device = test::gold_cantilever();
-    device.contact->model = ContactModel::adhesive;
-    device.contact->adhesion_energy = energy;
+    AdhesiveAsperities law = AdhesiveAsperities::example();
+    law.adhesion_energy = energy;
+    device.contact->model = law;
     const Switch model(device);
     double most = 0;
     for (double d = 0; d < 20e-9; d += 1e-13) most = std::min(most, contact_force(model.contact(), d, true, 0));
@@ -161,7 +161,7 @@ TEST(ForceRecord, OfWhatNeverTouchesIsNotKnown) {
 /// A plate that does not rebound rests at once: its force is that of the electrode less that of the spring.
 TEST(ForceRecord, FollowsAPlateAtRest) {
   Device device = test::nickel_plate();
-  device.contact = Contact{.model = ContactModel::rigid, .restitution = 0};
+  device.contact = Contact{.model = RigidStop{.restitution = 0}};
   const Switch model(device);
   const double volts = 1.2 * dynamic_pull_in(model, 0, static_pull_in(model, 0)).voltage, later = 1_ms;
   const std::vector<Signal> drives{Signal::piecewise_linear({{0, volts}, {later, volts}, {2 * later, 2 * volts}})};
@@ -181,7 +181,7 @@ TEST(ForceRecord, FollowsAPlateAtRest) {
   EXPECT_GT(between.steady_force_time, later);
   EXPECT_LT(between.steady_force_time, 2 * later);
   EXPECT_TRUE(std::isnan(at(1.01 * hold).steady_force_time));
-  device.contact->restitution = 0.5;
+  device.contact->model = RigidStop{.restitution = 0.5};
   const Trajectory bouncing = simulate_closing(Switch(device), drives, {.duration = 3 * later, .tolerance = 1e-8});
   EXPECT_EQ(bouncing.least_force_after_touch, 0) << "it opens";
 }

@@ -141,9 +141,7 @@ TEST_F(Events, FindAGrazingTouchBetweenTwoKnots) {
 TEST_F(Events, TakeTheFirstOfTwo) {
   const Switch model = [] {
     Device device = test::gold_cantilever();
-    device.contact->model = ContactModel::hysteretic;
-    device.contact->stiffness = 1e4;
-    device.contact->unloading_stiffness = 4e4;
+    device.contact->model = HystereticSpring{.stiffness = 1e4, .unloading_stiffness = 4e4};
     return Switch(device);
   }();
   ContactPhase phase(model);

@@ -1,0 +1,113 @@
+// A field of a parameter struct, described once: keys of scenes, their checks, written scenes, messages and tests come from it.
+//
+// A kind of part, such as the contact, is the variant of the parameter structs of its laws. A law is such a struct with
+//
+//   static constexpr std::string_view name;      its name in a scene
+//   static consteval auto fields();              an array of Field, in the order of a written scene
+//   static constexpr Law example();              values that a switch may have, for tests
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/range.h"
+
+namespace softland {
+
+/// A number of the parameter struct `Owner`, or a word that chooses one of its enumerators.
+template <class Owner>
+struct Field {
+  std::string_view key;             ///< in a scene, and of messages
+  std::string_view unit = {};       ///< SI; empty for a plain number and for a word
+  std::string_view about = {};      ///< one line for people
+  double& (*in)(Owner&) = nullptr;  ///< the number, see reach(); null for a word
+  bool required = false;            ///< else a scene may leave it out, and it keeps the value of an Owner{}
+  Range range = positive;           ///< ends that it leaves open are closed in a scene by the extent of the unit
+  std::string_view fallback = {};   ///< the value of an Owner{} as a scene writes it; empty where that means "none"
+  std::string_view not_below = {};  ///< the key of another field of the law, whose value is the least one
+  std::string_view such_as = {};    ///< a value for messages, where what is usual of the unit would not do
+  std::vector<std::string_view> (*words)() = nullptr;    ///< of a word: what it may be
+  void (*choose)(Owner&, std::string_view) = nullptr;    ///< of a word: sets the enumerator
+  std::string_view refused_word = {}, why_refused = {};  ///< of a word: one that people may expect here, and why it is not there
+};
+
+/// The member at the end of a path of members: reach<Law, &Law::summits, &Summits::radius>.
+template <class Owner, auto... path>
+[[nodiscard]] constexpr double& reach(Owner& owner) {
+  return (owner.*....*path);
+}
+
+/// The fields of several blocks of a law, one after the other.
+template <class Law, std::size_t... n>
+[[nodiscard]] consteval auto joined(const std::array<Field<Law>, n>&... arrays) {
+  std::array<Field<Law>, (n + ...)> all{};
+  auto to = all.begin();
+  ((to = std::copy(arrays.begin(), arrays.end(), to)), ...);
+  return all;
+}
+
+/// The fields of a law, made once.
+template <class Law>
+inline constexpr auto fields_of = Law::fields();
+
+/// Calls f(std::type_identity<Law>()) for every law of a variant.
+template <class Variant, class F>
+constexpr void for_each_law(F&& f) {
+  [&]<std::size_t... i>(std::index_sequence<i...>) { (f(std::type_identity<std::variant_alternative_t<i, Variant>>()), ...); }
+  (std::make_index_sequence<std::variant_size_v<Variant>>());
+}
+
+/// The name of the law in force.
+template <class... Laws>
+[[nodiscard]] constexpr std::string_view name_of(const std::variant<Laws...>& law) {
+  constexpr std::array names{Laws::name...};
+  return names[law.index()];
+}
+
+/// The law of this name with its defaults; none where there is none.
+template <class Variant>
+[[nodiscard]] std::optional<Variant> law_named(std::string_view name) {
+  std::optional<Variant> found;
+  for_each_law<Variant>([&]<class Law>(std::type_identity<Law>) {
+    if (Law::name == name) found = Law{};
+  });
+  return found;
+}
+
+/// The number that a law has under this key; null where it has none.
+template <class Law>
+[[nodiscard]] double* number_of(Law& law, std::string_view key) {
+  for (const Field<Law>& field : fields_of<Law>) {
+    if (field.key == key && field.in != nullptr) return &field.in(law);
+  }
+  return nullptr;
+}
+template <class... Laws>
+[[nodiscard]] double* number_of(std::variant<Laws...>& law, std::string_view key) {
+  return std::visit([&](auto& own) { return number_of(own, key); }, law);
+}
+/// The same by value; `otherwise` where the law has no such number.
+template <class... Laws>
+[[nodiscard]] double number_of(std::variant<Laws...> law, std::string_view key, double otherwise) {
+  const double* const number = number_of(law, key);
+  return number == nullptr ? otherwise : *number;
+}
+
+/// Whether the law in force has this key.
+template <class... Laws>
+[[nodiscard]] bool has_key(const std::variant<Laws...>& law, std::string_view key) {
+  return std::visit(
+      [&]<class Law>(const Law&) {
+        return std::ranges::any_of(fields_of<Law>, [&](const Field<Law>& field) { return field.key == key; });
+      },
+      law);
+}
+
+}  // namespace softland

@@ -1,0 +1,109 @@
+// The keys of a section whose law is a variant of parameter structs (base/field.h).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/field.h"
+#include "config/scene.h"
+#include "config/schema.h"
+#include "config/section_reader.h"
+
+namespace softland::internal {
+
+/// The number that the law in force has under the key of field i of `Law`; `part` gives the variant of a scene.
+template <auto part, class Law, std::size_t i>
+[[nodiscard]] double& bound_number(Scene& scene, std::size_t entry) {
+  return *number_of(part(scene, entry), fields_of<Law>[i].key);
+}
+/// Sets what the law in force has under the key of field i of `Law` by a word.
+template <auto part, class Law, std::size_t i>
+void bound_word(Scene& scene, std::size_t entry, std::string_view word) {
+  std::visit(
+      [&]<class Own>(Own& law) {
+        for (const Field<Own>& field : fields_of<Own>) {
+          if (field.key == fields_of<Law>[i].key && field.choose != nullptr) field.choose(law, word);
+        }
+      },
+      part(scene, entry));
+}
+
+template <auto part, class Law, std::size_t i>
+[[nodiscard]] Key key_of_field() {
+  const Field<Law>& field = fields_of<Law>[i];
+  Key key{.name = field.key,
+          .range = field.range,
+          .fallback = field.fallback,
+          .required = field.required,
+          .about = field.about,
+          .like = field.such_as};
+  if (field.words != nullptr) {
+    key.type = KeyType::choice;
+    key.range = {};
+    key.choices = field.words();
+    if (!field.refused_word.empty()) key.choices.push_back(field.refused_word);
+    key.bound.choose = bound_word<part, Law, i>;
+  } else {
+    key.dimensions = {field.unit.empty() ? dimension::none : parse_quantity("1 " + std::string(field.unit)).dimension};
+    key.bound.number = bound_number<part, Law, i>;
+  }
+  return key;
+}
+
+/// The key `model`, and after it the keys of all laws, each with the laws it belongs to, in an order that every law agrees with.
+template <class Variant, auto part>
+[[nodiscard]] std::vector<Key> keys_of_laws(std::string_view about) {
+  Key model{.name = "model", .type = KeyType::choice, .required = true, .about = about};
+  std::vector<Key> keys;
+  for_each_law<Variant>([&]<class Law>(std::type_identity<Law>) {
+    model.choices.push_back(Law::name);
+    std::size_t place = 0;
+    const auto add = [&](Key key) {
+      auto found = std::ranges::find(keys, key.name, &Key::name);
+      if (found == keys.end()) found = keys.insert(keys.begin() + static_cast<std::ptrdiff_t>(place), std::move(key));
+      found->only_for.push_back(Law::name);
+      place = static_cast<std::size_t>(found - keys.begin()) + 1;
+    };
+    [&]<std::size_t... i>(std::index_sequence<i...>) { (add(key_of_field<part, Law, i>()), ...); }
+    (std::make_index_sequence<fields_of<Law>.size()>());
+  });
+  keys.insert(keys.begin(), std::move(model));
+  return keys;
+}
+
+/// The law that a section names, with its defaults. Throws InvalidInput where a word is refused.
+template <class Variant>
+[[nodiscard]] Variant law_of(const SectionReader& in) {
+  const Variant law = *law_named<Variant>(in.text("model"));
+  std::visit(
+      [&]<class Law>(const Law&) {
+        for (const Field<Law>& field : fields_of<Law>) {
+          if (field.refused_word.empty()) continue;
+          in.require(!in.has_value(field.key) || in.text(field.key) != field.refused_word, field.key, field.why_refused);
+        }
+      },
+      law);
+  return law;
+}
+
+/// Throws InvalidInput where one number of the law is below another that bounds it.
+template <class... Laws>
+void check_bounds(std::variant<Laws...> law, const SectionReader& in) {
+  std::visit(
+      [&]<class Law>(Law& own) {
+        for (const Field<Law>& field : fields_of<Law>) {
+          if (field.not_below.empty() || !in.has_value(field.key)) continue;
+          in.require(field.in(own) >= *number_of(own, field.not_below), field.key,
+                     "must not be below " + in.written(field.not_below));
+        }
+      },
+      law);
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,74 @@
+// The contact of a device: the parameters of one of its laws, and the pad it acts on. A law is a header and a row here; where its
+// force takes much code, that stands in a header of its own, which contact_law.h includes.
+#pragma once
+
+#include <limits>
+#include <string_view>
+#include <variant>
+
+#include "base/choice.h"
+#include "base/field.h"
+#include "model/contact/adhesive_asperities.h"
+#include "model/contact/adhesive_repulsive_surfaces.h"
+#include "model/contact/gaussian_asperities.h"
+#include "model/contact/hysteretic_spring.h"
+#include "model/contact/linear.h"
+#include "model/contact/plastic_asperities.h"
+#include "model/contact/rigid.h"
+#include "model/contact/uniform_asperities.h"
+
+namespace softland {
+
+/// The laws, in the order of messages and tables.
+using ContactModel = std::variant<LinearSpring, UniformAsperities, GaussianAsperities, AdhesiveAsperities, HystereticSpring,
+                                  PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces>;
+
+/// Where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
+enum class ContactDistribution { centre, pad };
+inline constexpr auto contact_distributions =
+    std::to_array<Named<ContactDistribution>>({{ContactDistribution::centre, "centre"}, {ContactDistribution::pad, "pad"}});
+static_assert(is_complete<contact_distributions>());
+
+struct Contact {
+  ContactModel model = UniformAsperities{};
+  ContactDistribution distribution = ContactDistribution::centre;
+  double pad_length = 0;  ///< lt [m]: see Device::contact_position()
+};
+
+/// Whether the law acts per area of the pad, so that a plate needs a width and a length of the pad.
+[[nodiscard]] inline bool acts_per_area(const ContactModel& model) {
+  return std::visit(
+      [](const auto& law) {
+        return requires { law.per_area; };
+      },
+      model);
+}
+/// Whether the contact may hold without any voltage.
+[[nodiscard]] inline bool may_stick(const ContactModel& model) {
+  return std::visit(
+      [](const auto& law) {
+        return requires { law.sticks; };
+      },
+      model);
+}
+/// Why the law cannot act along the pad; empty when it can.
+[[nodiscard]] inline std::string_view why_not_along_pad(const ContactModel& model) {
+  return std::visit(
+      [](const auto& law) -> std::string_view {
+        if constexpr (requires { law.not_along_pad; }) return law.not_along_pad;
+        return {};
+      },
+      model);
+}
+/// Interference up to which the law is physics: all of its asperities touch, or the plane has come down by four standard
+/// deviations of Gaussian ones [m]. Infinite for a spring.
+[[nodiscard]] inline double largest_interference(const ContactModel& model) {
+  return std::visit(
+      [](const auto& law) {
+        if constexpr (requires { law.largest_interference(); }) return law.largest_interference();
+        return std::numeric_limits<double>::infinity();
+      },
+      model);
+}
+
+}  // namespace softland

@@ -1,0 +1,25 @@
+// The names of contacts with a memory, for those who only name them: see model/contact/memory.h.
+#pragma once
+
+#include <string_view>
+
+namespace softland {
+
+template <class Loading, class Elastic, bool Heals>
+struct ContactWithMemory;
+template <class P>
+struct LinearContactOf;
+template <class P>
+struct UniformAsperityContactOf;
+template <class Asperity, class P>
+class PlasticAsperityLoading;
+
+using HystereticContact = ContactWithMemory<LinearContactOf<double>, LinearContactOf<double>, true>;
+template <class Asperity>
+using PlasticAsperityContact =
+    ContactWithMemory<PlasticAsperityLoading<Asperity, double>, UniformAsperityContactOf<double>, false>;
+
+/// Why such a law does not act along the pad.
+inline constexpr std::string_view many_dents = "every point of the pad would keep a dent of its own";
+
+}  // namespace softland

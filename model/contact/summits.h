@@ -1,0 +1,55 @@
+// The summits of a rough surface, a block of the parameters of several contact laws.
+#pragma once
+
+#include <cmath>
+
+#include "base/field.h"
+
+namespace softland {
+
+/// What a contact law is made for.
+struct ContactPad {
+  double width = 0;   ///< of the moving part [m]
+  double length = 0;  ///< lt [m]
+};
+
+struct Summits {
+  double radius = 0;             ///< R [m]
+  double density = 0;            ///< eta [1/m^2]
+  double effective_modulus = 0;  ///< E* [Pa]
+
+  /// How many are under the pad.
+  [[nodiscard]] double count(const ContactPad& pad) const { return density * pad.width * pad.length; }
+  /// Force of all of them over d^1.5, by Hertz [N/m^1.5].
+  [[nodiscard]] double hertz(const ContactPad& pad) const { return count(pad) * effective_modulus * std::sqrt(radius); }
+
+  /// Gold on gold, for tests.
+  [[nodiscard]] static constexpr Summits example() { return {.radius = 100e-9, .density = 1e11, .effective_modulus = 48e9}; }
+};
+
+// clang-format off
+/// The radius and density of the member `summits` of a law.
+template <class Law>
+[[nodiscard]] consteval auto summit_fields() {
+  return std::to_array<Field<Law>>({
+      {.key = "asperity_radius", .unit = "m", .about = "radius of the summits", .in = reach<Law, &Law::summits, &Summits::radius>, .required = true, .such_as = "100 nm"},
+      {.key = "asperity_density", .unit = "1/m^2", .about = "summits per area", .in = reach<Law, &Law::summits, &Summits::density>, .required = true, .such_as = "1e11 1/m^2"},
+  });
+}
+/// Its modulus, which follows the heights.
+template <class Law>
+[[nodiscard]] consteval auto modulus_fields() {
+  return std::to_array<Field<Law>>({
+      {.key = "effective_modulus", .unit = "Pa", .about = "E* of the pair of surfaces", .in = reach<Law, &Law::summits, &Summits::effective_modulus>, .required = true, .such_as = "48 GPa"},
+  });
+}
+/// Heights of the summits that are uniform on [0, Hm].
+template <class Law>
+[[nodiscard]] consteval auto height_fields() {
+  return std::to_array<Field<Law>>({
+      {.key = "asperity_height", .unit = "m", .about = "summit heights are uniform on [0, asperity_height]", .in = reach<Law, &Law::height>, .required = true, .such_as = "100 nm"},
+  });
+}
+// clang-format on
+
+}  // namespace softland
