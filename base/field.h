@@ -57,10 +57,19 @@ template <class Law, std::size_t... n>
 template <class Law>
 inline constexpr auto fields_of = Law::fields();
 
-/// Calls f(std::type_identity<Law>()) for every law of a variant.
+/// Whether a scene can name the law: not where that says `is_of_scenes = false`.
+template <class Law>
+[[nodiscard]] consteval bool is_of_scenes() {
+  if constexpr (requires { Law::is_of_scenes; }) return Law::is_of_scenes;
+  return true;
+}
+/// Calls f(std::type_identity<Law>()) for every law of a variant that a scene can name.
 template <class Variant, class F>
 constexpr void for_each_law(F&& f) {
-  [&]<std::size_t... i>(std::index_sequence<i...>) { (f(std::type_identity<std::variant_alternative_t<i, Variant>>()), ...); }
+  const auto call = [&]<class Law>(std::type_identity<Law> law) {
+    if constexpr (is_of_scenes<Law>()) f(law);
+  };
+  [&]<std::size_t... i>(std::index_sequence<i...>) { (call(std::type_identity<std::variant_alternative_t<i, Variant>>()), ...); }
   (std::make_index_sequence<std::variant_size_v<Variant>>());
 }
 

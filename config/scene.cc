@@ -159,6 +159,11 @@ Scene read_scene(const SceneFile& file) {
   Scene scene{
       .title = {}, .device = {}, .simulate = {}, .metrics = {}, .need_pull_in = {}, .standing = {}, .warnings = {}, .file = file};
   read_sections(scene, impl);
+  if (impl.own_contact) {
+    if (scene.device.contact)
+      impl.fail_section("contact", "the scene was given a contact law of a program: there can be no other");
+    scene.device.contact = impl.own_contact;
+  }
   check_electrodes(scene.device, impl);
   internal::check_drives(impl, scene);
   internal::read_spread(scene, impl);
@@ -219,6 +224,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
 
   // Written and read once more: like any other file, the result then has lines to cite.
   SceneFile file = SceneFile::parse(internal::write_scene(root), impl.name + " (resolved)", impl.directory);
+  if (impl.own_contact) file.add_contact(*impl.own_contact);
   for (const auto& [name, waveform] : drives.waveforms) file.set_waveform(name, waveform);
   for (const auto& [name, value] : drives.before) {
     const bool is_factor = name == internal::dispersion_drive;
@@ -245,6 +251,7 @@ SceneFile canonical(const SceneFile& file, const std::string& name) {
       same.assign(internal::join_path(internal::join_path("waveform", drive), internal::before_key),
                   Quantity{.value = *read.before, .dimension = is_factor ? dimension::none : dimension::voltage});
   }
+  if (impl.own_contact) same.add_contact(*impl.own_contact);
   same.forget_places();
   return same;
 }

@@ -45,6 +45,10 @@ class SceneFile {
   /// Gives a key of one quantity this one, in the unit of its dimension; of a list its element number `element`, counted from 1.
   /// Throws std::logic_error for a key or an element that is not there to be given it.
   void assign(const std::string& path, const Quantity& value, std::size_t element = 0);
+  /// Gives the switch a contact that no scene file can describe, whose model is an OwnContact (model/contact/own.h). The scene
+  /// must have no [contact]: read_scene() refuses both. What is made of the file has that contact as well, but text() and json()
+  /// throw InvalidInput, for they could not say it.
+  void add_contact(const Contact& contact);
   /// Takes a section or a key out, if it is there.
   void erase(const std::string& path);
   /// Replaces [waveform.DRIVE] by this waveform in volts and seconds, with digits that read back to the same bits. The rows of a
@@ -55,7 +59,10 @@ class SceneFile {
   /// Forgets where keys were written: messages about them then say the name of the file alone.
   void forget_places();
 
-  /// The scene as TOML text: parsing it again gives the same scene, digit for digit.
+  /// The same scene, written as text and read again under another name, with the contact that was added.
+  [[nodiscard]] SceneFile again(std::string name) const;
+  /// The scene as TOML text: parsing it again gives the same scene, digit for digit. Throws InvalidInput where a contact was
+  /// added.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] nlohmann::json json() const;
   /// What is written at a key path: text as it is, other values as JSON, of a section its model, if it says one. Nothing where

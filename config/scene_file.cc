@@ -545,8 +545,35 @@ void SceneFile::set_waveform(const std::string& drive, const Waveform& given) {
 
 void SceneFile::forget_places() { impl_->origins.clear(); }
 
-std::string SceneFile::text() const { return internal::write_scene(impl_->root); }
-nlohmann::json SceneFile::json() const { return internal::to_json(impl_->root); }
+void SceneFile::add_contact(const Contact& contact) { impl_->own_contact = contact; }
+
+SceneFile SceneFile::again(std::string name) const {
+  SceneFile same = parse(internal::write_scene(impl_->root), std::move(name));
+  same.impl_->own_contact = impl_->own_contact;
+  return same;
+}
+
+namespace {
+
+// Throws InvalidInput where the scene has more than a file can say.
+void require_writable(const SceneFile::Impl& impl) {
+  const auto* const own = impl.own_contact ? std::get_if<OwnContact>(&impl.own_contact->model) : nullptr;
+  require(!impl.own_contact, [&] {
+    return fmt::format("{}: the contact law '{}' is a program's own: no scene file can say it", impl.name,
+                       own && own->own ? own->own->name() : name_of(impl.own_contact->model));
+  });
+}
+
+}  // namespace
+
+std::string SceneFile::text() const {
+  require_writable(*impl_);
+  return internal::write_scene(impl_->root);
+}
+nlohmann::json SceneFile::json() const {
+  require_writable(*impl_);
+  return internal::to_json(impl_->root);
+}
 
 std::optional<std::string> SceneFile::written(const std::string& path) const {
   const toml::node* node = impl_->find(internal::split_path(path));

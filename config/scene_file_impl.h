@@ -61,6 +61,8 @@ struct SceneFile::Impl {
   toml::table root;
   // Kept apart from the nodes, because toml++ forgets source positions when a table is copied.
   std::map<std::string, Origin, std::less<>> origins;
+  /// Of a law that no scene file can say: see SceneFile::add_contact().
+  std::optional<Contact> own_contact = {};
 
   /// Null when there is no such key.
   [[nodiscard]] const toml::node* find(const std::vector<std::string>& path) const;

@@ -146,6 +146,8 @@ void move_to(double t, const MotionTape::Motion& from, const MotionTape::Motion&
 
 std::string LinearizedClosing::refusal(const Switch& model) {
   if (model.film_states() > 0) return "the states of a compressible gas film have no derivatives here";
+  if (model.has_contact() && is_own(model.contact()))
+    return "a contact law of one's own has derivatives by differences only, which are not exact";
   return model.modes() > most_modes ? "a closing has fewer modes" : "";
 }
 

@@ -162,7 +162,7 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
 
 Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects) {
   const SceneFile frozen = resolved(prepared.scene, prepared.voltage_units());
-  SceneFile file = SceneFile::parse(frozen.text(), prepared.scene.file.name());
+  SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
   for (const Omissible& e : effects) {
     // A key of a section that goes goes with it.

@@ -240,7 +240,7 @@ std::vector<DeviceCourse> device_courses(const Prepared& nominal, const DriveRob
     if (order.empty()) break;
     const std::size_t k = order[static_cast<std::size_t>(std::lround(probability * static_cast<double>(order.size() - 1)))];
     try {
-      const Prepared own = prepare(SceneFile::parse(scene_of_device(nominal, drive, k, options).text(), "device.toml"));
+      const Prepared own = prepare(scene_of_device(nominal, drive, k, options).again("device.toml"));
       courses.push_back(
           {.probability = probability,
            .device = k,

@@ -91,7 +91,7 @@ SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, W
 }
 
 Prepared read_back(const SceneFile& file, const std::string& name, const Prepared& given) {
-  Prepared p = choose(prepare(SceneFile::parse(file.text(), name)));
+  Prepared p = choose(prepare(file.again(name)));
   p.scene.warnings = given.scene.warnings;
   p.scene.standing = given.scene.standing;  // of the file in volts all hold levels would count
   return p;

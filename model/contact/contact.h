@@ -13,6 +13,7 @@
 #include "model/contact/gaussian_asperities.h"
 #include "model/contact/hysteretic_spring.h"
 #include "model/contact/linear.h"
+#include "model/contact/own.h"
 #include "model/contact/plastic_asperities.h"
 #include "model/contact/rigid.h"
 #include "model/contact/uniform_asperities.h"
@@ -21,7 +22,7 @@ namespace softland {
 
 /// The laws, in the order of messages and tables.
 using ContactModel = std::variant<LinearSpring, UniformAsperities, GaussianAsperities, AdhesiveAsperities, HystereticSpring,
-                                  PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces>;
+                                  PlasticAsperities, RigidStop, AdhesiveRepulsiveSurfaces, OwnContact>;
 
 /// Where the contact acts: at the pad's centre, or wherever along the pad it is beyond the plane.
 enum class ContactDistribution { centre, pad };
@@ -47,6 +48,7 @@ struct Contact {
 [[nodiscard]] inline bool may_stick(const ContactModel& model) {
   return std::visit(
       [](const auto& law) {
+        if constexpr (requires { law.sticks(); }) return law.sticks();
         return requires { law.sticks; };
       },
       model);

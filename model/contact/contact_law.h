@@ -162,6 +162,14 @@ struct Dent {
       },
       law);
 }
+/// Whether the law is one of a user's own, which knows no exact derivatives.
+[[nodiscard]] inline bool is_own(const ContactLaw& law) {
+  return std::visit(
+      [](const auto& l) {
+        return requires { l.own; };
+      },
+      law);
+}
 [[nodiscard]] inline bool is_rate_dependent(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) {
