@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -21,18 +23,22 @@
 
 namespace softland {
 
+/// A number that is not given.
+inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+
 /// A number of the parameter struct `Owner`, or a word that chooses one of its enumerators.
 template <class Owner>
 struct Field {
-  std::string_view key;             ///< in a scene, and of messages
-  std::string_view unit = {};       ///< SI; empty for a plain number and for a word
-  std::string_view about = {};      ///< one line for people
-  double& (*in)(Owner&) = nullptr;  ///< the number, see reach(); null for a word
-  bool required = false;            ///< else a scene may leave it out, and it keeps the value of an Owner{}
-  Range range = positive;           ///< ends that it leaves open are closed in a scene by the extent of the unit
-  std::string_view fallback = {};   ///< the value of an Owner{} as a scene writes it; empty where that means "none"
-  std::string_view not_below = {};  ///< the key of another field of the law, whose value is the least one
-  std::string_view such_as = {};    ///< a value for messages, where what is usual of the unit would not do
+  std::string_view key;              ///< in a scene, and of messages
+  std::string_view unit = {};        ///< SI; empty for a plain number and for a word
+  std::string_view about = {};       ///< one line for people
+  double& (*in)(Owner&) = nullptr;   ///< the number, see reach(); null for a word
+  bool required = false;             ///< else a scene may leave it out, and it keeps the value of an Owner{}
+  Range range = positive;            ///< ends that it leaves open are closed in a scene by the extent of the unit
+  std::string_view fallback = {};    ///< the value of an Owner{} as a scene writes it; empty where that means "none"
+  std::string_view instead_of = {};  ///< the key of another field of the law that this one excludes
+  std::string_view not_below = {};   ///< the key of another field of the law, whose value is the least one
+  std::string_view such_as = {};     ///< a value for messages, where what is usual of the unit would not do
   std::vector<std::string_view> (*words)() = nullptr;    ///< of a word: what it may be
   void (*choose)(Owner&, std::string_view) = nullptr;    ///< of a word: sets the enumerator
   std::string_view refused_word = {}, why_refused = {};  ///< of a word: one that people may expect here, and why it is not there
@@ -90,6 +96,22 @@ template <class Variant>
   return found;
 }
 
+template <class Variant>
+[[nodiscard]] std::vector<std::string_view> names_of_laws() {
+  std::vector<std::string_view> names;
+  for_each_law<Variant>([&]<class Law>(std::type_identity<Law>) { names.push_back(Law::name); });
+  return names;
+}
+/// "strip, veijola or linear"
+template <class Variant>
+[[nodiscard]] std::string listed_laws() {
+  const std::vector<std::string_view> names = names_of_laws<Variant>();
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
+  return text;
+}
+
 /// The number that a law has under this key; null where it has none.
 template <class Law>
 [[nodiscard]] double* number_of(Law& law, std::string_view key) {
@@ -107,6 +129,20 @@ template <class... Laws>
 [[nodiscard]] double number_of(std::variant<Laws...> law, std::string_view key, double otherwise) {
   const double* const number = number_of(law, key);
   return number == nullptr ? otherwise : *number;
+}
+
+/// Another law with the numbers of this one, as far as both have them.
+template <class... Laws>
+[[nodiscard]] std::variant<Laws...> under(std::variant<Laws...> own, std::variant<Laws...> other) {
+  std::visit(
+      [&]<class Law>(Law& law) {
+        for (const Field<Law>& field : fields_of<Law>) {
+          if (field.in == nullptr) continue;
+          if (const double* known = number_of(own, field.key)) field.in(law) = *known;
+        }
+      },
+      other);
+  return other;
 }
 
 /// Whether the law in force has this key.

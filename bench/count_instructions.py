@@ -33,8 +33,14 @@ CONTACTS = {
 }
 
 
+def gas_laws(without):
+    """The names in the first columns of the tables of gas laws in docs/physics.md, which a test compares with the program's."""
+    part = (SCENES.parent / "docs" / "physics.md").read_text().split("## Gas ")[1].split("\n## ")[0]
+    return [name for name in re.findall(r"^\| `([^`]+)` \|", part, re.MULTILINE) if name not in ("model", *without)]
+
+
 def choices(section, key, without):
-    """What docs/scene.md lists for a choice, but for some; a test compares the list with the program's."""
+    """What docs/scene.md lists for a choice, but for some."""
     part = (SCENES.parent / "docs" / "scene.md").read_text().split(f"## [{section}]")[1].split("\n## ")[0]
     row = next(line for line in part.splitlines() if line.startswith(f"| `{key}` | choice |"))
     return [name for name in re.findall("`([^`]+)`", row.split("|")[3]) if name not in without]
@@ -45,7 +51,7 @@ OTHER_GAS = ("strip", "strip-slit", "linear", "reynolds")
 # A scene, what is changed in words, and how: key=value, or -SECTION to take one out.
 CHANGES = [("mem-gold.toml", words, assignments) for words, assignments in (
     ("no gas", ["-gas"]),
-    *((f"gas {model}", [f"gas.model={model}"]) for model in choices("gas", "model", without=OTHER_GAS)),
+    *((f"gas {model}", [f"gas.model={model}"]) for model in gas_laws(without=OTHER_GAS)),
     ("a second film on the far side", ["gas.far_gap=3 um"]),
     *((f"fringing {law}", [f"electrode.main.fringing={law}"]) for law in choices("electrode.NAME", "fringing", without=("meijs-fokkema",))),
     *((f"contact {model}", [f'contact={{ model = "{model}", {keys} }}']) for model, keys in CONTACTS.items()),

@@ -108,7 +108,7 @@ constexpr DeviceNumber device_numbers[] = {
     {[](Device& d) -> double& { return d.structure.density; }},
     {[](Device& d) -> double& { return d.structure.width; }},
     {[](Device& d) -> double& { return d.structure.length; }},
-    {[](Device& d) -> double& { return d.gas->viscosity; }},
+    {[](Device& d) -> double& { return std::get<StripGas>(*d.gas).film.viscosity; }},
     {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).summits.effective_modulus; }, false},
     {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).height; }, false},
     {[](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).summits.radius; }, false},

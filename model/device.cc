@@ -9,7 +9,6 @@
 #include "base/require.h"
 #include "model/beam.h"
 #include "model/forces/electrostatic.h"
-#include "model/gas/gas_law.h"
 #include "model/surface.h"
 
 namespace softland {
@@ -82,28 +81,6 @@ void check_gap_and_electrodes(const Device& d) {
   }
 }
 
-void check_gas(const Gas& g, const Structure& s) {
-  const auto positive_if_given = [](double value, const char* unit, const char* name) {
-    if (!std::isnan(value)) positive(value, unit, name);
-  };
-  positive(g.pressure, "Pa", "gas.pressure");
-  positive(g.temperature, "K", "gas.temperature");
-  if (row_of(gas_laws, g.model).needs_thickness) positive(s.thickness, "m", "structure.thickness");
-  positive_if_given(g.viscosity, "Pa s", "gas.viscosity");
-  positive_if_given(g.mean_free_path, "m", "gas.mean_free_path");
-  positive_if_given(g.film_length, "m", "gas.film_length");
-  positive_if_given(g.far_gap, "m", "gas.far_gap");
-  require(std::isnan(g.far_gap) || !is_compressible(g.model), "gas.far_gap: not with gas.model = reynolds");
-  if (g.model == GasModel::strip_slit) {
-    positive(g.slit_height, "m", "gas.slit_height");
-    positive(g.slit_length, "m", "gas.slit_length");
-  }
-  positive_if_given(g.damping, "N s/m^2", "gas.damping");
-  positive_if_given(g.quality_factor, "", "gas.quality_factor");
-  require(g.model != GasModel::linear || std::isnan(g.damping) != std::isnan(g.quality_factor),
-          "gas.model = linear: needs either damping or quality_factor");
-}
-
 /// The numbers of a part's law; those that a scene may leave out may be as an Owner{} has them.
 template <class Law>
 void check_fields(const std::string& part, Law law) {
@@ -111,7 +88,8 @@ void check_fields(const std::string& part, Law law) {
   for (const Field<Law>& field : fields_of<Law>) {
     if (field.in == nullptr) continue;
     const double value = field.in(law), missing = field.in(unset);
-    if (!field.required && (value == missing || (std::isnan(value) && std::isnan(missing)))) continue;
+    const bool may_miss = !field.required || !field.instead_of.empty();
+    if (may_miss && (value == missing || (std::isnan(value) && std::isnan(missing)))) continue;
     const std::string name = part + "." + std::string(field.key), unit(field.unit);
     const auto refuse_unless = [&](bool right, const auto& rule) {
       require(right, [&] { return fmt::format("{} = {}: {}", name, engineering(value, unit), rule()); });
@@ -129,13 +107,21 @@ void check_fields(const std::string& part, Law law) {
   }
 }
 
+void check_gas(const Gas& g, const Structure& s) {
+  if (limits_of(g).needs_thickness) positive(s.thickness, "m", "structure.thickness");
+  std::visit([](const auto& law) { check_fields("gas", law); }, g);
+  const auto* const damper = std::get_if<LinearGas>(&g);
+  require(damper == nullptr || std::isnan(damper->damping) != std::isnan(damper->quality_factor),
+          "gas.model = linear: needs either damping or quality_factor");
+}
+
 void check_contact(const Device& d) {
   const Contact& c = *d.contact;
   const Structure& s = d.structure;
   const bool plate = s.kind == StructureKind::plate;
   const bool rigid = std::holds_alternative<RigidStop>(c.model);
   require(!rigid || plate, "contact.model = rigid: needs a plate; a beam has modes that take part in an impact");
-  require(!rigid || !d.gas || !is_compressible(d.gas->model),
+  require(!rigid || !d.gas || !is_compressible(*d.gas),
           "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
   const bool no_pad = plate && !acts_per_area(c.model) && c.pad_length == 0;  // only its area would count
   require(no_pad || (c.pad_length > 0 && c.pad_length < s.length), [&] {

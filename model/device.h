@@ -13,6 +13,7 @@
 
 #include "base/choice.h"
 #include "model/contact/contact.h"
+#include "model/gas/gas.h"
 
 namespace softland {
 
@@ -100,27 +101,6 @@ struct Electrode {
 
   /// All pads on a beam of this length [m].
   [[nodiscard]] std::vector<Stretch> pads(double length) const;
-};
-
-/// Laws of the squeeze film: their table is in model/gas/gas_law.h.
-enum class GasModel { strip, strip_slit, veijola, gallis_torczynski, near_contact, guo_alexeenko, reynolds, linear };
-
-/// A film that can be compressed, with pressures as states of their own: see model/gas/reynolds_film.h.
-[[nodiscard]] constexpr bool is_compressible(GasModel model) { return model == GasModel::reynolds; }
-
-/// What is not a number is not given: see model/gas/air.h for what stands in.
-struct Gas {
-  GasModel model = GasModel::strip;
-  double viscosity = std::numeric_limits<double>::quiet_NaN();       ///< mu [Pa s]
-  double pressure = 101325;                                          ///< p, ambient [Pa]
-  double temperature = 300;                                          ///< T [K]
-  double mean_free_path = std::numeric_limits<double>::quiet_NaN();  ///< lambda [m]
-  double film_length = std::numeric_limits<double>::quiet_NaN();     ///< strip, strip_slit, veijola: of one film [m]
-  double slit_height = std::numeric_limits<double>::quiet_NaN();     ///< strip_slit [m]
-  double slit_length = std::numeric_limits<double>::quiet_NaN();     ///< strip_slit [m]
-  double far_gap = std::numeric_limits<double>::quiet_NaN();         ///< of a second film, on the far side, at rest [m]
-  double damping = std::numeric_limits<double>::quiet_NaN();         ///< linear: c [N s/m^2]
-  double quality_factor = std::numeric_limits<double>::quiet_NaN();  ///< linear, instead of damping: Q of the first mode
 };
 
 /// A piezoelectric layer on the face away from the electrode, as wide as the beam.

@@ -226,12 +226,12 @@ Switch::Switch(const Device& device, const SwitchOptions& options, const Switch*
   if (device_.gas) {
     const double first_mode = (weights_ * shapes_.col(0).head(n).array().square()).sum();
     gas_ = gas_law(*device_.gas, s, frequencies_[0] / first_mode);
-    if (is_compressible(device_.gas->model)) {
-      film_.emplace(*device_.gas, s.width, n, gap_floor());
+    if (is_compressible(*device_.gas)) {
+      film_.emplace(*film_of(*device_.gas), s.width, n, gap_floor());
     } else {
       passive_laws_.push_back(std::visit([&](const auto& law) { return erased(law, {0, n}, gap_floor()); }, *gas_));
     }
-    if (const double gap = device_.gas->far_gap; !std::isnan(gap)) {
+    if (const double gap = far_gap(*device_.gas); !std::isnan(gap)) {
       passive_laws_.push_back(std::visit(
           [&](const auto& law) {
             return erased(on_far_side(law, gap), {0, n}, gap_floor());

@@ -67,20 +67,20 @@ std::vector<OtherWay> other_numerics(const Prepared& closing) {
 }
 
 std::vector<OtherWay> other_gas_laws(const Prepared& closing) {
-  constexpr std::array usual = {GasModel::strip, GasModel::veijola, GasModel::gallis_torczynski};
+  const std::array<Gas, 3> usual{StripGas{}, VeijolaGas{}, GallisTorczynskiGas{}};
   const std::optional<Gas>& own = closing.scene.device.gas;
   std::vector<OtherWay> ways;
-  if (!own || own->model == GasModel::linear) return ways;
-  for (const GasModel law : usual) {
-    if (law == own->model) continue;
+  if (!own || std::holds_alternative<LinearGas>(*own)) return ways;
+  for (const Gas& law : usual) {
+    if (law.index() == own->index()) continue;
     Device device = closing.scene.device;
-    device.gas = under_law(*own, law);
+    device.gas = under(*own, law);
     try {
       validate(device);
     } catch (const InvalidInput&) {
       continue;
     }
-    ways.push_back({.name = fmt::format("gas {}", name_of(gas_laws, law)),
+    ways.push_back({.name = fmt::format("gas {}", name_of(law)),
                     .varied = Varied::gas,
                     .device = std::move(device),
                     .tolerance = closing.tolerance});

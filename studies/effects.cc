@@ -43,9 +43,9 @@ Effect closing_with(const Prepared& prepared, const std::optional<Gas>& gas, con
            .warnings = t.warnings};
   if (!gas) return e;
   const double closed = described.gap.electrode - described.gap.contact;
-  e.choice = name_of(gas_laws, gas->model);
+  e.choice = name_of(*gas);
   e.magnitude.value = damping_per_length(*model.gas(), closed);
-  if (gas->model != GasModel::linear) e.group.value = mean_free_path(*gas) / closed;
+  if (const FilmState* const film = film_of(*gas)) e.group.value = mean_free_path(*film) / closed;
   return e;
 }
 
@@ -71,22 +71,22 @@ Effects compare_effects(const Prepared& prepared, const Watch& watch) {
   const std::optional<Gas>& own = prepared.scene.device.gas;
   Effects found{.window = prepared.duration};
   std::vector<std::optional<Gas>> laws{std::nullopt};
-  for (const GasRow& e : gas_laws) {
-    const bool in_scene = own && own->model == e.value;
+  for_each_law<Gas>([&]<class Law>(std::type_identity<Law>) {
+    const bool in_scene = own && std::holds_alternative<Law>(*own);
     // A damper and a slit are not there for the taking: only where the scene describes them.
-    if ((e.value == GasModel::linear || e.value == GasModel::strip_slit) && !in_scene) continue;
-    const Gas gas = in_scene ? *own : under_law(own.value_or(Gas{}), e.value);
+    if ((std::is_same_v<Law, LinearGas> || std::is_same_v<Law, StripSlitGas>)&&!in_scene) return;
+    const Gas gas = in_scene ? *own : under(own.value_or(Gas{}), Gas(Law{}));
     if (const std::string reason = refusal(prepared.scene.device, gas); !reason.empty()) {
-      found.not_compared.push_back({.choice = std::string(e.name), .reason = reason});
-      continue;
+      found.not_compared.push_back({.choice = std::string(Law::name), .reason = reason});
+      return;
     }
     laws.emplace_back(gas);
-  }
+  });
   for (const std::optional<Gas>& law : laws) {
     const double share = 1.0 / static_cast<double>(laws.size());
     Effect e = closing_with(prepared, law, watch, static_cast<double>(found.list.size()) * share, share);
     if (watch.stopped()) break;
-    e.in_scene = law.has_value() == own.has_value() && (!own || law->model == own->model);
+    e.in_scene = law.has_value() == own.has_value() && (!own || law->index() == own->index());
     found.list.push_back(std::move(e));
   }
   const bool own_is_there = std::any_of(found.list.begin(), found.list.end(), [](const Effect& e) { return e.in_scene; });

@@ -103,19 +103,19 @@ void add_omissible_gas(const Prepared& prepared, std::vector<Omissible>& list) {
        .magnitude = {.name = "damping, closed", .unit = "N s/m^2", .value = damping_per_length(*prepared.model.gas(), closed)},
        .group = {.name = "squeeze number, closed"},
        .instead = {}});
-  if (d.gas->model != GasModel::linear) list.back().group.value = squeeze_number(*d.gas, width, closed, omega);
-  if (!std::isnan(d.gas->far_gap)) {
+  if (const FilmState* const film = film_of(*d.gas)) list.back().group.value = squeeze_number(*film, width, closed, omega);
+  if (!std::isnan(far_gap(*d.gas))) {
     list.push_back({.effect = "gas.far_gap",
                     .magnitude = {.name = "damping, at rest",
                                   .unit = "N s/m^2",
-                                  .value = damping_per_length(*prepared.model.gas(), d.gas->far_gap)},
-                    .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / d.gas->far_gap, 3)},
+                                  .value = damping_per_length(*prepared.model.gas(), far_gap(*d.gas))},
+                    .group = {.name = "(near / far gap)^3", .value = std::pow(d.gap.electrode / far_gap(*d.gas), 3)},
                     .instead = {}});
   }
-  if (!std::isnan(d.gas->film_length)) {
+  if (!std::isnan(film_length(*d.gas))) {
     list.push_back({.effect = "gas.film_length",
-                    .magnitude = {.name = "damping kept", .value = end_flow(width / d.gas->film_length)},
-                    .group = {.name = "width / length", .value = width / d.gas->film_length},
+                    .magnitude = {.name = "damping kept", .value = end_flow(width / film_length(*d.gas))},
+                    .group = {.name = "width / length", .value = width / film_length(*d.gas)},
                     .instead = {}});
   }
 }

@@ -191,17 +191,16 @@ int check_verb(const Common& c) {
     add("dispersion force", dispersion_words(p, work->watch()));
     add("drive dispersion", "hold factor " + plain_number(1 + p.signals()[p.scene.device.electrodes.size()].hold_level(), 5));
   }
-  if (p.scene.device.gas && p.scene.device.gas->model != GasModel::linear) {
-    const Gas& gas = *p.scene.device.gas;
+  if (const FilmState* const film = p.scene.device.gas ? film_of(*p.scene.device.gas) : nullptr) {
     const double g = p.scene.device.gap.electrode;
-    const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(gas);
+    const double closed = g - p.scene.device.gap.contact, lambda = mean_free_path(*film);
     const double omega = p.model.angular_frequencies()[0];
-    const GasRow& law = row_of(gas_laws, gas.model);
+    const double most = limits_of(*p.scene.device.gas).most_squeeze;
     const std::string holds =
-        std::isfinite(law.most_squeeze) ? fmt::format("; {} holds below about {}", law.name, plain_number(law.most_squeeze)) : "";
+        std::isfinite(most) ? fmt::format("; {} holds below about {}", name_of(*p.scene.device.gas), plain_number(most)) : "";
     add("squeeze number",
-        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(gas, s.width, g, omega)),
-                    plain_number(squeeze_number(gas, s.width, closed, omega)), holds));
+        fmt::format("{} at the rest gap, {} closed (first mode{})", plain_number(squeeze_number(*film, s.width, g, omega)),
+                    plain_number(squeeze_number(*film, s.width, closed, omega)), holds));
     add("Knudsen number", fmt::format("{} at the rest gap, {} closed (mean free path {})", plain_number(lambda / g),
                                       plain_number(lambda / closed), given_quantity(lambda, "m", 3)));
   }

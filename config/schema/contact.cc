@@ -38,7 +38,7 @@ void check_contact(Scene& scene, const SectionReader& in, std::size_t) {
   check_pad_length(d, in);
   if (std::holds_alternative<RigidStop>(c.model)) {
     in.require(d.structure.kind == StructureKind::plate, "model", "needs a plate: a beam has modes that take part in an impact");
-    in.require(!d.gas || !is_compressible(d.gas->model), "model",
+    in.require(!d.gas || !is_compressible(*d.gas), "model",
                "not with gas.model = \"reynolds\", whose film still flows under a plate that rests");
   }
   check_bounds(c.model, in);

@@ -52,6 +52,7 @@ template <auto part, class Law, std::size_t i>
   } else {
     key.dimensions = {field.unit.empty() ? dimension::none : parse_quantity("1 " + std::string(field.unit)).dimension};
     key.bound.number = bound_number<part, Law, i>;
+    if (!field.instead_of.empty()) key.instead_of.push_back(field.instead_of);
   }
   return key;
 }

@@ -39,26 +39,20 @@ std::optional<fleet::LaneFringing> lane_fringing(Fringing fringing) {
 }
 
 std::optional<fleet::LaneFilm> lane_film(const std::optional<Gas>& gas) {
-  if (!gas) return fleet::LaneFilm::none;
-  switch (gas->model) {
-    case GasModel::strip:
-      return fleet::LaneFilm::strip;
-    case GasModel::strip_slit:
-      return fleet::LaneFilm::strip_slit;
-    case GasModel::veijola:
-      return fleet::LaneFilm::veijola;
-    case GasModel::gallis_torczynski:
-      return fleet::LaneFilm::gallis_torczynski;
-    case GasModel::near_contact:
-      return fleet::LaneFilm::near_contact;
-    case GasModel::guo_alexeenko:
-      return fleet::LaneFilm::guo_alexeenko;
-    case GasModel::linear:
-      return fleet::LaneFilm::linear;
-    case GasModel::reynolds:
-      break;
-  }
-  return std::nullopt;
+  using Lane = fleet::LaneFilm;
+  if (!gas) return Lane::none;
+  return std::visit(
+      []<class Law>(const Law&) -> std::optional<Lane> {
+        if constexpr (std::is_same_v<Law, StripGas>) return Lane::strip;
+        if constexpr (std::is_same_v<Law, StripSlitGas>) return Lane::strip_slit;
+        if constexpr (std::is_same_v<Law, VeijolaGas>) return Lane::veijola;
+        if constexpr (std::is_same_v<Law, GallisTorczynskiGas>) return Lane::gallis_torczynski;
+        if constexpr (std::is_same_v<Law, NearContactGas>) return Lane::near_contact;
+        if constexpr (std::is_same_v<Law, GuoAlexeenkoGas>) return Lane::guo_alexeenko;
+        if constexpr (std::is_same_v<Law, LinearGas>) return Lane::linear;
+        return std::nullopt;
+      },
+      *gas);
 }
 
 std::optional<fleet::LaneDispersion> lane_dispersion(const std::optional<Dispersion>& force) {
@@ -97,7 +91,7 @@ bool is_usual(const Switch& model) {
   const std::vector<Electrode>& all = device.electrodes;
   const auto alike = [&](const Electrode& e) { return e.side == Side::near && e.fringing == all.front().fringing; };
   const bool is_plate = device.structure.kind == StructureKind::plate;  // whose electrodes lie over the same points
-  const bool film = !device.gas || (device.gas->model == GasModel::strip && std::isnan(device.gas->far_gap));
+  const bool film = !device.gas || (std::holds_alternative<StripGas>(*device.gas) && std::isnan(far_gap(*device.gas)));
   return model.modes() <= fleet::usual_modes && !device.dispersion && !stretches(device.structure) && film &&
          std::holds_alternative<UniformAsperityContact>(model.contact()) && std::ranges::all_of(all, alike) &&
          !(is_plate && all.size() > 1) && !electrode_conflict(device.structure, all);
@@ -158,7 +152,7 @@ LaneLayout layout_of(const Switch& model) {
                     .piezo = model.has_piezo(),
                     .stretching = stretches(device.structure),
                     .film = *lane_film(device.gas),
-                    .far_film = device.gas && !std::isnan(device.gas->far_gap),
+                    .far_film = device.gas && !std::isnan(far_gap(*device.gas)),
                     .dispersion = *lane_dispersion(device.dispersion),
                     .contact = contact.law,
                     .damped_contact = contact.damping > 0};
@@ -186,7 +180,7 @@ void set_far_side(LaneSwitch& s, const Device& device) {
   for (std::size_t k = 0; k < device.electrodes.size(); ++k) {
     if (const Electrode& e = device.electrodes[k]; e.side != Side::near) set(e.gap, s.electrode_gaps[k], s.electrode_floor[k]);
   }
-  if (device.gas && !std::isnan(device.gas->far_gap)) set(device.gas->far_gap, s.film_gaps, s.film_floor);
+  if (device.gas && !std::isnan(far_gap(*device.gas))) set(far_gap(*device.gas), s.film_gaps, s.film_floor);
 }
 
 void set_film(LaneSwitch& s, const GasLaw& law) {

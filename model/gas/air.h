@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "model/constants.h"
-#include "model/device.h"
+#include "model/gas/film.h"
 
 namespace softland {
 
@@ -23,11 +23,11 @@ inline constexpr double gas_constant_of_air = 287;  ///< R_g [J/(kg K)]
 [[nodiscard]] inline double air_viscosity(double temperature) { return 1.7894e-5 * std::pow(temperature / 297, 0.77); }
 
 /// mu [Pa s]: as given, or that of air.
-[[nodiscard]] inline double viscosity(const Gas& gas) {
+[[nodiscard]] inline double viscosity(const FilmState& gas) {
   return std::isnan(gas.viscosity) ? air_viscosity(gas.temperature) : gas.viscosity;
 }
 /// lambda [m]: as given, or from viscosity, pressure and temperature.
-[[nodiscard]] inline double mean_free_path(const Gas& gas) {
+[[nodiscard]] inline double mean_free_path(const FilmState& gas) {
   if (!std::isnan(gas.mean_free_path)) return gas.mean_free_path;
   return viscosity(gas) / gas.pressure * std::sqrt(pi * gas_constant_of_air * gas.temperature / 2);
 }

@@ -9,6 +9,8 @@
 // h = 0. Source: Gallis & Torczynski, J. Microelectromech. Syst. 13 (2004) 653, eqs. 16-18.
 #pragma once
 
+#include "model/gas/film.h"
+
 namespace softland {
 
 /// Over the scalar of its parameters; that of the state is one they convert to.
@@ -30,5 +32,19 @@ struct GallisTorczynskiFilmOf {
   }
 };
 using GallisTorczynskiFilm = GallisTorczynskiFilmOf<double>;
+
+/// In a scene.
+struct GallisTorczynskiGas {
+  static constexpr std::string_view name = "gallis-torczynski";
+  static constexpr FilmLimits limits{.most_squeeze = incompressible};
+  FilmState film = {};
+  double far_gap = not_given;
+
+  static consteval auto fields() { return joined(film_fields<GallisTorczynskiGas>(), far_fields<GallisTorczynskiGas>()); }
+  [[nodiscard]] static constexpr GallisTorczynskiGas example() { return {}; }
+  [[nodiscard]] GallisTorczynskiFilm law(const Film& f) const {
+    return {.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.width};
+  }
+};
 
 }  // namespace softland

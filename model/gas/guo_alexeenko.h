@@ -12,6 +12,7 @@
 #include <cmath>
 #include <concepts>
 
+#include "model/gas/film.h"
 #include "model/power.h"
 
 namespace softland {
@@ -44,5 +45,19 @@ struct GuoAlexeenkoFilmOf {
   }
 };
 using GuoAlexeenkoFilm = GuoAlexeenkoFilmOf<double>;
+
+/// In a scene.
+struct GuoAlexeenkoGas {
+  static constexpr std::string_view name = "guo-alexeenko";
+  static constexpr FilmLimits limits{.needs_thickness = true};
+  FilmState film = {};
+  double far_gap = not_given;
+
+  static consteval auto fields() { return joined(film_fields<GuoAlexeenkoGas>(), far_fields<GuoAlexeenkoGas>()); }
+  [[nodiscard]] static constexpr GuoAlexeenkoGas example() { return {}; }
+  [[nodiscard]] GuoAlexeenkoFilm law(const Film& f) const {
+    return {.mean_free_path = f.mean_free_path, .width = f.width, .thickness = f.thickness};
+  }
+};
 
 }  // namespace softland

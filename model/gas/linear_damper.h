@@ -8,6 +8,10 @@
 // contact where a film would act. Regular everywhere.
 #pragma once
 
+#include <cmath>
+
+#include "model/gas/film.h"
+
 namespace softland {
 
 /// Over the scalar of its parameters; that of the state is one they convert to.
@@ -23,5 +27,25 @@ struct LinearDamperOf {
   }
 };
 using LinearDamper = LinearDamperOf<double>;
+
+/// In a scene: either of the two is given.
+struct LinearGas {
+  static constexpr std::string_view name = "linear";
+  double damping = not_given, quality_factor = not_given;
+
+  static consteval auto fields() {
+    using Law = LinearGas;
+    // clang-format off
+    return std::to_array<Field<Law>>({
+        {.key = "damping", .unit = "N s/m^2", .about = "constant force per length and velocity [N s/m^2]; of a plate also that of all of it [N s/m]", .in = reach<Law, &Law::damping>, .required = true, .instead_of = "quality_factor", .such_as = "0.1 N s/m^2"},
+        {.key = "quality_factor", .about = "of the first mode, instead of damping", .in = reach<Law, &Law::quality_factor>, .required = true, .instead_of = "damping"},
+    });
+    // clang-format on
+  }
+  [[nodiscard]] static constexpr LinearGas example() { return {.quality_factor = 5}; }
+  [[nodiscard]] LinearDamper law(const Film& f) const {
+    return {.damping = std::isnan(damping) ? f.unit_quality / quality_factor : damping};
+  }
+};
 
 }  // namespace softland

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "base/select.h"
+#include "model/gas/film.h"
 
 namespace softland {
 
@@ -51,5 +52,19 @@ struct NearContactFilmOf {
   }
 };
 using NearContactFilm = NearContactFilmOf<double>;
+
+/// In a scene.
+struct NearContactGas {
+  static constexpr std::string_view name = "near-contact";
+  static constexpr FilmLimits limits{.least_knudsen = 1 / NearContactFilm::rarefied, .most_squeeze = incompressible};
+  FilmState film = {};
+  double far_gap = not_given;
+
+  static consteval auto fields() { return joined(film_fields<NearContactGas>(), far_fields<NearContactGas>()); }
+  [[nodiscard]] static constexpr NearContactGas example() { return {}; }
+  [[nodiscard]] NearContactFilm law(const Film& f) const {
+    return {.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.width};
+  }
+};
 
 }  // namespace softland

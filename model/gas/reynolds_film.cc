@@ -63,7 +63,7 @@ StripNodes strip_nodes() {
 
 }  // namespace internal
 
-ReynoldsFilm::ReynoldsFilm(const Gas& gas, double width, Eigen::Index stations, double floor)
+ReynoldsFilm::ReynoldsFilm(const FilmState& gas, double width, Eigen::Index stations, double floor)
     : stations_(stations), floor_(floor), station_(gas.pressure, viscosity(gas), mean_free_path(gas), width) {}
 
 void ReynoldsFilm::add_load(const double* film, double* load) const {

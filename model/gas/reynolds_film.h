@@ -108,7 +108,7 @@ class ReynoldsFilm {
   static constexpr int nodes = Station::nodes;  ///< pressures per station
 
   /// `stations` are the points of the beam, in order; gaps below `floor` [m] count as that.
-  ReynoldsFilm(const Gas& gas, double width, Eigen::Index stations, double floor);
+  ReynoldsFilm(const FilmState& gas, double width, Eigen::Index stations, double floor);
 
   /// Extra unknowns: P at the nodes of the first station, of the second, ...
   [[nodiscard]] std::size_t states() const { return static_cast<std::size_t>(stations_) * nodes; }

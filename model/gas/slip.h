@@ -8,6 +8,8 @@
 // 1959, J. Basic Eng. 81, 94-99.
 #pragma once
 
+#include "model/gas/film.h"
+
 namespace softland {
 
 /// Over the scalar of its parameters; that of the state is one they convert to.
@@ -25,5 +27,19 @@ struct SlipFilmOf {
   }
 };
 using SlipFilm = SlipFilmOf<double>;
+
+/// The compressible film in a scene, of which this law is the limit: see reynolds_film.h.
+struct ReynoldsGas {
+  static constexpr std::string_view name = "reynolds";
+  static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = 1000};
+  static constexpr bool is_compressible = true;
+  FilmState film = {};
+
+  static consteval auto fields() { return film_fields<ReynoldsGas>(); }
+  [[nodiscard]] static constexpr ReynoldsGas example() { return {}; }
+  [[nodiscard]] SlipFilm law(const Film& f) const {
+    return {.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.width};
+  }
+};
 
 }  // namespace softland

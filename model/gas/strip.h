@@ -8,6 +8,8 @@
 // textbook limit of the Reynolds equation.
 #pragma once
 
+#include "model/gas/film.h"
+
 namespace softland {
 
 /// Over the scalar of its parameters; that of the state is one they convert to.
@@ -31,5 +33,17 @@ struct StripSqueezeFilmOf {
   }
 };
 using StripSqueezeFilm = StripSqueezeFilmOf<double>;
+
+/// In a scene.
+struct StripGas {
+  static constexpr std::string_view name = "strip";
+  static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};
+  FilmState film = {};
+  double film_length = not_given, far_gap = not_given;
+
+  static consteval auto fields() { return joined(film_fields<StripGas>(), end_fields<StripGas>(), far_fields<StripGas>()); }
+  [[nodiscard]] static constexpr StripGas example() { return {}; }
+  [[nodiscard]] StripSqueezeFilm law(const Film& f) const { return {.viscosity = f.viscosity, .width = f.width}; }
+};
 
 }  // namespace softland

@@ -12,6 +12,8 @@
 // Transducers 2013, for lateral oscillators. Continuum, incompressible, Poiseuille flow in the slit. Singular at h = 0.
 #pragma once
 
+#include "model/gas/film.h"
+
 namespace softland {
 
 /// Over the scalar of its parameters; that of the state is one they convert to.
@@ -33,5 +35,27 @@ struct StripOverSlitOf {
   }
 };
 using StripOverSlit = StripOverSlitOf<double>;
+
+/// In a scene.
+struct StripSlitGas {
+  static constexpr std::string_view name = "strip-slit";
+  static constexpr FilmLimits limits{.most_knudsen = 0.1, .most_squeeze = incompressible};
+  FilmState film = {};
+  double film_length = not_given, slit_height = not_given, slit_length = not_given, far_gap = not_given;
+
+  static consteval auto fields() {
+    using Law = StripSlitGas;
+    // clang-format off
+    return joined(film_fields<Law>(), end_fields<Law>(), std::to_array<Field<Law>>({
+        {.key = "slit_height", .unit = "m", .about = "of the slit through which the gas leaves at one edge", .in = reach<Law, &Law::slit_height>, .required = true},
+        {.key = "slit_length", .unit = "m", .about = "of that slit, up to ambient pressure", .in = reach<Law, &Law::slit_length>, .required = true},
+    }), far_fields<Law>());
+    // clang-format on
+  }
+  [[nodiscard]] static constexpr StripSlitGas example() { return {.slit_height = 2e-6, .slit_length = 2e-6}; }
+  [[nodiscard]] StripOverSlit law(const Film& f) const {
+    return {.viscosity = f.viscosity, .width = f.width, .slit_height = slit_height, .slit_length = slit_length};
+  }
+};
 
 }  // namespace softland

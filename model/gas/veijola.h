@@ -8,6 +8,7 @@
 // Sensors and Actuators A 48 (1995) 239, for the flow conductance of Fukui & Kaneko 1988.
 #pragma once
 
+#include "model/gas/film.h"
 #include "model/power.h"
 
 namespace softland {
@@ -28,5 +29,19 @@ struct VeijolaFilmOf {
   }
 };
 using VeijolaFilm = VeijolaFilmOf<double>;
+
+/// In a scene.
+struct VeijolaGas {
+  static constexpr std::string_view name = "veijola";
+  static constexpr FilmLimits limits{.most_knudsen = 880, .most_squeeze = incompressible};
+  FilmState film = {};
+  double film_length = not_given, far_gap = not_given;
+
+  static consteval auto fields() { return joined(film_fields<VeijolaGas>(), end_fields<VeijolaGas>(), far_fields<VeijolaGas>()); }
+  [[nodiscard]] static constexpr VeijolaGas example() { return {}; }
+  [[nodiscard]] VeijolaFilm law(const Film& f) const {
+    return {.viscosity = f.viscosity, .mean_free_path = f.mean_free_path, .width = f.width};
+  }
+};
 
 }  // namespace softland

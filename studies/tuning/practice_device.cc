@@ -39,10 +39,10 @@ void add_modes(SceneFile& file, const Scene& scene, int more) {
 
 void change_gas(SceneFile& file, const Scene& scene, const std::string& name) {
   require(scene.device.gas.has_value(), [&] { return fmt::format("gas={}: {}: there is no [gas]", name, scene.file.name()); });
-  const GasRow* const law = find_named(gas_laws, name);
-  require(law != nullptr, [&] { return fmt::format("gas={}: must be {}", name, listed(gas_laws)); });
+  const std::optional<Gas> law = law_named<Gas>(name);
+  require(law.has_value(), [&] { return fmt::format("gas={}: must be {}", name, listed_laws<Gas>()); });
   for (const std::string& key : file.keys("gas")) {
-    if (key != "model" && !law->keys.contain(key)) file.erase("gas." + key);
+    if (key != "model" && !has_key(*law, key)) file.erase("gas." + key);
   }
   file.assign("gas.model", name);
 }

@@ -96,7 +96,7 @@ TEST(SceneFile, AnOptionMayCreateASection) {
   EXPECT_FALSE(read_scene(file).device.gas);
   file.set("gas.model=strip");
   file.set("gas.viscosity=2e-5 Pa s");
-  EXPECT_EQ(read_scene(file).device.gas->viscosity, 2e-5);
+  EXPECT_EQ(film_of(*read_scene(file).device.gas)->viscosity, 2e-5);
   EXPECT_THAT(file.text(), testing::HasSubstr("[gas]\nmodel = \"strip\"\nviscosity = \"2e-5 Pa s\"\n"));
 }
 

@@ -71,7 +71,7 @@ TEST(AHairAboveDynamicPullIn, TheClosingTimeGrowsLikeTheLogarithmOfTheHair) {
 TEST(AHairAboveStaticPullIn, TheClosingTimeGrowsLikeTheRootOfTheHair) {
   constexpr double quality = 0.5;
   Device device = plate(3_um);
-  device.gas = Gas{.model = GasModel::linear, .quality_factor = quality};
+  device.gas = LinearGas{.quality_factor = quality};
   for (const double hair : {1e-6, 1e-8}) {
     // Past the fold: c x' = 2 hair k g / 3 + 2.25 (k / g) x^2, from minus to plus infinity.
     const double passing = pi / (omega * quality * std::sqrt(1.5 * hair));
@@ -155,7 +155,7 @@ TEST(ADitherFarAboveEveryMode, ActsByItsMeanSquare) {
 TEST(AFilmSoThickThatTheMotionCreeps, SlowsAllInProportion) {
   Device device = test::gold_cantilever();
   const auto closes = [&](double viscosity) {
-    device.gas->viscosity = viscosity;
+    test::film(device).viscosity = viscosity;
     const CheckedRun c = run(device, Signal::constant(30), 0.2 * viscosity, 1e-8);
     EXPECT_EQ(c.trajectory.status, Status::done) << c.trajectory.message;
     return c.metrics.initial_contact_time;
@@ -182,7 +182,7 @@ TEST(ASwitchThatCannotStandOpen, IsCollapsedAtRest) {
 
 TEST(AFilmTooThickForTheWorkAllowed, EndsWhereTheWorkDoes) {
   Device d = test::gold_cantilever();
-  d.gas->viscosity = 1;
+  test::film(d).viscosity = 1;
   const CheckedRun c = checked_run(Switch(d), std::vector<Signal>{Signal::constant(30)},
                                    {.duration = 0.1, .integrator = Integrator::lawson, .max_steps = 20'000});
   EXPECT_EQ(c.violations, std::vector<std::string>{});
@@ -194,7 +194,7 @@ TEST(AFilmTooThickForAnExplicitMethod, IsLeftToAnImplicitOneOnTheWay) {
   Device d = test::gold_cantilever();
   for (const double viscosity : {0.1, 1.0}) {
     SCOPED_TRACE(viscosity);
-    d.gas->viscosity = viscosity;
+    test::film(d).viscosity = viscosity;
     const Switch device(d);
     const auto closes = [&](Integrator integrator, double tolerance) {
       CheckedRun c =

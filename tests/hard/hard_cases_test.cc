@@ -165,7 +165,7 @@ std::vector<Case> cases() {
   }
   for (const double viscosity : {1e-4, 1e-3, 1e-2}) {
     Device d = test::gold_cantilever();
-    d.gas->viscosity = viscosity;
+    test::film(d).viscosity = viscosity;
     all.push_back(
         {fmt::format("a film of {:g} Pa s", viscosity), d, {Signal::constant(30)}, 200_us * std::max(1.0, viscosity / 1e-4)});
   }
@@ -268,7 +268,7 @@ TEST(HardCases, AreEitherRightOrRefusedAtEveryTolerance) {
 // The rates of the stiff film are its error times its stiffness: what the energy audit makes of them must not fail a good run.
 TEST(HardCases, ACompressibleFilmKeepsItsBooksAtEveryTolerance) {
   Device d = test::gold_cantilever();
-  d.gas = Gas{.model = GasModel::reynolds, .viscosity = 1.86e-5_Pa_s};
+  d.gas = ReynoldsGas{.film = {.viscosity = 1.86e-5_Pa_s}};
   const Switch device(d);
   const auto run = [&](double tolerance) {
     const CheckedRun c =

@@ -113,15 +113,15 @@ TEST(Device, NamesWhatIsWrongWithIt) {
                  "electrode.left.span = [0 m, 100 mm]: must increase and lie on the beam, from 0 m to 250 um");
   expect_message([](Device& d) { d.electrodes[0].begin = d.electrodes[0].end = 60_um; },
                  "electrode.main.span = [60 um, 60 um]: must increase and lie on the beam, from 0 m to 250 um");
-  expect_message([](Device& d) { d.gas->viscosity = 0; }, "gas.viscosity = 0 Pa s: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.gas->pressure = 0; }, "gas.pressure = 0 Pa: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.gas->temperature = -1; }, "gas.temperature = -1 K: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.gas->mean_free_path = 0; }, "gas.mean_free_path = 0 m: must be greater than 0 and below 1e30");
-  expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear}; },
+  expect_message([](Device& d) { test::film(d).viscosity = 0; }, "gas.viscosity = 0 Pa s: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { test::film(d).pressure = 0; }, "gas.pressure = 0 Pa: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { test::film(d).temperature = -1; },
+                 "gas.temperature = -1 K: must be greater than 0 and below 1e30");
+  expect_message([](Device& d) { test::film(d).mean_free_path = 0; }, "gas.mean_free_path = 0 m: must be in (0 m, 1 Gm]");
+  expect_message([](Device& d) { d.gas = LinearGas{}; }, "gas.model = linear: needs either damping or quality_factor");
+  expect_message([](Device& d) { d.gas = LinearGas{.damping = 1, .quality_factor = 2}; },
                  "gas.model = linear: needs either damping or quality_factor");
-  expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear, .damping = 1, .quality_factor = 2}; },
-                 "gas.model = linear: needs either damping or quality_factor");
-  expect_message([](Device& d) { d.gas = Gas{.model = GasModel::linear, .damping = 0}; },
+  expect_message([](Device& d) { d.gas = LinearGas{.damping = 0}; },
                  "gas.damping = 0 N s/m^2: must be greater than 0 and below 1e30");
   expect_message([](Device& d) { d.contact->pad_length = 1; },
                  "contact.pad_length = 1 m: must be positive and below structure.length = 250 um");
@@ -212,7 +212,7 @@ TEST(Device, NamesWhatIsWrongWithAPlate) {
   expect(
       [](Device& d) {
         d.contact = Contact{.model = RigidStop{.restitution = 0}};
-        d.gas->model = GasModel::reynolds;
+        d.gas = ReynoldsGas{};
       },
       "contact.model = rigid: not with gas.model = reynolds, whose film still flows under a plate that rests");
   for (const double e : {-0.1, 1.0, std::nan("")}) {

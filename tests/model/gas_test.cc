@@ -32,7 +32,7 @@ TEST(Gas, GivenNumbersWin) {
 TEST(LinearDamper, GivesTheFirstModeItsQualityFactor) {
   constexpr double quadrature = 1e-9;
   for (Device d : {test::gold_cantilever(), test::gold_pzt_cantilever()}) {
-    d.gas = Gas{.model = GasModel::linear, .quality_factor = 8};
+    d.gas = LinearGas{.quality_factor = 8};
     const Switch model(d);
     Switch::Workspace work = model.workspace();
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(model.modes());
@@ -45,7 +45,7 @@ TEST(LinearDamper, GivesTheFirstModeItsQualityFactor) {
 
 TEST(LinearDamper, OfAUniformBeamDampsEveryModeAtTheSameRate) {
   Device damper = test::gold_cantilever(), modal = damper;
-  damper.gas = Gas{.model = GasModel::linear, .quality_factor = 8};
+  damper.gas = LinearGas{.quality_factor = 8};
   modal.gas.reset();
   modal.structure.modes = damper.structure.modes = 1;
   modal.structure.damping_ratio = 1.0 / 16;
@@ -55,36 +55,37 @@ TEST(LinearDamper, OfAUniformBeamDampsEveryModeAtTheSameRate) {
   EXPECT_NEAR(a.dissipated_power(&rest, &v, work_a), b.dissipated_power(&rest, &v, work_b), 1e-9 * a.angular_frequencies()[0]);
 }
 
-Trajectory closing(Gas gas) {
+Trajectory closing(const Gas& gas) {
   Device d = test::gold_cantilever();
   d.gas = gas;
   return simulate_closing(Switch(d), std::vector<Signal>{Signal::constant(17.771)}, {.duration = 60_us});
 }
 
 TEST(GasLimits, AreNotMentionedWithinThem) {
-  EXPECT_THAT(closing({.viscosity = 1.86e-5_Pa_s}).warnings, testing::IsEmpty());
-  EXPECT_THAT(closing({.model = GasModel::linear, .quality_factor = 3}).warnings, testing::IsEmpty());
-  EXPECT_THAT(closing({.model = GasModel::veijola, .pressure = 1e3}).warnings, testing::IsEmpty());
+  EXPECT_THAT(closing(StripGas{.film = {.viscosity = 1.86e-5_Pa_s}}).warnings, testing::IsEmpty());
+  EXPECT_THAT(closing(LinearGas{.quality_factor = 3}).warnings, testing::IsEmpty());
+  EXPECT_THAT(closing(VeijolaGas{.film = {.pressure = 1e3}}).warnings, testing::IsEmpty());
 }
 
 TEST(GasLimits, ThatATrajectoryLeavesAreWarnings) {
   using testing::ElementsAre;
   // The closed gap is 1.5 um; 1e4 Pa make the mean free path 663 nm and the contact gives a little.
-  EXPECT_THAT(closing({.pressure = 1e4}).warnings, ElementsAre("gas law strip: Knudsen number 0.45 exceeds 0.1"));
-  EXPECT_THAT(closing({.model = GasModel::near_contact, .mean_free_path = 10_nm}).warnings,
+  EXPECT_THAT(closing(StripGas{.film = {.pressure = 1e4}}).warnings,
+              ElementsAre("gas law strip: Knudsen number 0.45 exceeds 0.1"));
+  EXPECT_THAT(closing(NearContactGas{.film = {.mean_free_path = 10_nm}}).warnings,
               ElementsAre("gas law near-contact: Knudsen number 0.0029 is below 0.0047"));
   // Four digits, and not 4.5e+03.
-  EXPECT_THAT(closing({.pressure = 1}).warnings,
+  EXPECT_THAT(closing(StripGas{.film = {.pressure = 1}}).warnings,
               testing::Contains(testing::ContainsRegex("Knudsen number [0-9]{4} exceeds 0.1")));
   // Squeeze numbers of 12 mu a^2 v / (p h^3): about 0.025 at 101325 Pa.
-  const auto thin = closing({.model = GasModel::veijola, .pressure = 100, .mean_free_path = 65_nm}).warnings;
+  const auto thin = closing(VeijolaGas{.film = {.pressure = 100, .mean_free_path = 65_nm}}).warnings;
   ASSERT_EQ(thin.size(), 1u);
   EXPECT_THAT(thin[0],
               testing::MatchesRegex("gas law veijola: squeeze number .* exceeds 10: the film is compressed, not squeezed out"));
 }
 
 TEST(SqueezeNumber, IsTheTextbookOne) {
-  const Gas gas{.viscosity = 2e-5};
+  const FilmState gas{.viscosity = 2e-5};
   EXPECT_DOUBLE_EQ(squeeze_number(gas, 20_um, 2_um, 1e5), 12 * 2e-5 * 4e-10 * 1e5 / (101325 * 4e-12));
 }
 

@@ -68,7 +68,7 @@ struct Sample {
 };
 Sample<double> nominal() {
   const Device d = device();
-  return {d.structure.thickness, d.structure.width, d.gap.electrode, viscosity(*d.gas)};
+  return {d.structure.thickness, d.structure.width, d.gap.electrode, viscosity(*film_of(*d.gas))};
 }
 
 std::span<const double> of(const Eigen::VectorXd& shape) { return {shape.data(), modes}; }

@@ -25,9 +25,9 @@ using Complex = std::complex<double>;
 
 constexpr int nodes = ReynoldsFilm::nodes;
 constexpr double width = 40_um;
-const Gas air{.model = GasModel::reynolds, .viscosity = 1.82e-5_Pa_s, .mean_free_path = 64_nm};
+const ReynoldsGas air{.film = {.viscosity = 1.82e-5_Pa_s, .mean_free_path = 64_nm}};
 
-ReynoldsFilm film(Eigen::Index stations = 1) { return {air, width, stations, 20_nm}; }
+ReynoldsFilm film(Eigen::Index stations = 1) { return {air.film, width, stations, 20_nm}; }
 
 /// Force per area over p/h of a small oscillation with the squeeze number sigma (Blech 1983): 1 - tanh(B/2)/(B/2), B = sqrt(i
 /// sigma).
@@ -38,8 +38,8 @@ Complex blech(double sigma) {
 
 /// The same of our film: the linear response of its states to a gap that oscillates by one about h, with slip.
 Complex response(double sigma) {
-  const double h = 2.3_um, rarefied = 1 + 6 * mean_free_path(air) / h;
-  const double omega = sigma * rarefied * air.pressure * h * h / (12 * viscosity(air) * width * width);
+  const double h = 2.3_um, rarefied = 1 + 6 * mean_free_path(air.film) / h;
+  const double omega = sigma * rarefied * air.film.pressure * h * h / (12 * viscosity(air.film) * width * width);
   const ReynoldsFilm f = film();
   const std::vector<double> rest(nodes, 0.0);
   const ReynoldsFilm::Derivatives d = f.derivatives(h, 0, rest.data());
@@ -47,7 +47,7 @@ Complex response(double sigma) {
   const Eigen::MatrixXcd system = rate * Eigen::MatrixXcd::Identity(nodes, nodes) - d.by_film.cast<Complex>();
   const Eigen::VectorXcd p = system.partialPivLu().solve(Eigen::VectorXcd(-rate * d.by_velocity.cast<Complex>()));
   const Complex load = f.load_by_film().cast<Complex>().dot(p);
-  return load / (width * air.pressure / h);  // a growing gap pulls, towards the electrode
+  return load / (width * air.film.pressure / h);  // a growing gap pulls, towards the electrode
 }
 
 TEST(ReynoldsFilm, OfASmallOscillationIsBlechsStrip) {
@@ -66,7 +66,7 @@ TEST(ReynoldsFilm, IsADamperBelowTheCutOffAndASpringAbove) {
   EXPECT_LT(response(1.15 * pi * pi).imag(), response(1.15 * pi * pi).real());
   // Slow: the incompressible film with slip.
   const double h = 2.3_um, slow = 1e-4;
-  const double damping = response(slow).imag() / slow * 12 * viscosity(air) * std::pow(width / h, 3) / (1 + 6 * 64_nm / h);
+  const double damping = response(slow).imag() / slow * 12 * viscosity(air.film) * std::pow(width / h, 3) / (1 + 6 * 64_nm / h);
   const GasLaw limit = gas_law(air, {.width = width}, 1);
   EXPECT_NEAR(damping, damping_per_length(limit, h), 1e-8 * damping);
 }
@@ -153,7 +153,7 @@ TEST(ReynoldsFilm, FlowsAsTheNonlinearEquationSays) {
   const std::vector<double> p = parabola(amplitude);
   std::array<double, nodes> rate{};
   film().rates(field_of({.gap = gap, .velocity = 0, .film = p}), p.data(), rate.data());
-  const double diffusion = air.pressure * gap * (gap + 6 * 64_nm) / (12 * viscosity(air) * std::pow(width / 2, 2));
+  const double diffusion = air.film.pressure * gap * (gap + 6 * 64_nm) / (12 * viscosity(air.film) * std::pow(width / 2, 2));
   for (std::size_t i = 0; i < nodes; ++i) {
     const double bend = -2 * amplitude * (1 + amplitude) + 6 * amplitude * amplitude * places[i] * places[i];
     EXPECT_NEAR(rate[i], diffusion * bend, 1e-10 * diffusion) << i;
@@ -165,7 +165,7 @@ TEST(ReynoldsFilm, DissipatesWhatTheFlowDoes) {
   const double gap = 1.3_um, amplitude = 1e-3;
   const std::vector<double> p = parabola(amplitude);
   const double expected =
-      gap * gap * (gap + 6 * 64_nm) / (12 * viscosity(air)) * 16 / (3 * width) * std::pow(amplitude * air.pressure, 2);
+      gap * gap * (gap + 6 * 64_nm) / (12 * viscosity(air.film)) * 16 / (3 * width) * std::pow(amplitude * air.film.pressure, 2);
   const double found =
       film().dissipated_power(field_of({.gap = gap, .velocity = 0, .film = p}), Eigen::ArrayXd::Ones(1), p.data());
   EXPECT_NEAR(found, expected, 1e-5 * expected);
@@ -243,7 +243,7 @@ Trajectory closing(const Device& d, double tolerance, Integrator integrator = In
 TEST(ReynoldsFilm, InAClosingAtOneAtmosphereIsNearlyIncompressible) {
   // Squeeze numbers stay small here: the compressible film and its limit land within a per cent of each other, at the same
   // energy.
-  const Gas gas{.model = GasModel::reynolds, .viscosity = 1.86e-5_Pa_s, .mean_free_path = 1e-12_m};
+  const ReynoldsGas gas{.film = {.viscosity = 1.86e-5_Pa_s, .mean_free_path = 1e-12_m}};
   const Trajectory compressible = closing(gold_with(gas), 1e-6), strip = closing(test::gold_cantilever(), 1e-6);
   ASSERT_EQ(compressible.status, Status::done) << compressible.message;
   ASSERT_GE(compressible.touches.size(), 3u);
@@ -258,9 +258,9 @@ TEST(ReynoldsFilm, InAClosingKeepsTheBalanceOfEnergy) {
     Integrator integrator;
   };
   for (const auto& [pressure, integrator] : {Case{101325, Integrator::automatic}, Case{3e3, Integrator::bdf}}) {
-    Gas gas = air;
-    gas.mean_free_path = 64_nm * 101325 / pressure;
-    gas.pressure = pressure;
+    ReynoldsGas gas = air;
+    gas.film.mean_free_path = 64_nm * 101325 / pressure;
+    gas.film.pressure = pressure;
     const Trajectory t = closing(gold_with(gas), 1e-8, integrator);
     ASSERT_EQ(t.status, Status::done) << t.message;
     EXPECT_GE(t.touches.size(), 3u);
@@ -271,9 +271,9 @@ TEST(ReynoldsFilm, InAClosingKeepsTheBalanceOfEnergy) {
 
 TEST(ReynoldsFilm, ExplicitAndImplicitIntegratorsAgree) {
   constexpr double figures = 1e-4;  // relative: they carry some hundred times the integrator's tolerance
-  Gas gas = air;
-  gas.pressure = 3e3;
-  gas.mean_free_path = 64_nm;
+  ReynoldsGas gas = air;
+  gas.film.pressure = 3e3;
+  gas.film.mean_free_path = 64_nm;
   const Trajectory implicit = closing(gold_with(gas), 1e-7);
   const Trajectory explicitly = closing(gold_with(gas), 1e-7, Integrator::lawson);
   ASSERT_FALSE(implicit.touches.empty());

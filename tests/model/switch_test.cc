@@ -47,14 +47,12 @@ std::vector<Combination> combinations() {
       }
     }
   }
-  for (const GasRow& e : gas_laws) {
-    if (is_compressible(e.value)) continue;  // a system with more states: reynolds_film_test.cc
+  for (const Gas& gas : test::gases()) {
+    if (is_compressible(gas)) continue;  // a system with more states: reynolds_film_test.cc
     for (const bool layer : {false, true}) {
       Device d = layer ? test::gold_pzt_cantilever() : test::gold_cantilever();
-      d.gas->model = e.value;
-      if (e.value == GasModel::linear) d.gas->quality_factor = 5;
-      if (e.value == GasModel::strip_slit) d.gas->slit_height = d.gas->slit_length = 2_um;
-      all.push_back({fmt::format("gas {}, piezo {}", e.name, layer), d});
+      d.gas = gas;
+      all.push_back({fmt::format("gas {}, piezo {}", name_of(gas), layer), d});
     }
   }
   Device two = test::gold_cantilever();  // two electrodes that meet on the beam

@@ -38,7 +38,7 @@ TEST(HungSenturia, PullInTimesInAirAreTheReference) {
   };
   for (const auto& [volts, time] : {Row{9.0, 443.4_us}, Row{9.25, 303.1_us}, Row{9.5, 237.8_us}, Row{10, 170.3_us},
                                     Row{10.5, 133.7_us}, Row{11, 110.1_us}, Row{12, 80.8_us}}) {
-    const Gas air{.model = GasModel::reynolds, .viscosity = 1.82e-5_Pa_s, .mean_free_path = 64_nm};
+    const ReynoldsGas air{.film = {.viscosity = 1.82e-5_Pa_s, .mean_free_path = 64_nm}};
     EXPECT_NEAR(pull_in_time(air, volts / reference_pull_in), time, strips_and_grid * time) << volts << " V";
   }
 }
@@ -51,14 +51,12 @@ TEST(HungSenturia, PullInTimesInThinAirAreTheReference) {
   };
   for (const auto& [atmospheres, volts, time] :
        {Row{0.1, 9.5, 71.9_us}, Row{0.1, 10.25, 44.9_us}, Row{0.01, 9.5, 19.2_us}, Row{0.01, 10.25, 16.0_us}}) {
-    const Gas thin{.model = GasModel::reynolds,
-                   .viscosity = 1.82e-5_Pa_s,
-                   .pressure = 101325 * atmospheres,
-                   .mean_free_path = 64_nm / atmospheres};
+    const ReynoldsGas thin{
+        .film = {.viscosity = 1.82e-5_Pa_s, .pressure = 101325 * atmospheres, .mean_free_path = 64_nm / atmospheres}};
     EXPECT_NEAR(pull_in_time(thin, volts / reference_pull_in), time, strips_and_grid * time)
         << atmospheres << " atm, " << volts << " V";
   }
-  EXPECT_GT(pull_in_time({.model = GasModel::strip, .viscosity = 1.82e-5_Pa_s}, 10.25 / reference_pull_in), 150_us);
+  EXPECT_GT(pull_in_time(StripGas{.film = {.viscosity = 1.82e-5_Pa_s}}, 10.25 / reference_pull_in), 150_us);
 }
 
 }  // namespace

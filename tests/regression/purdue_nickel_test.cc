@@ -70,7 +70,7 @@ TEST(PurdueNickel, ThePublishedTimeAndSpeedAreThoseAtTheEndOfTheStepThatPasses) 
 TEST(PurdueNickel, UnderItsFamilysGasIsThePublishedRun) {
   // The example as published: the compact fit of Guo & Alexeenko, forward Euler steps of 1 ns: 6.155 us, 1.243 m/s as printed.
   Device d = test::nickel_plate();
-  d.gas = Gas{.model = GasModel::guo_alexeenko, .mean_free_path = 65.45_nm};
+  d.gas = GuoAlexeenkoGas{.film = {.mean_free_path = 65.45_nm}};
   const Touch touch = closing(d).touches.at(0);
   EXPECT_NEAR(touch.begin, 6.155_us, 0.001_us);
   EXPECT_NEAR(touch.impact_velocity, 1.243, 0.0005);

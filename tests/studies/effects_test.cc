@@ -26,8 +26,8 @@ std::vector<std::string> choices(const Effects& effects) {
 /// No gas, and every law that is made of what describes a film and nothing else.
 std::vector<std::string> compared_laws() {
   std::vector<std::string> names{"none"};
-  for (const GasRow& law : gas_laws) {
-    if (law.value != GasModel::strip_slit && law.value != GasModel::linear) names.emplace_back(law.name);
+  for (const std::string_view law : names_of_laws<Gas>()) {
+    if (law != "strip-slit" && law != "linear") names.emplace_back(law);
   }
   return names;
 }
@@ -110,21 +110,22 @@ TEST(Effects, OfEverySceneNameTheLawsThatItCannotHave) {
 TEST(Effects, GiveEveryLawWhatASceneMayGiveIt) {
   for (const std::string& name : shipped_scenes()) {
     const Device own = read_scene(scene(name.c_str())).device;
-    for (const GasRow& law : gas_laws) {
-      if (!own.gas || law.value == GasModel::strip_slit || law.value == GasModel::linear) continue;
+    for (const std::string_view law : names_of_laws<Gas>()) {
+      if (!own.gas || law == "strip-slit" || law == "linear") continue;
+      const Gas bare = *law_named<Gas>(law);
       SceneFile file = scene(name.c_str());
       for (const std::string& key : file.keys("gas")) {
-        if (key != "model" && !law.keys.contain(key)) file.erase("gas." + key);
+        if (key != "model" && !has_key(bare, key)) file.erase("gas." + key);
       }
-      file.set("gas.model=" + std::string(law.name));
-      const Device other = law.needs_thickness && std::isnan(own.structure.thickness) ? own : read_scene(file).device;
-      const Gas compared = under_law(*own.gas, other.gas->model);
-      EXPECT_EQ(std::isnan(compared.film_length), std::isnan(other.gas->film_length)) << name << " " << law.name;
-      EXPECT_EQ(std::isnan(compared.far_gap), std::isnan(other.gas->far_gap)) << name << " " << law.name;
+      file.set("gas.model=" + std::string(law));
+      const Device other = limits_of(bare).needs_thickness && std::isnan(own.structure.thickness) ? own : read_scene(file).device;
+      const Gas compared = under(*own.gas, bare);
+      EXPECT_EQ(std::isnan(film_length(compared)), std::isnan(film_length(*other.gas))) << name << " " << law;
+      EXPECT_EQ(std::isnan(far_gap(compared)), std::isnan(far_gap(*other.gas))) << name << " " << law;
       const double gap = own.gap.electrode - own.gap.contact;
       EXPECT_EQ(damping_per_length(gas_law(compared, own.structure, 1), gap),
                 damping_per_length(gas_law(*other.gas, other.structure, 1), gap))
-          << name << " " << law.name;
+          << name << " " << law;
     }
   }
 }
@@ -137,12 +138,11 @@ TEST(Effects, OfFilmsWithOpenEndsDoNotWeakenLawsWithoutThem) {
   const double kept = end_flow(40 / 76.1);
   Device ends_closed = p.scene.device;
   for (const char* law : {"veijola", "gallis-torczynski", "near-contact"}) {
-    const GasRow& row = *find_named(gas_laws, law);
-    ends_closed.gas->model = row.value;
-    ends_closed.gas->film_length = Metrics::unset;
+    ends_closed.gas = under(*p.scene.device.gas, *law_named<Gas>(law));
+    double* const length = number_of(*ends_closed.gas, "film_length");
+    if (length != nullptr) *length = not_given;
     const double closed = damping_per_length(gas_law(*ends_closed.gas, ends_closed.structure, 1), 1e-6);
-    EXPECT_NEAR(find(effects, law).magnitude.value, row.keys.contain("film_length") ? kept * closed : closed, 1e-9 * closed)
-        << law;
+    EXPECT_NEAR(find(effects, law).magnitude.value, length != nullptr ? kept * closed : closed, 1e-9 * closed) << law;
   }
 }
 

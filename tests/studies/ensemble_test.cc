@@ -471,8 +471,8 @@ TEST(Ensemble, KeepsTheUnitOfWhatVaries) {
   const Prepared nominal = prepare(file);
   const Ensemble ensemble(nominal, 3, 1);
   for (std::uint64_t k = 0; k < 3; ++k) {
-    const double given = ensemble.values(k)[0] * nominal.scene.device.gas->damping;
-    EXPECT_NEAR(DeviceBuilder(ensemble).device(k).model->device().gas->damping, given, 1e-9 * given);
+    const double given = ensemble.values(k)[0] * number_of(*nominal.scene.device.gas, "damping", 0);
+    EXPECT_NEAR(number_of(*DeviceBuilder(ensemble).device(k).model->device().gas, "damping", 0), given, 1e-9 * given);
   }
 }
 

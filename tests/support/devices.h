@@ -23,7 +23,7 @@ namespace softland::test {
           {.length = 250_um, .width = 20_um, .thickness = 2_um, .youngs_modulus = 78_GPa, .density = 19300_kg_m3, .modes = 4},
       .gap = {.electrode = 3.5_um, .contact = 2_um},
       .electrodes = {{.name = "main", .begin = 60_um, .end = 240_um, .fringing = Fringing::meijs_fokkema}},
-      .gas = Gas{.model = GasModel::strip, .viscosity = 1.86e-5_Pa_s},
+      .gas = StripGas{.film = {.viscosity = 1.86e-5_Pa_s}},
       .contact =
           Contact{.model = UniformAsperities{.summits = {.radius = 100_nm, .density = 1e11_per_m2, .effective_modulus = 48_GPa},
                                              .height = 100_nm},
@@ -37,6 +37,16 @@ namespace softland::test {
 }
 /// The summits of a contact of the law asperity-uniform.
 [[nodiscard]] inline UniformAsperities& rough(Device& device) { return std::get<UniformAsperities>(device.contact->model); }
+
+/// The gas of that device, under the law strip.
+[[nodiscard]] inline FilmState& film(Device& device) { return std::get<StripGas>(*device.gas).film; }
+/// The same gas under every law.
+[[nodiscard]] inline std::vector<Gas> gases() {
+  std::vector<Gas> all;
+  for_each_law<Gas>(
+      [&]<class Law>(std::type_identity<Law>) { all.push_back(under(*gold_cantilever().gas, Gas(Law::example()))); });
+  return all;
+}
 
 /// The law's example, and that with damping and with every word, where it takes them.
 template <class Law>
@@ -145,7 +155,7 @@ template <class Law>
       .gap = {.electrode = 3.8_um, .contact = 2.6_um},
       .electrodes = {{.name = "main", .begin = 0, .end = 70_um, .fringing = Fringing::meijs_fokkema},
                      {.name = "second", .begin = 0, .end = 30_um, .fringing = Fringing::linear}},
-      .gas = Gas{.model = GasModel::strip, .viscosity = 1e-6_Pa_s},
+      .gas = StripGas{.film = {.viscosity = 1e-6_Pa_s}},
       .contact = Contact{.model = LinearSpring{.stiffness = 1e4_N_m}}};
 }
 
@@ -196,7 +206,7 @@ template <class Law>
   Device d = full_plate();
   d.electrodes[1].side = Side::far;
   d.electrodes[1].gap = 3.8_um;
-  d.gas->far_gap = 3.8_um;
+  std::get<StripGas>(*d.gas).far_gap = 3.8_um;
   return d;
 }
 
@@ -206,7 +216,7 @@ template <class Law>
   Device d = gold_cantilever();
   d.electrodes.push_back({.name = "upper", .begin = 100_um, .end = 200_um, .side = Side::far, .gap = 3_um});
   d.electrodes.push_back({.name = "around", .begin = 20_um, .end = 60_um, .side = Side::both, .gap = 4_um});
-  d.gas->far_gap = 3_um;
+  std::get<StripGas>(*d.gas).far_gap = 3_um;
   return d;
 }
 

@@ -38,12 +38,11 @@ inline constexpr double published_undercut = 0.4e-6, textbook_modulus = 169e9;
                           .fringing = Fringing::meijs_fokkema,
                           .side = Side::both,
                           .gap = 7.75_um + 2 * undercut}},
-          .gas = Gas{.model = GasModel::strip_slit,
-                     .viscosity = 1.85e-5_Pa_s,
-                     .film_length = facing,
-                     .slit_height = 2_um,
-                     .slit_length = finger / 2,
-                     .far_gap = 7.75_um + 2 * undercut},
+          .gas = StripSlitGas{.film = {.viscosity = 1.85e-5_Pa_s},
+                              .film_length = facing,
+                              .slit_height = 2_um,
+                              .slit_length = finger / 2,
+                              .far_gap = 7.75_um + 2 * undercut},
           .contact = Contact{.model = LinearSpring{.stiffness = 1e5_N_m}}};
 }
 

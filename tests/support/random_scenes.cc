@@ -123,7 +123,7 @@ void vary_gas(SceneFile& file, Dice& dice) {
   const Device d = device_of(file);
   // The compressible film takes a hundred times longer than the others.
   constexpr std::string_view slow = "reynolds";
-  std::vector<std::string_view> quick = names_of(gas_laws);
+  std::vector<std::string_view> quick = names_of_laws<Gas>();
   std::erase(quick, slow);
   const std::string model(dice.chance(0.04) ? slow : dice.one_of(quick));
   put(file, "gas.model", model);
