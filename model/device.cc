@@ -167,6 +167,12 @@ void check_dispersion(const Dispersion& v, const Gap& gap) {
 
 }  // namespace
 
+double Device::contact_position() const {
+  if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;
+  if (!contact || contact->distribution == ContactDistribution::pad) return structure.length;
+  return structure.length - contact->pad_length / 2;
+}
+
 std::vector<Stretch> Electrode::pads(double length) const {
   std::vector<Stretch> all{{begin.on(length), end.on(length)}};
   for (const Span& pad : further) all.push_back({pad.begin.on(length), pad.end.on(length)});

@@ -164,11 +164,7 @@ struct Device {
   /// x_c, the centre of the pad [m]: the contact force acts and all figures of merit are taken there. The pad ends at the free
   /// end, or lies about the middle of a beam between two clamps. Without contact: the free end, or the middle. Of a contact along
   /// the pad: the free end, which touches first.
-  [[nodiscard]] double contact_position() const {
-    if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;
-    if (!contact || contact->distribution == ContactDistribution::pad) return structure.length;
-    return structure.length - contact->pad_length / 2;
-  }
+  [[nodiscard]] double contact_position() const;
   /// Where the pad begins and ends [m]; of a device with a contact.
   [[nodiscard]] std::pair<double, double> pad() const {
     const double end =

@@ -672,9 +672,9 @@ TEST(ContactLaw, KnowsHowFarItHolds) {
   EXPECT_TRUE(std::isinf(largest_interference(LinearSpring::example())));
   EXPECT_TRUE(std::isinf(largest_interference(HystereticSpring::example())));
   EXPECT_TRUE(std::isinf(largest_interference(RigidStop::example())));
-  EXPECT_EQ(largest_interference(PlasticAsperities::example()), 100_nm);
-  EXPECT_EQ(largest_interference(UniformAsperities::example()), 100_nm);
-  EXPECT_EQ(largest_interference(AdhesiveAsperities::example()), 100_nm);
+  EXPECT_DOUBLE_EQ(largest_interference(PlasticAsperities::example()), 100_nm);
+  EXPECT_DOUBLE_EQ(largest_interference(UniformAsperities::example()), 100_nm);
+  EXPECT_DOUBLE_EQ(largest_interference(AdhesiveAsperities::example()), 100_nm);
   EXPECT_DOUBLE_EQ(largest_interference(GaussianAsperities::example()), 4 * 30_nm);
 }
 
