@@ -6,7 +6,7 @@
 // Threads. Objects are values that share nothing that changes: one object may be read by several threads at once, and different
 // objects used by different threads. Exceptions are said where they are: Switch::Workspace, steppers and observers belong to one
 // thread. Functions with a `jobs` start that many threads by themselves, and what they find does not depend on it. What is
-// handed to them is called from these: OwnWaveform, OwnObjective, EvaluationMemory and `Watch`.
+// handed to them is called from these: OwnWaveform, OwnObjective, OwnContactLaw, EvaluationMemory and `Watch`.
 //
 // Errors. InvalidInput: what was given breaks a rule; the message names value and rule, of a scene file, line and key, too.
 // Interrupted: a Watch asked to stop. Trouble of the computation is a Status in a result, whose figures are then NaN. Nothing
@@ -48,5 +48,6 @@
 #include "studies/sweep.h"            // pull-in --sweep
 
 // The doors for what softland does not have.
+#include "model/contact/own.h"
 #include "objectives/own_objective.h"
 #include "waveforms/own_waveform.h"

@@ -23,6 +23,9 @@
 #define main own_waveform_program
 #include "examples/05_own_waveform.cc"
 #undef main
+#define main own_contact_program
+#include "examples/06_own_contact_law.cc"
+#undef main
 
 namespace softland {
 namespace {
@@ -159,6 +162,16 @@ TEST(Examples, CloseASwitchByAWaveformOfTheirOwn) {
   EXPECT_THAT(lines[1], testing::EndsWith("highest rebound 0 nm"));
   EXPECT_THAT(said.text, HasSubstr("main.down_s"));
   EXPECT_THAT(lines[8], testing::StartsWith("swell          95 % of 200 devices touch"));
+}
+
+TEST(Examples, CloseASwitchOnAContactLawOfTheirOwn) {
+  const Said said = run(own_contact_program, {scene("mem-gold")});
+  EXPECT_EQ(said.status, 0);
+  const std::vector<std::string> lines = said.lines();
+  ASSERT_EQ(lines.size(), 3u);
+  const auto figures = [](const std::string& line) { return line.substr(line.find("touches")); };
+  EXPECT_EQ(figures(lines[0]), figures(lines[1]));
+  EXPECT_THAT(lines[2], testing::StartsWith("200 devices touch with 88.61 +- 8.9 mm/s"));
 }
 
 TEST(Examples, SayWhatIsWrongWithTheirScene) {
