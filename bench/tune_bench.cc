@@ -43,7 +43,8 @@ struct Arguments {
   std::string touch;  // condition on the first touch
   double most_volts =
       std::numeric_limits<double>::infinity();  // devices of higher static pull-in voltage, over the scene's, are passed over
-  double drift_of_1000 = 0;  // relative, of the volts in 1000 closings: the kept waveform is then fired 1000 times
+  double drift_of_1000 = 0;  // relative, of the volts in 1000 closings: the kept waveform is then fired `repeats` times
+  int repeats = 1000;
   double good = 10e-9, very_good = 1e-9;
   std::vector<std::string> sets, model_sets;
   // The latest first touch that is asked for [s].
@@ -76,6 +77,7 @@ Arguments read(std::span<char*> words) {
       {"--gain-error", [&](const std::string& v) { a.laboratory.gain_error = std::stod(v); }},
       {"--stiffness", [&](const std::string& v) { a.stiffness = std::stod(v); }},
       {"--drift-of-1000", [&](const std::string& v) { a.drift_of_1000 = std::stod(v); }},
+      {"--repeats", [&](const std::string& v) { a.repeats = std::stoi(v); }},
       {"--good", [&](const std::string& v) { a.good = std::stod(v); }},
       {"--very-good", [&](const std::string& v) { a.very_good = std::stod(v); }}};
   for (std::size_t k = 0; k + 1 < words.size(); k += 2) {
@@ -103,6 +105,7 @@ struct Course {
   std::string broken;
   std::optional<BelievedQuantity> gap_ratio;
   std::vector<double> repeated;  // highest rebound of each repetition [m]
+  int learned = 0;               // of these
 };
 
 class Laboratory {
@@ -165,11 +168,12 @@ Course by_belief(const Arguments& a, const Tuner& fresh, Laboratory& lab) {
   course.unexpected_bounces = tuner.unexpected_bounces();
   course.broken = tuner.broken_assumption().value_or("");
   course.gap_ratio = tuner.belief().gap_ratio;
-  constexpr int many = 1000;
-  for (int k = 0; a.drift_of_1000 != 0 && k < many; ++k) {
+  for (int k = 0; a.drift_of_1000 != 0 && k < a.repeats; ++k) {
     const PracticeClosing closing = lab.fire(tuner.next().waveforms);
     course.repeated.push_back(Laboratory::height(closing));
+    const std::size_t before = tuner.surprises().size();
     tuner.learn(closing.record);
+    course.learned += static_cast<int>(tuner.surprises().size() - before);
   }
   return course;
 }
@@ -405,8 +409,8 @@ int main(int count, char** words) try {
     }
     if (!c.repeated.empty()) {
       const auto below = [&](double h) { return std::ranges::count_if(c.repeated, [&](double one) { return one < h; }); };
-      fmt::print(" repeated {}: {} below {:g} nm, {} below {:g} nm", c.repeated.size(), below(a.good), 1e9 * a.good,
-                 below(a.very_good), 1e9 * a.very_good);
+      fmt::print(" repeated {}: {} below {:g} nm, {} below {:g} nm, learned from {}", c.repeated.size(), below(a.good),
+                 1e9 * a.good, below(a.very_good), 1e9 * a.very_good, c.learned);
     }
     fmt::print(" surprises {:.1f}, {} bounces", fmt::join(c.surprises, " "), c.unexpected_bounces);
     if (c.gap_ratio) fmt::print(", gap ratio {:.4f} +- {:.4f}", c.gap_ratio->mean, c.gap_ratio->deviation);

@@ -17,12 +17,12 @@
 namespace softland {
 
 LandingCost landing_cost(const ImaginedClosing& closing, const TuningScales& s) {
-  constexpr double time_price = 0.34, free_time = 0.88, late_price = 10;
+  constexpr double time_price = 0.34, free_time = 0.88, late_price = 10, margin = 0.99;
   if (!closing.closes()) return {.landing = not_landed};
   const double middle = std::sqrt(s.rebound * s.gap / 20), height = closing.highest;
   return {.landing = (height / (height + middle) + height / (height + s.rebound)) / 2 + 10 * height / s.gap,
           .time = time_price * std::max(0.0, closing.touch / s.closing_time - free_time) +
-                  late_price * std::max(0.0, closing.touch / s.latest_touch - 1)};
+                  late_price * std::max(0.0, closing.touch / (margin * s.latest_touch) - 1)};
 }
 
 namespace {

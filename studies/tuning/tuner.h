@@ -14,7 +14,7 @@
 //
 //   [B / (B + m) + B / (B + h)] / 2 + 10 B / g + 0.34 max(0, t_i / T_0 - 0.88)       3 where it does not close
 //
-// Where the first touch is to come by t_b, 10 max(0, t_i / t_b - 1) are added.
+// Where the first touch is to come by t_b, 10 max(0, t_i / 0.99 t_b - 1) are added.
 //
 // No shot leaves the limits of the drivers, or has a level at which more than one in a thousand devices of the belief would be
 // pulled through its contact. After two closings without a bounce, where none is expected, the same shot is repeated; its
