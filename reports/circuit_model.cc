@@ -330,7 +330,7 @@ std::string spice_bench(const Prepared& p) {
   }
   // Of trapezoids: the first mode to 1e-6, the fastest one as it takes part; one mode alone is quick enough for ten times that.
   const Eigen::VectorXd& omega = p.model.angular_frequencies();
-  const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 5000 : 1500) * omega[0]);
+  const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
   std::string text = title(p) + "\n" + subcircuit(c) + spice_pwl(told, p.duration) + sources;
   text += fmt::format("Xswitch{} 0 s d y vel force softland_switch\nVs s 0 1\nRload d 0 50\n", pins);
   text += ".options reltol=1e-6 abstol=1e-15 vntol=1e-9 chgtol=1e-21 method=trap itl4=100\n";

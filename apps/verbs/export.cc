@@ -292,9 +292,10 @@ void add_export(Verb& verb) {
   verb.positional("RESULT", request->result, "folder that --out named, result.json, or a scene file");
   verb.option(
       "--format", request->format, "NAME",
-      "csv (default), spice-pwl, codes (the samples as integers 0 to 2^bits - 1), or what a generator loads: keysight-arb, "
-      "siglent-csv, tektronix-csv, rigol-csv, digilent-csv; how the switch closes under these samples is told beside them; "
-      "or the switch itself for a circuit: spice-model, spice-bench (with its drives: a run of ngspice), verilog-a");
+      "csv (default), spice-pwl, codes, keysight-arb, siglent-csv, tektronix-csv, rigol-csv, digilent-csv, spice-model, "
+      "spice-bench or verilog-a; codes are the samples as integers 0 to 2^bits - 1; files for a generator come with how the "
+      "switch closes under these samples; the last three are the switch itself for a circuit, spice-bench with its drives: "
+      "a run of ngspice");
   verb.optional("--sample-rate", request->sampling.rate, "RATE",
                 "samples at this rate, instead of what [driver] says: \"27 MHz\"");
   verb.optional("--bits", request->sampling.bits, "N",
@@ -302,7 +303,7 @@ void add_export(Verb& verb) {
   verb.optional("--amplifier", request->sampling.amplifier, "K",
                 "an amplifier between generator and switch: volts of the file are those at the switch over K");
   verb.optional("--marker", request->sampling.marker, "TIME", "where the sync output of the generator falls (keysight-arb)");
-  verb.option("--drive", request->sampling.drive, "NAME", "of several drives this one alone");
+  verb.option("--drive", request->sampling.drive, "DRIVE", "of several drives this one alone");
   verb.option("--signal", request->signal, "NAME",
               "told (default) or output: what the source is told, the samples of one that takes some, or what it makes of that");
   verb.option(

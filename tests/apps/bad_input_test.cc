@@ -307,7 +307,9 @@ TEST_F(BadInput, Results) {
       {{"export", "empty.json"}, "empty.json: is not a result.json of softland"},
       {{"export", "none"}, "none: cannot be read: No such file or directory"},
       {{"export", "folder"}, "folder: holds neither best.toml nor result.json"},
-      {{"export", "gold.toml", "--format", "wav"}, "--format wav: must be csv, spice-pwl or codes"},
+      {{"export", "gold.toml", "--format", "wav"},
+       "--format wav: must be one of csv, spice-pwl, codes, spice-model, spice-bench, verilog-a, keysight-arb, siglent-csv, "
+       "tektronix-csv, rigol-csv, digilent-csv"},
       {{"report", "nonsense.json"}, "nonsense.json: is not a result.json of softland"},
       {{"report", "empty.json"}, "empty.json: is not a result.json of softland"},
       {{"export", "none.json"}, "none.json: cannot be read: No such file or directory"},

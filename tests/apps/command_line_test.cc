@@ -690,7 +690,7 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
   EXPECT_EQ(metrics("back.toml"), metrics("landing.toml"));
 
   for (const auto& [words, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"--format", "awg"}, "--format awg: must be one of csv, spice-pwl, codes, keysight-arb"},
+           {{"--format", "awg"}, "--format awg: must be one of csv, spice-pwl, codes, spice-model"},
            {{"--format", "rigol-csv"}, "drive 'main' takes no samples: give --sample-rate"},
            {{"--format", "rigol-csv", "--sample-rate", "27 V"}, "sample_rate"},
            {{"--format", "siglent-csv", "--sample-rate", "150 MHz"}, "Siglent SDG1000X takes 16384"},

@@ -354,7 +354,11 @@ TEST(Derivatives, ForwardAreThoseBackward_optimized) {
           .above = Switch(above, p.quadrature), .below = Switch(below, p.quadrature), .distance = 2 * step});
     };
     set(0, [](Device& d) -> double& { return d.structure.thickness; });
-    set(2, [](Device& d) -> double& { return std::get<UniformAsperities>(d.contact->model).height; });
+    set(2, [](Device& d) -> double& {
+      ContactModel& contact = d.contact->model;
+      if (auto* const plastic = std::get_if<PlasticAsperities>(&contact)) return plastic->height;
+      return std::get<UniformAsperities>(contact).height;
+    });
     set(3, [](Device& d) -> double& { return d.gap.contact; });
     SwitchSlopes by(p.model, std::move(neighbours));
     EXPECT_EQ(by.parameters(), 4U);

@@ -181,7 +181,7 @@ TEST(OwnObjective, OfDevicesIsTheTargetOfItsFigureAndClosesThemOneByOne) {
   EXPECT_EQ(vectors_for(own.target), Vectors::none);
   const RobustAim aim{.measure = parse_robust_measure("worst", device_figures), .conditions = {}};
   const auto value = [&](const SearchSetting& setting) {
-    const RobustCost cost(setting, aim, own_devices(setting, {}, 8, 1, 0, 1, {}));
+    const RobustCost cost(setting, aim, own_devices(setting, {}, 8, 1, 0, 1, {}), Vectors::none);
     return cost.value(cost.close(setting.drives({}), 0, 8, 1));
   };
   EXPECT_EQ(value(own), value(built_in));

@@ -148,9 +148,10 @@ TEST(Csv, RefusesNamesThatBreakTheHeader) {
 }
 
 TEST(SpicePwl, HasOneSubcircuitPerDrive) {
-  const std::string text = spice_pwl({{"main", signal(kStep)}, {"Top-2", Signal()}}, 1_us);
+  const std::string text = spice_pwl({{"main", signal(kStep)}, {"Top-2", Signal()}}, 1e-4);
   EXPECT_THAT(text,
-              HasSubstr(".subckt softland_main plus minus\nVdrive plus minus PWL(\n+ 0 0\n+ 1e-12 45\n+ 1e-06 45\n+ )\n.ends"));
+              HasSubstr(".subckt softland_main plus minus\nVdrive plus minus PWL(\n+ 0 0\n+ 1e-12 45\n+ 0.0001 45\n+ )\n.ends"));
+  EXPECT_THAT(spice_pwl({{"main", signal(kStep)}}, 1e-9), testing::Not(HasSubstr("1e-12"))) << "of a switch of nanoseconds";
   EXPECT_THAT(text, HasSubstr(".subckt softland_top_2 plus minus\n"));
   expect_invalid([] { (void)spice_pwl({{"a-b", Signal()}, {"A_B", Signal()}}, 1); }, {"\"a-b\"", "softland_a_b"});
   expect_invalid([] { (void)spice_pwl({}, 1); }, {"no waveform"});
