@@ -453,7 +453,7 @@ bool acts_on_a_terminal(const std::string& text) {
          text.find("\u2066") != std::string::npos;
 }
 
-TEST_F(Faults, NothingThatActsOnATerminalReachesIt_optimized) {
+TEST_F(Faults, NothingThatActsOnATerminalReachesIt_slow) {
   const std::string evil = "\x1b]0;owned\a\x1b[31m\u009b2J\u202eabc\u2066\x7f";
   const std::string title = R"("\u001b]0;owned\u0007\u001b[31m\u009b2J\u202eabc\u2066\u007f")";
   const std::string scene = shipped("mem-gold.toml");

@@ -330,7 +330,7 @@ TEST(KilledSearch, LeavesWholeFiles) {
   EXPECT_FALSE(fs::exists(here.path() / "out/unfinished")) << "the next search has finished, and its results are here";
 }
 
-TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn) {
+TEST(EarlierSearch, KeepsItsResultsUntilTheNextHasItsOwn_slow) {
   const Workplace here;
   fs::create_directory(here.path() / "out");
   const std::set<std::string> earlier{"best.toml", "best.csv", "report.html", "result.json", "evaluations.csv", "trajectory.csv"};

@@ -54,7 +54,7 @@ TEST(ForDevices, IsSofterThanThePlainStepAndTheDrawing_optimized) {
   EXPECT_LT(cost_of(found, "closing time to 50 ns"), cost_of(found, "for the devices"));
 }
 
-TEST(ForDevices, HasTheSameBitsWithAnyJobs_optimized) {
+TEST(ForDevices, HasTheSameBitsWithAnyJobs_slow) {
   const ForDevicesResult one = searched(quick_gold(), race_closings / 4, 2, 1),
                          two = searched(quick_gold(), race_closings / 4, 2, 2);
   EXPECT_EQ(one.best.best_scene->scene.file.text(), two.best.best_scene->scene.file.text());

@@ -142,7 +142,7 @@ TEST(WorstOfModes, IsTheHighestOfTheCostsOfEveryBeam) {
   EXPECT_FALSE(worst.gradient_refusal(Target::bounce).empty());
 }
 
-TEST(Confirmation, IsByTheIntegratorByRicherBeamsAndByGasLawsWhoseLimitsHold) {
+TEST(Confirmation, IsByTheIntegratorByRicherBeamsAndByGasLawsWhoseLimitsHold_slow) {
   const auto names = [](const SceneFile& file) {
     std::vector<std::string> all;
     for (const ConfirmingRun& run : confirm(prepare_and_choose(file, true))) all.push_back(run.name);

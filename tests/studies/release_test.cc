@@ -79,7 +79,7 @@ TEST(Release, OfAnUndampedPlateIsThatOfItsClosedForm) {
   EXPECT_LT(found.best->figures.residual_vibration, 0.01 * 2.6e-6);
 }
 
-TEST(Release, StopsTheShippedSwitchesInTheirBand) {
+TEST(Release, StopsTheShippedSwitchesInTheirBand_slow) {
   for (const char* name : {"mem-gold.toml", "mem-gold-pzt.toml", "nem-tin.toml", "two-electrodes.toml"}) {
     const Release r = release(scene(name), {.jobs = 2});
     ASSERT_TRUE(r.best) << name;

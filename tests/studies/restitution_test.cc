@@ -42,7 +42,7 @@ Speeds speeds(double damping) {
   return {.first = t.touches[0].impact_velocity, .second = t.touches[1].impact_velocity};
 }
 
-TEST(Restitution, IsThatOfTheTableOfDampings) {
+TEST(Restitution, IsThatOfTheTableOfDampings_slow) {
   const std::vector<double> wanted = row_of_docs("| restitution e |"), products = row_of_docs("| κ v |");
   ASSERT_EQ(wanted.size(), 8U);
   ASSERT_EQ(products.size(), wanted.size());

@@ -106,7 +106,7 @@ TEST(RobustOptimize, OfAYieldSaysHowManyDevicesHaveIt_optimized) {
   EXPECT_GT(log.result.yield->value, 0.5);
 }
 
-TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot_optimized) {
+TEST(RobustOptimize, OfACalibratedSwitchLandsWhatFixedVoltsCannot_slow) {
   SceneFile file = quick();
   for (const char* set : {"calibration.Vdp.error=\"0 %\"", "calibration.frequency.error=\"0 %\""}) file.set(set);
   const Log log = search(file, aim("cvar:0.9"));
