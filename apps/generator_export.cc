@@ -22,18 +22,6 @@ namespace {
 using internal::plain_number;
 using internal::quantity;
 
-double given(const std::string& option, const std::string& text, Dimension due) {
-  Quantity q;
-  try {
-    q = parse_quantity(text);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(fmt::format("{} {}: {}", option, shown(text), error.what()));
-  }
-  require(q.dimension == due && std::isfinite(q.value),
-          [&] { return fmt::format("{} {}: must be {}, such as \"{}\"", option, shown(text), describe(due), example(due)); });
-  return q.value;
-}
-
 std::size_t place_of(const Prepared& p, const std::string& drive) {
   const std::vector<std::string> names = p.drive_names();
   return static_cast<std::size_t>(std::ranges::find(names, drive) - names.begin());
@@ -88,13 +76,13 @@ std::string generator_text(const GeneratorFormat& format, const Prepared& p, con
                        drive, drive);
   });
   const double rate = *source.sample_rate;
-  const double factor = sampling.amplifier ? given("--amplifier", *sampling.amplifier, dimension::none) : 1;
-  require(factor != 0, "--amplifier 0: must be other than 0: volts at the switch per volt of the generator");
+  const double factor = sampling.amplifier ? quantity_of("--amplifier", *sampling.amplifier, dimension::none) : 1;
+  require(factor > 0, "--amplifier 0: must be above 0: volts at the switch per volt of the generator");
   GeneratorSamples samples{.name = drive, .rate = rate};
   const double last = std::round(told.pieces().back().begin * rate);
   for (double k = 0; k <= last; ++k) samples.volts.push_back(told.voltage(k / rate) / factor);
   if (sampling.marker) {
-    const double at = std::round(given("--marker", *sampling.marker, dimension::time) * rate);
+    const double at = std::round(quantity_of("--marker", *sampling.marker, dimension::time) * rate);
     require(at >= 0 && at <= last, [&] {
       return fmt::format("--marker {}: must be within the waveform, 0 to {}", shown(*sampling.marker),
                          quantity(last / rate, "s"));
@@ -104,13 +92,14 @@ std::string generator_text(const GeneratorFormat& format, const Prepared& p, con
   return generator_file(format, std::move(samples));
 }
 
-void tell_sampled(const Prepared& sampled, const Prepared& drawn, const std::vector<std::string>& drives, const Watch& watch) {
-  const Closing as_sampled = simulate(sampled, false, watch), as_drawn = simulate(drawn, false, watch);
-  const std::string how = words(sampled.source(place_of(sampled, drives.front())));
-  say(fmt::format("as sampled, {}: {}", how, clause(sampled, as_sampled)));
+void tell_sampled(const Prepared& sampled, const Prepared* drawn, const std::string& drive, const Watch& watch) {
+  const Closing as_sampled = simulate(sampled, false, watch);
+  say(fmt::format("as sampled, {}: {}", words(sampled.source(place_of(sampled, drive))), clause(sampled, as_sampled)));
+  if (drawn == nullptr) return;
+  const Closing as_drawn = simulate(*drawn, false, watch);
   if (!is_worse(as_sampled.metrics, as_drawn.metrics)) return;
   say(fmt::format("warning: as drawn, {}: a higher rate or more bits keep that, or a search under this [driver]",
-                  clause(drawn, as_drawn)));
+                  clause(*drawn, as_drawn)));
 }
 
 }  // namespace softland::apps

@@ -34,8 +34,8 @@ void set_sampling(SceneFile& file, const std::vector<std::string>& drives, const
 [[nodiscard]] std::string generator_text(const GeneratorFormat& format, const Prepared& prepared, const std::string& drive,
                                          const Signal& told, const Sampling& sampling);
 
-/// Tells how the switch closes under the samples, and warns where it does not as well as under the waveform that they were taken
-/// of.
-void tell_sampled(const Prepared& sampled, const Prepared& drawn, const std::vector<std::string>& drives, const Watch& watch);
+/// Tells how the switch closes under the samples of a drive, and warns where it does not as well as under the waveform that they
+/// were taken of; null: that is not there without them.
+void tell_sampled(const Prepared& sampled, const Prepared* drawn, const std::string& drive, const Watch& watch);
 
 }  // namespace softland::apps

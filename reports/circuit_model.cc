@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -61,15 +60,6 @@ struct Circuit {
   std::vector<std::string> tension;                                   // on every mode; empty: none
 };
 
-std::string pin_name(const std::string& drive) {
-  std::string name;
-  for (const char c : drive) {
-    const auto byte = static_cast<unsigned char>(c);
-    name += byte < 128 && std::isalnum(byte) != 0 ? static_cast<char>(std::tolower(byte)) : '_';
-  }
-  return name;
-}
-
 std::string sum_of(const Dialect& d, char letter, const Eigen::VectorXd& factors, double constant) {
   Formula sum = constant;
   for (Eigen::Index i = 0; i < factors.size(); ++i) sum += Formula(factors[i]) * d.node(fmt::format("{}{}", letter, i));
@@ -111,7 +101,7 @@ class Maker {
     const std::vector<std::string> names = p_.drive_names();
     const std::vector<Signal> told = p_.told(p_.in_drive_order(p_.drives.waveforms));
     for (std::size_t k = 0; k < names.size(); ++k) {
-      const std::string pin = pin_name(names[k]);
+      const std::string pin = spice_name(names[k]);
       const DriveKind kind = model_.drive_kind(k);
       const bool connected = kind != DriveKind::dispersion || !told[k].is_zero();
       if (connected) c_.drives.push_back(pin);
@@ -317,21 +307,21 @@ std::string spice_model(const Prepared& p) {
 
 std::string spice_bench(const Prepared& p) {
   const Circuit c = Maker(p, spice).make();
-  std::map<std::string, Signal> told;
+  std::map<std::string, Signal> driven;  // as their sources give them
   const std::vector<std::string> names = p.drive_names();
   const std::vector<Signal> signals = p.signals();
   std::string sources, pins;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::string pin = pin_name(names[k]);
+    const std::string pin = spice_name(names[k]);
     if (std::ranges::find(c.drives, pin) == c.drives.end()) continue;
-    told.emplace(names[k], signals[k]);
+    driven.emplace(names[k], signals[k]);
     sources += fmt::format("Xdrive_{0} {0} 0 softland_{0}\n", pin);
     pins += " " + pin;
   }
   // Of trapezoids: the first mode to 1e-6, the fastest one as it takes part; one mode alone is quick enough for ten times that.
   const Eigen::VectorXd& omega = p.model.angular_frequencies();
   const double step = 2 * pi / std::max(40 * omega.maxCoeff(), (omega.size() == 1 ? 8000 : 1500) * omega[0]);
-  std::string text = title(p) + "\n" + subcircuit(c) + spice_pwl(told, p.duration) + sources;
+  std::string text = title(p) + "\n" + subcircuit(c) + spice_pwl(driven, p.duration) + sources;
   text += fmt::format("Xswitch{} 0 s d y vel force softland_switch\nVs s 0 1\nRload d 0 50\n", pins);
   text += ".options reltol=1e-6 abstol=1e-15 vntol=1e-9 chgtol=1e-21 method=trap itl4=100\n";
   text += fmt::format(".tran {} {} 0 {} uic\n", step, p.duration, step);

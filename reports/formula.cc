@@ -12,6 +12,8 @@ std::string joined(const Formula& a, const char* sign, const Formula& b) {
   return fmt::format("({}{}{})", a.text(), sign, b.text());
 }
 
+Formula call(const char* function, const Formula& x) { return Formula::named(fmt::format("{}({})", function, x.text())); }
+
 }  // namespace
 
 Formula Formula::named(std::string operand) {
@@ -52,8 +54,6 @@ Formula operator/(const Formula& a, const Formula& b) {
   // ngspice adds 1e-32 to what it divides by, which may be less: its powers are what they say.
   return a * pow(b, -1);
 }
-
-Formula call(const char* function, const Formula& x) { return Formula::named(fmt::format("{}({})", function, x.text())); }
 
 Formula sqrt(const Formula& x) { return call("sqrt", x); }
 Formula log(const Formula& x) { return call("ln", x); }

@@ -25,9 +25,6 @@ class Formula {
   Formula& operator*=(const Formula& b) { return *this = *this * b; }
 
  private:
-  friend Formula call(const char* function, const Formula& x);
-  friend Formula pow(const Formula& x, double exponent);
-
   bool constant_ = false;
   double value_ = 0;
   std::string text_ = {};

@@ -170,6 +170,16 @@ std::string codes(const std::map<std::string, Coded>& drives) {
   return text;
 }
 
+// SPICE reads names without regard to case and knows letters, digits and underscores everywhere.
+std::string spice_name(const std::string& drive) {
+  std::string name;
+  for (const char c : drive) {
+    const auto byte = static_cast<unsigned char>(c);
+    name += byte < 128 && std::isalnum(byte) != 0 ? static_cast<char>(std::tolower(byte)) : '_';
+  }
+  return name;
+}
+
 std::string spice_pwl(const std::map<std::string, Signal>& signals, double end) {
   require_signals(signals);
   // Far below any time a switch knows, and resolved by the 17 digits of a time of a second.
@@ -177,12 +187,7 @@ std::string spice_pwl(const std::map<std::string, Signal>& signals, double end) 
   std::string text = "* Drive waveforms, one subcircuit each: Xname plus minus softland_drive\n";
   std::set<std::string> names;
   for (const auto& [drive, signal] : signals) {
-    // SPICE reads names without regard to case and knows letters, digits and underscores everywhere.
-    std::string name = "softland_";
-    for (const char c : drive) {
-      const auto byte = static_cast<unsigned char>(c);
-      name += byte < 128 && std::isalnum(byte) != 0 ? static_cast<char>(std::tolower(byte)) : '_';
-    }
+    const std::string name = "softland_" + spice_name(drive);
     require(names.insert(name).second,
             fmt::format("the name of a drive is \"{}\"; another one has the same SPICE name {}", drive, name));
     fmt::format_to(std::back_inserter(text), ".subckt {} plus minus\nVdrive plus minus PWL(\n", name);

@@ -40,6 +40,8 @@ struct Coded {
 /// InvalidInput when there is none, and where the rates differ.
 [[nodiscard]] std::string codes(const std::map<std::string, Coded>& drives);
 
+/// What SPICE calls a drive: letters of it become lower case, and what is neither letter nor digit an underscore.
+[[nodiscard]] std::string spice_name(const std::string& drive);
 /// A SPICE file with one subcircuit `softland_<drive> plus minus` per drive, which holds one PWL voltage source; usable with
 /// .include in ngspice, LTspice, HSPICE. Jumps take 1 ps, or a ten-millionth of `end` or a thousandth of the interval after them
 /// if that is shorter; curves as in csv(). Letters of a name become lower case and what is neither letter nor digit an

@@ -218,15 +218,16 @@ double last_breakpoint(const std::map<std::string, Signal>& signals) {
 
 // What is exported of the scene, with the samples that are asked for.
 struct Exported {
-  Prepared drawn, sampled;
+  Prepared sampled;
+  std::optional<Prepared> drawn;  // where the samples are not those of the scene
   std::vector<std::string> drives;
 };
 Exported exported(SceneFile file, const ExportRequest& request, bool need_pull_in, const Watch& watch) {
-  const Prepared drawn = prepare_and_choose(file, need_pull_in, watch);
+  Prepared drawn = prepare_and_choose(file, need_pull_in, watch);
   std::vector<std::string> drives = exported_drives(drawn, request.sampling.drive);
-  if (!request.sampling.rate && !request.sampling.bits) return {drawn, drawn, std::move(drives)};
+  if (!request.sampling.rate && !request.sampling.bits) return {std::move(drawn), std::nullopt, std::move(drives)};
   set_sampling(file, drives, request.sampling);
-  return {drawn, prepare_and_choose(file, need_pull_in, watch), std::move(drives)};
+  return {prepare_and_choose(file, need_pull_in, watch), std::move(drawn), std::move(drives)};
 }
 
 std::string for_generator(const GeneratorFormat& format, const Exported& what, const SentSignals& sent,
@@ -279,7 +280,8 @@ int export_verb(const Common& c, const ExportRequest& request) {
                            : request.format == "csv"       ? csv(sent.signals, end, sent.sample_rates)
                            : request.format == "spice-pwl" ? spice_pwl(sent.signals, end)
                                                            : codes(coded(p, sent));
-  if (generator != nullptr && measured.are_none()) tell_sampled(p, what.drawn, what.drives, work->watch());
+  if (generator != nullptr && measured.are_none())
+    tell_sampled(p, what.drawn ? &*what.drawn : nullptr, what.drives.front(), work->watch());
   work.reset();
   print(text);
   return exit_done;

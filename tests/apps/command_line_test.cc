@@ -694,7 +694,7 @@ TEST(Export, ForAGeneratorTellsHowTheSwitchClosesAsSampled_optimized) {
            {{"--format", "rigol-csv"}, "drive 'main' takes no samples: give --sample-rate"},
            {{"--format", "rigol-csv", "--sample-rate", "27 V"}, "sample_rate"},
            {{"--format", "siglent-csv", "--sample-rate", "150 MHz"}, "Siglent SDG1000X takes 16384"},
-           {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--amplifier", "0"}, "must be other than 0"},
+           {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--amplifier", "0"}, "must be above 0"},
            {{"--format", "keysight-arb", "--sample-rate", "1 MHz", "--marker", "1 s"}, "must be within the waveform"},
            {{"--format", "digilent-csv", "--sample-rate", "1 MHz", "--marker", "1 us"}, "holds no marker"},
            {{"--format", "csv", "--amplifier", "20"}, "belong to the file of a generator"},
@@ -730,7 +730,7 @@ TEST(Export, WritesTheSwitchForACircuit) {
 
 // By ngspice where there is one, whose steps are by trapezoids.
 TEST(Export, OfTheSwitchForACircuitClosesAsItDoes_slow) {
-  if (std::system("ngspice -v > /dev/null 2>&1") != 0) GTEST_SKIP() << "no ngspice";
+  if (std::system("command -v ngspice >/dev/null 2>&1") != 0) GTEST_SKIP() << "skipped: no circuit simulator; needs: ngspice";
   const Workplace here;
   const std::string scene = std::string(SOFTLAND_SOURCE_DIR) + "/scenes/gap-closing-actuator.toml";
   write(here.path() / "bench.cir", here.run({"export", scene, "--format", "spice-bench"}).out);
