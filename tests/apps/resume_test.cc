@@ -172,7 +172,7 @@ TEST_F(Resume, IsNotMadeOfAnExploration) {
 
 class Start : public test::Searches {};
 
-TEST_F(Start, FromTheWinnerOfAnotherSearchNeverEndsWorse_optimized) {
+TEST_F(Start, FromTheWinnerOfAnotherSearchNeverEndsWorse_slow) {
   done(optimize({"--out", "one", "--budget", "400"}));
   const json found = test::result_in(at("one"));
   done(optimize({"--out", "two", "--budget", "12", "--start", "one/best.toml"}));

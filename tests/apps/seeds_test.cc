@@ -95,7 +95,7 @@ TEST_F(Seeds, AfterKillsAtRandomMomentsEndWithTheSameBits_slow) {
   expect_same_rows(rows_of(at("whole/seeds.sqlite")), rows_of(at("killed/seeds.sqlite")));
 }
 
-TEST_F(Seeds, ThatAreThereAreNotRepeatedWhenMoreAreAsked) {
+TEST_F(Seeds, ThatAreThereAreNotRepeatedWhenMoreAreAsked_slow) {
   done(seeds("2", {"--out", "out"}));
   done(optimize({"--resume", "--out", "out", "--seeds", "3"}));
   const std::vector<StoredSession> sessions = StudyReader(at("out/seeds.sqlite")).sessions();
@@ -106,7 +106,7 @@ TEST_F(Seeds, ThatAreThereAreNotRepeatedWhenMoreAreAsked) {
           "--resume: out/evaluations.sqlite holds another search: it has 3 seeds, not 2");
 }
 
-TEST_F(Seeds, GoOnFromASingleSearch) {
+TEST_F(Seeds, GoOnFromASingleSearch_slow) {
   done(optimize({"--out", "out", "--budget", "150"}));
   done(optimize({"--resume", "--out", "out", "--seeds", "2"}));
   done(seeds("2", {"--out", "whole"}));

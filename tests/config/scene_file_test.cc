@@ -120,7 +120,7 @@ Waveform after_text(const Waveform& waveform) {
   return scene.drives({}).waveforms.at("main");
 }
 
-TEST(SceneFile, WaveformsReadBackDigitForDigit) {
+TEST(SceneFile, WaveformsReadBackDigitForDigit_long) {
   const bool holds = rc::check([](int seed) {
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const auto number = [&](double scale) { return scale * std::uniform_real_distribution<double>(0, 1)(random); };

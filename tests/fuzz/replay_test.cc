@@ -1,4 +1,4 @@
-// Every kept input of the fuzzers, and every shipped scene, once more.
+// Every kept input of the fuzzers, and every shipped scene, once more. The build names the targets in SOFTLAND_REPLAYED.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ TEST_P(Replay, NoKeptInputEndsOtherwiseThanTakenOrRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Fuzz, Replay, ::testing::ValuesIn(targets),
+INSTANTIATE_TEST_SUITE_P(Fuzz, Replay, ::testing::ValuesIn(SOFTLAND_REPLAYED),
                          [](const auto& target) { return std::string(target.param.name); });
 
 }  // namespace

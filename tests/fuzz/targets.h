@@ -27,9 +27,10 @@ struct Target {
   std::string_view name;
   void (*read)(std::string_view);
 };
-inline constexpr std::array targets{
-    Target{"scene", scene},         Target{"set", set},       Target{"units", units}, Target{"table", table},
-    Target{"recording", recording}, Target{"result", result}, Target{"lines", lines}};
+inline constexpr std::array targets{Target{"scene", scene}, Target{"set", set}, Target{"units", units}, Target{"table", table},
+                                    Target{"recording", recording}};
+/// Of what softland writes for itself.
+inline constexpr std::array written_targets{Target{"result", result}, Target{"lines", lines}};
 
 /// Throws logic_error unless `holds`.
 inline void check(bool holds, const std::string& what) {

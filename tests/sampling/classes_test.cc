@@ -28,7 +28,7 @@ struct Published {
   double mean_square;           // distance
 };
 
-TEST(Classes, OfANormalQuantityAreThoseOfMax) {
+TEST(Classes, OfANormalQuantityAreThoseOfMax_long) {
   const std::vector<SpacePoint> points = normal_points(4000);
   // The mean square is flat about its minimum, and the iteration ends where no point changes its class any more.
   constexpr double of_a_centre = 0.02, of_the_mean_square = 5e-3;

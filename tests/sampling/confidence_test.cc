@@ -118,7 +118,7 @@ TEST(QuantileInterval, CoversTheQuantileAtLeastAsOftenAsItSays) {
   }
 }
 
-TEST(BootstrapInterval, CoversAMeanNearlyAsOftenAsItSays) {
+TEST(BootstrapInterval, CoversAMeanNearlyAsOftenAsItSays_long) {
   const double share = coverage([](int repetition) {
     return bootstrap_interval(exponential_sample(repetition, 100), sample_mean,
                               {.confidence = confidence, .repetitions = 300, .seed = static_cast<std::uint64_t>(repetition)})

@@ -50,7 +50,7 @@ double rank_correlation_of(const std::vector<double>& a, const std::vector<doubl
   return 1 - 6 * differences / (n * (n * n - 1));
 }
 
-TEST(GaussianCopula, GivesTheRankCorrelationsOfItsNormals) {
+TEST(GaussianCopula, GivesTheRankCorrelationsOfItsNormals_long) {
   constexpr std::uint64_t count = 100'000;
   const auto columns = correlated_columns(GaussianCopula(of_three(0.8, -0.5, 0.05)), count);
   const double five_deviations = 5 / std::sqrt(static_cast<double>(count));  // where independent; less where correlated

@@ -62,7 +62,7 @@ TEST(Distribution, TruncationIsConditioning) {
 }
 
 // The independent way: equal weights on the quantiles in the middles of equal intervals of probability.
-TEST(Distribution, MomentsAreThoseOfItsQuantiles) {
+TEST(Distribution, MomentsAreThoseOfItsQuantiles_long) {
   constexpr int points = 200'000;
   for (const Case& c : all_cases()) {
     double sum = 0, squares = 0;

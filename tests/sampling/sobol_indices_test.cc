@@ -99,7 +99,7 @@ TEST(SobolIndices, OfAVariableWithoutEffectIsNotDistinguishableFromZero) {
 
 // The interval holds an index as often as it says, within four standard deviations of the share of 300 repetitions; and it is
 // wrong in a tenth of them, not in none.
-TEST(SobolIndices, HaveIntervalsThatCoverAsOftenAsTheySay) {
+TEST(SobolIndices, HaveIntervalsThatCoverAsOftenAsTheySay_long) {
   constexpr int repetitions = 300;
   const GFunction g{.a = {0.5, 1, 3}};
   int first_order = 0, total = 0, below_zero = 0;

@@ -68,7 +68,7 @@ TEST(OpenState, OfASwitchThatOpensIsSeenFromWhereItStarted) {
 }
 
 // Just below and just above the dynamic pull-in voltage, in windows in which nothing touches.
-TEST(OpenState, IsThatOfEveryShippedScenePulledByLess) {
+TEST(OpenState, IsThatOfEveryShippedScenePulledByLess_slow) {
   for (const std::string& name : shipped_scenes()) {
     const Scene read = read_scene(scene(name.c_str()));
     if (read.device.electrodes.empty()) continue;

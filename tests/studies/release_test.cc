@@ -93,7 +93,7 @@ TEST(Release, StopsTheShippedSwitchesInTheirBand_slow) {
   }
 }
 
-TEST(Release, IsTheSameForAnyNumberOfJobs) {
+TEST(Release, IsTheSameForAnyNumberOfJobs_slow) {
   const Release one = release(gold(), {.max_evaluations = 1000, .seed = 5, .jobs = 1});
   const Release two = release(gold(), {.max_evaluations = 1000, .seed = 5, .jobs = 2});
   EXPECT_EQ(one.search.x, two.search.x);

@@ -70,7 +70,7 @@ TEST(Terms, BoundsHoldEveryDifferenceQuotient) {
   }
 }
 
-TEST(Terms, ExtremaMatchDenseSampling) {
+TEST(Terms, ExtremaMatchDenseSampling_long) {
   std::mt19937_64 random(5);
   constexpr double duration = 1.3;
   constexpr int samples = 20000;
