@@ -196,13 +196,13 @@ Tuner::State::Learned Tuner::State::learned(Learned known, const ContactRecord& 
   const PredictedRecord predicted = known.next.predicted;
   known.fired.push_back({.shot = {.waveforms = known.next.waveforms, .record = record}, .x = known.x, .as_proposed = known.next});
   ++known.closings;
-  const bool quiet = is_bounce_free(record);
-  const bool repeats = known.steering && quiet;
+  const bool quiet = is_bounce_free(record), bounced_long = has_long_bounce(scene, record);
+  const bool repeats = known.steering && first_touch(record) && !bounced_long;
   known.in_a_row = quiet ? known.in_a_row + 1 : 0;
   if (!repeats) known.surprises.push_back(surprise(predicted, record, known.belief.effective_devices));
   known.unexpected_states += is_in_unexpected_state(predicted, record);
   constexpr double rarely = 0.05;
-  if (has_long_bounce(scene, record) && predicted.bounces <= rarely) ++known.unexpected_bounces;
+  if (bounced_long && predicted.bounces <= rarely) ++known.unexpected_bounces;
   if (repeats) {
     known.steering->follow(*first_touch(record));
     known.next.waveforms = known.steering->steered();

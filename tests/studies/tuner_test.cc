@@ -271,6 +271,18 @@ TEST(Tuners, RepeatedShotsFollowADrift_slow) {
   const double followed = signal(tuner.next().waveforms[0]).peak() / volts, due = (1 + drift * first) / (1 + drift * last);
   constexpr double scatter = 4e-4;  // of touch times, and what steering lags behind
   EXPECT_FALSE(!(std::abs(followed - due) <= scatter)) << followed << " " << due;
+
+  const std::size_t before = tuner.surprises().size();
+  const auto learn_with_opening = [&](double seconds) {
+    ContactRecord record = fired(device, tuner.next(), static_cast<std::uint64_t>(tuner.next().number)).record;
+    const double touch = *first_touch(record);
+    record.edges = {{.time = touch, .closed = true}, {.time = 1.1 * touch}, {.time = 1.1 * touch + seconds, .closed = true}};
+    tuner.learn(record);
+  };
+  learn_with_opening(0.5e-6);
+  EXPECT_EQ(tuner.surprises().size(), before) << "a bounce by less than a nanometre ended the steering";
+  learn_with_opening(5e-6);
+  EXPECT_EQ(tuner.surprises().size(), before + 1);
 }
 
 }  // namespace
