@@ -13,10 +13,8 @@
 #include "reports/course.h"
 #include "reports/escape.h"
 #include "reports/figure_text.h"
-#include "reports/json_number.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
-#include "reports/result_json.h"
 #include "reports/robustness_words.h"
 #include "reports/text.h"
 
@@ -30,7 +28,6 @@ const ResultDevices::Row* ResultDevices::row(std::string_view name) const {
 namespace {
 
 using namespace internal;
-using nlohmann::json;
 
 constexpr double half = 0.5;
 
@@ -181,62 +178,6 @@ ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& o
                             .high = c.share.interval.high,
                             .holds = c.holds});
   return d;
-}
-
-json internal::devices_json(const ResultDevices& d) {
-  json rows = json::array(), front = json::array(), by_error = json::array(), race = json::array(), conditions = json::array();
-  for (const ResultDevices::Row& r : d.rows) {
-    json figures = json::object();
-    for (const auto& [key, value] : r.at_95) figures[key] = json_number(value);
-    rows.push_back({{"name", r.name},
-                    {"knowledge",
-                     {{"Vdp", json_number(r.pull_in_error)},
-                      {"frequency", json_number(r.frequency_error)},
-                      {"piezo", json_number(r.piezo_error)},
-                      {"time_s", json_number(r.time_error)}}},
-                    {"searched_for_it", r.searched_for_it},
-                    {"bounce_free", json_number(r.bounce_free)},
-                    {"does_not_close", json_number(r.open)},
-                    {"collapsed_onto_electrode", json_number(r.collapsed)},
-                    {"quantile_95", std::move(figures)}});
-  }
-  for (const ResultDevices::FrontPoint& p : d.front)
-    front.push_back({{"initial_contact_time_s", json_number(p.first_touch)},
-                     {"largest_impact_velocity_m_s", json_number(p.impact_speed)},
-                     {"bounce_free", json_number(p.bounce_free)},
-                     {"candidate", p.candidate}});
-  for (const ResultDevices::ByError& known : d.by_error)
-    by_error.push_back({{"error", json_number(known.error)},
-                        {"bounce_free", json_number(known.bounce_free)},
-                        {"largest_impact_velocity_m_s", json_number(known.impact_speed)}});
-  for (const ResultDevices::Racer& r : d.race)
-    race.push_back({{"measure", r.measure},
-                    {"waveform", r.waveform},
-                    {"closings", json_number(r.closings)},
-                    {"cost", json_number(r.cost)},
-                    {"bounce_free", json_number(r.bounce_free)}});
-  for (const ResultRobust::Condition& c : d.conditions)
-    conditions.push_back({{"condition", c.text},
-                          {"share", json_number(c.share)},
-                          {"interval", {json_number(c.low), json_number(c.high)}},
-                          {"holds", c.holds}});
-  return {{"spread_assumed", d.spread_assumed},
-          {"spread", d.spread},
-          {"count", json_number(d.count)},
-          {"seed", json_number(d.seed)},
-          {"closings", json_number(d.closings)},
-          {"chosen", {{"measure", d.measure}, {"waveform", d.waveform}}},
-          {"better_than_plain_step", d.better_than_plain_step},
-          {"worse_in", d.worse_in},
-          {"rows", std::move(rows)},
-          {"front", std::move(front)},
-          {"by_error_of_Vdp", std::move(by_error)},
-          {"hold_window_V", windows_json(d.windows)},
-          {"hold_window_devices", d.windows.devices},
-          {"race", std::move(race)},
-          {"conditions", std::move(conditions)},
-          {"measured", d.measured},
-          {"next_command", d.next_command}};
 }
 
 std::string internal::drawing_words(const ResultDevices& d) {

@@ -1,8 +1,7 @@
 // What a search for devices came to: the first words, the table that stands before all others, and the front of closing time
-// against impact speed; as text, as HTML and as JSON both ways.
+// against impact speed; as text and as HTML.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "reports/result.h"
@@ -14,8 +13,6 @@ namespace softland {
 [[nodiscard]] ResultDevices devices_of(const ForDevicesResult& found, const OptimizeOptions& options, std::string next_command);
 
 namespace internal {
-
-[[nodiscard]] nlohmann::json devices_json(const ResultDevices& devices);
 
 /// What the waveform for the drawing does there, with a blank at the end.
 [[nodiscard]] std::string drawing_words(const ResultDevices& devices);

@@ -13,6 +13,7 @@
 #include "base/read_file.h"
 #include "base/require.h"
 #include "model/ensemble/fleet.h"
+#include "reports/result_members.h"
 #include "version.h"
 
 namespace softland {
@@ -32,8 +33,6 @@ constexpr std::string_view instruction_set =
 #else
     "";
 #endif
-
-json word(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
 
 // The note that the linker leaves in the program: a hash of its content. The program itself is the first object.
 std::string build_id() {
@@ -92,12 +91,7 @@ const MadeWith& made_with() {
   return all;
 }
 
-json made_with_json(const MadeWith& all) {
-  return {{"program", word(all.program)},    {"compiler", word(all.compiler)},
-          {"options", word(all.options)},    {"instruction_set", word(all.instruction_set)},
-          {"vectors", word(all.vectors)},    {"c_library", word(all.c_library)},
-          {"processor", word(all.processor)}};
-}
+json made_with_json(const MadeWith& all) { return internal::record_json(all); }
 
 std::string internal::made_with_text(const MadeWith& all) {
   const bool in_lanes = !all.vectors.empty() && all.vectors != name_of(vector_instructions, Vectors::none);

@@ -105,8 +105,12 @@ struct MadeWith {
 
 /// What effects = "auto" left out.
 struct ResultEffects {
-  std::vector<std::pair<std::string, double>> left_out;  ///< with the influence of each
-  double influence = Metrics::unset;                     ///< of all together
+  struct LeftOut {
+    std::string effect;
+    double influence = Metrics::unset;
+  };
+  std::vector<LeftOut> left_out;
+  double influence = Metrics::unset;  ///< of all together
 };
 
 /// Of a search over devices that differ.
@@ -208,7 +212,7 @@ struct Result {
   std::optional<Certificate> certificate;
   std::optional<ClosedState> closed_state;  ///< under the hold levels; none without a contact
   std::vector<ResultCheck> checks;
-  std::optional<double> evaluations_of_modes;  ///< see OptimizeResult
+  double evaluations_of_modes = Metrics::unset;  ///< see OptimizeResult
   ResultSearch search;
   std::optional<ResultRobust> robust;
   std::optional<ResultDevices> devices;

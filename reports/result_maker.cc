@@ -90,7 +90,8 @@ Result started(const Prepared& p, const Provenance& provenance) {
   if (p.model.has_contact()) r.closed_state = closed_state(p, p.signals());
   if (p.effects) {
     r.effects = ResultEffects{.left_out = {}, .influence = p.effects->choice.influence};
-    for (const Omission& o : p.effects->choice.left_out) r.effects->left_out.emplace_back(o.what.effect, o.influence);
+    for (const Omission& o : p.effects->choice.left_out)
+      r.effects->left_out.push_back({.effect = o.what.effect, .influence = o.influence});
   }
   return r;
 }

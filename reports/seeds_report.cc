@@ -11,9 +11,9 @@
 
 #include "reports/escape.h"
 #include "reports/figure_text.h"
-#include "reports/json_number.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
+#include "reports/result_members.h"
 #include "reports/text.h"
 #include "sampling/statistics.h"
 
@@ -112,17 +112,7 @@ json seeds_json(const ResultSeeds& seeds) {
   json searches = json::array(), failed = json::array(), figures = json::object();
   std::size_t met = 0, confirmed = 0;
   for (const ResultSeeds::Search& one : seeds.searches) {
-    json values = json::object();
-    for (const Figure& f : all_figures) values[std::string(f.key)] = json_number(one.figures[f]);
-    searches.push_back({{"seed", one.seed},
-                        {"status", one.status},
-                        {"cost", json_number(one.cost)},
-                        {"evaluations", json_number(one.evaluations)},
-                        {"termination", one.termination},
-                        {"goal_met", one.goal_met},
-                        {"confirmed", one.confirmed},
-                        {"better_than_baseline", one.better_than_baseline},
-                        {"metrics", std::move(values)}});
+    searches.push_back(record_json(one));
     met += one.goal_met ? 1 : 0;
     confirmed += one.confirmed ? 1 : 0;
     if (const std::string why = failure(one); !why.empty()) failed.push_back({{"seed", one.seed}, {"reason", why}});

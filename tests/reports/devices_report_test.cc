@@ -106,7 +106,7 @@ TEST(DevicesReport, ComesBackFromJsonAsItWas) {
   const nlohmann::json written = result_json(devices_result());
   const Result read = read_result(written);
   ASSERT_TRUE(read.devices);
-  EXPECT_EQ(internal::devices_json(*read.devices), written.at("devices"));
+  EXPECT_EQ(result_json(read), written);
   EXPECT_EQ(read.devices->drawing_goal_met, true);
   EXPECT_EQ(internal::headline(read).whole(), internal::headline(devices_result()).whole());
   EXPECT_EQ(written["devices"]["rows"][4]["knowledge"]["piezo"], 0.01);

@@ -27,7 +27,9 @@ SceneFile shipped(const char* name, std::initializer_list<const char*> settings)
 }
 
 void expect_the_same_reports(const Result& made) {
-  const Result again = read_result(parse_result(result_json(made).dump(), "result.json"));
+  const json written = result_json(made);
+  const Result again = read_result(parse_result(written.dump(), "result.json"));
+  EXPECT_EQ(result_json(again), json::parse(written.dump())) << "a member is written and not read";
   EXPECT_EQ(text_report(again), text_report(made));
   EXPECT_EQ(html_report(again), html_report(made));
   EXPECT_EQ(svg_gap_chart(again), svg_gap_chart(made));

@@ -1,0 +1,284 @@
+// A record and its JSON from one list of its members. `members(archive, record)`, a function template beside the record's type,
+// names every member once; a JsonWriter and a JsonReader both go through it, as archives do in Drake's Serialize.
+//
+// In JSON a number that is not finite is null. A reader takes what is there: what is missing, or of another type, stays as it is
+// in the record.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "objectives/figures.h"
+#include "reports/json_number.h"
+
+namespace softland::internal {
+
+using nlohmann::json;
+
+/// A number of things: whole in JSON.
+struct Count {
+  double& value;
+};
+/// What is null in JSON is infinite, in a number or in each of a map.
+template <class T>
+struct OrInfinite {
+  T& value;
+};
+template <class T>
+OrInfinite(T&) -> OrInfinite<T>;
+/// null in JSON where it is not set, or an empty text; else a member that is not set is left out.
+template <class T>
+struct OrNull {
+  T& value;
+};
+template <class T>
+OrNull(T&) -> OrNull<T>;
+
+template <class Record>
+[[nodiscard]] json record_json(const Record& record);
+
+class JsonWriter {
+ public:
+  static constexpr bool reads = false;
+  /// Whether a member belongs there that is written only `where`.
+  [[nodiscard]] static bool has(bool where) { return where; }
+
+  template <class T>
+  void operator()(std::string_view key, const T& value) {
+    json_[std::string(key)] = of(value);
+  }
+  template <class T>
+  void operator()(std::string_view key, const std::optional<T>& value) {
+    if (value) (*this)(key, *value);
+  }
+  /// Two numbers as a list.
+  void pair(std::string_view key, double low, double high) { json_[std::string(key)] = {json_number(low), json_number(high)}; }
+  /// A value with a JSON of its own making.
+  template <class T, class Write, class Read>
+  void custom(std::string_view key, const T& value, const Write& write, const Read&) {
+    json_[std::string(key)] = write(value);
+  }
+  /// The members that `inside(archive)` names, in an object of their own.
+  template <class Inside>
+  void object(std::string_view key, const Inside& inside) {
+    JsonWriter own;
+    inside(own);
+    json_[std::string(key)].update(own.json_);
+  }
+  /// Those figures that are asked for.
+  template <class Asked>
+  void figures(const FigureValues& values, const Asked& asked) {
+    for (const Figure& figure : all_figures) {
+      if (asked(figure)) json_[std::string(figure.key)] = of(figure, values[figure]);
+    }
+  }
+  [[nodiscard]] json take() && { return std::move(json_); }
+
+ private:
+  static json of(double value) { return json_number(value); }
+  static json of(bool value) { return value; }
+  static json of(const std::string& text) { return text; }
+  template <std::integral Whole>
+  static json of(Whole value) {
+    return value;
+  }
+  static json of(const Count& count) { return std::isfinite(count.value) ? json(std::llround(count.value)) : json(); }
+  template <class T>
+  static json of(const OrInfinite<T>& inner) {
+    return of(inner.value);
+  }
+  static json of(const OrNull<std::string>& text) { return text.value.empty() ? json() : json(text.value); }
+  template <class T>
+  static json of(const OrNull<std::optional<T>>& inner) {
+    return inner.value ? of(*inner.value) : json();
+  }
+  static json of(const Figure& figure, double value) {
+    if (!std::isfinite(value)) return nullptr;
+    if (figure.is_yes_or_no()) return value != 0;
+    return figure.is_count() ? json(std::llround(value)) : json(value);
+  }
+  template <class T, std::size_t n>
+  static json of(const std::array<T, n>& all) {
+    return list(all);
+  }
+  template <class T>
+  static json of(const std::vector<T>& all) {
+    return list(all);
+  }
+  template <class T>
+  static json of(const std::map<std::string, T>& all) {
+    json object = json::object();
+    for (const auto& [key, value] : all) object[key] = of(value);
+    return object;
+  }
+  template <class Record>
+  requires std::is_class_v<Record>
+  static json of(const Record& record) { return record_json(record); }
+  template <class List>
+  static json list(const List& all) {
+    json values = json::array();
+    for (const auto& one : all) values.push_back(of(one));
+    return values;
+  }
+
+  json json_ = json::object();
+};
+
+class JsonReader {
+ public:
+  static constexpr bool reads = true;
+  [[nodiscard]] static bool has(bool) { return true; }
+
+  /// `json` is looked into, and must outlive the reader.
+  explicit JsonReader(const json& json) : json_(&json) {}
+
+  template <class T>
+  void operator()(std::string_view key, T&& value) {
+    take(at(key), value);
+  }
+  void pair(std::string_view key, double& low, double& high) {
+    const json& list = at(key);
+    if (!list.is_array() || list.size() != 2) return;
+    take(list[0], low);
+    take(list[1], high);
+  }
+  template <class T, class Write, class Read>
+  void custom(std::string_view key, T& value, const Write&, const Read& read) {
+    value = read(at(key));
+  }
+  template <class Inside>
+  void object(std::string_view key, const Inside& inside) {
+    if (!at(key).is_object()) return;
+    JsonReader own(at(key));
+    inside(own);
+  }
+  template <class Asked>
+  void figures(FigureValues& values, const Asked&) {
+    for (const Figure& figure : all_figures) take(figure, at(figure.key), values[figure]);
+  }
+  /// The value of a type that is described, as far as the JSON has it.
+  template <class T>
+  [[nodiscard]] static T read(const json& from) {
+    T value = blank<T>();
+    take(from, value);
+    return value;
+  }
+  /// A null value where there is none.
+  [[nodiscard]] const json& at(std::string_view key) const {
+    static const json nothing;
+    if (!json_->is_object()) return nothing;
+    const auto found = json_->find(key);
+    return found == json_->end() ? nothing : *found;
+  }
+
+ private:
+  static void take(const json& from, double& value) {
+    if (from.is_number()) value = from.get<double>();
+  }
+  static void take(const json& from, bool& value) {
+    if (from.is_boolean()) value = from.get<bool>();
+  }
+  static void take(const json& from, std::string& text) {
+    if (from.is_string()) text = from.get<std::string>();
+  }
+  static void take(const json& from, std::uint64_t& value) {
+    if (from.is_number_integer() && from >= 0) value = from.get<std::uint64_t>();
+  }
+  template <std::signed_integral Whole>
+  static void take(const json& from, Whole& value) {
+    const double number = from.is_number() ? from.get<double>() : std::numeric_limits<double>::quiet_NaN();
+    if (std::abs(number) <= static_cast<double>(std::numeric_limits<int>::max())) value = static_cast<Whole>(number);
+  }
+  static void take(const json& from, Count count) { take(from, count.value); }
+  static void take(const json& from, OrInfinite<double> number) {
+    number.value = std::numeric_limits<double>::infinity();
+    if (!from.is_null()) number.value = from.is_number() ? from.get<double>() : Metrics::unset;
+  }
+  static void take(const json& from, OrInfinite<std::map<std::string, double>> numbers) {
+    if (!from.is_object()) return;
+    for (const auto& [key, value] : from.items()) take(value, OrInfinite<double>{numbers.value[key]});
+  }
+  template <class T>
+  static void take(const json& from, OrNull<T> inner) {
+    take(from, inner.value);
+  }
+  static void take(const Figure& figure, const json& from, double& value) {
+    value = figure.is_yes_or_no() && from.is_boolean() ? from.get<bool>() : Metrics::unset;
+    take(from, value);
+  }
+  template <class T>
+  static void take(const json& from, std::optional<T>& value) {
+    if (from.is_null() || (std::is_class_v<T> && !from.is_object() && !std::is_same_v<T, std::string>)) return;
+    value = read<T>(from);
+  }
+  // Of numbers each is there, NaN for what is none.
+  template <class T>
+  static void take(const json& from, std::vector<T>& all) {
+    if (!from.is_array()) return;
+    all.reserve(from.size());
+    for (const json& one : from) all.push_back(read<T>(one));
+  }
+  static void take(const json& from, std::vector<std::string>& all) {
+    if (!from.is_array()) return;
+    for (const json& one : from) {
+      if (one.is_string() && one != "") all.push_back(one.get<std::string>());
+    }
+  }
+  // A list of numbers, points among them, is whole or not there.
+  static bool is_point(const json& from) { return from.is_array() && from.size() == 2; }
+  static std::array<double, 2> point(const json& from) {
+    std::array<double, 2> both{Metrics::unset, Metrics::unset};
+    for (std::size_t k = 0; k < 2; ++k) take(from[k], both[k]);
+    return both;
+  }
+  static void take(const json& from, std::vector<std::array<double, 2>>& all) {
+    if (!from.is_array()) return;
+    for (const json& one : from) {
+      if (is_point(one) && one[0].is_number()) all.push_back(point(one));
+    }
+  }
+  static void take(const json& from, std::map<std::string, std::array<double, 2>>& all) {
+    if (!from.is_object()) return;
+    for (const auto& [key, value] : from.items()) {
+      if (is_point(value)) all[key] = point(value);
+    }
+  }
+  template <class T>
+  static void take(const json& from, std::map<std::string, T>& all) {
+    if (!from.is_object()) return;
+    for (const auto& [key, value] : from.items()) take(value, all.emplace(key, blank<T>()).first->second);
+  }
+  template <class Record>
+  requires std::is_class_v<Record>
+  static void take(const json& from, Record& record) {
+    JsonReader own(from);
+    members(own, record);
+  }
+  template <class T>
+  static T blank() {
+    if constexpr (std::is_floating_point_v<T>) return Metrics::unset;
+    return T{};
+  }
+
+  const json* json_;
+};
+
+template <class Record>
+json record_json(const Record& record) {
+  JsonWriter archive;
+  members(archive, const_cast<Record&>(record));  // which a writer leaves as it is
+  return std::move(archive).take();
+}
+
+}  // namespace softland::internal

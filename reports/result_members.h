@@ -1,0 +1,333 @@
+// The members of a result and of its parts, as its JSON names them, for writing and for reading: see reports/record.h.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reports/record.h"
+#include "reports/result.h"
+#include "reports/robustness_report.h"
+
+namespace softland {
+
+namespace internal {
+
+inline bool every_figure(const Figure&) { return true; }
+inline bool figure_of_no_drive(const Figure& figure) { return figure.conditioning != Conditioning::drives; }
+inline bool figure_of_number(const Figure& figure) { return !figure.is_yes_or_no(); }
+
+// The status stands among the figures.
+template <class A, class Asked>
+void figures_and_status(A& a, FigureValues& figures, std::string& status, const Asked& asked) {
+  a.object("metrics", [&](auto& metrics) {
+    metrics.figures(figures, asked);
+    metrics("status", status);
+  });
+}
+template <class A, class Asked>
+void figures_and_status(A& a, std::optional<FigureValues>& figures, std::string& status, const Asked& asked) {
+  a.object("metrics", [&](auto& metrics) {
+    if (metrics.reads) figures.emplace();
+    metrics.figures(*figures, asked);
+    metrics("status", status);
+  });
+}
+template <class A>
+void figure_errors(A& a, FigureValues& errors) {
+  a.object("errors", [&](auto& inside) { inside.figures(errors, figure_of_number); });
+}
+
+[[nodiscard]] nlohmann::json rebounds_json(const std::vector<Rebound>& rebounds);
+[[nodiscard]] std::vector<Rebound> read_rebounds(const nlohmann::json& rows);
+[[nodiscard]] nlohmann::json counted_json(const Points& points);
+[[nodiscard]] Points read_points(const nlohmann::json& points);
+[[nodiscard]] nlohmann::json pull_in_json(const std::map<std::string, PullInVoltages>& pull_in);
+[[nodiscard]] std::map<std::string, PullInVoltages> read_pull_in(const nlohmann::json& pull_in);
+[[nodiscard]] nlohmann::json certified_json(const std::vector<IllConditioned>& figures);
+[[nodiscard]] std::vector<IllConditioned> read_certified(const nlohmann::json& figures);
+[[nodiscard]] inline std::string integrator_name(Integrator integrator) { return std::string(to_string(integrator)); }
+[[nodiscard]] Integrator read_integrator(const nlohmann::json& name);
+[[nodiscard]] HoldWindows read_windows(const nlohmann::json& windows);
+
+}  // namespace internal
+
+template <class A>
+void members(A& a, MadeWith& made) {
+  using internal::OrNull;
+  a("program", OrNull{made.program});
+  a("compiler", OrNull{made.compiler});
+  a("options", OrNull{made.options});
+  a("instruction_set", OrNull{made.instruction_set});
+  a("vectors", OrNull{made.vectors});
+  a("c_library", OrNull{made.c_library});
+  a("processor", OrNull{made.processor});
+}
+
+template <class A>
+void members(A& a, ResultCurve& curve) {
+  a("time_s", curve.time);
+  a("tip_gap_m", curve.gap);
+  a("tip_velocity_m_s", curve.velocity);
+  a("contact_force_N", curve.force);
+  a.custom("rebounds", curve.rebounds, internal::rebounds_json, internal::read_rebounds);
+}
+
+template <class A>
+void members(A& a, ResultRun& run) {
+  internal::figures_and_status(a, run.figures, run.status, internal::every_figure);
+  a("collapse_time_s", run.collapse_time);
+  a("waveforms", run.waveforms);
+}
+
+template <class A>
+void members(A& a, ResultCheck& check) {
+  a("name", check.name);
+  internal::figures_and_status(a, check.figures, check.status, internal::figure_of_no_drive);
+}
+
+template <class A>
+void members(A& a, ResultEffects::LeftOut& one) {
+  a("effect", one.effect);
+  a("influence", one.influence);
+}
+template <class A>
+void members(A& a, ResultEffects& effects) {
+  a("left_out", effects.left_out);
+  a("influence", effects.influence);
+}
+
+template <class A>
+void members(A& a, Spread& spread) {
+  a("median", spread.median);
+  a("low", spread.low);
+  a("high", spread.high);
+  a("runs", spread.runs);
+}
+
+template <class A>
+void members(A& a, GrazingRebound& rebound) {
+  a("rebound", rebound.number);
+  a("time_s", rebound.time);
+  a("height_m", rebound.height);
+  a("impact_velocity_m_s", rebound.impact_velocity);
+  a("at_significant_height", rebound.at_threshold);
+}
+
+template <class A>
+void members(A& a, ClosedState& state) {
+  a("exists", state.exists);
+  a("stable", internal::OrNull{state.stable});
+  a("smallest_eigenvalue_rad2_s2", state.smallest_eigenvalue);
+  a("pulled_through_V", state.pulled_through);
+}
+
+template <class A>
+void members(A& a, PullInVoltages& volts) {
+  a("static_V", volts.static_pull_in);
+  a("dynamic_V", volts.dynamic_pull_in);
+}
+
+template <class A>
+void members(A& a, Work& work) {
+  a.custom("integrator", work.integrator, internal::integrator_name, internal::read_integrator);
+  a("steps", work.steps);
+  a("rhs_evaluations", work.rhs_evaluations);
+  a("wall_s", work.wall);
+}
+
+template <class A>
+void members(A& a, ResultLimit& limit) {
+  a("least_time_s", limit.least_time);
+  a("impact_velocity_m_s", limit.impact_velocity);
+}
+
+template <class A>
+void members(A& a, ResultFamily& one) {
+  a("family", one.family);
+  a("evaluations", internal::Count{one.evaluations});
+  a("cost", one.cost);
+}
+
+template <class A>
+void members(A& a, ResultRobust::Condition& condition) {
+  a("condition", condition.text);
+  a("share", condition.share);
+  a.pair("interval", condition.low, condition.high);
+  a("holds", condition.holds);
+}
+
+template <class A>
+void members(A& a, ResultRobust& robust) {
+  a("measure", robust.measure);
+  a("devices", robust.devices);
+  a("fresh_devices", robust.fresh_devices);
+  a("closings", robust.closings);
+  a("cost_on_searched_devices", robust.cost_on_searched);
+  a("failing_share", robust.failing);
+  a("measure_tells", robust.is_told);
+  a("yield", robust.yield);
+  a("conditions", robust.conditions);
+}
+
+template <class A>
+void members(A& a, ResultDevices::Row& row) {
+  a("name", row.name);
+  a.object("knowledge", [&](auto& knowledge) {
+    knowledge("Vdp", row.pull_in_error);
+    knowledge("frequency", row.frequency_error);
+    knowledge("piezo", row.piezo_error);
+    knowledge("time_s", row.time_error);
+  });
+  a("searched_for_it", row.searched_for_it);
+  a("bounce_free", row.bounce_free);
+  a("does_not_close", row.open);
+  a("collapsed_onto_electrode", row.collapsed);
+  a("quantile_95", internal::OrInfinite{row.at_95});
+}
+
+template <class A>
+void members(A& a, ResultDevices::FrontPoint& point) {
+  a("initial_contact_time_s", point.first_touch);
+  a("largest_impact_velocity_m_s", point.impact_speed);
+  a("bounce_free", point.bounce_free);
+  a("candidate", point.candidate);
+}
+
+template <class A>
+void members(A& a, ResultDevices::ByError& known) {
+  a("error", known.error);
+  a("bounce_free", known.bounce_free);
+  a("largest_impact_velocity_m_s", internal::OrInfinite{known.impact_speed});
+}
+
+template <class A>
+void members(A& a, ResultDevices::Racer& racer) {
+  a("measure", racer.measure);
+  a("waveform", racer.waveform);
+  a("closings", racer.closings);
+  a("cost", racer.cost);
+  a("bounce_free", racer.bounce_free);
+}
+
+template <class A>
+void members(A& a, ResultDevices& devices) {
+  a("spread_assumed", devices.spread_assumed);
+  a("spread", devices.spread);
+  a("count", devices.count);
+  a("seed", devices.seed);
+  a("closings", devices.closings);
+  a.object("chosen", [&](auto& chosen) {
+    chosen("measure", devices.measure);
+    chosen("waveform", devices.waveform);
+  });
+  a("better_than_plain_step", devices.better_than_plain_step);
+  a("worse_in", devices.worse_in);
+  a("rows", devices.rows);
+  a("front", devices.front);
+  a("by_error_of_Vdp", devices.by_error);
+  a.custom("hold_window_V", devices.windows, internal::windows_json, internal::read_windows);
+  a("hold_window_devices", devices.windows.devices);
+  a("race", devices.race);
+  a("conditions", devices.conditions);
+  a("measured", devices.measured);
+  a("next_command", devices.next_command);
+}
+
+template <class A>
+void members(A& a, ResultSeeds::Search& search) {
+  a("seed", search.seed);
+  a("status", search.status);
+  a("cost", search.cost);
+  a("evaluations", search.evaluations);
+  a("termination", search.termination);
+  a("goal_met", search.goal_met);
+  a("confirmed", search.confirmed);
+  a("better_than_baseline", search.better_than_baseline);
+  a.object("metrics", [&](auto& metrics) { metrics.figures(search.figures, internal::every_figure); });
+}
+
+/// Of a search alone.
+template <class A>
+void members_of_search(A& a, Result& result) {
+  a("target", result.target);
+  a("actuator", result.actuator);
+  a("waveform", result.waveform);
+  if (a.has(!result.families.empty())) a("families", result.families);
+  a("seed", result.seed);
+  a("optimizer", result.optimizer);
+  a("evaluations", internal::Count{result.evaluations});
+  a("termination", result.termination);
+  a("termination_message", result.termination_message);
+  a("goal_met", result.goal_met);
+  a("better_than_baseline", result.better_than_baseline);
+  a.object("baseline", [&](auto& baseline) {
+    members(baseline, result.baseline);
+    internal::figure_errors(baseline, result.baseline.errors);
+    baseline("cost", result.baseline.cost);
+  });
+  a.object("search", [&](auto& search) {
+    search("value_name", result.search.value_name);
+    search.custom("best_so_far", result.search.best_so_far, internal::counted_json, internal::read_points);
+    if (search.has(!result.search.evaluations.empty()))
+      search.custom("evaluations", result.search.evaluations, internal::counted_json, internal::read_points);
+  });
+  a("reproduce", result.reproduce);
+  a("robust", result.robust);
+  a("devices", result.devices);
+  if (result.devices) {
+    a.object("drawing", [&](auto& drawing) {
+      internal::figures_and_status(drawing, result.devices->drawing, result.devices->drawing_status, internal::every_figure);
+      drawing("goal_met", result.devices->drawing_goal_met);
+    });
+  }
+  a("limit", result.limit);
+  if (!a.has(result.best.figures.has_value())) return;
+  a.object("best", [&](auto& best) {
+    best("parameters", result.parameters);
+    best("bounds", result.bounds);
+    best("cost", result.best.cost);
+  });
+  a("checks", result.checks);
+  if (a.has(!result.checks.empty())) a("evaluations_with_more_modes", internal::Count{result.evaluations_of_modes});
+}
+
+/// But for what is worked out from others, kind, scene and seeds.
+template <class A>
+void members(A& a, Result& result) {
+  a("version", result.version);
+  a("command", result.command);
+  a("made_with", result.made_with);
+  a("status", result.status);
+  a.custom("pull_in", result.pull_in, internal::pull_in_json, internal::read_pull_in);
+  a("warnings", result.warnings);
+  a("title", result.title);
+  a("natural_frequencies_rad_s", result.natural_frequencies);
+  a("tolerance", result.tolerance);
+  if (a.has(!result.message.empty())) a("message", result.message);
+  a("effects", result.effects);
+  a.object("curves", [&](auto& curves) {
+    if (curves.has(result.best.figures.has_value())) curves("best", result.best.curve);
+    if (curves.has(result.is_search)) curves("baseline", result.baseline.curve);
+  });
+  if (a.has(result.best.figures.has_value())) {
+    a.object("metrics", [&](auto& metrics) {
+      if (metrics.reads) result.best.figures.emplace();
+      metrics.figures(*result.best.figures, internal::every_figure);
+    });
+    a.object("best", [&](auto& best) { members(best, result.best); });
+    internal::figure_errors(a, result.best.errors);
+  }
+  a("closed_state", result.closed_state);
+  a("work", result.work);
+  if (a.has(result.is_search)) members_of_search(a, result);
+  if (a.reads) a.object("certified", [&](auto&) { result.certificate.emplace(); });
+  if (!result.certificate) return;
+  a.custom("certified", result.certificate->ill_conditioned, internal::certified_json, internal::read_certified);
+  a.object("cloud", [&](auto& cloud) {
+    cloud("runs", result.certificate->runs);
+    cloud("grazing_rebound", internal::OrNull{result.certificate->grazing});
+  });
+}
+
+}  // namespace softland
