@@ -14,11 +14,10 @@
 #include "reports/chart.h"
 #include "reports/escape.h"
 #include "reports/findings.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/svg.h"
-#include "version.h"
 
 namespace softland {
 namespace {
@@ -282,8 +281,7 @@ std::string accuracy_html(const Prepared& prepared, const AccuracyStudy& study, 
   }
   const Picture drawn = picture(study);
   const auto [main, rest] = headline(prepared, study);
-  Result result{.command = provenance.command, .version = std::string(version), .made_with = made_with()};
-  result.scene.text = resolved(prepared.scene, prepared.voltage_units()).text();
+  const Result result = internal::origin(prepared, provenance.command);
   return internal::page({.title = prepared.scene.title,
                          .origin = "accuracy",
                          .headline = main,

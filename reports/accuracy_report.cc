@@ -10,11 +10,10 @@
 #include "reports/accuracy_words.h"
 #include "reports/findings.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/text.h"
-#include "version.h"
 
 namespace softland {
 namespace {
@@ -118,12 +117,7 @@ std::string cloud_table(const AccuracyStudy& study) {
 }  // namespace
 
 json accuracy_json(const Prepared& prepared, const AccuracyStudy& study, const Provenance& provenance) {
-  json j{{"kind", "accuracy"},
-         {"status", to_string(study.status)},
-         {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
-         {"version", version},
-         {"made_with", made_with_json()},
-         {"command", provenance.command}};
+  json j = with_origin({{"kind", "accuracy"}, {"status", to_string(study.status)}}, prepared, provenance.command);
   if (!study.message.empty()) j["message"] = study.message;
   if (study.rows.empty()) return j;
   j["reference"] = row_json(study.reference);

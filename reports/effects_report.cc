@@ -9,11 +9,10 @@
 
 #include "reports/findings.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/text.h"
-#include "version.h"
 
 namespace softland {
 namespace {
@@ -104,16 +103,13 @@ json effects_json(const Prepared& prepared, const Effects& effects, const Proven
   }
   json spread = json::object();
   for (const Figure& f : compared_figures) spread[std::string(f.quantity())] = json_number(effects.spread("gas", f));
-  return {{"kind", "effects"},
-          {"status", to_string(effects.interrupted ? Status::interrupted : effects.own("gas").metrics.status)},
-          {"left_out", left_out},
-          {"effects", list},
-          {"not_compared", not_compared},
-          {"relative_spread", {{"gas", spread}}},
-          {"scene", resolved(prepared.scene, prepared.voltage_units()).json()},
-          {"version", version},
-          {"made_with", made_with_json()},
-          {"command", provenance.command}};
+  return with_origin({{"kind", "effects"},
+                      {"status", to_string(effects.interrupted ? Status::interrupted : effects.own("gas").metrics.status)},
+                      {"left_out", left_out},
+                      {"effects", list},
+                      {"not_compared", not_compared},
+                      {"relative_spread", {{"gas", spread}}}},
+                     prepared, provenance.command);
 }
 
 std::string effects_text(const Effects& effects) {

@@ -12,11 +12,10 @@
 
 #include "reports/escape.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
-#include "version.h"
 
 namespace softland {
 namespace {
@@ -197,27 +196,27 @@ json fit_json(const Fit& fit, const Provenance& provenance) {
     if (r.time) one["time_s"] = *r.time;
     residuals.push_back(std::move(one));
   }
-  json data{{"kind", "fit"},
-            {"status", fit.found ? "done" : "numerical_failure"},
-            {"title", fit.scene.scene.title},
-            {"unknowns", unknowns},
-            {"correlation", correlation},
-            {"indistinguishable", weak},
-            {"next_measurement", next},
-            {"minima", fit.minima},
-            {"starts", fit.starts},
-            {"converged", fit.converged},
-            {"residuals", residuals},
-            {"chi_squared", fit.found ? json_number(fit.chi_squared()) : json(nullptr)},
-            {"chi_squared_before", fit.found ? json_number(fit.chi_squared_before()) : json(nullptr)},
-            {"words", fit_words(fit)},
-            {"spread_assumed", fit.spread_assumed},
-            {"loss", losses[static_cast<std::size_t>(fit.loss)].name},
-            {"seed", fit.seed},
-            {"scene", resolved(fit.scene.scene, fit.scene.voltage_units()).json()},
-            {"version", version},
-            {"made_with", made_with_json()},
-            {"command", provenance.command}};
+  json data = with_origin(
+      {
+          {"kind", "fit"},
+          {"status", fit.found ? "done" : "numerical_failure"},
+          {"title", fit.scene.scene.title},
+          {"unknowns", unknowns},
+          {"correlation", correlation},
+          {"indistinguishable", weak},
+          {"next_measurement", next},
+          {"minima", fit.minima},
+          {"starts", fit.starts},
+          {"converged", fit.converged},
+          {"residuals", residuals},
+          {"chi_squared", fit.found ? json_number(fit.chi_squared()) : json(nullptr)},
+          {"chi_squared_before", fit.found ? json_number(fit.chi_squared_before()) : json(nullptr)},
+          {"words", fit_words(fit)},
+          {"spread_assumed", fit.spread_assumed},
+          {"loss", losses[static_cast<std::size_t>(fit.loss)].name},
+          {"seed", fit.seed},
+      },
+      fit.scene, provenance.command);
   if (fit.population) {
     json matrix = json::array(), variables = json::array();
     for (Eigen::Index i = 0; i < fit.population->correlation.rows(); ++i) {
@@ -413,10 +412,9 @@ std::string fit_html(const Fit& fit, const Provenance& provenance) {
     add_courses(fit, drawn);
     for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
   }
-  Result result{.command = provenance.command, .version = std::string(version), .made_with = made_with()};
+  Result result = internal::origin(fit.scene, provenance.command);
   result.seed = fit.seed;
   result.tolerance = fit.scene.tolerance;
-  result.scene.text = resolved(fit.scene.scene, fit.scene.voltage_units()).text();
   return internal::page({.title = fit.scene.scene.title,
                          .origin = "fit",
                          .headline = fit_headline(fit),

@@ -10,12 +10,11 @@
 
 #include "reports/chart.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/svg.h"
 #include "reports/text.h"
-#include "version.h"
 
 namespace softland {
 namespace {
@@ -155,23 +154,20 @@ internal::Chart curve(const std::string& table, const std::string& title, const 
 }  // namespace
 
 json limit_json(const Limit& limit, const Provenance& provenance) {
-  return {{"kind", "limit"},
-          {"status", limit.interrupted ? "interrupted" : to_string(limit.touch.status)},
-          {"actuator", name_of(actuators, limit.options.actuator)},
-          {"permitted_impact_velocity_m_s", json_number(limit.impact_velocity)},
-          {"modes", limit.given.model.modes()},
-          {"plain_step", metrics_json(limit.step)},
-          {"touch", least_json(limit.touch)},
-          {"at_rest", least_json(limit.rest)},
-          {"closed_state", closed_state_json(limit.closed_state)},
-          {"warnings", all_warnings(limit)},
-          {"landing", limit.landing ? landing_json(*limit.landing) : json()},
-          {"over_impact_velocity", list_json(limit.over_velocity)},
-          {"over_peak_voltage", list_json(limit.over_peak)},
-          {"scene", resolved(limit.given.scene, limit.given.voltage_units()).json()},
-          {"version", version},
-          {"made_with", made_with_json()},
-          {"command", provenance.command}};
+  return with_origin({{"kind", "limit"},
+                      {"status", limit.interrupted ? "interrupted" : to_string(limit.touch.status)},
+                      {"actuator", name_of(actuators, limit.options.actuator)},
+                      {"permitted_impact_velocity_m_s", json_number(limit.impact_velocity)},
+                      {"modes", limit.given.model.modes()},
+                      {"plain_step", metrics_json(limit.step)},
+                      {"touch", least_json(limit.touch)},
+                      {"at_rest", least_json(limit.rest)},
+                      {"closed_state", closed_state_json(limit.closed_state)},
+                      {"warnings", all_warnings(limit)},
+                      {"landing", limit.landing ? landing_json(*limit.landing) : json()},
+                      {"over_impact_velocity", list_json(limit.over_velocity)},
+                      {"over_peak_voltage", list_json(limit.over_peak)}},
+                     limit.given, provenance.command);
 }
 
 std::string limit_text(const Limit& limit) {

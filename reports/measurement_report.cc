@@ -7,11 +7,10 @@
 
 #include "reports/estimates.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
 #include "sampling/statistics.h"
-#include "version.h"
 
 namespace softland {
 namespace {
@@ -93,17 +92,15 @@ json measurements_json(const MeasurementStudy& study, const MeasurementOptions& 
     }
     return all;
   };
-  return {{"kind", "calibrate"},
-          {"status", study.interrupted ? "interrupted" : "done"},
-          {"devices", study.devices},
-          {"seed", options.seed},
-          {"drives_piezo", study.drives_piezo},
-          {"figures", std::move(figures)},
-          {"references", rows(study.references)},
-          {"predictions", rows(study.predictions)},
-          {"version", version},
-          {"made_with", made_with_json()},
-          {"command", command}};
+  return with_origin({{"kind", "calibrate"},
+                      {"status", study.interrupted ? "interrupted" : "done"},
+                      {"devices", study.devices},
+                      {"seed", options.seed},
+                      {"drives_piezo", study.drives_piezo},
+                      {"figures", std::move(figures)},
+                      {"references", rows(study.references)},
+                      {"predictions", rows(study.predictions)}},
+                     command);
 }
 
 std::string measurements_text(const MeasurementStudy& study, const MeasurementOptions& options, std::size_t most) {

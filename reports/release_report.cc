@@ -10,12 +10,11 @@
 
 #include "reports/chart.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/robustness_words.h"
 #include "reports/svg.h"
 #include "reports/text.h"
-#include "version.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -202,27 +201,24 @@ json release_json(const Release& r, const Provenance& provenance) {
   json holds = json::object();
   const std::vector<std::string> names = r.given.drive_names();
   for (std::size_t k = 0; k < names.size(); ++k) holds[names[k]] = json_number(r.holds[k]);
-  return {{"kind", "release"},
-          {"status", r.interrupted ? "interrupted" : to_string((r.best ? *r.best : r.plain).trajectory.status)},
-          {"actuator", name_of(actuators, r.options.actuator)},
-          {"hold_levels", holds},
-          {"contact_force_N", json_number(r.contact_force)},
-          {"open_position_m", json_number(r.open_position)},
-          {"band_m", json_number(r.band)},
-          {"plain", opening_json(r, r.plain)},
-          {"best", r.best ? opening_json(r, *r.best) : json()},
-          {"parameters", r.parameters},
-          {"confirmed_by", checks},
-          {"devices", devices_json(r.on_devices)},
-          {"goal_met", r.goal_met},
-          {"confirmed", r.confirmed},
-          {"evaluations", r.search.evaluations},
-          {"seed", r.options.seed},
-          {"termination", to_string(r.search.termination)},
-          {"scene", resolved(r.given.scene, r.given.voltage_units()).json()},
-          {"version", version},
-          {"made_with", made_with_json()},
-          {"command", provenance.command}};
+  return with_origin({{"kind", "release"},
+                      {"status", r.interrupted ? "interrupted" : to_string((r.best ? *r.best : r.plain).trajectory.status)},
+                      {"actuator", name_of(actuators, r.options.actuator)},
+                      {"hold_levels", holds},
+                      {"contact_force_N", json_number(r.contact_force)},
+                      {"open_position_m", json_number(r.open_position)},
+                      {"band_m", json_number(r.band)},
+                      {"plain", opening_json(r, r.plain)},
+                      {"best", r.best ? opening_json(r, *r.best) : json()},
+                      {"parameters", r.parameters},
+                      {"confirmed_by", checks},
+                      {"devices", devices_json(r.on_devices)},
+                      {"goal_met", r.goal_met},
+                      {"confirmed", r.confirmed},
+                      {"evaluations", r.search.evaluations},
+                      {"seed", r.options.seed},
+                      {"termination", to_string(r.search.termination)}},
+                     r.given, provenance.command);
 }
 
 std::string release_text(const Release& r) {

@@ -78,7 +78,7 @@ Result started(const Prepared& p, const Provenance& provenance) {
     if (const Own* own = std::get_if<Own>(&waveform))
       throw InvalidInput(fmt::format("waveform.{}: {} cannot be written into a result", drive, described(*own)));
   }
-  const SceneFile file = resolved(p.scene, p.voltage_units());
+  const SceneFile file = p.resolved();
   Result r{.title = p.scene.title,
            .scene = read_result_scene(file.json(), file.text()),
            .tolerance = p.tolerance,

@@ -13,14 +13,13 @@
 #include "reports/device_scatter.h"
 #include "reports/escape.h"
 #include "reports/estimates.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/other_ways_report.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/robustness_report.h"
 #include "reports/robustness_words.h"
 #include "sampling/statistics.h"
-#include "version.h"
 
 namespace softland {
 namespace {
@@ -343,10 +342,9 @@ std::string robustness_html(const RobustnessReport& report) {
   const internal::Picture drawn = picture_of(report);
   std::string charts;
   for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
-  Result result{.command = command, .version = std::string(version), .made_with = made_with()};
+  Result result = internal::origin(nominal, command);
   result.seed = options.seed;
   result.tolerance = found.tolerance;
-  result.scene.text = resolved(nominal.scene, nominal.voltage_units()).text();
   const auto [main, rest] = headline_of(found);
   const Calibration& calibration = found.drives.back().known.calibration();
   std::string about = fmt::format(

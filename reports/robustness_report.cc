@@ -10,12 +10,11 @@
 #include "reports/derivatives_report.h"
 #include "reports/estimates.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/other_ways_report.h"
 #include "reports/result_json.h"
 #include "reports/robustness_words.h"
 #include "studies/closed_state.h"
-#include "version.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -165,28 +164,24 @@ json robustness_json(const RobustnessReport& report) {
   json drives = json::array(), by_knowledge = json::array();
   for (const DriveRobustness& d : found.drives) drives.push_back(drive_json(d));
   for (const DriveRobustness& d : found.by_knowledge) by_knowledge.push_back(drive_json(d));
-  const SceneFile scene = resolved(nominal.scene, nominal.voltage_units());
-  return {{"kind", "robustness"},
-          {"status", interrupted ? "interrupted" : "done"},
-          {"devices", found.devices},
-          {"seed", options.seed},
-          {"points", name_of(point_sets, options.points)},
-          {"duration_s", found.duration},
-          {"tolerance", found.tolerance},
-          {"spread", spread_json(nominal.scene.spread)},
-          {"hold_window_V", internal::windows_json(windows)},
-          {"hold_window_devices", windows.devices},
-          {"drives", std::move(drives)},
-          {"by_knowledge", std::move(by_knowledge)},
-          {"sensitivity", sensitivity_json(sensitivity)},
-          {"derivatives", internal::derivatives_json(derivatives, found.drives.back())},
-          {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal) : json(nullptr)},
-          {"warnings", nominal.scene.warnings},
-          {"scene", scene.json()},
-          {"scene_toml", scene.text()},
-          {"version", version},
-          {"made_with", made_with_json()},
-          {"command", command}};
+  return with_origin({{"kind", "robustness"},
+                      {"status", interrupted ? "interrupted" : "done"},
+                      {"devices", found.devices},
+                      {"seed", options.seed},
+                      {"points", name_of(point_sets, options.points)},
+                      {"duration_s", found.duration},
+                      {"tolerance", found.tolerance},
+                      {"spread", spread_json(nominal.scene.spread)},
+                      {"hold_window_V", internal::windows_json(windows)},
+                      {"hold_window_devices", windows.devices},
+                      {"drives", std::move(drives)},
+                      {"by_knowledge", std::move(by_knowledge)},
+                      {"sensitivity", sensitivity_json(sensitivity)},
+                      {"derivatives", internal::derivatives_json(derivatives, found.drives.back())},
+                      {"other_ways", ways ? internal::other_ways_json(*ways, found.drives.back(), nominal) : json(nullptr)},
+                      {"warnings", nominal.scene.warnings},
+                      {"scene_toml", nominal.resolved().text()}},
+                     nominal, command);
 }
 
 std::string robustness_csv(const RobustnessReport& report) {

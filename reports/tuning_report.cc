@@ -12,12 +12,11 @@
 #include "base/require.h"
 #include "reports/escape.h"
 #include "reports/json_number.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/page.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
 #include "reports/tuning_lines.h"
-#include "version.h"
 #include "waveforms/export.h"
 
 namespace softland {
@@ -388,22 +387,19 @@ json tuning_json(const TuningReport& report, const Provenance& provenance) {
   json best = shot_report(report.scene, report.kept);
   best["bounce_free"] = report.was_bounce_free(report.kept.number);
   const Prepared& scene = report.scene;
-  return {{"kind", "tune"},
-          {"status", name_of(report.end)},
-          {"title", scene.scene.title},
-          {"closings", closings},
-          {"bounce_free_in_a_row", report.bounce_free_in_a_row},
-          {"best", best},
-          {"next", shot_report(scene, report.next)},
-          {"belief", belief_json(report.belief)},
-          {"broken_assumption", report.broken_assumption ? json(*report.broken_assumption) : json(nullptr)},
-          {"step_closing_time_s", json_number(report.step_closing_time)},
-          {"spread_assumed", report.spread_assumed},
-          {"seed", report.seed},
-          {"scene", resolved(scene.scene, scene.voltage_units()).json()},
-          {"version", version},
-          {"made_with", made_with_json()},
-          {"command", provenance.command}};
+  return with_origin({{"kind", "tune"},
+                      {"status", name_of(report.end)},
+                      {"title", scene.scene.title},
+                      {"closings", closings},
+                      {"bounce_free_in_a_row", report.bounce_free_in_a_row},
+                      {"best", best},
+                      {"next", shot_report(scene, report.next)},
+                      {"belief", belief_json(report.belief)},
+                      {"broken_assumption", report.broken_assumption ? json(*report.broken_assumption) : json(nullptr)},
+                      {"step_closing_time_s", json_number(report.step_closing_time)},
+                      {"spread_assumed", report.spread_assumed},
+                      {"seed", report.seed}},
+                     scene, provenance.command);
 }
 
 json belief_json(const TunedBelief& belief) {
@@ -451,10 +447,9 @@ std::string tuning_html(const TuningReport& report, const Provenance& provenance
   const internal::Picture drawn = picture_of(report);
   std::string charts;
   for (const internal::Chart& chart : drawn.charts) charts += internal::figure_html(drawn.tables, chart);
-  Result result{.command = provenance.command, .version = std::string(version), .made_with = made_with()};
+  Result result = internal::origin(report.scene, provenance.command);
   result.seed = report.seed;
   result.tolerance = report.scene.tolerance;
-  result.scene.text = resolved(report.scene.scene, report.scene.voltage_units()).text();
   const auto [main, rest] = headline_of(report);
   return internal::page({.title = report.scene.scene.title,
                          .origin = "tune",

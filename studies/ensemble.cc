@@ -61,7 +61,7 @@ std::size_t reference_size(const Calibration& calibration) {
 }  // namespace
 
 Ensemble::Ensemble(const Prepared& nominal, std::uint64_t size, std::function<void(std::uint64_t, std::span<double>)> point)
-    : nominal_(&nominal), size_(size), point_(std::move(point)), resolved_(resolved(nominal.scene, nominal.voltage_units())) {
+    : nominal_(&nominal), size_(size), point_(std::move(point)), resolved_(nominal.resolved()) {
   require(!nominal.scene.spread.empty(), [&] {
     return fmt::format("{}: there is no [spread]: nothing tells how devices differ (see softland new)",
                        nominal.scene.file.name());

@@ -155,13 +155,13 @@ std::vector<Omissible> omissible_effects(const Prepared& prepared) {
                     .group = {.name = "over the contact gap", .value = bent / d.gap.contact},
                     .instead = {}});
   }
-  const SceneFile scene = resolved(prepared.scene, prepared.voltage_units());
+  const SceneFile scene = prepared.resolved();
   for (Omissible& effect : list) effect.choice = scene.written(effect.effect).value();
   return list;
 }
 
 Prepared without(const Prepared& prepared, const std::vector<Omissible>& effects) {
-  const SceneFile frozen = resolved(prepared.scene, prepared.voltage_units());
+  const SceneFile frozen = prepared.resolved();
   SceneFile file = frozen.again(prepared.scene.file.name());
   file.assign("simulate.effects", std::string("all"));
   for (const Omissible& e : effects) {

@@ -80,6 +80,8 @@ struct Prepared {
   [[nodiscard]] DriverLimits limits(std::size_t k) const;
   /// The pull-in voltages as units.
   [[nodiscard]] std::map<std::string, PullInVoltages> voltage_units() const;
+  /// The scene with everything that it leaves to be worked out.
+  [[nodiscard]] SceneFile resolved() const { return softland::resolved(scene, voltage_units()); }
 };
 
 /// Why waveforms of a scene whose drives stand at `before` do not begin as those of this one do; empty where they do. `before`:

@@ -87,7 +87,7 @@ double last_breakpoint(const std::vector<Signal>& signals) {
 }
 
 SceneFile with_waveforms(const Prepared& prepared, const std::map<std::string, Waveform>& waveforms) {
-  SceneFile file = resolved(prepared.scene, prepared.voltage_units());
+  SceneFile file = prepared.resolved();
   for (const auto& [drive, waveform] : waveforms) file.set_waveform(drive, waveform);
   return file;
 }

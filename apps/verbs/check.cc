@@ -22,14 +22,13 @@
 #include "model/constants.h"
 #include "model/contact/contact_law.h"
 #include "model/pull_in.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_json.h"
 #include "reports/text.h"
 #include "studies/choices.h"
 #include "studies/closed_state.h"
 #include "studies/simulate.h"
-#include "version.h"
 
 namespace softland::apps {
 namespace {
@@ -129,21 +128,18 @@ nlohmann::json check_json(const Prepared& p, const std::map<std::string, nlohman
   for (const auto& [name, v] : pull_in) {
     if (v["release_V"].is_number()) windows[name] = nlohmann::json::array({v["release_V"], v["pulled_through_V"]});
   }
-  return {{"kind", "check"},
-          {"status", to_string(Status::done)},
-          {"title", p.scene.title},
-          {"natural_frequencies_rad_s", std::vector<double>(frequencies.begin(), frequencies.end())},
-          {"pull_in", by_electrode(pull_in)},
-          {"dynamic_precision", precision_of(p.model)},
-          {"hold_window_V", windows},
-          {"closed_state", nullptr},
-          {"duration_s", p.duration},
-          {"tolerance", p.tolerance},
-          {"warnings", warnings},
-          {"scene", resolved(p.scene, p.voltage_units()).json()},
-          {"version", version},
-          {"made_with", made_with_json()},
-          {"command", command}};
+  return with_origin({{"kind", "check"},
+                      {"status", to_string(Status::done)},
+                      {"title", p.scene.title},
+                      {"natural_frequencies_rad_s", std::vector<double>(frequencies.begin(), frequencies.end())},
+                      {"pull_in", by_electrode(pull_in)},
+                      {"dynamic_precision", precision_of(p.model)},
+                      {"hold_window_V", windows},
+                      {"closed_state", nullptr},
+                      {"duration_s", p.duration},
+                      {"tolerance", p.tolerance},
+                      {"warnings", warnings}},
+                     p, command);
 }
 
 int check_verb(const Common& c) {

@@ -26,10 +26,10 @@
 #include "reports/exploration_report.h"
 #include "reports/files.h"
 #include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "store/study_store.h"
 #include "studies/exploration.h"
-#include "version.h"
 
 namespace softland::apps {
 namespace {
@@ -155,8 +155,8 @@ int explore_verb(const Common& c, const ExploreRequest& r) {
   const Overview found = overview_of(reader);
   json j = overview_json(reader.plan(), found);
   j.update(exploring.data());
-  j.update({{"store", out}, {"version", version}, {"command", c.command}, {"made_with", made_with_json()}});
-  print_json_or(c, j, exploring.text(out) + overview_text(reader.plan(), found));
+  j.update({{"store", out}});
+  print_json_or(c, with_origin(std::move(j), c.command), exploring.text(out) + overview_text(reader.plan(), found));
   return status_of(found, exploring.remaining() > 0);
 }
 

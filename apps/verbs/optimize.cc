@@ -28,7 +28,7 @@
 #include "apps/verbs/verbs.h"
 #include "config/assumed_spread.h"
 #include "optimizers/problem.h"
-#include "reports/made_with.h"
+#include "reports/origin.h"
 #include "reports/quantity.h"
 #include "reports/result_maker.h"
 #include "reports/robustness_words.h"
@@ -36,7 +36,6 @@
 #include "reports/text.h"
 #include "studies/limit.h"
 #include "studies/robust_optimize.h"
-#include "version.h"
 #include "waveforms/export.h"
 
 namespace softland::apps {
@@ -265,11 +264,7 @@ int tell_of_part(const Common& c, SearchPlaces& places, const SeedStudy& study, 
     places.folder().write("best.toml", best);
     left += left_in(places.folder().place("best.toml").parent_path(), {"best.toml (of the best that is done)"});
   }
-  const json j{{"status", "interrupted"},
-               {"seeds", seeds_json(seeds)},
-               {"version", version},
-               {"command", c.command},
-               {"made_with", made_with_json()}};
+  const json j = with_origin({{"status", "interrupted"}, {"seeds", seeds_json(seeds)}}, c.command);
   print_json_or(c, j,
                 internal::seeds_text(seeds) + left + "\n" +
                     wrapped(fmt::format("--resume goes on with the {} that are missing.", study.missing())) + "\n");

@@ -85,7 +85,7 @@ std::string entry_of(const DeviceSpread& spread, const std::string& name) {
 // The scene in volts, with a spread of the unknowns alone; those that had none get one, which is no prior.
 Prepared with_unknowns(const Prepared& given, std::vector<std::string>& unknowns, std::vector<std::string>& without_prior) {
   const DeviceSpread& spread = given.scene.spread;
-  SceneFile file = resolved(given.scene, given.voltage_units());
+  SceneFile file = given.resolved();
   if (unknowns.empty()) {
     for (const SpreadVariable& v : spread.variables) {
       if (!v.is_drawn_per_edge) unknowns.push_back(v.name);

@@ -61,7 +61,7 @@ void stiffen(SceneFile& file, const Scene& scene, double factor) {
 
 // In volts, so that a waveform means the same whatever the model does to the pull-in voltage.
 Prepared with_model(const Prepared& nominal, const PracticeModel& model) {
-  SceneFile file = resolved(nominal.scene, nominal.voltage_units());
+  SceneFile file = nominal.resolved();
   if (model.more_modes != 0) add_modes(file, nominal.scene, model.more_modes);
   if (!model.gas.empty()) change_gas(file, nominal.scene, model.gas);
   if (model.stiffness != 1) stiffen(file, nominal.scene, model.stiffness);

@@ -49,7 +49,7 @@ std::vector<std::string> shaped_drives_of(const Prepared& prepared, Actuator act
 
 // The scene in volts, with every default written out, and what the belief varies beside the spread.
 SceneFile with_nuisances(const Prepared& prepared, const TunerOptions& options) {
-  SceneFile file = resolved(prepared.scene, prepared.voltage_units());
+  SceneFile file = prepared.resolved();
   const DeviceSpread& spread = prepared.scene.spread;
   for (const std::string& drive : shaped_drives_of(prepared, options.actuator)) {
     const std::string key = fmt::format("driver.{}.gain", drive);

@@ -54,7 +54,7 @@ TEST(AutoModes, StandInThePreparedSceneAndItsWarnings) {
                            "pull-in voltages by at most ";
   EXPECT_THAT(p.scene.warnings, Contains(HasSubstr(note)));
   EXPECT_THAT(p.scene.warnings, Contains(HasSubstr("B_H, N_B and t_p, are not judged and may move more")));
-  EXPECT_THAT(resolved(p.scene, p.voltage_units()).text(), HasSubstr("modes = " + std::to_string(modes) + "\n"));
+  EXPECT_THAT(p.resolved().text(), HasSubstr("modes = " + std::to_string(modes) + "\n"));
 }
 
 TEST(AutoModes, AreChosenBeforeTheEffects) {

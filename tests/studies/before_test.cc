@@ -87,7 +87,7 @@ TEST(Before, OfTheResolvedSceneGivesTheSameDigits) {
                                      R"(waveform.main={family="step", level="1.2 Vdp", before="0.3 Vdp", rise_time="1 us"})"});
   const Prepared p = prepare(file);
   EXPECT_EQ(p.before("main"), 0.3 * p.pull_in.at("main").dynamically.voltage);
-  const SceneFile written = resolved(p.scene, p.voltage_units());
+  const SceneFile written = p.resolved();
   const Prepared again = prepare(SceneFile::parse(written.text(), "again.toml"));
   EXPECT_TRUE(again.pull_in.empty());
   EXPECT_EQ(again.values_before(), p.values_before());

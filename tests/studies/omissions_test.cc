@@ -120,7 +120,7 @@ TEST(AutomaticEffects, LeaveOutWhatChangesNothing) {
   EXPECT_THAT(p.scene.warnings.back(), HasSubstr("dispersion ("));
   EXPECT_EQ(own(p).initial_contact_time, own(prepare(gold_at_17_volts())).initial_contact_time);
   // What is written runs to the same figures without choosing again.
-  const Prepared again = prepare(resolved(p.scene, p.voltage_units()));
+  const Prepared again = prepare(p.resolved());
   EXPECT_FALSE(again.effects);
   EXPECT_EQ(own(again).major_bounce_height, own(p).major_bounce_height);
 }

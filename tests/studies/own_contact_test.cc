@@ -46,7 +46,7 @@ TEST(OwnContactOfAScene, IsSearchedForLikeTheLawOfTheSameFormula) {
 
 TEST(OwnContactOfAScene, IsRefusedByNameWhereAFileWouldHaveToSayIt) {
   const Prepared own = prepare(own_gold());
-  for (const SceneFile& file : {own.scene.file, resolved(own.scene, own.voltage_units())}) {
+  for (const SceneFile& file : {own.scene.file, own.resolved()}) {
     try {
       (void)file.text();
       ADD_FAILURE() << "written";

@@ -1,0 +1,28 @@
+#include "reports/origin.h"
+
+#include <utility>
+
+#include "reports/made_with.h"
+#include "version.h"
+
+namespace softland {
+
+using nlohmann::json;
+
+json with_origin(json record, const std::string& command) {
+  record.update({{"version", version}, {"made_with", made_with_json()}, {"command", command}});
+  return record;
+}
+
+json with_origin(json record, const Prepared& scene, const std::string& command) {
+  record["scene"] = scene.resolved().json();
+  return with_origin(std::move(record), command);
+}
+
+Result internal::origin(const Prepared& scene, const std::string& command) {
+  Result result{.command = command, .version = std::string(version), .made_with = made_with()};
+  result.scene.text = scene.resolved().text();
+  return result;
+}
+
+}  // namespace softland
