@@ -187,6 +187,22 @@ TEST(OwnObjective, OfDevicesIsTheTargetOfItsFigureAndClosesThemOneByOne) {
   EXPECT_EQ(value(own), value(built_in));
 }
 
+TEST(OwnObjective, ForDevicesIsRacedAsTheTargetOfItsFigure_slow) {
+  const ForDevicesOptions devices{.verdict = 64, .families = "pulse", .closings = 2000};
+  OptimizeOptions options{.target = Target::drive, .family = "pulse", .max_evaluations = 100, .jobs = 2};
+  SceneFile scene = quick_gold();
+  const ForDevicesResult built_in = optimize_for_devices(scene, options, devices);
+  options.target = by(share_of_drive);
+  const ForDevicesResult own = optimize_for_devices(scene, options, devices);
+  EXPECT_EQ(own.drawing.parameters, built_in.drawing.parameters);
+  EXPECT_EQ(own.plain_step_wins, built_in.plain_step_wins);
+  ASSERT_EQ(own.rows.size(), built_in.rows.size());
+  // Its closings are made one by one, those of the built-in one in lanes: alike, not the same.
+  ASSERT_GE(own.rows.size(), 3U);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(own.rows[k].judged.bounce_free.value, built_in.rows[k].judged.bounce_free.value);
+  EXPECT_GT(own.closings, 0);
+}
+
 TEST(OwnWaveform, ClosesASwitchAsTheFamilyOfItsVoltages) {
   const Prepared given = prepare(gold_at_17_volts());
   const SCurve curve{.levels = {20, 17.771}, .times = {25e-6}, .edge = 6e-6};
