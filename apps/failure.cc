@@ -26,6 +26,8 @@ Failure internal_error(std::string_view what) {
 Failure failure_of(const std::exception_ptr& exception) {
   try {
     std::rethrow_exception(exception);
+  } catch (const InvalidRequest& error) {
+    return {exit_bad_input, with_words_shortened(error.with_fields("--"))};
   } catch (const InvalidInput& error) {
     return {exit_bad_input, with_words_shortened(error.what())};
   } catch (const Interrupted& error) {

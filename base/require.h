@@ -33,6 +33,37 @@ void require(bool rule_holds, Message&& message, std::source_location where = st
   if (!rule_holds) throw InvalidInput(message(), where);
 }
 
+/// The name of a field of a request, for the message of an InvalidRequest.
+[[nodiscard]] inline std::string requested(std::string_view field) { return '\x02' + std::string(field) + '\x03'; }
+
+/// A request, such as OptimizeOptions, that breaks a rule. Its message names the fields as requested() marks them; what() has
+/// their bare names.
+class InvalidRequest : public InvalidInput {
+ public:
+  explicit InvalidRequest(const std::string& message, std::source_location where = std::source_location::current())
+      : InvalidInput(with_fields(message, ""), where), message_(message) {}
+  /// The message with `before` each of its fields: "--" for a command line.
+  [[nodiscard]] std::string with_fields(std::string_view before) const { return with_fields(message_, before); }
+
+ private:
+  static std::string with_fields(std::string_view message, std::string_view before) {
+    std::string text;
+    for (const char c : message) {
+      if (c == '\x02') text += before;
+      if (c != '\x02' && c != '\x03') text += c;
+    }
+    return text;
+  }
+
+  std::string message_;
+};
+
+/// Throws InvalidRequest with message() unless `rule_holds`.
+template <std::invocable Message>
+void require_request(bool rule_holds, Message&& message, std::source_location where = std::source_location::current()) {
+  if (!rule_holds) throw InvalidRequest(message(), where);
+}
+
 /// A parameter that breaks the rules of what it belongs to: a waveform family, a distribution.
 class InvalidParameter : public InvalidInput {
  public:

@@ -13,6 +13,7 @@
 
 #include "base/choice.h"
 #include "model/contact/contact.h"
+#include "model/forces/fringing.h"
 #include "model/gas/gas.h"
 
 namespace softland {
@@ -51,9 +52,6 @@ struct Gap {
   double electrode = 0;  ///< d0, rest distance beam to electrode [m]
   double contact = 0;    ///< dt, rest distance contact point to contact plane [m]
 };
-
-/// Laws of the fringing field: their table is in model/forces/electrostatic.h.
-enum class Fringing { none, bao_2001, meijs_fokkema, linear };
 
 /// The contact's side of the moving part, towards which deflections are positive, the other one, or both.
 enum class Side { near, far, both };

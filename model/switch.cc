@@ -41,7 +41,7 @@ std::shared_ptr<const DistributedLaw> erased(Law law, PointRange range, double f
 template <class Make>
 std::shared_ptr<const DistributedLaw> electrostatic(Fringing fringing, const Structure& s, Make&& make) {
   return std::visit([&](const auto& law) { return make(ElectrostaticForce<std::decay_t<decltype(law)>>{law}); },
-                    row_of(fringing_laws, fringing).make(s));
+                    row_of(fringing_laws, fringing).make(s.width, s.thickness));
 }
 
 std::shared_ptr<const DistributedLaw> dispersion_force(const Dispersion& d, double width, PointRange range, double floor) {

@@ -279,6 +279,7 @@ inline constexpr auto derived_figures = figures_that_are<internal::is_derived>()
 [[nodiscard]] constexpr const Figure& figure_of(Figure::Member member) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.member == member; });
 }
+[[nodiscard]] constexpr std::string_view key_of(Figure::Member member) { return figure_of(member).key; }
 /// Of this key, which must be among them.
 [[nodiscard]] constexpr const Figure& figure_of(std::string_view key) {
   return *std::find_if(figure_table.begin(), figure_table.end(), [&](const Figure& one) { return one.key == key; });

@@ -162,7 +162,7 @@ class Maker {
               capacitances[k] += Formula(weight) * force.capacitance(max(Formula(both) - gap, Formula(floor)));
             }
           },
-          row_of(fringing_laws, e.fringing).make(s));
+          row_of(fringing_laws, e.fringing).make(s.width, s.thickness));
     }
     if (device_.dispersion) load += strengths_.back() * dispersion(gap, velocity);
     if (!model_.gas()) return load;

@@ -35,10 +35,11 @@ constexpr double half = 0.5;
 struct Column {
   std::string_view key, heading, short_heading;
 };
-constexpr std::array columns{
-    Column{"largest_impact_velocity_m_s", "impact speed", "impact"},
-    Column{"major_bounce_height_m", "highest rebound", "rebound"}, Column{"initial_contact_time_s", "first contact", "contact"},
-    Column{"peak_contact_force_N", "peak force", "force"}, Column{"steady_force_time_s", "steady force from", "steady"}};
+constexpr std::array columns{Column{key_of(&Metrics::largest_impact_velocity), "impact speed", "impact"},
+                             Column{key_of(&Metrics::major_bounce_height), "highest rebound", "rebound"},
+                             Column{key_of(&Metrics::initial_contact_time), "first contact", "contact"},
+                             Column{key_of(&Metrics::peak_contact_force), "peak force", "force"},
+                             Column{key_of(&Metrics::steady_force_time), "steady force from", "steady"}};
 
 constexpr std::string_view steady_key = columns.back().key;
 
@@ -77,10 +78,10 @@ std::vector<std::string> cells(const ResultDevices::Row& row) {
   for (const Column& c : columns) {
     const auto found = row.at_95.find(std::string(c.key));
     const double value = found == row.at_95.end() ? Metrics::unset : found->second;
-    all.push_back(std::isinf(value)                                ? "∞"
-                  : std::isnan(value)                              ? "—"
-                  : c.key == "major_bounce_height_m" && value == 0 ? "none"
-                                                                   : quantity(value, figure_of(c.key).unit));
+    all.push_back(std::isinf(value)                                              ? "∞"
+                  : std::isnan(value)                                            ? "—"
+                  : c.key == key_of(&Metrics::major_bounce_height) && value == 0 ? "none"
+                                                                                 : quantity(value, figure_of(c.key).unit));
   }
   all.push_back(percent(std::max(0.0, row.open)));
   all.push_back(percent(row.collapsed));

@@ -384,7 +384,7 @@ std::size_t leading_figure(const ExplorationReport& report) {
     return range.low < range.high;
   };
   for (const std::size_t c : figures) {
-    if (report.columns[c].key == "impact_velocity_m_s" && varies(c)) return c;
+    if (report.columns[c].key == key_of(&Metrics::impact_velocity) && varies(c)) return c;
   }
   const auto first = std::find_if(figures.begin(), figures.end(), varies);
   return first == figures.end() ? figures.front() : *first;

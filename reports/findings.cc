@@ -115,7 +115,9 @@ const ResultCheck* worst_check(const std::vector<ResultCheck>& checks) {
 
 std::string_view worst_figure(const ResultCheck& check) {
   const std::array<double, 3> bad = badness(check);
-  return bad[0] == 2 ? "initial_contact_time_s" : bad[0] == 1 ? "major_bounce_height_m" : "impact_velocity_m_s";
+  return bad[0] == 2   ? key_of(&Metrics::initial_contact_time)
+         : bad[0] == 1 ? key_of(&Metrics::major_bounce_height)
+                       : key_of(&Metrics::impact_velocity);
 }
 
 bool all_checks_land(const Result& result) { return std::ranges::all_of(result.checks, is_clean_run); }

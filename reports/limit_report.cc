@@ -30,7 +30,7 @@ json least_json(const LeastTime& least) {
           {"message", least.message},
           {"from_start", least.from_start},
           {"least_time_s", json_number(least.time)},
-          {"impact_velocity_m_s", json_number(least.impact_velocity)},
+          {key_of(&Metrics::impact_velocity), json_number(least.impact_velocity)},
           {"peak_voltage_V", json_number(least.peak)},
           {"simulated_time_s", json_number(least.simulated_time)},
           {"simulated_impact_velocity_m_s", json_number(least.simulated_velocity)},

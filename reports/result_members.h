@@ -110,7 +110,7 @@ void members(A& a, GrazingRebound& rebound) {
   a("rebound", rebound.number);
   a("time_s", rebound.time);
   a("height_m", rebound.height);
-  a("impact_velocity_m_s", rebound.impact_velocity);
+  a(key_of(&Metrics::impact_velocity), rebound.impact_velocity);
   a("at_significant_height", rebound.at_threshold);
 }
 
@@ -139,7 +139,7 @@ void members(A& a, Work& work) {
 template <class A>
 void members(A& a, ResultLimit& limit) {
   a("least_time_s", limit.least_time);
-  a("impact_velocity_m_s", limit.impact_velocity);
+  a(key_of(&Metrics::impact_velocity), limit.impact_velocity);
 }
 
 template <class A>
@@ -188,8 +188,8 @@ void members(A& a, ResultDevices::Row& row) {
 
 template <class A>
 void members(A& a, ResultDevices::FrontPoint& point) {
-  a("initial_contact_time_s", point.first_touch);
-  a("largest_impact_velocity_m_s", point.impact_speed);
+  a(key_of(&Metrics::initial_contact_time), point.first_touch);
+  a(key_of(&Metrics::largest_impact_velocity), point.impact_speed);
   a("bounce_free", point.bounce_free);
   a("candidate", point.candidate);
 }
@@ -198,7 +198,7 @@ template <class A>
 void members(A& a, ResultDevices::ByError& known) {
   a("error", known.error);
   a("bounce_free", known.bounce_free);
-  a("largest_impact_velocity_m_s", internal::OrInfinite{known.impact_speed});
+  a(key_of(&Metrics::largest_impact_velocity), internal::OrInfinite{known.impact_speed});
 }
 
 template <class A>

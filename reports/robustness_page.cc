@@ -44,8 +44,8 @@ using internal::TableRow;
 using internal::worst_words;
 using internal::yield_text;
 
-constexpr std::array drawn_figures{std::string_view("largest_impact_velocity_m_s"), std::string_view("major_bounce_height_m"),
-                                   std::string_view("initial_contact_time_s")};
+constexpr std::array drawn_figures{key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height),
+                                   key_of(&Metrics::initial_contact_time)};
 
 std::string lower_case(std::string_view name) {
   std::string words(name);
@@ -69,17 +69,18 @@ internal::Role role_of(std::size_t i, std::size_t count) {
 internal::Chart distribution_chart(const RobustnessReport& report, std::string_view key, internal::CurveTables& tables) {
   const Figure& f = figure_of(key);
   const std::vector<DriveRobustness>& drives = report.found.drives;
-  internal::Chart chart{.id = "share-" + std::string(f.symbol),
-                        .title = std::string(f.name),
-                        .caption = fmt::format("Share of the devices whose {} is at most this.",
-                                               f.key == "initial_contact_time_s" ? "first contact" : lower_case(f.name)),
-                        .x_column = "x",
-                        .x_label = std::string(f.name),
-                        .x_unit = std::string(f.unit),
-                        .y_label = "Devices",
-                        .y_unit = "%",
-                        .y_home = std::array{0.0, 100.0},
-                        .height = 260};
+  internal::Chart chart{
+      .id = "share-" + std::string(f.symbol),
+      .title = std::string(f.name),
+      .caption = fmt::format("Share of the devices whose {} is at most this.",
+                             f.key == key_of(&Metrics::initial_contact_time) ? "first contact" : lower_case(f.name)),
+      .x_column = "x",
+      .x_label = std::string(f.name),
+      .x_unit = std::string(f.unit),
+      .y_label = "Devices",
+      .y_unit = "%",
+      .y_home = std::array{0.0, 100.0},
+      .height = 260};
   std::replace(chart.id.begin(), chart.id.end(), '_', '-');
   double most = 0;
   for (std::size_t i = 0; i < drives.size(); ++i) {
@@ -231,8 +232,9 @@ std::string knowledge_table(const Robustness& found) {
   if (found.by_knowledge.empty()) return {};
   std::vector<TableRow> rows;
   const auto add = [&](const std::string& name, const DriveRobustness& d) {
-    rows.push_back({name, yield_text(d.bounce_free), quantile_text(quantile_95(d, "largest_impact_velocity_m_s"), "m/s"),
-                    quantile_text(quantile_95(d, "major_bounce_height_m"), "m")});
+    rows.push_back({name, yield_text(d.bounce_free),
+                    quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"),
+                    quantile_text(quantile_95(d, key_of(&Metrics::major_bounce_height)), "m")});
   };
   for (const DriveRobustness& d : found.by_knowledge) add(escaped(d.name), d);
   const Calibration& c = found.drives.back().known.calibration();

@@ -64,8 +64,8 @@ std::string knowledge_text(const Robustness& found) {
                      fmt::format("{:>24}{:>26}{:>26}\n", "without a rebound", "v_max, 95 % below", "B_H, 95 % below");
   const auto row = [&](const std::string& name, const DriveRobustness& d) {
     text += internal::left_aligned(name, width) + internal::right_aligned(yield_text(d.bounce_free), 24) +
-            internal::right_aligned(quantile_text(quantile_95(d, "largest_impact_velocity_m_s"), "m/s"), 26) +
-            internal::right_aligned(quantile_text(quantile_95(d, "major_bounce_height_m"), "m"), 26) + "\n";
+            internal::right_aligned(quantile_text(quantile_95(d, key_of(&Metrics::largest_impact_velocity)), "m/s"), 26) +
+            internal::right_aligned(quantile_text(quantile_95(d, key_of(&Metrics::major_bounce_height)), "m"), 26) + "\n";
   };
   for (const DriveRobustness& d : found.by_knowledge) row(d.name, d);
   if (is_erring(c)) row(own, found.drives.back());

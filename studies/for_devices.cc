@@ -61,19 +61,20 @@ struct Bounds {
   double first_touch, open;                           // likewise, and its share of devices that do not close
 
   explicit Bounds(const std::vector<DeviceOutcome>& step)
-      : first_touch(quantile_95(step, "initial_contact_time_s")), open(1 - share_of(step, closes)) {
+      : first_touch(quantile_95(step, key_of(&Metrics::initial_contact_time))), open(1 - share_of(step, closes)) {
     for (std::size_t i = 0; i < figures.size(); ++i) figures[i] = quantile_95(step, judged_figures[i]);
   }
   /// `in_time`: whether it has to close in a usual time.
   [[nodiscard]] bool keeps(const std::vector<DeviceOutcome>& own, double significant, bool in_time) const {
     for (std::size_t i = 0; i < figures.size(); ++i) {
       const double value = quantile_95(own, judged_figures[i]);
-      if (judged_figures[i] == "major_bounce_height_m" && value <= significant) continue;
+      if (judged_figures[i] == key_of(&Metrics::major_bounce_height) && value <= significant) continue;
       if (value > margin * figures[i]) return false;
     }
     if (1 - share_of(own, closes) > open + more_open) return false;
     const double times = share_of(own, is_bounce_free) >= lands_half ? most_times_of_landings : most_times;
-    return !in_time || !std::isfinite(first_touch) || quantile_95(own, "initial_contact_time_s") <= times * first_touch;
+    return !in_time || !std::isfinite(first_touch) ||
+           quantile_95(own, key_of(&Metrics::initial_contact_time)) <= times * first_touch;
   }
 };
 
@@ -184,7 +185,7 @@ class DevicesStudy {
   void make_aims(const std::vector<DeviceOutcome>& step) {
     conditions_ = beside_step(devices_.conditions, step);
     no_harder_than_step_ = no_harder_than(step, first().given.scene.metrics.significant_rebound);
-    const double step_time = quantile_95(step, "initial_contact_time_s");
+    const double step_time = quantile_95(step, key_of(&Metrics::initial_contact_time));
     const std::span<const Figure> figures = device_figures;
     tail_aim_ = {.measure = parse_robust_measure("cvar:0.9", figures), .conditions = conditions_};
     aims_ = {.tail = tail_aim_, .share = {.measure = parse_robust_measure("yield", figures), .conditions = conditions_}};
@@ -310,8 +311,8 @@ class DevicesStudy {
       const std::vector<DeviceOutcome> outcomes = closed(others, one.waveforms, others.devices());
       one.bounce_free = share_of(outcomes, is_bounce_free);
       one.tail = others.value(outcomes, aims_.tail);
-      one.first_touch = quantile_95(outcomes, "initial_contact_time_s");
-      one.impact_speed = quantile_95(outcomes, "largest_impact_velocity_m_s");
+      one.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time));
+      one.impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity));
       const bool lands = one.bounce_free >= lands_half;
       const double significant = first().given.scene.metrics.significant_rebound;
       placed.push_back({one, bounds.keeps(outcomes, significant, !says_when_to_close()) && keeps_conditions(outcomes), lands,
@@ -577,8 +578,8 @@ class DevicesStudy {
     for (const ChosenFrom* one : kept) {
       watch_.throw_if_stopped();
       const std::vector<DeviceOutcome> outcomes = closed(fresh, one->waveforms, fresh.devices());
-      result_->front.push_back({.first_touch = quantile_95(outcomes, "initial_contact_time_s"),
-                                .impact_speed = quantile_95(outcomes, "largest_impact_velocity_m_s"),
+      result_->front.push_back({.first_touch = quantile_95(outcomes, key_of(&Metrics::initial_contact_time)),
+                                .impact_speed = quantile_95(outcomes, key_of(&Metrics::largest_impact_velocity)),
                                 .bounce_free = share_of(outcomes, is_bounce_free),
                                 .measure = one->measure,
                                 .waveform = one->family});

@@ -59,7 +59,8 @@ FreeFlight::FreeFlight(const Prepared& prepared, Actuator actuator, double peak)
       add_free(prepared, name, std::numeric_limits<double>::infinity(), true);
   }
   if (actuator != Actuator::electrostatic) {
-    require(prepared.model.has_piezo(), "--actuator pzt|both needs a [piezo] section, and the scene has none");
+    require_request(prepared.model.has_piezo(),
+                    [] { return requested("actuator") + " pzt|both needs a [piezo] section, and the scene has none"; });
     add_free(prepared, std::string(piezo_drive), std::numeric_limits<double>::infinity(), false);
   }
   for (const Free& f : free_) {

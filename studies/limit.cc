@@ -512,8 +512,8 @@ Limit limit(const SceneFile& file, const LimitOptions& options, const Watch& wat
           .metrics;
   watch.throw_if_stopped();
   constexpr double soft = 0.01;  // of the plain step's impact velocity
-  require(options.impact_velocity || std::isfinite(result.step.impact_velocity),
-          "the plain step does not touch: give --impact-velocity");
+  require_request(options.impact_velocity || std::isfinite(result.step.impact_velocity),
+                  [] { return "the plain step does not touch: give " + requested("impact-velocity"); });
   result.impact_velocity = options.impact_velocity.value_or(soft * result.step.impact_velocity);
 
   LimitStudy(result, watch).run();

@@ -284,8 +284,8 @@ void judge_told(Told& told, const RobustCost& cost, const std::vector<Waveform>&
   std::size_t free = 0;
   for (const DeviceOutcome& o : outcomes) {
     scores.push_back(std::min(cost.score(o), RobustCost::not_closed));
-    speeds.push_back(o.of(figure_of("largest_impact_velocity_m_s")));
-    heights.push_back(o.of(figure_of("major_bounce_height_m")));
+    speeds.push_back(o.of(figure_of(&Metrics::largest_impact_velocity)));
+    heights.push_back(o.of(figure_of(&Metrics::major_bounce_height)));
     free += is_bounce_free(o);
   }
   Prediction& p = told.prediction;

@@ -160,16 +160,18 @@ class ReleaseSearch {
   void add_brakes() {
     const Device& device = given_.scene.device;
     const bool electrodes = options_.actuator != Actuator::pzt, piezo = options_.actuator != Actuator::electrostatic;
-    require(!electrodes || !device.electrodes.empty(),
-            "release --actuator electrostatic|both needs an electrode, and the scene has none");
-    require(!piezo || device.piezo, "release --actuator pzt|both needs a [piezo] section, and the scene has none");
+    const std::string asked = "release " + requested("actuator");
+    require_request(!electrodes || !device.electrodes.empty(),
+                    [&] { return asked + " electrostatic|both needs an electrode, and the scene has none"; });
+    require_request(!piezo || device.piezo, [&] { return asked + " pzt|both needs a [piezo] section, and the scene has none"; });
     for (std::size_t k = 0; k < names_.size(); ++k) {
       const bool is_electrode = k < device.electrodes.size();
       if (!(is_electrode ? electrodes : piezo && names_[k] == piezo_drive)) continue;
       const auto limits = given_.drives.limits.find(names_[k]);
       if (is_electrode && limits == given_.drives.limits.end()) continue;
-      require(limits != given_.drives.limits.end(),
-              "release --actuator pzt|both needs limits for the piezo: write min_voltage and max_voltage under [driver.piezo]");
+      require_request(limits != given_.drives.limits.end(), [&] {
+        return asked + " pzt|both needs limits for the piezo: write min_voltage and max_voltage under [driver.piezo]";
+      });
       add_brake(k, names_[k], limits->second);
     }
     require(!brakes_.empty(), "release needs a drive with limits: write max_voltage under [driver.NAME] of an electrode");

@@ -326,8 +326,9 @@ void judge(RobustResult& result, const RobustCost& cost, const OptimizeOptions& 
 }
 
 void require_one_family(const OptimizeOptions& options) {
-  require(families_of(options.family).size() == 1,
-          [&] { return fmt::format("--waveform {}: a search over devices takes one family", options.family); });
+  require_request(families_of(options.family).size() == 1, [&] {
+    return fmt::format("{} {}: a search over devices takes one family", requested("waveform"), options.family);
+  });
 }
 
 }  // namespace

@@ -78,9 +78,8 @@ struct Robustness {
 };
 
 /// Keys of the figures whose spread is explained: sensitivity(), other_ways().
-inline constexpr std::array explained_figures{std::string_view("initial_contact_time_s"),
-                                              std::string_view("largest_impact_velocity_m_s"),
-                                              std::string_view("major_bounce_height_m")};
+inline constexpr std::array explained_figures{key_of(&Metrics::initial_contact_time), key_of(&Metrics::largest_impact_velocity),
+                                              key_of(&Metrics::major_bounce_height)};
 
 /// How a figure depends on what varies.
 struct FigureSensitivity {

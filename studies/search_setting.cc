@@ -305,12 +305,14 @@ Prepared SearchSetting::within_limits() const {
 SearchSetting search_setting(const SceneFile& file, const Aim& target, Actuator actuator, const std::string& family,
                              const Watch& watch, std::vector<Criterion> conditions, const OwnWaveforms& own) {
   for (const Criterion& one : conditions)
-    require(one.figure.conditioning != Conditioning::open,
-            [&] { return fmt::format("--constrain \"{}\": a switch that closes has no such figure", one.text); });
+    require_request(one.figure.conditioning != Conditioning::open, [&] {
+      return fmt::format("{} \"{}\": a switch that closes has no such figure", requested("constrain"), one.text);
+    });
   Prepared given = prepare_and_choose(file, true, watch);
   require(given.model.has_contact(), "optimize needs a [contact] section: without contact there is nothing to land on");
-  require(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr),
-          "--target force: an impact on a rigid contact has an impulse, and no force to lower");
+  require_request(!(target.is_about(Target::force) && given.model.rigid_contact() != nullptr), [] {
+    return requested("target") + " force: an impact on a rigid contact has an impulse, and no force to lower";
+  });
   Prepared baseline_scene = read_back(with_waveforms(given, plain_step(given, actuator)), "baseline.toml", given);
   Closing baseline = simulate(baseline_scene, true, watch);
   watch.throw_if_stopped();

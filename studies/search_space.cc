@@ -37,14 +37,15 @@ class FamilyOfDrives {
       const std::string part = text.substr(begin, end - begin);
       const std::size_t equals = part.find('=');
       if (equals == std::string::npos) {
-        require(for_others_.empty() && !part.empty(),
-                fmt::format("--waveform {}: '{}' is not of the form DRIVE=FAMILY, or a second family for all other drives", text,
-                            part));
+        require_request(for_others_.empty() && !part.empty(), [&] {
+          return fmt::format("{} {}: '{}' is not of the form DRIVE=FAMILY, or a second family for all other drives",
+                             requested("waveform"), text, part);
+        });
         for_others_ = part;
       } else {
         const std::string drive = part.substr(0, equals) == "pzt" ? std::string(piezo_drive) : part.substr(0, equals);
-        require(named_.emplace(drive, part.substr(equals + 1)).second,
-                fmt::format("--waveform {}: drive '{}' has two families", text, drive));
+        require_request(named_.emplace(drive, part.substr(equals + 1)).second,
+                        [&] { return fmt::format("{} {}: drive '{}' has two families", requested("waveform"), text, drive); });
       }
       begin = end + 1;
     }
@@ -59,10 +60,10 @@ class FamilyOfDrives {
   void check_all_used(const std::vector<DriveSearch>& drives) const {
     for (const auto& [name, family] : named_) {
       const auto is_it = [&](const DriveSearch& drive) { return drive.drive == name; };
-      require(std::any_of(drives.begin(), drives.end(), is_it), [&] {
+      require_request(std::any_of(drives.begin(), drives.end(), is_it), [&] {
         std::string searched;
         for (const DriveSearch& drive : drives) searched += (searched.empty() ? "" : ", ") + drive.drive;
-        return fmt::format("--waveform {}: drive '{}' is not searched (searched: {})", text_, name, searched);
+        return fmt::format("{} {}: drive '{}' is not searched (searched: {})", requested("waveform"), text_, name, searched);
       });
     }
   }
@@ -145,9 +146,10 @@ std::vector<std::string> families_of(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find('+', begin), text.size());
     const std::string family = text.substr(begin, end - begin);
-    require(!family.empty() || text.empty(), fmt::format("--waveform {}: a family before or after '+' is missing", text));
-    require(std::find(all.begin(), all.end(), family) == all.end(),
-            fmt::format("--waveform {}: '{}' is named twice", text, family));
+    require_request(!family.empty() || text.empty(),
+                    [&] { return fmt::format("{} {}: a family before or after '+' is missing", requested("waveform"), text); });
+    require_request(std::find(all.begin(), all.end(), family) == all.end(),
+                    [&] { return fmt::format("{} {}: '{}' is named twice", requested("waveform"), text, family); });
     all.push_back(family);
     begin = end + 1;
   }
@@ -163,10 +165,13 @@ bool has_pulling_electrode(const Device& device) {
 }
 
 std::string searched_electrode(const Device& device) {
-  require(!device.electrodes.empty(), fmt::format("--actuator electrostatic|both needs an electrode, and the scene has none{}",
-                                                  device.piezo        ? "; its piezo layer is searched with --actuator pzt"
-                                                  : device.dispersion ? "; the factor of a dispersion force is not searched"
-                                                                      : ""));
+  require_request(!device.electrodes.empty(), [&] {
+    const std::string asked = requested("actuator");
+    return asked + " electrostatic|both needs an electrode, and the scene has none" +
+           (device.piezo        ? "; its piezo layer is searched with " + asked + " pzt"
+            : device.dispersion ? "; the factor of a dispersion force is not searched"
+                                : "");
+  });
   for (const Electrode& e : device.electrodes) {
     if (e.name == "main" && e.side != Side::far) return e.name;
   }
@@ -338,7 +343,9 @@ SearchSpace::SearchSpace(const Prepared& prepared, Actuator actuator, const std:
     for (const std::string& name : braking_electrodes(prepared)) add(name, true);
   }
   if (actuator != Actuator::electrostatic) {
-    require(prepared.model.has_piezo(), "optimize --actuator pzt|both needs a [piezo] section, and the scene has none");
+    require_request(prepared.model.has_piezo(), [] {
+      return "optimize " + requested("actuator") + " pzt|both needs a [piezo] section, and the scene has none";
+    });
     add(std::string(piezo_drive), false);
   }
   families.check_all_used(drives_);

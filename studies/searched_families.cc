@@ -272,19 +272,19 @@ void choose_family(DriveSearch& s, const std::string& text) {
   const std::string_view name = std::string_view(text).substr(0, colon);
   const auto* found = std::find_if(searched_families.begin(), searched_families.end(),
                                    [&](const SearchedFamily& family) { return family.name == name; });
-  require(found != searched_families.end(),
-          [&] { return fmt::format("--waveform {}: must be {}", text, listed_searched_families()); });
+  require_request(found != searched_families.end(),
+                  [&] { return fmt::format("{} {}: must be {}", requested("waveform"), text, listed_searched_families()); });
   s.family = found;
   s.count = found->count;
   if (colon == std::string::npos) return;
   const std::string_view number = std::string_view(text).substr(colon + 1);
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), s.count);
-  require(
+  require_request(
       found->count > 0 && error == std::errc() && end == number.data() + number.size() && s.count >= fewest && s.count <= most,
       [&] {
-        return found->count == 0
-                   ? fmt::format("--waveform {}: {} has no number", text, name)
-                   : fmt::format("--waveform {}: the number after {} must be from {} to {}", text, name, fewest, most);
+        return found->count == 0 ? fmt::format("{} {}: {} has no number", requested("waveform"), text, name)
+                                 : fmt::format("{} {}: the number after {} must be from {} to {}", requested("waveform"), text,
+                                               name, fewest, most);
       });
 }
 

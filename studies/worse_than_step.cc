@@ -43,7 +43,7 @@ std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive, 
                                        double significant, std::uint64_t seed) {
   std::vector<std::string_view> worse;
   for (const std::string_view key : judged_figures) {
-    const double least = key == "major_bounce_height_m" ? significant : 0;
+    const double least = key == key_of(&Metrics::major_bounce_height) ? significant : 0;
     if (is_worse(values_of(key, drive, least), values_of(key, step, least), seed)) worse.push_back(key);
   }
   return worse;
@@ -52,7 +52,7 @@ std::vector<std::string_view> worse_in(const std::vector<DeviceOutcome>& drive, 
 std::vector<Criterion> no_harder_than(const std::vector<DeviceOutcome>& step, double significant) {
   std::vector<Criterion> all;
   for (const std::string_view key : judged_figures) {
-    const double least = key == "major_bounce_height_m" ? significant : 0;
+    const double least = key == key_of(&Metrics::major_bounce_height) ? significant : 0;
     const double limit = sample_quantile(values_of(key, step, least), compared_at);
     if (std::isfinite(limit))
       all.push_back({.figure = figure_of(key), .comparison = Comparison::at_most, .limit = limit, .text = ""});

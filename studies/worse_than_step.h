@@ -15,8 +15,8 @@
 namespace softland {
 
 /// Keys of device_figures that are compared.
-inline constexpr std::array judged_figures{std::string_view("largest_impact_velocity_m_s"),
-                                           std::string_view("major_bounce_height_m"), std::string_view("peak_contact_force_N")};
+inline constexpr std::array judged_figures{key_of(&Metrics::largest_impact_velocity), key_of(&Metrics::major_bounce_height),
+                                           key_of(&Metrics::peak_contact_force)};
 
 /// The figures in which the drive is worse, of outcomes by device; `significant`: height of a rebound from which on it counts
 /// [m].

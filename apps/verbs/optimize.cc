@@ -62,8 +62,9 @@ std::string on_devices(const Common& c, const Prepared& winner, int jobs, const 
     };
     const auto words = [&](const DriveRobustness& drive) {
       if (drive.closing.value < 0.95) return fmt::format("{} close", percent(drive.closing.value));
-      return fmt::format("95 % have rebounds up to {} and touches at up to {}", at_95_percent(drive, "major_bounce_height_m"),
-                         at_95_percent(drive, "largest_impact_velocity_m_s"));
+      return fmt::format("95 % have rebounds up to {} and touches at up to {}",
+                         at_95_percent(drive, key_of(&Metrics::major_bounce_height)),
+                         at_95_percent(drive, key_of(&Metrics::largest_impact_velocity)));
     };
     const DriveRobustness &step = found.drives[0], &own = found.drives[1];
     return "\n" +

@@ -14,7 +14,7 @@
 #pragma once
 
 #include "base/engineering.h"  // engineering(2.5e-05, "s"): "25 us"
-#include "base/require.h"      // InvalidInput, InvalidParameter
+#include "base/require.h"      // InvalidInput, InvalidParameter, InvalidRequest
 #include "base/watch.h"        // Watch, Interrupted
 
 // A scene: from a file, from text, or from a Device made here.

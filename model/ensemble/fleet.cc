@@ -32,10 +32,9 @@ std::optional<fleet::LaneFringing> lane_fringing(Fringing fringing) {
       return fleet::LaneFringing::linear;
     case Fringing::meijs_fokkema:
       return fleet::LaneFringing::meijs_fokkema;
-    case Fringing::bao_2001:
-      break;
+    default:
+      return std::nullopt;
   }
-  return std::nullopt;
 }
 
 std::optional<fleet::LaneFilm> lane_film(const std::optional<Gas>& gas) {
@@ -339,8 +338,9 @@ std::string why_not_in_lanes(const Switch& model) {
   if (!lane_dispersion(device.dispersion)) return "a dispersion force between gold";
   if (!lane_contact(model)) return "a contact other than linear or asperity-uniform at the contact point";
   if (!lane_film(device.gas)) return "a compressible gas film";
-  if (!std::ranges::all_of(device.electrodes, [](const Electrode& e) { return lane_fringing(e.fringing).has_value(); }))
-    return "fringing by bao-2001";
+  for (const Electrode& e : device.electrodes) {
+    if (!lane_fringing(e.fringing)) return fmt::format("fringing by {}", name_of(fringing_laws, e.fringing));
+  }
   if (faces_of(model).size() > fleet::most_segments) return fmt::format("more than {} faces of electrodes", fleet::most_segments);
   return {};
 }

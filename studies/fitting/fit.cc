@@ -96,8 +96,9 @@ Prepared with_unknowns(const Prepared& given, std::vector<std::string>& unknowns
     if (std::ranges::any_of(spread.variables, [&](const SpreadVariable& v) { return v.name == name; })) continue;
     for (const SpreadVariable& v : spread.variables) {
       const bool follows = std::ranges::any_of(v.keys, [&](const VariedKey& key) { return key.name() == name; });
-      require(!follows, [&] {
-        return fmt::format("--unknown {}: it varies with others by the entry '{}' of [spread]: name that", name, v.name);
+      require_request(!follows, [&] {
+        return fmt::format("{} {}: it varies with others by the entry '{}' of [spread]: name that", requested("unknown"), name,
+                           v.name);
       });
     }
     try {
@@ -106,15 +107,16 @@ Prepared with_unknowns(const Prepared& given, std::vector<std::string>& unknowns
       static_cast<void>(read_scene(tried));
       file = std::move(tried);
     } catch (const InvalidInput& error) {
-      throw InvalidInput(fmt::format("--unknown {}: {}", name, error.what()));
+      throw InvalidRequest(fmt::format("{} {}: {}", requested("unknown"), name, error.what()));
     }
     without_prior.push_back(name);
   }
   Prepared p = prepare(file);
   DeviceSpread& own = p.scene.spread;
   for (std::size_t i = own.variables.size(); i-- > 0;) {
-    require(!(own.variables[i].is_drawn_per_edge && has(unknowns, own.variables[i].name)),
-            [&] { return fmt::format("--unknown {}: it is drawn anew for every edge", own.variables[i].name); });
+    require_request(!(own.variables[i].is_drawn_per_edge && has(unknowns, own.variables[i].name)), [&] {
+      return fmt::format("{} {}: it is drawn anew for every edge", requested("unknown"), own.variables[i].name);
+    });
     if (!has(unknowns, own.variables[i].name)) own.leave_out(i);
   }
   require(!own.variables.empty(), [&] { return fmt::format("{}: there is nothing to fit", given.scene.file.name()); });
@@ -600,8 +602,8 @@ Setup setup_of(const SceneFile& file, const Bench& bench, const FitOptions& opti
   }
   for (const std::string& name : options.shared) {
     const auto& variables = setup.devices.front().nominal.scene.spread.variables;
-    require(std::ranges::any_of(variables, [&](const SpreadVariable& v) { return v.name == name; }),
-            [&] { return fmt::format("--shared {}: is none of the unknowns", name); });
+    require_request(std::ranges::any_of(variables, [&](const SpreadVariable& v) { return v.name == name; }),
+                    [&] { return fmt::format("{} {}: is none of the unknowns", requested("shared"), name); });
   }
   add_parameters(setup, options.shared, without_prior);
   add_prior(setup);

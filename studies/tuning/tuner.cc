@@ -15,7 +15,7 @@
 namespace softland {
 
 void check(const TunerOptions& options) {
-  constexpr std::string_view first_touch_key = figure_of("initial_contact_time_s").key;
+  constexpr std::string_view first_touch_key = key_of(&Metrics::initial_contact_time);
   const auto share = [](double x) { return x >= 0 && x < 1; };
   require(options.laboratory.edge_error > 0 && std::isfinite(options.laboratory.edge_error),
           "the error of edges must be above 0 s");

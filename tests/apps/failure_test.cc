@@ -37,6 +37,13 @@ TEST(Failure, OfTheUserOrTheSystemSaysWhatItIs) {
             exit_system_error);
 }
 
+TEST(Failure, OfARequestNamesItsFieldsAsTheyWereTyped) {
+  const InvalidRequest error(requested("waveform") + " a-b: no such, as " + requested("target") + " is 'x'");
+  EXPECT_STREQ(error.what(), "waveform a-b: no such, as target is 'x'");
+  EXPECT_EQ(failure(error).status, exit_bad_input);
+  EXPECT_EQ(failure(error).message, "--waveform a-b: no such, as --target is 'x'");
+}
+
 TEST(Failure, OfTheProgramItselfAsksToBeReportedWithItsVersion) {
   for (const Failure& f :
        {failure(std::logic_error("odd")), failure(std::runtime_error("odd")), failure(std::out_of_range("odd"))}) {

@@ -310,7 +310,7 @@ TEST(Optimize, SearchesEveryShippedSceneOrSaysWhyNot_optimized) {
       {"hung-senturia.toml", "optimize needs a [contact] section: without contact there is nothing to land on"},
       {"purdue-nickel.toml", "optimize needs a [contact] section: without contact there is nothing to land on"},
       {"nem-casimir.toml",
-       "--actuator electrostatic|both needs an electrode, and the scene has none; the factor of a dispersion force is "
+       "actuator electrostatic|both needs an electrode, and the scene has none; the factor of a dispersion force is "
        "not searched"}};
   int scenes = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(SOFTLAND_SOURCE_DIR) + "/scenes")) {

@@ -367,11 +367,11 @@ TEST(SearchSpace, GivesEveryDriveTheFamilyThatIsNamedForIt) {
     return refusal([&] { SearchSpace(plain(), actuator, family, first_touch); });
   };
   EXPECT_EQ(refused("main=step,pzt=coast", Actuator::electrostatic),
-            "--waveform main=step,pzt=coast: drive 'piezo' is not searched (searched: main)");
-  EXPECT_EQ(refused("main=step,main=coast", Actuator::both), "--waveform main=step,main=coast: drive 'main' has two families");
+            "waveform main=step,pzt=coast: drive 'piezo' is not searched (searched: main)");
+  EXPECT_EQ(refused("main=step,main=coast", Actuator::both), "waveform main=step,main=coast: drive 'main' has two families");
   EXPECT_EQ(refused("main=step,coast,ramp", Actuator::both),
-            "--waveform main=step,coast,ramp: 'ramp' is not of the form DRIVE=FAMILY, or a second family for all other drives");
-  EXPECT_EQ(refused("main=stop", Actuator::electrostatic).substr(0, 31), "--waveform stop: must be step, ");
+            "waveform main=step,coast,ramp: 'ramp' is not of the form DRIVE=FAMILY, or a second family for all other drives");
+  EXPECT_EQ(refused("main=stop", Actuator::electrostatic).substr(0, 29), "waveform stop: must be step, ");
 }
 
 TEST(SearchSpace, OfSinesKeepsTheirRatiosInsideTheLimits) {
@@ -420,21 +420,21 @@ TEST(SearchSpace, RefusesThePiezoOfASceneThatHasNone) {
   const Prepared p = prepare(gold(), true);
   for (const Actuator actuator : {Actuator::pzt, Actuator::both})
     EXPECT_EQ(refusal([&] { SearchSpace(p, actuator, "pulse", first_touch); }),
-              "optimize --actuator pzt|both needs a [piezo] section, and the scene has none");
+              "optimize actuator pzt|both needs a [piezo] section, and the scene has none");
 }
 
 TEST(SearchSpace, RefusesFamiliesWithoutParameters) {
   for (const std::string family : {"table", "spline", ""})
     EXPECT_EQ(
         refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
-        "--waveform " + family +
+        "waveform " + family +
             ": must be step, pulse, harmonic, catch, ramp, staircase:N, knots:N, coast, dual-pulse, pulses:N, s-curve, dither, "
             "chirp, bspline:N or sines:N");
   for (const std::string family : {"knots:1", "knots:21", "knots:", "knots:3x", "staircase:-2"})
     EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, family, first_touch); }),
-              "--waveform " + family + ": the number after " + family.substr(0, family.find(':')) + " must be from 2 to 20");
+              "waveform " + family + ": the number after " + family.substr(0, family.find(':')) + " must be from 2 to 20");
   EXPECT_EQ(refusal([&] { SearchSpace(plain(), Actuator::electrostatic, "pulse:3", first_touch); }),
-            "--waveform pulse:3: pulse has no number");
+            "waveform pulse:3: pulse has no number");
 }
 
 TEST(SearchSpace, RefusesADitherWithoutRoomAboutTheHoldLevel) {
@@ -447,7 +447,7 @@ TEST(SearchSpace, RefusesADitherWithoutRoomAboutTheHoldLevel) {
 TEST(SearchedElectrode, IsMainElseTheFirst) {
   Device device;
   EXPECT_EQ(refusal([&] { (void)searched_electrode(device); }),
-            "--actuator electrostatic|both needs an electrode, and the scene has none");
+            "actuator electrostatic|both needs an electrode, and the scene has none");
   device.electrodes = {{.name = "left"}, {.name = "right"}};
   EXPECT_EQ(searched_electrode(device), "left");
   device.electrodes.push_back({.name = "main"});
@@ -467,8 +467,8 @@ TEST(FamiliesOf, ReadsOneOrSeveral) {
   EXPECT_EQ(prefix_of("catch", "catch"), "");
   for (const char* text : {"+catch", "catch+", "catch++knots"})
     EXPECT_EQ(refusal([&] { (void)families_of(text); }),
-              fmt::format("--waveform {}: a family before or after '+' is missing", text));
-  EXPECT_EQ(refusal([] { (void)families_of("catch+catch"); }), "--waveform catch+catch: 'catch' is named twice");
+              fmt::format("waveform {}: a family before or after '+' is missing", text));
+  EXPECT_EQ(refusal([] { (void)families_of("catch+catch"); }), "waveform catch+catch: 'catch' is named twice");
   for (const Actuator actuator : {Actuator::electrostatic, Actuator::pzt, Actuator::both}) {
     for (const std::string& family : families_of(std::string(default_families(shaped_drives(plain().scene.file, actuator)))))
       EXPECT_EQ(refusal([&] { (void)SearchSpace(plain(), actuator, family, first_touch); }), "");
