@@ -67,20 +67,23 @@ void draw_taken(internal::Picture& drawn, const ModeTable& table, const ModeFoun
   const std::string id = fmt::format("mode-{}", found.number), places = id + "-places";
   const std::vector<double>& shape = table.shapes[column];
   const ClampedSpline spline(table.positions, shape);
+  // Numbers of one to three digits, whatever the mass.
+  const int exponent = 3 * static_cast<int>(std::floor(std::log10(largest_of(shape)) / 3));
+  const double unit = std::pow(10.0, exponent);
   for (int k = 0; k <= points; ++k) {
     const double x = table.positions.back() * k / points;
     drawn.tables[id]["x"].push_back(x);
-    drawn.tables[id]["y"].push_back(spline.value(x));
+    drawn.tables[id]["y"].push_back(spline.value(x) / unit);
   }
   // As many dots as leave the line in view.
   const std::size_t step = 1 + table.positions.size() / most_dots;
   for (std::size_t i = 0; i < table.positions.size(); i += step) {
     drawn.tables[places]["x"].push_back(table.positions[i]);
-    drawn.tables[places]["y"].push_back(shape[i]);
+    drawn.tables[places]["y"].push_back(shape[i] / unit);
   }
   internal::Chart chart = chart_of(table, found, id);
   chart.title = fmt::format("mode_{}: {}", column + 1, chart.title);
-  chart.y_label = "Mode (1/√kg)";
+  chart.y_label = exponent == 0 ? std::string("Mode (1/√kg)") : fmt::format("Mode (1e{}/√kg)", exponent);
   chart.y_unit = "";
   chart.series.push_back({.table = id, .column = "y", .label = "as a closing takes it", .role = internal::Role::best});
   chart.series.push_back({.table = places, .column = "y", .label = "in the file", .role = internal::Role::measured});
