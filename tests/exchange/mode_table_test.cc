@@ -242,7 +242,7 @@ void truncate(std::size_t cuts) {
 }
 
 std::string changed_by_a_byte(std::string content, std::uint64_t seed) {
-  constexpr std::string_view nasty("0159.,;:+-eE\"'#%@* \t\n\rxXwi()\0\x80\xFF", 33);
+  constexpr std::string_view nasty("0159.,;:+-eE\"'#%@* \t\n\rxXwi()\0\x80\xFF", 31);
   const std::size_t at = split_mix_64(seed, 0) % content.size();
   const char c = nasty[split_mix_64(seed, 1) % nasty.size()];
   switch (split_mix_64(seed, 2) % 3) {
