@@ -27,7 +27,7 @@ double one_of_unit(const SectionReader& in, std::string_view key, const Dimensio
   } catch (const InvalidInput& error) {
     in.file().fail(in.path(key), error.what());
   }
-  in.require(one.dimension == due, key, fmt::format("must be a unit of {}", describe(due)));
+  in.require(one.dimension == due, key, fmt::format("must be the unit of {}", describe(due)));
   return one.value;
 }
 
@@ -80,11 +80,11 @@ void require_straight(const ModeTable& table, const SectionReader& in) {
 std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReader& in) {
   const std::string& name = in.text(keys::file);
   in.require(!name.empty() && name.find('\0') == std::string::npos, keys::file, "must be the name of a file");
+  const ModeKeys said = mode_keys(in);
   ModeTable table;
   try {
-    table = read_mode_table((in.file().directory / name).string(), mode_keys(in));
+    table = read_mode_table((in.file().directory / name).string(), said);
   } catch (const InvalidInput& error) {
-    if (std::string_view(error.what()).find(in.path()) == 0) throw;
     in.file().fail(in.path(keys::file), error.what());
   }
   require_straight(table, in);

@@ -11,6 +11,7 @@
 #include "config/scene.h"
 #include "model/tabulated_modes.h"
 #include "tests/config/small_scene.h"
+#include "tests/exchange/mode_samples.h"
 #include "tests/support/temporary_folder.h"
 
 namespace softland {
@@ -81,6 +82,24 @@ TEST_F(ModalScene, TakesLengthWidthAndModesFromItsFile) {
   const Scene with_two = scene(std::string(modes_scene), {"structure.modes=2"});
   EXPECT_EQ(with_two.device.structure.modes, 2);
   EXPECT_EQ(with_two.device.electrodes[0].pads(1e-4)[0].end, 1e-4);
+}
+
+TEST_F(ModalScene, TellsWhatItTookFromTheFileOfAnotherProgram) {
+  write("beam.frd", test::sample_frd());
+  const std::string text =
+      edited(edited(modes_scene, "modes.csv", "beam.frd"), "thickness =", "axis = \"x\"\ndirection = \"-z\"\nthickness =");
+  const Scene taken = scene(text);
+  EXPECT_EQ(taken.device.structure.modes, 2);
+  EXPECT_NEAR(taken.device.structure.width, test::sample_width, 1e-11);
+  EXPECT_THAT(taken.warnings,
+              testing::Contains(testing::AllOf(HasSubstr("structure.file = \"beam.frd\": CalculiX .frd: 36 nodes at 6 places"),
+                                               HasSubstr("left out: mode 4 at 300 kHz, torsional"))));
+  EXPECT_THAT(refusal(edited(text, "axis = \"x\"\n", "")), HasSubstr("x.toml:3: structure.file = \"beam.frd\": "))
+      << "and the key";
+  EXPECT_THAT(refusal(edited(text, "axis = \"x\"\n", "")), HasSubstr("structure.axis is needed"));
+  EXPECT_THAT(refusal(text, {"structure.length_unit=V"}),
+              HasSubstr("--set structure.length_unit=V: must be the unit of a length"));
+  EXPECT_THAT(refusal(text, {"structure.mass=1 ng"}), HasSubstr("mass-normalised already, by the generalised mass"));
 }
 
 // A result holds the table itself: it is read anywhere, to the same bits.
