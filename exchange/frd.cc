@@ -85,7 +85,6 @@ class FrdReader {
     if (format == "2" || format == "3") fail("the numbers of this block are binary; write the .frd as text");
     fail(fmt::format("the format of the block is \"{}\"; it must be 0 or 1", printable_line(shortened(format, 20))));
   }
-  // The number of a node, and where its numbers begin.
   [[nodiscard]] std::size_t node(std::size_t width) const { return whole(field(key_width, width), "the number of the node"); }
   [[nodiscard]] Vector3 vector(std::size_t begin) const {
     // A line with a character more or less has its numbers in other columns.

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "base/clamped_spline.h"
 #include "base/engineering.h"
@@ -16,7 +17,7 @@
 #include "exchange/cells.h"
 #include "exchange/decoding.h"
 #include "exchange/layout.h"
-#include "exchange/local_fit.h"
+#include "exchange/mesh_sections.h"
 #include "exchange/nodal_modes.h"
 #include "exchange/own_modes.h"
 #include "exchange/parsers.h"
@@ -27,16 +28,12 @@ namespace {
 using internal::NodalMode;
 using internal::NodalModes;
 using internal::Refusals;
+using internal::SectionMotion;
 using internal::Vector3;
+using internal::Way;
 
 constexpr int shown_digits = 6;
 constexpr std::string_view axis_names = "xyz";
-
-/// A direction of the file: which one, and its sense.
-struct Way {
-  std::size_t direction = 0;
-  double sign = 1;
-};
 
 Way way_of(const std::string& text, const ModeKeys& keys, const char* key, const char* what) {
   const std::string_view bare = std::string_view(text).substr(text.starts_with('-') || text.starts_with('+') ? 1 : 0);
@@ -47,14 +44,6 @@ Way way_of(const std::string& text, const ModeKeys& keys, const char* key, const
   });
   return {.direction = direction, .sign = text.starts_with('-') ? -1.0 : 1.0};
 }
-
-/// Nodes at one place along the axis.
-struct SectionNodes {
-  double place = 0;  ///< from the clamp [m]
-  std::vector<std::size_t> nodes;
-};
-
-double across_of(const Vector3& v, Way axis, Way direction) { return v[3 - axis.direction - direction.direction]; }
 
 class TableMaker {
  public:
@@ -72,7 +61,6 @@ class TableMaker {
     take_frequencies();
     take_units();
     gather_sections();
-    take_widths_and_offsets();
     for (std::size_t k = 0; k < read_.modes.size(); ++k) judge(k);
     take_shapes();
     normalise();
@@ -138,219 +126,32 @@ class TableMaker {
       made_.notes.push_back(fmt::format("lengths are taken as m ({} says otherwise)", keys_.name("length_unit")));
   }
 
-  [[nodiscard]] double along_axis(const Vector3& v) const { return axis_.sign * metres_of(v[axis_.direction]); }
-  // To divide keeps 100 um at 1e-4 m to the bit.
-  [[nodiscard]] double metres_of(double place) const { return place / (1 / length_unit_); }
-
-  // Nodes whose places differ by no more than the digits of a file are at one place.
   void gather_sections() {
-    constexpr double printed = 2e-5;  // of the length: a file with six digits
-    std::vector<std::size_t> order(read_.nodes.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return along_axis(read_.nodes[a]) < along_axis(read_.nodes[b]); });
-    const double first = along_axis(read_.nodes[order.front()]), last = along_axis(read_.nodes[order.back()]);
-    const double clamp = keys_.clamp.value_or(first);
-    clamp_ = clamp;
-    if (keys_.clamp && !(clamp < first))
+    sections_.emplace(read_.nodes, axis_, direction_, length_unit_, keys_.clamp, refusals_);
+    if (keys_.clamp && !(*keys_.clamp < sections_->first()))
       fail(fmt::format("{} = \"{}\": must lie below the first node, at {}: it is for a file without a node at the clamp",
-                       keys_.name("clamp"), engineering(clamp, "m"), engineering(first, "m", shown_digits)));
-    const double rounding = printed * (last - first);
-    double begin = first;
-    for (const std::size_t node : order) {
-      const double place = along_axis(read_.nodes[node]);
-      if (sections_.empty() || place - begin > rounding) {
-        begin = place;
-        sections_.push_back({});
-      }
-      sections_.back().nodes.push_back(node);
-    }
-    for (SectionNodes& section : sections_) {
-      double sum = 0;
-      for (const std::size_t node : section.nodes) sum += along_axis(read_.nodes[node]);
-      section.place = sum / static_cast<double>(section.nodes.size()) - clamp;
-    }
-    constexpr std::size_t fewest = 2;
-    if (sections_.size() + (keys_.clamp ? 1 : 0) < fewest + 1)
-      fail(fmt::format("the nodes stand at {} places along {}; at least three are due, the clamp among them", sections_.size(),
-                       keys_.axis));
-    if (is_irregular()) divide_evenly(first - clamp, last - clamp);
-    for (const SectionNodes& section : sections_) made_.places.push_back(section.place);
-  }
-
-  // A mean over a section is one only where its nodes lie about its middle.
-  [[nodiscard]] bool is_irregular() const {
-    constexpr std::size_t enough = 3;
-    const auto lonely =
-        std::count_if(sections_.begin(), sections_.end(), [](const SectionNodes& s) { return s.nodes.size() < enough; });
-    return 2 * lonely > static_cast<std::ptrdiff_t>(sections_.size()) && spread_across() > 0;
-  }
-
-  // The nodes of an irregular mesh, by the nearest of even places from the first node to the last one.
-  void divide_evenly(double first, double last) {
-    constexpr std::size_t nodes_of_a_place = 24, fewest = 12, most = 100;
-    const std::size_t parts = std::min(most, read_.nodes.size() / nodes_of_a_place);
-    if (parts < fewest)
-      fail(fmt::format(
-          "an irregular mesh of {} nodes along {}, at {} places: at least {} are due for one whose nodes do not stand in layers "
-          "across the axis",
-          read_.nodes.size(), keys_.axis, sections_.size(), fewest * nodes_of_a_place));
-    const double step = (last - first) / static_cast<double>(parts);
-    std::vector<SectionNodes> even(parts + 1);
-    for (std::size_t k = 0; k <= parts; ++k) even[k].place = k == parts ? last : first + step * static_cast<double>(k);
-    for (const SectionNodes& section : sections_) {
-      const double nearest = std::round((section.place - first) / step);
-      std::vector<std::size_t>& into = even[static_cast<std::size_t>(std::clamp(nearest, 0.0, static_cast<double>(parts)))].nodes;
-      into.insert(into.end(), section.nodes.begin(), section.nodes.end());
-    }
-    constexpr std::size_t enough = 3;
-    for (const SectionNodes& section : even) {
-      if (section.nodes.size() < enough)
-        fail(fmt::format("an irregular mesh with {} nodes near {} along {}: too few to tell how it moves there",
-                         section.nodes.size(), engineering(section.place, "m", shown_digits), keys_.axis));
-    }
-    first_place_ = first, step_ = step;
-    sections_ = std::move(even);
-    made_.notes.push_back(fmt::format("an irregular mesh: motions on the axis are fitted at {} even places", parts + 1));
-  }
-
-  // Along the direction at an even place: by least squares over the nodes nearby, where a section turns as well.
-  [[nodiscard]] double fitted(std::size_t k, const NodalMode& mode) const {
-    constexpr double reach = 2.5;  // even places
-    const std::size_t d = direction_.direction, q = 3 - axis_.direction - d;
-    const double extent = spread_across() / length_unit_;
-    const Vector3 middle = middle_of_mesh();
-    std::vector<internal::NearPoint> near;
-    const std::size_t begin = k < 3 ? 0 : k - 3, end = std::min(sections_.size(), k + 4);
-    for (std::size_t s = begin; s < end; ++s) {
-      for (const std::size_t node : sections_[s].nodes) {
-        const Vector3& at = read_.nodes[node];
-        const double along = (along_axis(at) - clamp_ - sections_[k].place) / (reach * step_);
-        if (std::abs(along) < 1)
-          near.push_back({.along = along,
-                          .p = (at[d] - middle[d]) / extent,
-                          .q = (at[q] - middle[q]) / extent,
-                          .value = mode.motion[node][d]});
-      }
-    }
-    const std::optional<double> value = internal::value_on_axis(near);
-    if (!value)
-      fail(fmt::format("an irregular mesh with too few nodes near {} along {} to tell how it moves there",
-                       engineering(sections_[k].place, "m", shown_digits), keys_.axis));
-    return *value;
-  }
-  // Whether no node at the first place moves along the direction, within the digits of a file.
-  [[nodiscard]] bool stands_still_at_first(const NodalMode& mode) const {
-    constexpr double printed = 2e-5;
-    double most = 0, here = 0;
-    for (std::size_t i = 0; i < read_.nodes.size(); ++i) {
-      const double motion = std::abs(mode.motion[i][direction_.direction]);
-      most = std::max(most, motion);
-      if (along_axis(read_.nodes[i]) - clamp_ - first_place_ < printed * sections_.back().place) here = std::max(here, motion);
-    }
-    return here <= printed * most;
-  }
-  [[nodiscard]] Vector3 middle_of_mesh() const {
-    Vector3 middle{};
-    for (std::size_t d = 0; d < 3; ++d) {
-      const auto [low, high] = std::minmax_element(read_.nodes.begin(), read_.nodes.end(),
-                                                   [d](const Vector3& a, const Vector3& b) { return a[d] < b[d]; });
-      middle[d] = ((*low)[d] + (*high)[d]) / 2;
-    }
-    return middle;
-  }
-
-  // Of all nodes in the two directions across the axis [m].
-  [[nodiscard]] double spread_across() const {
-    double most = 0;
-    for (std::size_t d = 0; d < 3; ++d) {
-      if (d == axis_.direction) continue;
-      const auto [low, high] = std::minmax_element(read_.nodes.begin(), read_.nodes.end(),
-                                                   [d](const Vector3& a, const Vector3& b) { return a[d] < b[d]; });
-      if (!std::isnan((*high)[d])) most = std::max(most, (*high)[d] - (*low)[d]);
-    }
-    constexpr double rounding = 1e-9;
-    const double length = std::abs(sections_.back().place - sections_.front().place);
-    return most * length_unit_ > rounding * length ? most * length_unit_ : 0;
-  }
-
-  void take_widths_and_offsets() {
-    constexpr double printed = 2e-5;  // of the length
-    const double rounding = printed * sections_.back().place;
-    double face_at_clamp = std::numeric_limits<double>::quiet_NaN();
-    // The edges of an irregular mesh have nodes nearby.
-    const std::size_t neighbours = step_ > 0 ? 3 : 0;
-    for (std::size_t k = 0; k < sections_.size(); ++k) {
-      double low = std::numeric_limits<double>::infinity(), high = -low, face = -low;
-      for (std::size_t s = k - std::min(k, neighbours); s <= std::min(k + neighbours, sections_.size() - 1); ++s) {
-        for (const std::size_t node : sections_[s].nodes) {
-          const double y = across_of(read_.nodes[node], axis_, direction_) * length_unit_;
-          low = std::min(low, y), high = std::max(high, y);
-          face = std::max(face, direction_.sign * read_.nodes[node][direction_.direction] * length_unit_);
-        }
-      }
-      if (std::isnan(face_at_clamp)) face_at_clamp = face;
-      const double width = high - low, offset = face - face_at_clamp;
-      widths_.push_back(width > rounding ? width : std::numeric_limits<double>::quiet_NaN());
-      offsets_.push_back(std::abs(offset) > rounding ? offset : 0);
-    }
-  }
-
-  // How far the rotation of a section about the axis moves what is as far from its middle as half the extent of the mesh.
-  [[nodiscard]] double twist(const SectionNodes& section, const NodalMode& mode, const Vector3& mean) const {
-    const auto count = static_cast<double>(section.nodes.size());
-    const std::size_t p = direction_.direction, q = 3 - axis_.direction - p;
-    double middle_p = 0, middle_q = 0, turning = 0, squares = 0;
-    for (const std::size_t node : section.nodes)
-      middle_p += read_.nodes[node][p] / count, middle_q += read_.nodes[node][q] / count;
-    for (const std::size_t node : section.nodes) {
-      const double at_p = read_.nodes[node][p] - middle_p, at_q = read_.nodes[node][q] - middle_q;
-      turning += at_q * (mode.motion[node][p] - mean[p]) - at_p * (mode.motion[node][q] - mean[q]);
-      squares += at_p * at_p + at_q * at_q;
-    }
-    return squares > 0 ? turning / squares * spread_across() / (2 * length_unit_) : 0;
+                       keys_.name("clamp"), engineering(*keys_.clamp, "m"), engineering(sections_->first(), "m", shown_digits)));
+    made_.places = sections_->places();
+    if (sections_->is_irregular())
+      made_.notes.push_back(
+          fmt::format("an irregular mesh: motions on the axis are fitted at {} even places", made_.places.size()));
   }
 
   // What a mode is, by the squared motions of its nodes.
   void judge(std::size_t k) {
     const NodalMode& mode = read_.modes[k];
+    SectionMotion motion = sections_->motion(mode);
+    const double most = std::max({motion.bending, motion.in_plane, motion.axial_share, motion.torsion});
     ModeFound found{.number = static_cast<int>(k + 1), .frequency = mode.frequency};
-    double bending = 0, in_plane = 0, axial = 0, torsion = 0;
-    for (const SectionNodes& section : sections_) {
-      const auto count = static_cast<double>(section.nodes.size());
-      Vector3 mean{};
-      for (const std::size_t node : section.nodes) {
-        for (std::size_t d = 0; d < 3; ++d) mean[d] += mode.motion[node][d] / count;
-      }
-      // What differs along the axis over a section is its rotation as it bends.
-      double rest = 0;
-      for (const std::size_t node : section.nodes) {
-        for (std::size_t d = 0; d < 3; ++d) {
-          if (d != axis_.direction) rest += std::pow(mode.motion[node][d] - mean[d], 2);
-        }
-      }
-      found.along.push_back(direction_.sign * mean[direction_.direction]);
-      found.across.push_back(across_of(mean, axis_, direction_));
-      found.axial.push_back(axis_.sign * mean[axis_.direction]);
-      found.twist.push_back(twist(section, mode, mean));
-      bending += count * std::pow(found.along.back(), 2);
-      in_plane += count * std::pow(found.across.back(), 2);
-      axial += count * std::pow(found.axial.back(), 2);
-      torsion += rest;
-    }
-    if (step_ > 0) {
-      for (std::size_t s = 0; s < sections_.size(); ++s)
-        found.along[s] = s == 0 && stands_still_at_first(mode) ? 0 : direction_.sign * fitted(s, mode);
-    }
-    const double all = bending + in_plane + axial + torsion;
-    const double most = std::max({bending, in_plane, axial, torsion});
-    found.kind = !mode.is_used      ? ModeKind::unused
-                 : most == bending  ? ModeKind::bending
-                 : most == in_plane ? ModeKind::in_plane
-                 : most == torsion  ? ModeKind::torsional
-                                    : ModeKind::axial;
-    found.share = all > 0 ? (found.kind == ModeKind::unused ? bending : most) / all : 0;
-    if (found.kind == ModeKind::bending && !(all > 0)) fail(fmt::format("{} does not move any node", mode.name));
+    found.kind = !mode.is_used             ? ModeKind::unused
+                 : most == motion.bending  ? ModeKind::bending
+                 : most == motion.in_plane ? ModeKind::in_plane
+                 : most == motion.torsion  ? ModeKind::torsional
+                                           : ModeKind::axial;
+    found.share = motion.all() > 0 ? (found.kind == ModeKind::unused ? motion.bending : most) / motion.all() : 0;
+    if (found.kind == ModeKind::bending && !(motion.all() > 0)) fail(fmt::format("{} does not move any node", mode.name));
+    found.along = std::move(motion.along), found.across = std::move(motion.across);
+    found.axial = std::move(motion.axial), found.twist = std::move(motion.twist);
     constexpr double pure = 0.9;
     if (found.kind == ModeKind::bending && found.share < pure)
       made_.notes.push_back(fmt::format("{} at {} is mixed: {:.0f} % of its squared motion is bending along {}", mode.name,
@@ -378,11 +179,11 @@ class TableMaker {
     std::stable_sort(taken.begin(), taken.end(),
                      [&](std::size_t a, std::size_t b) { return made_.found[a].frequency < made_.found[b].frequency; });
     made_.positions = made_.places;
-    made_.widths = widths_;
-    made_.rest_offsets = offsets_;
+    made_.widths = sections_->widths();
+    made_.rest_offsets = sections_->offsets();
     if (keys_.clamp) {
       made_.positions.insert(made_.positions.begin(), 0);
-      made_.widths.insert(made_.widths.begin(), widths_.front());
+      made_.widths.insert(made_.widths.begin(), made_.widths.front());
       made_.rest_offsets.insert(made_.rest_offsets.begin(), 0);
     }
     for (const std::size_t k : taken) {
@@ -430,10 +231,9 @@ class TableMaker {
   Refusals refusals_;
   ModeTable made_;
   Way axis_, direction_;
-  double length_unit_ = 1, clamp_ = 0;  // where the clamp is on the axis [m]
-  double first_place_ = 0, step_ = 0;   // of the even places of an irregular mesh; 0: the mesh has sections [m]
-  std::vector<SectionNodes> sections_;
-  std::vector<double> widths_, offsets_, modal_masses_;
+  double length_unit_ = 1;  // [m]
+  std::optional<internal::MeshSections> sections_;
+  std::vector<double> modal_masses_;
 };
 
 double TableMaker::mean_square(const std::vector<double>& shape) const {

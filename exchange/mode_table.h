@@ -7,9 +7,6 @@
 // (units, mass) is told, or refused with the key that decides.
 #pragma once
 
-#include <array>
-#include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

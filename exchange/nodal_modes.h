@@ -39,7 +39,6 @@ struct NodalModes {
 [[nodiscard]] NodalModes read_frd(std::string_view text, const std::string& file);
 
 [[nodiscard]] bool is_comsol(std::string_view text);
-/// `direction` and `keys` say which component is needed.
 [[nodiscard]] NodalModes read_comsol(std::string_view text, const std::string& file);
 
 [[nodiscard]] NodalModes read_uff55(std::string_view content, const std::string& file);

@@ -47,7 +47,6 @@ class ModeCsvReader {
 
   void read_header() {
     if (!next_row(lines_, cells_)) refusals_.fail("the file is empty");
-    header_line_ = lines_.number();
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       const std::string_view name = cells_[k];
       const bool is_mode = name.starts_with(mode_name);
@@ -128,7 +127,6 @@ class ModeCsvReader {
   Lines lines_;
   Refusals refusals_;
   ModeTable made_;
-  std::size_t header_line_ = 0;
   std::vector<Kind> columns_;
   std::vector<std::string_view> cells_;
 };

@@ -178,6 +178,13 @@ TEST(ModeTable, SaysWhichModesOfAFileAreNotThere) {
   EXPECT_THAT(shorter.left_out, testing::Contains("mode 4: the file ends in it"));
 }
 
+TEST(ModeTable, OfAMeshWithoutNodesIsRefused) {
+  const std::string text = fmt::format(
+      "    2C{:18}{:12}{:38}\n -3\n  100CL  101{:12}{:12}{:20}{:2}{:5}MODAL{:7}\n -4  DISP        4    1\n -3\n 9999\n", "", 0, 1,
+      "1000.0", 0, "", 2, 1, 1);
+  EXPECT_THAT(refusal_of(text, sample_named("frd").keys), HasSubstr("displacements before the nodes"));
+}
+
 TEST(ModeTable, OfAHingedEndIsRefused) {
   std::string text = "x_m,mode_1\nfrequency_Hz,1000\n";
   for (int i = 0; i <= 20; ++i) text += fmt::format("{},{}\n", i * 1e-6, i * 1e5);
