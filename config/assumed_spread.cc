@@ -25,6 +25,8 @@ bool assume_spread(SceneFile& file) {
   }
   if (file.written("structure.kind") == "plate") {
     vary(file, "structure.stiffness", "6.7 %");
+  } else if (file.written("structure.kind") == "modes") {
+    file.set("spread.\"structure.frequency_factor\"={distribution=\"normal\",cov=\"3.5 %\"}");
   } else {
     vary(file, "structure.thickness", "2 %");
     vary(file, "structure.youngs_modulus", "3 %");

@@ -295,7 +295,7 @@ std::vector<double> levels_held(const SceneFile::Impl& file, const Scene& scene,
   std::map<std::string, PullInVoltages> pull_in;
   for (const std::string& drive : scene.need_pull_in) pull_in[drive] = {.static_pull_in = volt, .dynamic_pull_in = volt};
   const Drives drives = read_all(file, scene.device, pull_in, LimitChecks::without_pull_in);
-  if (notes != nullptr) *notes = drives.notes;
+  if (notes != nullptr) notes->insert(notes->end(), drives.notes.begin(), drives.notes.end());
   std::vector<double> levels;
   for (const std::string_view drive : drive_names(scene.device)) {
     const auto found = drives.waveforms.find(std::string(drive));

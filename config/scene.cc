@@ -8,6 +8,7 @@
 #include "base/require.h"
 #include "config/drives.h"
 #include "config/file_rows.h"
+#include "config/modal_table.h"
 #include "config/section_reader.h"
 #include "config/spread_reader.h"
 
@@ -116,8 +117,8 @@ std::vector<std::string> find_warnings(const SceneFile::Impl& file, const Device
   constexpr double wide = 5;          // width over thickness from which the beam bends more like a plate
   constexpr double rounding = 1e-12;  // 20 um is not more than five times 4 um, whatever the last bit says
   const Structure& structure = device.structure;
-  if (structure.kind != StructureKind::plate && !file.find({"structure", "plate_strain"}) &&
-      structure.width > wide * structure.thickness * (1 + rounding)) {
+  if (structure.kind != StructureKind::plate && structure.kind != StructureKind::modes &&
+      !file.find({"structure", "plate_strain"}) && structure.width > wide * structure.thickness * (1 + rounding)) {
     warnings.push_back(fmt::format(
         "{}: {}: more than five thicknesses; youngs_modulus is used as given (plate_strain = false), plate_strain = true with "
         "poissons_ratio would use E / (1 - nu^2)",
@@ -193,6 +194,7 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
   const Drives drives = scene.drives(pull_in);
   const SceneFile::Impl& impl = scene.file.impl();
   toml::table root = sections_of(impl, [](const SectionReader& in) { return in.with_defaults(); });
+  internal::hold_table(root, scene.device.structure);
   for (const char* drive_section : {"waveform", "driver"}) root.erase(drive_section);
   toml::table drivers;
   for (const auto& [name, limits] : drives.limits) {
@@ -237,7 +239,8 @@ SceneFile resolved(const Scene& scene, const std::map<std::string, PullInVoltage
 SceneFile canonical(const SceneFile& file, const std::string& name) {
   const Scene scene = read_scene(file);
   const SceneFile::Impl& impl = scene.file.impl();
-  const toml::table root = sections_of(impl, [](const SectionReader& in) { return in.in_si_units(); });
+  toml::table root = sections_of(impl, [](const SectionReader& in) { return in.in_si_units(); });
+  internal::hold_table(root, scene.device.structure);
   SceneFile same = SceneFile::parse(internal::write_scene(root), name);
   for (const std::string& drive : impl.names_in("waveform")) {
     const SectionReader in(impl, "waveform", drive);

@@ -103,7 +103,7 @@ struct Drives {
   std::map<std::string, double> before;        ///< what is given of them before t = 0 [V]; others stand at 0 V
   std::map<std::string, DriverLimits> limits;  ///< only drives that have limits (electrodes always do, by default [0, 1.5 Vdp])
   std::map<std::string, DriverModel> models;   ///< only sources that are not ideal
-  std::vector<std::string> notes = {};         ///< what was taken from files of instruments, one line each
+  std::vector<std::string> notes = {};         ///< what was taken from files of other programs, one line each
   std::map<std::string, SourceErrors> errors;  ///< only sources that have some: gain, offset and delay
 };
 

@@ -54,6 +54,7 @@ struct Key {
   std::vector<std::string_view> instead_of = {};  ///< keys this one excludes; any of them satisfies `required`
   std::string_view about = {};                    ///< one line for people
   std::string_view beyond = {};                   ///< what to do where a value must lie outside the range
+  std::string_view why_fixed = {};                ///< why devices cannot differ by it; empty: they can
   std::string_view like = {};                     ///< a value that a switch may have; empty: see example_of()
   Bound bound = {};
 
@@ -63,6 +64,7 @@ struct Key {
   [[nodiscard]] Key of(std::vector<std::string_view> owners) && { return only_for = std::move(owners), std::move(*this); }
   [[nodiscard]] Key instead(std::string_view other) && { return instead_of.push_back(other), std::move(*this); }
 
+  [[nodiscard]] Key fixed(std::string_view why) && { return why_fixed = why, std::move(*this); }
   [[nodiscard]] Key or_else(std::string_view advice) && { return beyond = advice, std::move(*this); }
   [[nodiscard]] Key such_as(std::string_view value) && { return like = value, std::move(*this); }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/engineering.h"
 #include "base/require.h"
 #include "config/scene.h"
 
@@ -96,6 +97,7 @@ std::vector<Quantity> parse_list(const Key& key, const toml::array& array) {
       in_list(k + 1, [&] {
         const toml::array* inner = array[k].as_array();
         if (inner == nullptr) throw InvalidInput("a list of lists holds nothing else");
+        if (inner->empty() && key.count == 0) throw InvalidInput(fmt::format("is empty (expected {})", wanted(key)));
         std::ranges::copy(parse_list(key, *inner), std::back_inserter(values));
       });
     }
@@ -351,18 +353,25 @@ void SectionReader::set_members(Scene& scene, std::size_t entry) const {
 
 void SectionReader::require_of_plate(std::string_view key, std::string_view needed) const {
   const SectionReader structure(file_, "structure");
-  require(structure.text("kind") != name_of(structure_kinds, StructureKind::plate) || structure.is_given(needed), key,
-          fmt::format("needs structure.{} on a plate", needed));
+  const bool is_plate = structure.text("kind") == name_of(structure_kinds, StructureKind::plate);
+  const bool is_file = structure.text("kind") == name_of(structure_kinds, StructureKind::modes) && needed == "thickness";
+  require((!is_plate && !is_file) || structure.is_given(needed), key,
+          fmt::format("needs structure.{} {}", needed, is_plate ? "on a plate" : "beside the modes of a file"));
 }
 
-void SectionReader::require_on_beam(std::string_view key) const {
-  const SectionReader structure(file_, "structure");
-  const double length = structure.number("length");
+std::string SectionReader::written_length(const Structure& structure) const {
+  return structure.kind == StructureKind::modes ? fmt::format("the {} of the modes' table", engineering(structure.length, "m"))
+                                                : file_.written("structure.length");
+}
+
+void SectionReader::require_on_beam(std::string_view key, const Structure& beam) const {
+  constexpr double rounding = 1e-12;  // of a table in other units
+  const double length = beam.length;
   const std::vector<Quantity>& places = quantities(key);
   for (std::size_t k = 0; k + 1 < places.size(); k += 2) {
     const double begin = place_of(places[k]).on(length), end = place_of(places[k + 1]).on(length);
     require(begin < end, key, "the end must lie beyond the begin");
-    require(end <= length, key, "must end on the beam: " + structure.written("length"));
+    require(end <= length * (1 + rounding), key, "must end on the beam: " + written_length(beam));
   }
 }
 

@@ -13,6 +13,10 @@
 #include "config/schema.h"
 #include "config/units.h"
 
+namespace softland {
+struct Structure;
+}
+
 namespace softland::internal {
 
 class SectionReader {
@@ -61,10 +65,12 @@ class SectionReader {
   }
   /// Throws InvalidInput about the section.
   [[noreturn]] void fail(std::string_view rule) const { file_.fail_section(path_, rule); }
-  /// Throws InvalidInput about this key on a plate that lacks a key of [structure].
+  /// Throws InvalidInput about this key on a plate that lacks a key of [structure]; of a thickness also beside a file of modes.
   void require_of_plate(std::string_view key, std::string_view needed) const;
   /// Throws InvalidInput unless the two lengths of this key increase and lie on the beam.
-  void require_on_beam(std::string_view key) const;
+  void require_on_beam(std::string_view key, const Structure& beam) const;
+  /// Where the length of what moves is said, or how long it is.
+  [[nodiscard]] std::string written_length(const Structure& structure) const;
 
   [[nodiscard]] const SceneFile::Impl& file() const { return file_; }
   [[nodiscard]] const std::string& path() const { return path_; }

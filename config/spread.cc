@@ -140,6 +140,7 @@ FoundKey find_key(const SceneFile::Impl& file, Scene& scene, const SectionReader
     }
     if (std::find(candidates.begin(), candidates.end(), parts.back()) != candidates.end()) {
       const Key& key = *of_key.find(parts.back());
+      if (!key.why_fixed.empty()) file.fail_section(in.path(), fmt::format("{} cannot vary: {}", name, key.why_fixed));
       if (element > 0 && is_tip(file, parts, element)) {
         file.fail_section(in.path(),
                           fmt::format("{} is the tip of every device, and does not differ from it: write a length or a "

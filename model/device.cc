@@ -10,6 +10,7 @@
 #include "model/beam.h"
 #include "model/forces/electrostatic.h"
 #include "model/surface.h"
+#include "model/tabulated_modes.h"
 
 namespace softland {
 namespace {
@@ -41,6 +42,25 @@ void check_between_clamps(const Device& d) {
           "its middle line; a layer needs a cantilever");
 }
 
+void check_tabulated(const Device& d) {
+  const Structure& s = d.structure;
+  require(s.table != nullptr, "structure.kind = modes: there is no table of modes");
+  require(s.length == s.table->length(), [&] {
+    return fmt::format("structure.length = {}: must be the length of the table of modes, {}", engineering(s.length, "m"),
+                       engineering(s.table->length(), "m"));
+  });
+  require(
+      !s.table->is_held_at_both_ends(),
+      "structure.kind = modes: the far end stands still in every mode; between two clamps bending stretches the structure, which "
+      "modes do not hold: kind = clamped-clamped does");
+  require(s.modes <= s.table->count(), [&] {
+    return fmt::format("structure.modes = {}: must not exceed {}, the modes of the file", s.modes, s.table->count());
+  });
+  require(s.frequency_factor > 0.01 && s.frequency_factor < 100,
+          [&] { return fmt::format("structure.frequency_factor = {}: must lie between 0.01 and 100", s.frequency_factor); });
+  require(!d.piezo, "piezo: a layer changes the modes, which a file cannot follow; a layer needs a cantilever");
+}
+
 void check_structure(const Device& d) {
   const Structure& s = d.structure;
   const bool plate = s.kind == StructureKind::plate;
@@ -49,6 +69,8 @@ void check_structure(const Device& d) {
   if (plate) {
     positive(s.mass, "kg", "structure.mass");
     positive(s.stiffness, "N/m", "structure.stiffness");
+  } else if (s.kind == StructureKind::modes) {
+    check_tabulated(d);
   } else {
     positive(s.thickness, "m", "structure.thickness");
     positive(s.youngs_modulus, "Pa", "structure.youngs_modulus");
@@ -166,6 +188,11 @@ void check_dispersion(const Dispersion& v, const Gap& gap) {
 }
 
 }  // namespace
+
+int most_modes_of(const Structure& structure) {
+  if (structure.kind == StructureKind::plate) return 1;
+  return structure.kind == StructureKind::modes && structure.table ? std::min(most_modes, structure.table->count()) : most_modes;
+}
 
 double Device::contact_position() const {
   if (structure.kind == StructureKind::clamped_clamped) return structure.length / 2;

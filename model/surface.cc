@@ -10,6 +10,8 @@ namespace softland {
 
 std::string why_no_surface(const Device& d) {
   const Surface& surface = *d.surface;
+  if (d.structure.kind == StructureKind::modes)
+    return "skins change the modes, which a file cannot follow; a surface needs a beam";
   if (d.structure.kind == StructureKind::plate) return "a rigid plate does not bend; a surface needs a beam";
   if (d.piezo) return "is for a bare beam, and the piezo layer covers a face";
   if (!std::isfinite(surface.elastic_modulus) || !std::isfinite(surface.residual_stress)) return "must be finite";

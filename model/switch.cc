@@ -18,6 +18,7 @@
 #include "model/forces/gold_casimir.h"
 #include "model/modal_projection.h"
 #include "model/plate.h"
+#include "model/tabulated_modes.h"
 
 namespace softland {
 namespace {
@@ -93,7 +94,8 @@ struct Switch::Frame {
   };
   Places places;
   std::vector<GaussRule> rules;                  // of the panels
-  std::shared_ptr<const NormalisedModes> modes;  // null of a plate
+  std::shared_ptr<const NormalisedModes> modes;  // null of what is no beam
+  TabulatedModes::Shapes table = {};             // empty of what is no table
   Eigen::ArrayXd positions, weights;             // [m]
   Eigen::MatrixXd shapes;                        // points x modes
   Eigen::VectorXd contact_shape, contact_slope, piezo_begin_slope, piezo_end_slope;
@@ -134,13 +136,17 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
   Frame::Places places = Frame::Places::of(device_);
   places.points_per_length = points_per_length;
   places.fewest_points = fewest_points;
-  if constexpr (std::same_as<Modes, BeamModes>) {
-    if (like != nullptr && like->frame_->modes == structure.normalised() && like->frame_->places == places) frame_ = like->frame_;
-  }
+  const auto is_in = [&]([[maybe_unused]] const Frame& frame) {
+    if constexpr (std::same_as<Modes, BeamModes>) return frame.modes == structure.normalised();
+    if constexpr (std::same_as<Modes, TabulatedModes>) return frame.table == *structure.normalised();
+    return false;
+  };
+  if (like != nullptr && is_in(*like->frame_) && like->frame_->places == places) frame_ = like->frame_;
   if (!frame_) {
     auto frame = std::make_shared<Frame>(*structure.normalised(), structure.length(), std::move(places),
                                          like != nullptr ? like->frame_.get() : nullptr);
     if constexpr (std::same_as<Modes, BeamModes>) frame->modes = structure.normalised();
+    if constexpr (std::same_as<Modes, TabulatedModes>) frame->table = *structure.normalised();
     frame_ = std::move(frame);
   }
 
@@ -185,13 +191,16 @@ void Switch::move_in(const Modes& structure, double points_per_length, int fewes
 Switch::Switch(const Device& device, const SwitchOptions& options, const Switch* like) : device_(device) {
   validate(device_);
   if (options.modes && device.structure.kind != StructureKind::plate) {
-    require(*options.modes >= 1 && *options.modes <= most_static_modes,
-            [&] { return fmt::format("modes = {}: must be from 1 to {}", *options.modes, most_static_modes); });
+    const int most = device.structure.kind == StructureKind::modes ? most_modes_of(device.structure) : most_static_modes;
+    require(*options.modes >= 1 && *options.modes <= most,
+            [&] { return fmt::format("modes = {}: must be from 1 to {}", *options.modes, most); });
     device_.structure.modes = *options.modes;
   }
   const Structure& s = device_.structure;
   if (s.kind == StructureKind::plate) {
     move_in(RigidPlate(s), 0, 1, nullptr);  // the gap is the same everywhere: one point each says it all
+  } else if (s.kind == StructureKind::modes) {
+    move_in(TabulatedModes(s.table, s.modes, s.frequency_factor), options.points_per_length, options.points_per_panel, like);
   } else {
     const BeamModes beam(beam_sections(device_), s.modes, beam_support(s, device_.surface),
                          like != nullptr ? like->frame_->modes : nullptr);

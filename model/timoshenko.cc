@@ -53,7 +53,7 @@ Basis basis(const std::vector<double>& points, int functions, bool both_clamped)
 }  // namespace
 
 std::vector<double> frequency_excess(const Structure& s) {
-  if (s.kind == StructureKind::plate) return {};
+  if (s.kind == StructureKind::plate || s.kind == StructureKind::modes) return {};
   const bool both_clamped = s.kind == StructureKind::clamped_clamped;
   const double nu = std::isnan(s.poissons_ratio) ? usual_poissons_ratio : s.poissons_ratio;
   const double beyond = std::min(1.0, most_slender * s.thickness / s.length);

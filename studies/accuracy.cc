@@ -32,7 +32,7 @@ class Study {
         if (points != *own_points_) other_points_.push_back(points);
       }
       for (const int modes : {own_modes_ - 1, own_modes_ + 1, own_modes_ + 2}) {
-        if (modes >= 1 && modes <= most_modes) other_modes_.push_back(modes);
+        if (modes >= 1 && modes <= most_modes_of(prepared.scene.device.structure)) other_modes_.push_back(modes);
       }
     }
     const std::size_t tolerances = options.tolerances.size();

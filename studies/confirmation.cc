@@ -39,7 +39,7 @@ std::vector<Device> with_more_modes(const Device& device) {
   std::vector<Device> richer;
   if (device.structure.kind == StructureKind::plate) return richer;
   for (const int n : more) {
-    if (device.structure.modes + n > most) break;
+    if (device.structure.modes + n > std::min(most, most_modes_of(device.structure))) break;
     richer.push_back(device);
     richer.back().structure.modes += n;
   }

@@ -1,14 +1,26 @@
-// Natural frequencies.
+// Natural frequencies of a scene, and modes that another program computed as a table that a scene reads.
 #include <fmt/format.h>
 
+#include <cmath>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/exit_status.h"
 #include "apps/output.h"
 #include "apps/progress.h"
 #include "apps/scenes.h"
+#include "apps/shell_word.h"
+#include "apps/streams.h"
+#include "apps/values.h"
 #include "apps/verbs/verbs.h"
+#include "base/require.h"
+#include "config/units.h"
+#include "exchange/mode_table.h"
 #include "model/constants.h"
+#include "reports/files.h"
+#include "reports/mode_table_report.h"
 #include "reports/quantity.h"
 #include "reports/text.h"
 #include "studies/choices.h"
@@ -18,7 +30,12 @@ namespace {
 
 using internal::quantity;
 
-int modes_verb(const Common& c) {
+struct ModesRequest {
+  std::string from, axis, direction, length_unit, mass_unit, mass, clamp, frequencies, plot;
+  bool mass_normalised = false;
+};
+
+int frequencies_of_scene(const Common& c) {
   const SceneFile file = load_scene(c);
   const Prepared prepared = prepare_and_choose(file, false, WatchedWork(c.quiet, c.stop).watch());
   static_cast<void>(claim_places(c, {}));
@@ -35,13 +52,113 @@ int modes_verb(const Common& c) {
   return exit_done;
 }
 
+/// One of a unit, which the option names alone, such as "mm".
+std::optional<double> unit_of(const char* option, const std::string& unit, const Dimension& due) {
+  if (unit.empty()) return std::nullopt;
+  const double size = quantity_of(option, "1 " + unit, due);
+  require(size > 0, [&] { return fmt::format("{} {}: must be greater than 0", option, unit); });
+  return size;
+}
+
+ModeKeys keys_of(const ModesRequest& r) {
+  ModeKeys keys{
+      .axis = r.axis, .direction = r.direction, .mass_normalised = r.mass_normalised, .prefix = "--", .word_separator = '-'};
+  keys.length_unit = unit_of("--length-unit", r.length_unit, dimension::length);
+  // A tonne is the mass of models in mm, s and N.
+  keys.mass_unit = r.mass_unit == "t" ? std::optional(1e3) : unit_of("--mass-unit", r.mass_unit, dimension::mass);
+  if (!r.mass.empty()) {
+    keys.mass = quantity_of("--mass", r.mass, dimension::mass);
+    require(*keys.mass > 0, [&] { return fmt::format("--mass {}: must be greater than 0", r.mass); });
+  }
+  if (!r.clamp.empty()) {
+    const bool is_negative = r.clamp.starts_with('-');
+    keys.clamp = quantity_of("--clamp", is_negative ? r.clamp.substr(1) : r.clamp, dimension::length) * (is_negative ? -1 : 1);
+  }
+  if (!r.frequencies.empty()) {
+    for (const std::string& one : parts_of(r.frequencies))
+      keys.frequencies.push_back(quantity_of("--frequencies", one, dimension::frequency));
+  }
+  return keys;
+}
+
+// A file beside the other outputs of the run, which replaces none of them.
+void claim_file(const char* option, const std::string& file, const std::vector<std::string>& others) {
+  if (file.empty()) return;
+  for (const std::string& other : others) {
+    require(other.empty() || std::filesystem::weakly_canonical(file) != std::filesystem::weakly_canonical(other),
+            [&] { return fmt::format("{} {}: is another output of this run; name another file", option, file); });
+  }
+  check_writable(file);
+}
+
+int table_of_file(const Common& c, const ModesRequest& r) {
+  require(c.scene.empty(), [&] { return fmt::format("--from {}: stands instead of the scene {}", r.from, c.scene); });
+  require(c.set.empty(), "--set: changes a scene, and --from stands instead of one");
+  const ModeTable table = read_mode_table(r.from, keys_of(r));
+  const std::string json = c.json == "-" ? std::string() : c.json;
+  claim_file("--json", json, {});
+  claim_file("--out", c.out, {json});
+  claim_file("--plot", r.plot, {json, c.out});
+  std::string text = mode_table_text(table);
+  if (!c.out.empty()) {
+    write_whole(c.out, mode_table_csv(table));
+    text += "\n" +
+            wrapped(fmt::format("In {}: the table, for structure = {{ kind = \"modes\", file = \"{}\" }}", c.out,
+                                std::filesystem::path(c.out).filename().string())) +
+            "\n";
+  }
+  if (!r.plot.empty()) {
+    write_whole(r.plot, mode_table_svg(table));
+    text += wrapped(fmt::format("In {}: a picture of the modes", r.plot)) + "\n";
+  }
+  print_json_or(c, mode_table_json(table), text);
+  return exit_done;
+}
+
+int modes_verb(const Common& c, const ModesRequest& r) {
+  if (!r.from.empty()) return table_of_file(c, r);
+  require(!c.scene.empty(), "modes: a scene is needed, or --from with a file of modes");
+  const auto refuse = [](bool is_given, const char* option) {
+    require(!is_given, [&] { return fmt::format("{}: says something about the file of --from, which is missing", option); });
+  };
+  for (const auto& [option, value] : {std::pair{"--axis", &r.axis},
+                                      {"--direction", &r.direction},
+                                      {"--length-unit", &r.length_unit},
+                                      {"--mass-unit", &r.mass_unit},
+                                      {"--mass", &r.mass},
+                                      {"--clamp", &r.clamp},
+                                      {"--frequencies", &r.frequencies},
+                                      {"--plot", &r.plot},
+                                      {"--out", &c.out}})
+    refuse(!value->empty(), option);
+  refuse(r.mass_normalised, "--mass-normalised");
+  return frequencies_of_scene(c);
+}
+
 }  // namespace
 
 void add_modes(Verb& verb) {
-  verb.with_scene();
+  const auto r = std::make_shared<ModesRequest>();
+  verb.with_scene(false);
+  verb.option("--from", r->from, "FILE",
+              "instead of a scene: modes of a table of softland, CalculiX .frd, an export of COMSOL, UFF 55 or ANSYS .rom "
+              "(docs/modes.md)");
+  verb.option("--axis", r->axis, "AXIS", "of FILE, from the clamp to the far end: x, -y and so on");
+  verb.option("--direction", r->direction, "AXIS", "of FILE, towards the near electrode: -z and so on");
+  verb.option("--length-unit", r->length_unit, "UNIT", "of the positions in FILE, where it does not say: m (default), mm, um");
+  verb.option("--mass-unit", r->mass_unit, "UNIT", "of the model behind FILE, where it does not say: kg (default), g, t");
+  verb.option("--mass", r->mass, "MASS", "of the structure, even along its axis: normalises modes that are not");
+  verb.flag("--mass-normalised", r->mass_normalised, "the modes of FILE are mass-normalised, though it does not say so");
+  verb.option("--clamp", r->clamp, "PLACE", "of the clamp on the axis, where FILE has no node there: \"0 um\"");
+  verb.option("--frequencies", r->frequencies, "LIST", "of the modes, where FILE does not hold them: \"27.5 kHz,172 kHz\"");
+  verb.option("--plot", r->plot, "FILE", "write a picture of the modes of --from, as SVG");
+  verb.with_out_file("write the modes of --from as a table for [structure] kind = \"modes\" (CSV)");
   verb.with_json();
-  verb.footer("Example:\n  softland modes scenes/mem-gold-pzt.toml --set structure.modes=8");
-  verb.runs(modes_verb);
+  verb.footer(
+      "Examples:\n  softland modes scenes/mem-gold-pzt.toml --set structure.modes=8\n"
+      "  softland modes --from beam.frd --axis x --direction -z --out modes.csv --plot modes.svg\n"
+      "  softland modes --from line.txt --axis x --direction -z --mass \"193 ng\" --out modes.csv");
+  verb.runs([r](const Common& common) { return modes_verb(common, *r); });
 }
 
 }  // namespace softland::apps

@@ -40,7 +40,7 @@ struct VerbRow {
 inline constexpr std::array all_verbs{
     VerbRow{"simulate", "simulate the closing that a scene describes", add_simulate},
     VerbRow{"pull-in", "static and dynamic pull-in voltage and release voltage of every electrode", add_pull_in},
-    VerbRow{"modes", "natural frequencies", add_modes},
+    VerbRow{"modes", "natural frequencies; modes of another program as a table for a scene", add_modes},
     VerbRow{"check", "validate a scene and print derived numbers and warnings", add_check},
     VerbRow{"effects", "which effects matter in a scene, by how much, and what each costs", add_effects},
     VerbRow{"accuracy", "what accuracy costs in time: errors of the figures for every integrator and setting", add_accuracy},

@@ -29,7 +29,7 @@ void check_pad_length(const Device& d, const SectionReader& in) {
   }
   if (per_area) in.require_of_plate("pad_length", "width");
   in.require(d.contact->pad_length < d.structure.length, "pad_length",
-             "must be less than " + (plate ? "structure.area / structure.width" : in.file().written("structure.length")));
+             "must be less than " + (plate ? "structure.area / structure.width" : in.written_length(d.structure)));
 }
 
 void check_contact(Scene& scene, const SectionReader& in, std::size_t) {

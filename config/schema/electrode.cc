@@ -29,13 +29,16 @@ void check_extent(const Structure& s, Electrode& e, const SectionReader& in) {
   }
   in.require(!in.is_given("area"), "area", "belongs to a plate; the electrode of a beam has a span");
   if (!in.is_given("span")) in.fail(R"(missing key 'span' (a list such as ["10 um", "tip"]))");
-  in.require_on_beam("span");
+  in.require_on_beam("span", s);
 }
 
 void check_fringing(const Structure& s, const Electrode& e, const SectionReader& in) {
-  if (s.kind != StructureKind::plate) return;
   const FringingRow& law = row_of(fringing_laws, e.fringing);
   const SectionReader structure(in.file(), "structure");
+  if (s.kind == StructureKind::modes && law.needs_thickness && !structure.is_given("thickness"))
+    in.fail(fmt::format("fringing = {} needs structure.thickness beside the modes of a file; fringing = \"linear\" does not",
+                        toml_string(law.name)));
+  if (s.kind != StructureKind::plate) return;
   if ((law.needs_width && !structure.is_given("width")) || (law.needs_thickness && !structure.is_given("thickness"))) {
     in.fail(fmt::format("fringing = {} needs structure.width{} on a plate; fringing = \"none\" does not", toml_string(law.name),
                         law.needs_thickness ? " and structure.thickness" : ""));

@@ -9,6 +9,7 @@ using OfPiezo = Of<piezo>;
 
 std::size_t begin_piezo(Scene& scene, const SectionReader& in, std::string_view) {
   const StructureKind kind = scene.device.structure.kind;
+  if (kind == StructureKind::modes) in.fail("a layer changes the modes, which a file cannot follow; a layer needs a cantilever");
   if (kind == StructureKind::plate) in.fail("a plate does not bend; a layer needs a beam");
   if (scene.device.surface) in.fail("covers a face of the beam; [surface] is for a bare beam");
   if (kind == StructureKind::clamped_clamped) {
@@ -40,7 +41,7 @@ Section piezo_section() {
                    .instead("d31")},
       .about = "a piezoelectric layer on the face away from the electrode",
       .begin = begin_piezo,
-      .check = [](Scene&, const SectionReader& in, std::size_t) { in.require_on_beam("span"); }};
+      .check = [](Scene& scene, const SectionReader& in, std::size_t) { in.require_on_beam("span", scene.device.structure); }};
 }
 
 }  // namespace softland::internal

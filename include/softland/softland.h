@@ -23,6 +23,7 @@
 #include "config/criterion.h"       // conditions: "permanent_contact_time < 60 us"
 #include "config/scene.h"           // SceneFile, Scene
 #include "model/device.h"           // Device
+#include "model/tabulated_modes.h"  // ModalTable: a structure by its modes
 
 // Its pieces: the switch, its pull-in voltages, waveforms and one closing.
 #include "model/closing.h"       // simulate_closing

@@ -44,7 +44,13 @@ void expect_readable(const std::string& text, const std::string& place) {
 
 class EveryVerb : public testing::TestWithParam<Shipped> {
  protected:
-  void SetUp() override { write(here.path() / scene().name, scene().text); }
+  void SetUp() override {
+    write(here.path() / scene().name, scene().text);
+    // What scenes name beside them.
+    for (const auto& entry : fs::directory_iterator(fs::path(SOFTLAND_SOURCE_DIR) / "scenes")) {
+      if (entry.path().extension() == ".csv") write(here.path() / entry.path().filename(), read(entry.path()));
+    }
+  }
   static const Shipped& scene() { return GetParam(); }
 
   /// A run that has to end well, or without success.

@@ -73,12 +73,12 @@ INSTANTIATE_TEST_SUITE_P(Examples, BadFile, testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Names, BadFile, testing::Values(
     Edit{"thickness =", "thicknes =", R"(x.toml:6: structure.thicknes = "4 um": unknown key (did you mean 'thickness'?))"},
-    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, residual_stress, biaxial, stretching, mass, stiffness, area))"},
+    Edit{"thickness =", "colour =", R"(x.toml:6: structure.colour = "4 um": unknown key (known: kind, length, width, thickness, youngs_modulus, density, modes, damping_ratio, plate_strain, poissons_ratio, residual_stress, biaxial, stretching, file, axis, direction, length_unit, mass_unit, mass, mass_normalised, clamp, positions, frequencies, shapes, frequency_factor, stiffness, area))"},
     Edit{"title =", "titel =", R"(x.toml:1: titel = "small": unknown key (did you mean 'title'?))"},
     Edit{"[gas]", "[gass]", "x.toml:14: [gass]: unknown section (did you mean 'gas'?)"},
     Edit{"[gas]", "[weather]", "x.toml:14: [weather]: unknown section (known: structure, gap, electrode, gas, contact, dispersion, surface, piezo, waveform, driver, simulate, metrics, spread, calibration)"},
     Edit{R"(kind = "cantilever")", R"(kind = "cantilver")", R"(x.toml:3: structure.kind = "cantilver": unknown value (did you mean 'cantilever'?))"},
-    Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever, clamped-clamped, plate"},
+    Edit{R"(kind = "cantilever")", R"(kind = 1)", "x.toml:3: structure.kind = 1: expected one of cantilever, clamped-clamped, plate, modes"},
     Edit{R"(kind = "cantilever")", R"(kind = "clamped-clamped")", "x.toml:21: [piezo]: between two clamps the layer's axial force is not released: it would stretch or buckle the beam, and pull off its middle line; a layer needs a cantilever"},
     structure_line(R"(residual_stress = "1 MPa")", R"(x.toml:9: structure.residual_stress = "1 MPa": belongs to kind = "clamped-clamped", not to "cantilever")"),
     Edit{R"(kind = "cantilever")", "kind = \"clamped-clamped\"\nresidual_stress = \"-70 MPa\"", R"(x.toml:4: structure.residual_stress = "-70 MPa": leaves -70 MPa along the beam, which buckles at -65.69 MPa)"},

@@ -51,8 +51,13 @@ TEST(Schema, EveryKeySetsAMemberOrIsKnownToSetNone) {
       if (!is_bound(key.bound)) without_member.push_back(fmt::format("{}.{}", section.name, key.name));
     }
   }
-  // The areas decide lengths together with a width, the models which law is there to have members.
-  EXPECT_THAT(without_member, UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "gas.model"));
+  // The areas decide lengths together with a width, the models which law is there to have members. What is said of a file of
+  // modes makes a table.
+  EXPECT_THAT(without_member,
+              UnorderedElementsAre("structure.area", "electrode.area", "contact.model", "gas.model", "structure.file",
+                                   "structure.axis", "structure.direction", "structure.length_unit", "structure.mass_unit",
+                                   "structure.mass", "structure.mass_normalised", "structure.clamp", "structure.positions",
+                                   "structure.frequencies", "structure.shapes"));
 }
 
 TEST(Schema, EveryKeySetsAMemberOfTheKindItReads) {

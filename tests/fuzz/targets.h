@@ -14,12 +14,13 @@
 namespace softland::fuzz {
 
 /// A scene file, --set assignments to a scene (separated by NUL), a quantity, a table of voltages, a file of an instrument, a
-/// result.json, a line between a tuning and a device.
+/// file of modes, a result.json, a line between a tuning and a device.
 void scene(std::string_view input);
 void set(std::string_view input);
 void units(std::string_view input);
 void table(std::string_view input);
 void recording(std::string_view input);
+void modes(std::string_view input);
 void result(std::string_view input);
 void lines(std::string_view input);
 
@@ -27,8 +28,9 @@ struct Target {
   std::string_view name;
   void (*read)(std::string_view);
 };
-inline constexpr std::array targets{Target{"scene", scene}, Target{"set", set}, Target{"units", units}, Target{"table", table},
-                                    Target{"recording", recording}};
+inline constexpr std::array targets{Target{"scene", scene},         Target{"set", set},
+                                    Target{"units", units},         Target{"table", table},
+                                    Target{"recording", recording}, Target{"modes", modes}};
 /// Of what softland writes for itself.
 inline constexpr std::array written_targets{Target{"result", result}, Target{"lines", lines}};
 

@@ -86,13 +86,19 @@ def stamp(path):
     return s.st_mtime_ns, s.st_size, s.st_ino
 
 
+def beside_scenes():
+    """The files that shipped scenes name, by their own names."""
+    return {path.name: path.read_text(encoding="utf-8") for path in sorted((ROOT / "scenes").glob("*.csv"))}
+
+
 def run_case(program, case, scenes, folder, place):
     work, home = place / case.name / "work", place / case.name / "home"
     work.mkdir(parents=True)
     home.mkdir()
 
     try:
-        for name, text in [*((f"scenes/{n}.toml", t) for n, t in scenes.items()), *case.inputs.items()]:
+        beside = ((f"scenes/{n}", t) for n, t in beside_scenes().items())
+        for name, text in [*((f"scenes/{n}.toml", t) for n, t in scenes.items()), *beside, *case.inputs.items()]:
             (work / name).parent.mkdir(parents=True, exist_ok=True)
             (work / name).write_text(text, encoding="utf-8")
         seen = {name: stamp(path) for name, path in files_of(work).items()}
@@ -169,6 +175,8 @@ def installed(program, scenes, place):
     shipped.mkdir(parents=True)
     for name, text in scenes.items():
         (shipped / f"{name}.toml").write_text(text, encoding="utf-8")
+    for name, text in beside_scenes().items():
+        (shipped / name).write_text(text, encoding="utf-8")
     return at
 
 

@@ -197,6 +197,14 @@ TEST(Derivatives, OfAGoldCantilever_optimized) {
                     with(beam, {"gas.viscosity", "contact.pad_length", "contact.asperity_height", "contact.effective_modulus"})},
                    2);
 }
+TEST(Derivatives, OfAStructureByItsModes_optimized) {
+  expect_agreement({"mem-gold-modes.toml",
+                    Actuator::electrostatic,
+                    "pulse",
+                    {in_100_us},
+                    {"structure.frequency_factor", "gap.electrode", "gap.contact", "contact.asperity_height"}},
+                   2);
+}
 TEST(Derivatives, OfAPiezoAndAnElectrode_optimized) {
   expect_agreement({"mem-gold-pzt.toml",
                     Actuator::both,

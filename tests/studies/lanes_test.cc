@@ -201,6 +201,8 @@ std::vector<Case> cases() {
                                                  "[\"165 um\", \"180 um\"], [\"185 um\", \"240 um\"]]"})});
   all.push_back({"piezo", gold_pzt({"simulate.duration=60 us"})});  // later it is chaotic
   all.push_back({"six modes", gold_at_17_volts({"structure.modes=6"})});
+  all.push_back({"modes of a file", scene("mem-gold-modes.toml", {"waveform.main.level=17.771 V", "driver.main.max_voltage=25 V",
+                                                                  "simulate.duration=100 us", "simulate.accuracy=1e-4"})});
   all.push_back({"bridge that stretches", bridge()});
   for (const char* gas : {"veijola", "gallis-torczynski", "near-contact", "guo-alexeenko"})
     all.push_back({gas, gold_at_17_volts({fmt::format("gas.model={}", gas)})});

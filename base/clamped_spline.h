@@ -1,0 +1,31 @@
+// A cubic spline through points, of which the first one is clamped and the last one is free.
+//
+//   s(x_k) = y_k,   s''' is constant between points,   s'(x_0) = 0,   s''(x_n) = 0
+//
+// This is how a beam that is clamped at x_0 and free at x_n bends: a natural spline (s''(x_0) = 0) is wrong at the clamp, where
+// the curvature of a beam is largest. The error falls with the fourth power of the distance of the points for a function that
+// keeps both ends. Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
+#pragma once
+
+#include <vector>
+
+namespace softland {
+
+class ClampedSpline {
+ public:
+  /// Throws InvalidInput unless there are as many y as x, two at least, and x rises.
+  ClampedSpline(std::vector<double> x, std::vector<double> y);
+
+  /// Beyond the ends the cubic there goes on.
+  [[nodiscard]] double value(double x) const;
+  [[nodiscard]] double slope(double x) const;
+  /// Integral of s^2 from the first point to the last.
+  [[nodiscard]] double integral_of_square() const;
+
+ private:
+  [[nodiscard]] std::size_t interval(double x) const;
+
+  std::vector<double> x_, y_, curvature_;  // curvature: s'' at the points
+};
+
+}  // namespace softland

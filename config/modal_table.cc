@@ -1,0 +1,157 @@
+#include "config/modal_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "base/engineering.h"
+#include "base/require.h"
+#include "exchange/mode_table.h"
+#include "model/tabulated_modes.h"
+
+namespace softland::internal {
+namespace {
+
+namespace keys = modal_keys;
+
+double one_of_unit(const SectionReader& in, std::string_view key, const Dimension& due) {
+  const std::string& unit = in.text(key);
+  if (due == dimension::mass && unit == "t") return 1e3;  // of models in mm, s and N
+  Quantity one;
+  try {
+    one = parse_quantity("1 " + unit);
+  } catch (const InvalidInput& error) {
+    in.file().fail(in.path(key), error.what());
+  }
+  in.require(one.dimension == due, key, fmt::format("must be the unit of {}", describe(due)));
+  return one.value;
+}
+
+ModeKeys mode_keys(const SectionReader& in) {
+  ModeKeys made{.prefix = "structure.", .word_separator = '_'};
+  if (in.is_given(keys::axis)) made.axis = in.text(keys::axis);
+  if (in.is_given(keys::direction)) made.direction = in.text(keys::direction);
+  if (in.is_given(keys::length_unit)) made.length_unit = one_of_unit(in, keys::length_unit, dimension::length);
+  if (in.is_given(keys::mass_unit)) made.mass_unit = one_of_unit(in, keys::mass_unit, dimension::mass);
+  if (in.is_given(keys::mass)) made.mass = in.number(keys::mass);
+  if (in.is_given(keys::mass_normalised)) made.mass_normalised = in.flag(keys::mass_normalised);
+  if (in.is_given(keys::clamp)) made.clamp = in.number(keys::clamp);
+  if (in.is_given(keys::frequencies)) made.frequencies = in.numbers(keys::frequencies);
+  return made;
+}
+
+// That of the file, of the key, or of both where they agree.
+void take_width(Structure& s, const ModeTable& table, const SectionReader& in) {
+  constexpr double even = 1e-3;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const double width : table.widths) {
+    if (!std::isnan(width)) low = std::min(low, width), high = std::max(high, width);
+  }
+  if (high == 0) {
+    if (!in.is_given("width"))
+      in.fail("missing key 'width' (a length such as \"20 um\"): the file does not say how wide the structure is");
+    return;
+  }
+  constexpr int digits = 4;
+  in.require(high <= (1 + even) * low, keys::file,
+             fmt::format("the width runs from {} to {} along the axis: only structures of constant width are simulated",
+                         engineering(low, "m", digits), engineering(high, "m", digits)));
+  if (!in.is_given("width")) {
+    s.width = high;
+    return;
+  }
+  in.require(std::abs(s.width - high) <= even * high, "width",
+             fmt::format("the file says that the width is {}", engineering(high, "m", digits)));
+}
+
+void require_straight(const ModeTable& table, const SectionReader& in) {
+  const auto bent = std::find_if(table.rest_offsets.begin(), table.rest_offsets.end(), [](double offset) { return offset != 0; });
+  if (bent == table.rest_offsets.end()) return;
+  const auto at = static_cast<std::size_t>(bent - table.rest_offsets.begin());
+  in.file().fail(in.path(keys::file), fmt::format("the face towards the electrode is {} off at {} from the clamp: only "
+                                                  "structures that are straight at rest are simulated",
+                                                  engineering(*bent, "m", 3), engineering(table.positions[at], "m", 4)));
+}
+
+std::shared_ptr<const ModalTable> table_of_file(Scene& scene, const SectionReader& in) {
+  const std::string& name = in.text(keys::file);
+  in.require(!name.empty() && name.find('\0') == std::string::npos, keys::file, "must be the name of a file");
+  const ModeKeys said = mode_keys(in);
+  ModeTable table;
+  try {
+    table = read_mode_table((in.file().directory / name).string(), said);
+  } catch (const InvalidInput& error) {
+    in.file().fail(in.path(keys::file), error.what());
+  }
+  require_straight(table, in);
+  take_width(scene.device.structure, table, in);
+  if (table.nodes > 0) scene.file_notes.push_back(fmt::format("{}: {}", in.written(keys::file), summary(table)));
+  return std::make_shared<const ModalTable>(std::move(table.positions), std::move(table.frequencies), std::move(table.shapes));
+}
+
+std::shared_ptr<const ModalTable> table_of_scene(const SectionReader& in) {
+  for (const std::string_view key :
+       {keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass, keys::mass_normalised, keys::clamp})
+    in.require(!in.is_given(key), key, "says how a file is read, and the scene holds its modes itself");
+  for (const std::string_view key : {keys::frequencies, keys::shapes, std::string_view("width")}) {
+    if (!in.is_given(key))
+      in.fail(fmt::format("missing key '{}': beside positions there must be frequencies, shapes and width", key));
+  }
+  std::vector<double> positions = in.numbers(keys::positions), frequencies = in.numbers(keys::frequencies),
+                      all = in.numbers(keys::shapes);
+  in.require(in.is_nested(keys::shapes) && all.size() == positions.size() * frequencies.size(), keys::shapes,
+             fmt::format("must hold {} lists of {} numbers, a list per frequency and a number per position", frequencies.size(),
+                         positions.size()));
+  std::vector<std::vector<double>> shapes;
+  for (std::size_t k = 0; k < frequencies.size(); ++k) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(k * positions.size());
+    shapes.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(positions.size()));
+  }
+  try {
+    return std::make_shared<const ModalTable>(std::move(positions), std::move(frequencies), std::move(shapes));
+  } catch (const InvalidInput& error) {
+    in.file().fail(in.path(keys::shapes), error.what());
+  }
+}
+
+}  // namespace
+
+void read_modal_table(Scene& scene, const SectionReader& in) {
+  Structure& s = scene.device.structure;
+  if (in.is_given(keys::positions)) {
+    s.table = table_of_scene(in);
+  } else {
+    in.require(!in.is_given(keys::shapes), keys::shapes, "stands beside positions, not beside a file");
+    s.table = table_of_file(scene, in);
+  }
+  s.length = s.table->length();
+  if (!in.is_given("thickness")) s.thickness = std::numeric_limits<double>::quiet_NaN();
+  if (!in.is_given("modes")) s.modes = most_modes_of(s);
+  in.require(s.modes <= s.table->count(), "modes", fmt::format("must not exceed {}, the modes of the file", s.table->count()));
+}
+
+void hold_table(toml::table& root, const Structure& s) {
+  if (s.kind != StructureKind::modes) return;
+  toml::table& section = *root["structure"].as_table();
+  for (const std::string_view key : {keys::file, keys::axis, keys::direction, keys::length_unit, keys::mass_unit, keys::mass,
+                                     keys::mass_normalised, keys::clamp, keys::positions, keys::frequencies, keys::shapes})
+    section.erase(key);
+  toml::array positions, frequencies, shapes;
+  for (const double x : s.table->positions()) positions.push_back(quantity_text(x, dimension::length));
+  for (const double f : s.table->frequencies()) frequencies.push_back(quantity_text(f, dimension::frequency));
+  for (const std::vector<double>& shape : s.table->shapes()) {
+    toml::array one;
+    for (const double value : shape) one.push_back(value);
+    shapes.push_back(std::move(one));
+  }
+  section.insert_or_assign(keys::positions, std::move(positions));
+  section.insert_or_assign(keys::frequencies, std::move(frequencies));
+  section.insert_or_assign(keys::shapes, std::move(shapes));
+  if (!section.contains("width")) section.insert("width", quantity_text(s.width, dimension::length));
+}
+
+}  // namespace softland::internal

@@ -1,0 +1,27 @@
+// The table of modes that [structure] kind = "modes" names or holds. Internal to config/.
+#pragma once
+
+#include <string_view>
+
+#include "config/scene.h"
+#include "config/section_reader.h"
+
+namespace softland::internal {
+
+/// Names of the keys that say where modes are, and how a file of them is read.
+namespace modal_keys {
+inline constexpr std::string_view file = "file", axis = "axis", direction = "direction", length_unit = "length_unit",
+                                  mass_unit = "mass_unit", mass = "mass", mass_normalised = "mass_normalised", clamp = "clamp",
+                                  positions = "positions", frequencies = "frequencies", shapes = "shapes";
+}  // namespace modal_keys
+
+/// Sets table, length, width and the number of modes of the structure; what was taken from a file of another program becomes a
+/// note of the scene. Throws InvalidInput with key, file and rule for what cannot be read, and for a structure that is no beam of
+/// constant width, straight at rest.
+void read_modal_table(Scene& scene, const SectionReader& in);
+
+/// Puts the table itself where a scene names its file, so that the scene needs no other file: it reads back to the same bits.
+/// Does nothing to other structures.
+void hold_table(toml::table& root, const Structure& structure);
+
+}  // namespace softland::internal

@@ -1,0 +1,57 @@
+// Modes that another program computed, as a table along the axis of a structure.
+//
+// Read are: tables of softland (CSV), results of *FREQUENCY of CalculiX (.frd), exports of COMSOL as text and CSV, data sets 55
+// of the Universal File Format with the positions of the nodes (15, 2411), and reduced-order models of ANSYS (.rom). Nodes at one
+// place along the axis are a section, of which the mean motion counts. Only bending along the direction of motion is taken; modes
+// in the plane, along the axis and of torsion are left out by name. Nothing is guessed in silence: what a file does not say
+// (units, mass) is told, or refused with the key that decides.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exchange/mode_keys.h"
+
+namespace softland {
+
+enum class ModeKind { bending, in_plane, axial, torsional, unused };
+
+/// What one mode of a file is. Motions are means over the nodes of a section, in the unit of the file.
+struct ModeFound {
+  int number = 0;        ///< in the file, from 1
+  double frequency = 0;  ///< [Hz]
+  ModeKind kind = ModeKind::bending;
+  double share = 0;  ///< of the squared motion of all nodes that is of this kind; 1 where the file holds one direction only
+  std::vector<double> along, across, axial;  ///< by section: in the direction of motion, across both, along the axis
+  std::vector<double> twist;                 ///< by rotation about the axis, half the extent of the mesh from the middle
+  /// "bending", "in-plane"
+  [[nodiscard]] std::string name() const;
+};
+
+struct ModeTable {
+  std::string file;
+  std::string format;
+  std::vector<double> positions;            ///< [m], from 0, the clamp, rising
+  std::vector<double> widths;               ///< [m], by position; NaN where the file does not say
+  std::vector<double> rest_offsets;         ///< of the face towards the direction of motion at rest [m], by position
+  std::vector<double> frequencies;          ///< [Hz], rising
+  std::vector<std::vector<double>> shapes;  ///< mass-normalised [kg^(-1/2)]: of each mode by position, positive at the far end
+
+  std::size_t nodes = 0;            ///< of the mesh; 0 of a table
+  std::vector<ModeFound> found;     ///< every mode of a mesh, taken or not; empty of a table
+  std::vector<double> places = {};  ///< where the sections of `found` are, from the clamp [m]
+  std::vector<std::string> left_out = {};
+  std::vector<std::string> notes = {};  ///< what was taken for what the file does not say
+};
+
+/// Reads a file. Throws InvalidInput with file, line and rule for what cannot be read, for what holds no modes (a static result,
+/// a pressure), and for what can be read in two ways, with the key that decides.
+[[nodiscard]] ModeTable read_mode_table(const std::string& file, const ModeKeys& keys);
+/// The same for the content of a file; `file` stands for it in messages.
+[[nodiscard]] ModeTable parse_mode_table(std::string_view content, const std::string& file, const ModeKeys& keys);
+
+/// One line: format, nodes, sections, length, modes and frequencies, what was left out.
+[[nodiscard]] std::string summary(const ModeTable& table);
+
+}  // namespace softland

@@ -1,0 +1,49 @@
+// Modes as a program wrote them: motions of the nodes of a mesh. Internal to exchange/.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exchange/mode_keys.h"
+
+namespace softland::internal {
+
+using Vector3 = std::array<double, 3>;
+inline constexpr Vector3 no_motion{0, 0, 0};
+
+struct NodalMode {
+  double frequency = std::numeric_limits<double>::quiet_NaN();   ///< [Hz]; NaN where the file does not say
+  double modal_mass = std::numeric_limits<double>::quiet_NaN();  ///< in the file's unit of mass; NaN where it is not said
+  std::vector<Vector3> motion;                                   ///< by node, in any unit
+  std::string name;                                              ///< "mode 1", as messages name it
+  bool is_used = true;                                           ///< a reduced-order model has modes that it does not use
+};
+
+struct NodalModes {
+  std::string format;
+  std::vector<Vector3> nodes;    ///< positions in the unit of length; NaN in a direction that the file does not hold
+  std::vector<NodalMode> modes;  ///< as in the file
+  std::array<bool, 3> holds{true, true, true};  ///< which directions of motion the file holds
+  std::optional<double> length_unit = {};       ///< that the file says [m]
+  bool needs_length_unit = false;               ///< no usual one: it must be said
+  std::string normalised_by = {};               ///< what the file says of the mass of its modes; empty: nothing
+  std::vector<std::string> left_out = {}, notes = {};
+};
+
+/// Each reads one kind of content, and throws InvalidInput with file, line and rule.
+[[nodiscard]] bool is_frd(std::string_view text);
+[[nodiscard]] NodalModes read_frd(std::string_view text, const std::string& file);
+
+[[nodiscard]] bool is_comsol(std::string_view text);
+[[nodiscard]] NodalModes read_comsol(std::string_view text, const std::string& file);
+
+[[nodiscard]] NodalModes read_uff55(std::string_view content, const std::string& file);
+
+[[nodiscard]] bool is_ansys_rom(std::string_view text);
+[[nodiscard]] NodalModes read_ansys_rom(std::string_view text, const std::string& file);
+
+}  // namespace softland::internal

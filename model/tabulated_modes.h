@@ -1,0 +1,81 @@
+// Modes of a structure that another program computed, as a table along its axis, clamped at x = 0 and free at its far end.
+//
+//   q_i'' = -(f omega_i)^2 q_i + ...      y(x) = sum over i of phi_i(x) q_i
+//
+// phi mass-normalised modes [kg^(-1/2)], of which a row per place is known, omega angular frequencies [rad/s], f a factor by
+// which a device is stiffer than the table says. Between the places a cubic that is clamped at x = 0 (base/clamped_spline.h):
+// value and slope are 0 there. It answers what BeamModes answers, so that laws per length act on it as on a beam. Valid while
+// deflections are small against the thickness, since the modes are linear. Source: modal superposition, any textbook on
+// structural dynamics, e.g. Meirovitch, Fundamentals of Vibrations, 2001, ch. 7.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/clamped_spline.h"
+
+namespace softland {
+
+/// What a file says: the same for all devices of a scene.
+class ModalTable {
+ public:
+  /// `positions` [m] rise from 0, `frequencies` [Hz] rise, a shape [kg^(-1/2)] per frequency and a value in it per position, 0 at
+  /// the first one. Throws InvalidInput with the rule unless that holds, with three positions at least.
+  ModalTable(std::vector<double> positions, std::vector<double> frequencies, std::vector<std::vector<double>> shapes);
+
+  [[nodiscard]] int count() const { return static_cast<int>(frequencies_.size()); }
+  [[nodiscard]] double length() const { return positions_.back(); }                         ///< [m]
+  [[nodiscard]] const std::vector<double>& positions() const { return positions_; }         ///< [m]
+  [[nodiscard]] const std::vector<double>& frequencies() const { return frequencies_; }     ///< [Hz]
+  [[nodiscard]] const std::vector<std::vector<double>>& shapes() const { return shapes_; }  ///< [kg^(-1/2)]
+  [[nodiscard]] double value(int mode, double x) const {
+    return splines_[static_cast<std::size_t>(mode)].value(x);
+  }  ///< x in [m]
+  [[nodiscard]] double slope(int mode, double x) const { return splines_[static_cast<std::size_t>(mode)].slope(x); }
+  /// Whether the last place stands still in every mode: the far end is clamped as well.
+  [[nodiscard]] bool is_held_at_both_ends() const;
+  [[nodiscard]] bool operator==(const ModalTable& other) const {
+    return positions_ == other.positions_ && frequencies_ == other.frequencies_ && shapes_ == other.shapes_;
+  }
+
+ private:
+  std::vector<double> positions_, frequencies_;
+  std::vector<std::vector<double>> shapes_;
+  std::vector<ClampedSpline> splines_;
+};
+
+class TabulatedModes {
+ public:
+  /// The first modes of a table, x in units of its length.
+  struct Shapes {
+    std::shared_ptr<const ModalTable> table;
+    int modes = 0;
+
+    [[nodiscard]] Eigen::VectorXd value(double x) const;
+    [[nodiscard]] Eigen::VectorXd slope(double x) const;
+    /// omega_1^2 over the square of the first angular frequency of the structure held at x as well, of all modes of the table:
+    /// the root of sum phi_i(x)^2 / (omega_i^2 - omega^2) between the first two. 1 of a single mode, which cannot move then: its
+    /// own frequency stands in, as a rebound takes no longer than that.
+    [[nodiscard]] double pinned_inverse_square(double x, std::optional<double> near = {}) const;
+    [[nodiscard]] bool operator==(const Shapes& other) const {
+      return modes == other.modes && (table == other.table || (table && other.table && *table == *other.table));
+    }
+  };
+
+  /// Throws InvalidInput unless 1 <= modes <= table->count().
+  TabulatedModes(std::shared_ptr<const ModalTable> table, int modes, double frequency_factor);
+
+  [[nodiscard]] const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< [rad/s]
+  [[nodiscard]] double length() const { return shapes_.table->length(); }                    ///< [m]
+  [[nodiscard]] static double scale() { return 1; }
+  [[nodiscard]] double frequency_scale() const { return frequencies_[0]; }  ///< [rad/s]
+  [[nodiscard]] const Shapes* normalised() const { return &shapes_; }
+
+ private:
+  Shapes shapes_;
+  Eigen::VectorXd frequencies_;
+};
+
+}  // namespace softland

@@ -1,0 +1,181 @@
+#include "reports/mode_table_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+
+#include "base/clamped_spline.h"
+#include "base/printable.h"
+#include "reports/chart.h"
+#include "reports/json_number.h"
+#include "reports/quantity.h"
+#include "reports/svg.h"
+#include "reports/text.h"
+
+namespace softland {
+namespace {
+
+using internal::json_number;
+using internal::left_aligned;
+using internal::quantity;
+using internal::right_aligned;
+
+constexpr int table_digits = 6;
+
+/// What the table calls a mode of the file; nothing of one that is left out.
+std::optional<std::size_t> taken_column(const ModeTable& table, const ModeFound& found) {
+  if (found.kind != ModeKind::bending) return std::nullopt;
+  const auto at = std::find(table.frequencies.begin(), table.frequencies.end(), found.frequency);
+  return static_cast<std::size_t>(at - table.frequencies.begin());
+}
+
+/// What a table has instead of the modes of a mesh.
+std::vector<ModeFound> modes_of(const ModeTable& table) {
+  if (!table.found.empty()) return table.found;
+  std::vector<ModeFound> all;
+  for (const double frequency : table.frequencies)
+    all.push_back({.number = static_cast<int>(all.size() + 1), .frequency = frequency, .share = 1});
+  return all;
+}
+
+double largest_of(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+internal::Chart chart_of(const ModeTable& table, const ModeFound& found, const std::string& id) {
+  internal::Chart chart;
+  chart.id = id;
+  chart.x_column = "x";
+  chart.x_label = "From the clamp";
+  chart.x_unit = "m";
+  chart.height = 170;
+  chart.zero_line = true;
+  chart.x_home = chart.x_whole = {0, table.positions.back()};
+  chart.title = quantity(found.frequency, "Hz", table_digits);
+  return chart;
+}
+
+void draw_taken(internal::Picture& drawn, const ModeTable& table, const ModeFound& found, std::size_t column) {
+  constexpr int points = 400;
+  constexpr std::size_t most_dots = 30;
+  const std::string id = fmt::format("mode-{}", found.number), places = id + "-places";
+  const std::vector<double>& shape = table.shapes[column];
+  const ClampedSpline spline(table.positions, shape);
+  // Numbers of one to three digits, whatever the mass.
+  const int exponent = 3 * static_cast<int>(std::floor(std::log10(largest_of(shape)) / 3));
+  const double unit = std::pow(10.0, exponent);
+  for (int k = 0; k <= points; ++k) {
+    const double x = table.positions.back() * k / points;
+    drawn.tables[id]["x"].push_back(x);
+    drawn.tables[id]["y"].push_back(spline.value(x) / unit);
+  }
+  // As many dots as leave the line in view.
+  const std::size_t step = 1 + table.positions.size() / most_dots;
+  for (std::size_t i = 0; i < table.positions.size(); i += step) {
+    drawn.tables[places]["x"].push_back(table.positions[i]);
+    drawn.tables[places]["y"].push_back(shape[i] / unit);
+  }
+  internal::Chart chart = chart_of(table, found, id);
+  chart.title = fmt::format("mode_{}: {}", column + 1, chart.title);
+  chart.y_label = exponent == 0 ? std::string("Mode (1/√kg)") : fmt::format("Mode (1e{}/√kg)", exponent);
+  chart.y_unit = "";
+  chart.series.push_back({.table = id, .column = "y", .label = "as a closing takes it", .role = internal::Role::best});
+  chart.series.push_back({.table = places, .column = "y", .label = "in the file", .role = internal::Role::measured});
+  drawn.charts.push_back(std::move(chart));
+}
+
+void draw_left_out(internal::Picture& drawn, const ModeTable& table, const ModeFound& found) {
+  const std::string id = fmt::format("mode-{}", found.number);
+  const double most =
+      std::max({largest_of(found.along), largest_of(found.across), largest_of(found.axial), largest_of(found.twist)});
+  internal::Chart chart = chart_of(table, found, id);
+  chart.title += fmt::format(", left out: {}", found.name());
+  chart.y_label = "Motion";
+  chart.y_unit = "";
+  drawn.tables[id]["x"] = table.places;
+  const auto draw = [&](const std::vector<double>& values, const char* name, internal::Role role) {
+    std::vector<double>& drawn_values = drawn.tables[id][name];
+    for (const double value : values) drawn_values.push_back(most > 0 ? value / most : 0);
+    chart.series.push_back({.table = id, .column = name, .label = name, .role = role});
+  };
+  draw(found.along, "along", internal::Role::best);
+  draw(found.across, "across", internal::Role::third);
+  draw(found.twist, "twist", internal::Role::fourth);
+  if (found.kind == ModeKind::axial) draw(found.axial, "axial", internal::Role::fifth);
+  drawn.charts.push_back(std::move(chart));
+}
+
+}  // namespace
+
+nlohmann::json mode_table_json(const ModeTable& table) {
+  nlohmann::json modes = nlohmann::json::array(), frequencies = nlohmann::json::array();
+  for (const double frequency : table.frequencies) frequencies.push_back(2 * std::numbers::pi * frequency);
+  for (const ModeFound& found : modes_of(table)) {
+    const std::optional<std::size_t> column = taken_column(table, found);
+    modes.push_back({{"number", found.number},
+                     {"frequency_Hz", json_number(found.frequency)},
+                     {"kind", found.name()},
+                     {"share", json_number(found.share)},
+                     {"taken_as", column ? nlohmann::json(fmt::format("mode_{}", *column + 1)) : nlohmann::json()}});
+  }
+  return {{"format", table.format},
+          {"nodes", table.nodes},
+          {"length_m", table.positions.back()},
+          {"natural_frequencies_rad_s", frequencies},
+          {"modes", modes},
+          {"left_out", table.left_out},
+          {"notes", table.notes}};
+}
+
+std::string mode_table_text(const ModeTable& table) {
+  std::string text = wrapped(summary(table)) + "\n\n";
+  constexpr std::size_t number = 4, frequency = 15, name = 12;
+  text += right_aligned("mode", number) + right_aligned("frequency", frequency) + "  " + left_aligned("taken as", name) +
+          "what it is\n";
+  for (const ModeFound& found : modes_of(table)) {
+    const std::optional<std::size_t> column = taken_column(table, found);
+    text += right_aligned(fmt::format("{}", found.number), number) +
+            right_aligned(quantity(found.frequency, "Hz", table_digits), frequency) + "  " +
+            left_aligned(column ? fmt::format("mode_{}", *column + 1) : std::string("left out"), name) + found.name();
+    if (!table.found.empty() && found.kind != ModeKind::unused)
+      text += fmt::format(", {:.3g} % of the motion", 100 * found.share);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string mode_table_csv(const ModeTable& table) {
+  std::string text = "x_m,width_m,rest_offset_m";
+  for (std::size_t k = 0; k < table.shapes.size(); ++k) text += fmt::format(",mode_{}", k + 1);
+  text += "\nfrequency_Hz,,";
+  for (const double frequency : table.frequencies) text += fmt::format(",{}", frequency);
+  text += "\n";
+  for (std::size_t i = 0; i < table.positions.size(); ++i) {
+    text += fmt::format("{},{},{}", table.positions[i],
+                        std::isnan(table.widths[i]) ? std::string() : fmt::format("{}", table.widths[i]), table.rest_offsets[i]);
+    for (const std::vector<double>& shape : table.shapes) text += fmt::format(",{}", shape[i]);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string mode_table_svg(const ModeTable& table) {
+  constexpr std::size_t charts_per_row = 2;
+  internal::Picture drawn;
+  for (const ModeFound& found : modes_of(table)) {
+    if (const std::optional<std::size_t> column = taken_column(table, found)) {
+      draw_taken(drawn, table, found, *column);
+    } else if (found.kind != ModeKind::unused) {
+      draw_left_out(drawn, table, found);
+    }
+  }
+  return svg_page(printable_line(table.file), summary(table), drawn, charts_per_row);
+}
+
+}  // namespace softland

@@ -1,0 +1,63 @@
+// The spline that keeps a clamp: what it takes exactly, and how fast its error falls.
+#include "base/clamped_spline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/require.h"
+
+namespace softland {
+namespace {
+
+constexpr double rounding = 1e-14;
+
+TEST(ClampedSpline, IsTheCubicThatAClampedBeamBendsInUnderAForceAtItsEnd) {
+  const auto beam = [](double x) { return x * x * (3 - x); };  // s'(0) = 0, s''(1) = 0
+  const std::vector<double> x{0, 0.2, 0.35, 0.7, 1};
+  std::vector<double> y;
+  for (const double at : x) y.push_back(beam(at));
+  const ClampedSpline s(x, y);
+  for (double at = 0; at <= 1; at += 0.01) {
+    EXPECT_NEAR(s.value(at), beam(at), rounding);
+    EXPECT_NEAR(s.slope(at), 6 * at - 3 * at * at, 10 * rounding);
+  }
+  EXPECT_NEAR(s.integral_of_square(), 33.0 / 35, rounding) << "of x^4 (9 - 6 x + x^2)";
+}
+
+TEST(ClampedSpline, KeepsValueAndSlopeOfTheClampWhateverThePoints) {
+  const ClampedSpline s({0, 1, 2, 3}, {0, 5, -7, 2});
+  EXPECT_EQ(s.value(0), 0);
+  EXPECT_NEAR(s.slope(0), 0, rounding * 10);
+  for (const double at : {1.0, 2.0, 3.0}) EXPECT_NEAR(s.value(at), at == 1 ? 5 : at == 2 ? -7 : 2, 10 * rounding);
+}
+
+// The first mode of a cantilever keeps both ends: fourth order. A natural spline has second order at the clamp.
+TEST(ClampedSpline, HasAnErrorOfFourthOrderForTheModeOfACantilever) {
+  constexpr double root = 4.694091132974174;
+  const double sigma = (std::cosh(root) + std::cos(root)) / (std::sinh(root) + std::sin(root));
+  const auto mode = [&](double x) {
+    return std::cosh(root * x) - std::cos(root * x) - sigma * (std::sinh(root * x) - std::sin(root * x));
+  };
+  const auto error = [&](int parts) {
+    std::vector<double> x, y;
+    for (int i = 0; i <= parts; ++i) x.push_back(static_cast<double>(i) / parts), y.push_back(mode(x.back()));
+    const ClampedSpline s(x, y);
+    double most = 0;
+    for (int i = 0; i < 1000; ++i) most = std::max(most, std::abs(s.value((i + 0.5) / 1000) - mode((i + 0.5) / 1000)));
+    return most;
+  };
+  const double order = std::log2(error(20) / error(40));
+  EXPECT_GT(order, 3.7);
+  EXPECT_LT(order, 4.3);
+}
+
+TEST(ClampedSpline, RefusesPointsThatDoNotRise) {
+  EXPECT_THROW(ClampedSpline({0, 1, 1}, {0, 1, 2}), InvalidInput);
+  EXPECT_THROW(ClampedSpline({0}, {0}), InvalidInput);
+  EXPECT_THROW(ClampedSpline({0, 1}, {0}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace softland

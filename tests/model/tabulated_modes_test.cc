@@ -1,0 +1,137 @@
+// A structure of modes from a table against the beam whose modes they are.
+#include "model/tabulated_modes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "base/require.h"
+#include "model/beam.h"
+#include "model/switch.h"
+#include "tests/support/devices.h"
+
+namespace softland {
+namespace {
+
+/// The modes of a device's beam at even places.
+std::shared_ptr<const ModalTable> modal_table_of(const Device& device, int modes, int parts) {
+  const BeamModes beam(beam_sections(device), modes);
+  std::vector<double> positions, frequencies;
+  for (int k = 0; k <= parts; ++k)
+    positions.push_back(k == parts ? device.structure.length : device.structure.length * k / parts);
+  std::vector<std::vector<double>> shapes;
+  for (Eigen::Index i = 0; i < beam.count(); ++i) {
+    frequencies.push_back(beam.angular_frequencies()[i] / (2 * pi));
+    shapes.push_back({0});
+    for (std::size_t k = 1; k < positions.size(); ++k) shapes.back().push_back(beam.value(positions[k])[i]);
+  }
+  return std::make_shared<const ModalTable>(positions, frequencies, shapes);
+}
+
+Device by_modes(Device device, std::shared_ptr<const ModalTable> table) {
+  device.structure.kind = StructureKind::modes;
+  device.structure.table = std::move(table);
+  return device;
+}
+
+template <typename Action>
+void expect_refused_with(Action action, const std::string& rule) {
+  try {
+    action();
+    ADD_FAILURE() << "accepted; expected: " << rule;
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(rule));
+  }
+}
+
+constexpr int table_places = 100;
+
+TEST(TabulatedModes, OfABeamAreItsModes) {
+  constexpr int modes = 4;
+  constexpr double interpolated = 1e-6;  // of the tip: fourth order in the distance of the table_places
+  const Device device = test::gold_cantilever();
+  const BeamModes beam(beam_sections(device), modes);
+  const TabulatedModes table(modal_table_of(device, modes, table_places), modes, 1);
+  const double tip = beam.value(beam.length())[0];
+  for (double x = 0; x <= 1; x += 0.0173) {
+    const Eigen::VectorXd expected = beam.value(x * beam.length()), slope = beam.length() * beam.slope(x * beam.length());
+    for (int i = 0; i < modes; ++i) {
+      EXPECT_NEAR(table.normalised()->value(x)[i], expected[i], interpolated * tip) << "mode " << i + 1 << " at " << x;
+      EXPECT_NEAR(table.normalised()->slope(x)[i], slope[i], 300 * interpolated * tip) << "mode " << i + 1 << " at " << x;
+    }
+  }
+  EXPECT_EQ(table.normalised()->value(0).norm(), 0);
+  EXPECT_NEAR(table.normalised()->slope(0).norm(), 0, 1e-9 * tip) << "the clamp";
+}
+
+TEST(TabulatedModes, HoldTheBeamAtItsContactAsTheBeamIsHeld) {
+  constexpr double modes_left_out = 2e-3;  // twelve of all modes
+  const Device device = test::gold_cantilever();
+  const BeamModes beam(beam_sections(device), 4);
+  const TabulatedModes table(modal_table_of(device, 12, table_places), 4, 1);
+  const double x = device.contact_position();
+  const double held = table.frequency_scale() / std::sqrt(table.normalised()->pinned_inverse_square(x / device.structure.length));
+  EXPECT_NEAR(held, beam.pinned_frequency(x), modes_left_out * beam.pinned_frequency(x));
+  const TabulatedModes alone(modal_table_of(device, 1, table_places), 1, 1);
+  EXPECT_EQ(alone.normalised()->pinned_inverse_square(1), 1) << "a single mode cannot move: its own frequency stands in";
+}
+
+TEST(TabulatedModes, MoveASwitchAsTheBeamDoes) {
+  constexpr double interpolated = 2e-6;
+  const Device device = test::gold_cantilever();
+  const int modes = device.structure.modes;
+  const Switch beam(device), table(by_modes(device, modal_table_of(device, modes, table_places)));
+  ASSERT_EQ(table.modes(), modes);
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(modes), v = q, expected(modes), found(modes);
+  q[0] = 0.4 * device.gap.contact / beam.contact_shape()[0], v[0] = 0.1 / beam.contact_shape()[0], q[1] = -0.1 * q[0];
+  const std::vector<double> volts(beam.drives(), 20.0);
+  Switch::Workspace work = beam.workspace(), other = table.workspace();
+  beam.accelerations(q.data(), v.data(), volts, false, work, expected.data());
+  table.accelerations(q.data(), v.data(), volts, false, other, found.data());
+  EXPECT_LT((found - expected).norm(), interpolated * expected.norm());
+}
+
+TEST(TabulatedModes, OfSwitchesOfOneTableShareTheirQuadrature) {
+  const Device device = by_modes(test::gold_cantilever(), modal_table_of(test::gold_cantilever(), 4, table_places));
+  const Switch nominal(device);
+  Device stiffer = device;
+  stiffer.structure.frequency_factor = 1.1;
+  const Switch built(stiffer), quickly(stiffer, {}, &nominal);
+  EXPECT_EQ(built.point_shapes(), quickly.point_shapes());
+  EXPECT_EQ(built.angular_frequencies(), quickly.angular_frequencies());
+  EXPECT_EQ(built.contact_shape(), quickly.contact_shape());
+  EXPECT_NEAR(built.angular_frequencies()[2], 1.1 * nominal.angular_frequencies()[2], 1e-9 * nominal.angular_frequencies()[2]);
+}
+
+TEST(TabulatedModes, AreRefusedWithTheRule) {
+  const auto make = [](std::vector<double> x, std::vector<double> f, std::vector<std::vector<double>> y) {
+    return [=] { (void)ModalTable(x, f, y); };
+  };
+  expect_refused_with(make({0, 1}, {1}, {{0, 1}}), "three positions at least must rise from 0");
+  expect_refused_with(make({0.1, 1, 2}, {1}, {{0, 1, 2}}), "three positions at least must rise from 0");
+  expect_refused_with(make({0, 1, 2}, {2, 1}, {{0, 1, 2}, {0, 1, 2}}), "the frequencies must be positive and rise");
+  expect_refused_with(make({0, 1, 2}, {1}, {{0, 1}}), "a shape must have a value per position");
+  expect_refused_with(make({0, 1, 2}, {1}, {{0.1, 1, 2}}), "a shape must be 0 at the clamp");
+  expect_refused_with(make({0, 1, 2}, {1}, {{0, 0, 0}}), "a shape must move");
+  const auto table = modal_table_of(test::gold_cantilever(), 4, table_places);
+  Device device = by_modes(test::gold_cantilever(), table);
+  device.structure.modes = 5;
+  expect_refused_with([&] { (void)Switch(device); }, "structure.modes = 5: must not exceed 4, the modes of the file");
+  device.structure.modes = 4;
+  expect_refused_with([&] { (void)Switch(device, {.modes = 5}); }, "modes = 5: must be from 1 to 4");
+  device.structure.length *= 2;
+  expect_refused_with([&] { (void)Switch(device); }, "must be the length of the table of modes");
+  device = by_modes(test::gold_pzt_cantilever(), table);
+  expect_refused_with([&] { (void)Switch(device); }, "a layer changes the modes");
+  device = by_modes(test::gold_cantilever(),
+                    std::make_shared<const ModalTable>(std::vector<double>{0, 125e-6, 250e-6}, std::vector<double>{1e4},
+                                                       std::vector<std::vector<double>>{{0, 1e5, 0}}));
+  device.structure.modes = 1;
+  expect_refused_with([&] { (void)Switch(device); }, "the far end stands still in every mode");
+}
+
+}  // namespace
+}  // namespace softland
