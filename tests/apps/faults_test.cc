@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "program.h"
+#include "tests/exchange/mode_samples.h"
 
 namespace softland {
 namespace {
@@ -213,6 +214,10 @@ TEST_F(Faults, AFileAboveItsLimitIsAnErrorOfEveryVerbThatWritesOne_optimized) {
       std::vector<std::string> more = calls()[verb].quick;
       if (verb != "merge")
         more = more + std::vector<std::string>{option, option == std::string("--out") ? "lost-" + verb : "lost.json"};
+      if (verb == "modes" && option == std::string("--out")) {
+        write(here->path() / "beam.frd", test::sample_frd());
+        more = {"--from", "beam.frd", "--axis", "x", "--direction", "-z", option, "lost.csv"};
+      }
       if (verb == "pull-in" && option == std::string("--out")) more = more + std::vector<std::string>{"--sweep", "0 V:10 V:3"};
       if (verb == "optimize" && option == std::string("--json")) more = more + std::vector<std::string>{"--out", "lost"};
       EXPECT_EQ(limited(words(verb, more)).status, output_lost) << verb << " " << option;
