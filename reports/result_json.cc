@@ -193,6 +193,10 @@ json closed_state_json(const ClosedState& state) {
 
 json metrics_json(const Metrics& m) { return with_status(figures_json(FigureValues(m), of_no_drive), to_string(m.status)); }
 
+std::string json_text(const json& data, int indent) {
+  return data.dump(indent, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
 json result_json(const Result& r) {
   json j{{"kind", r.is_search ? "optimize" : "simulate"},
          {"version", r.version},
