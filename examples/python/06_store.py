@@ -3,9 +3,9 @@
 # `softland explore` keeps what it computes in one SQLite file. It can be read while it is written.
 
 # %%
+import os
 import sqlite3
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -13,7 +13,7 @@ import softland
 
 folder = Path(tempfile.mkdtemp())
 store = folder / "map.sqlite"
-program = sys.argv[1] if len(sys.argv) > 1 and "ipykernel" not in sys.modules else "softland"
+program = os.environ.get("SOFTLAND_PROGRAM", "./softland")  # in the folder of softland
 scene = folder / "gold.toml"
 softland.shipped("mem-gold").save(scene)
 plan = ["--vary", "gap.contact=1.8 um:2.2 um:5", "--vary", "structure.thickness=1.9 um:2.1 um:3"]

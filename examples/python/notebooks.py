@@ -1,6 +1,7 @@
 """notebooks.py OUT: the examples as notebooks, run where nbconvert is installed. A cell begins with `# %%`, one of text with `# %% [markdown]`."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -34,7 +35,8 @@ def main(out: Path) -> int:
         print("nbconvert is not installed: the notebooks are not run", file=sys.stderr)
         return 0
     run = [sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--inplace"]
-    return max(subprocess.run([*run, str(path)], check=False).returncode for path in paths)
+    environment = {"SOFTLAND_PROGRAM": str(Path(__file__).resolve().parents[2] / "softland"), **os.environ}
+    return max(subprocess.run([*run, str(path)], check=False, env=environment).returncode for path in paths)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 >>> scene = softland.load("scenes/mem-gold.toml")
 >>> closing = scene.simulate()
 >>> closing.impact_velocity
-0.107... m/s
+0.08558113969278344 ± 1.6e-08 m/s
 
 All numbers are in SI units; text with a unit is read like in a scene file. docs/python.md is the way in.
 """

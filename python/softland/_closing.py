@@ -170,7 +170,8 @@ class Closing:
             for name, value in self._figures.items()
             if not isinstance(value, bool) and not math.isnan(value)
         )
-        return f"<div style='max-width:46em'>{self._native.outcome().file('gap.svg').decode()}</div><table>{rows}</table>"
+        chart = self._native.outcome().file("gap.svg").decode().replace("<svg ", "<svg style='max-width:100%;height:auto' ", 1)
+        return f"<div style='max-width:46em'>{chart}</div><table>{rows}</table>"
 
 
 def _quintic(t: Array, ends: Array, states: Array) -> Array:

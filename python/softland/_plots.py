@@ -33,6 +33,7 @@ def plot_closing(closing: Closing) -> Any:
     for drive in closing.drives:
         times, volts = closing.voltage(drive)
         below.plot(1e6 * times, volts, linewidth=1, label=drive)
+    below.axhline(0, color="0.6", linewidth=0.8)
     below.set_xlabel("time [µs]")
     below.set_ylabel("drive [V]")
     below.legend()

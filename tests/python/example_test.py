@@ -1,7 +1,6 @@
 """example_test.py NAME: the last line of examples/python/NAME.py is what it must be."""
 
 import importlib.util
-import os
 import pathlib
 import re
 import subprocess
@@ -23,7 +22,7 @@ expected, needs = EXPECTED[name]
 if needs and importlib.util.find_spec(needs) is None:
     print(f"skipped: no {needs}; needs: python3-{needs}")
     sys.exit(77)
-run = subprocess.run([sys.executable, ROOT / "examples" / "python" / f"{name}.py", os.environ["SOFTLAND_PROGRAM"]], capture_output=True, text=True)
+run = subprocess.run([sys.executable, ROOT / "examples" / "python" / f"{name}.py"], capture_output=True, text=True)
 print(run.stdout + run.stderr)
 if run.returncode != 0:
     sys.exit(1)
