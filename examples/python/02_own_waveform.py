@@ -20,19 +20,19 @@ limit = float(scene.resolved()["driver.main.max_voltage"])
 
 # %%
 def half_cosine(start: float, end: float, part: Array) -> Array:
-    return start + (end - start) / 2 * (1 - np.cos(np.pi * np.clip(part, 0, 1)))
+    return np.asarray(start + (end - start) / 2 * (1 - np.cos(np.pi * np.clip(part, 0, 1))))
 
 
 def voltage(t: Array, x: Array) -> Array:
     high, low, up, down, back = x
     falling = np.where(t < up + down, half_cosine(high, low, (t - up) / down), half_cosine(low, hold, (t - up - down) / back))
-    return np.where(t < up, half_cosine(0, high, t / up), falling)
+    return np.asarray(np.where(t < up, half_cosine(0, high, t / up), falling))
 
 
 swell = softland.OwnWaveform(
     "swell",
     voltage,
-    breakpoints=lambda x: np.cumsum(x[2:]),
+    breakpoints=lambda x: np.asarray(np.cumsum(x[2:])),
     parameters={
         "high_V": (0, limit, 1.1 * hold),
         "low_V": (0, limit, 0.6 * hold),

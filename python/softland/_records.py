@@ -115,15 +115,21 @@ def _wrapped(value: Any, unit: str, error: Any = None) -> Any:
     return value
 
 
+# Where a result comes from, which its representation leaves out.
+_ORIGIN = ("command", "made_with", "reproduce", "scene", "scene_toml", "version", "curves")
+
+
 def _lines(record: Record, depth: int = 0) -> Iterator[str]:
     for key in record:
         name = unit_of_key(key)[0]
         value = record[key]
+        if (depth == 0 and key in _ORIGIN) or (isinstance(value, float) and math.isnan(value)):
+            continue
         if isinstance(value, Record):
-            yield "  " * depth + f"{name}:"
+            yield "  " * depth + f"{name}: {'' if depth < 2 else '...'}".rstrip()
             if depth < 2:
                 yield from _lines(value, depth + 1)
-        elif isinstance(value, list) and len(value) > 4:
+        elif isinstance(value, list) and (len(value) > 4 or any(isinstance(one, Record) for one in value)):
             yield "  " * depth + f"{name}: {len(value)} of them"
         elif isinstance(value, str) and len(value) > 200:
             yield "  " * depth + f"{name}: {value[:60]!r}..."

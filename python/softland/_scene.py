@@ -40,16 +40,26 @@ def _toml(value: Any) -> str:
     return repr(float(value)) if isinstance(value, float) else str(value)
 
 
-def _change(key: str, value: Any) -> tuple[str, Any]:
+def _change(native: _softland.Scene, key: str, value: Any) -> tuple[str, Any]:
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, np.ndarray):
         value = value.tolist()
+    if isinstance(value, int) and not isinstance(value, bool) and _holds_quantity(native, key):
+        value = float(value)
     if isinstance(value, (bool, int)):
         return key, value
     if isinstance(value, float):
         return key, float(value)
     return key, value if isinstance(value, str) else _toml(value)
+
+
+def _holds_quantity(native: _softland.Scene, key: str) -> bool:
+    """Whether a number with a unit is written there."""
+    try:
+        return bool(_softland.units(native.written(key) or "")[1])
+    except ValueError:
+        return False
 
 
 def _command() -> str:
@@ -115,7 +125,7 @@ class Scene(MutableMapping[str, Any]):
         return _read(node)
 
     def __setitem__(self, key: str, value: Value) -> None:
-        self._native.change([_change(key, value)])
+        self._native.change([_change(self._native, key, value)])
 
     def __delitem__(self, key: str) -> None:
         self[key]
@@ -129,7 +139,7 @@ class Scene(MutableMapping[str, Any]):
 
     def update(self, *others: Any, **more: Any) -> None:
         """All of these changes, or none of them: update({"gap.electrode": "4 um", "gap.contact": "2.4 um"})."""
-        self._native.change([_change(key, value) for key, value in dict(*others, **more).items()])
+        self._native.change([_change(self._native, key, value) for key, value in dict(*others, **more).items()])
 
     def _tree(self) -> Any:
         return json.loads(self._native.json)
@@ -432,7 +442,7 @@ def load(scene: str | os.PathLike[str], set: Mapping[str, Value] | None = None) 
     else:
         native = _softland.Scene.load(given)
     if set:
-        native.change([_change(key, value) for key, value in set.items()])
+        native.change([_change(native, key, value) for key, value in set.items()])
     else:
         native.check()
     return Scene(native)

@@ -24,6 +24,8 @@ class Scenes(unittest.TestCase):
         self.assertEqual(scene["gap.contact"], 2.2e-6)
         scene["gap.contact"] = np.float64(2.3e-6)
         self.assertEqual(scene["gap.contact"], 2.3e-6)
+        with self.assertRaisesRegex(softland.InvalidInput, "3 m"):  # a whole number counts in the SI unit as well
+            scene["gap.contact"] = 3
         scene["structure.modes"] = 6
         self.assertEqual(scene["structure.modes"], 6)
         scene["electrode.main.span"] = ["60 um", "200 um"]
