@@ -12,12 +12,14 @@
 #include <variant>
 
 #include "config/assumed_spread.h"
+#include "config/bench.h"
 #include "config/units.h"
 #include "model/mode_shapes.h"
 #include "model/motion_tape.h"
 #include "reports/accuracy_report.h"
 #include "reports/effects_report.h"
 #include "reports/files.h"
+#include "reports/fit_report.h"
 #include "reports/html.h"
 #include "reports/limit_report.h"
 #include "reports/measurement_report.h"
@@ -31,6 +33,7 @@
 #include "studies/certify.h"
 #include "studies/choices.h"
 #include "studies/effects.h"
+#include "studies/fitting/fit.h"
 #include "studies/limit.h"
 #include "studies/measurements.h"
 #include "studies/release.h"
@@ -354,6 +357,34 @@ Outcome calibrated(PyScene& scene, const std::map<std::string, double>& errors, 
           })};
 }
 
+Outcome fitted(PyScene& scene, const std::string& data, const std::vector<std::string>& unknowns,
+               const std::vector<std::string>& shared, const std::string& loss, std::optional<std::size_t> starts,
+               std::uint64_t seed, int jobs, std::string command, const py::object& progress) {
+  FitOptions options{.unknowns = unknowns, .shared = shared, .loss = named(losses, "loss", loss)};
+  if (starts) {
+    require(*starts >= 1, "starts: must be at least 1");
+    options.starts = *starts;
+  }
+  options.seed = seed;
+  options.jobs = jobs;
+  const Bench bench = load_bench(data);
+  const SceneFile file = scene.file;
+  Run run(progress);
+  return run([&](const Watch& watch) {
+    const auto found = std::make_shared<const Fit>(fit(file, bench, options, watch));
+    watch.throw_if_stopped();
+    Outcome outcome{
+        .json = json_text(fit_json(*found, {.command = command})),
+        .files = {{"fit.json", [found, command] { return json_text(fit_json(*found, {.command = command}), 1) + "\n"; }},
+                  {"fit.html", [found, command] { return fit_html(*found, {.command = command}); }}}};
+    if (found->found)
+      outcome.files["fitted.toml"] = [found, text = file.text(), name = file.name()] {
+        return fitted_text(*found, text, name, found->devices.front());
+      };
+    return outcome;
+  });
+}
+
 }  // namespace
 
 void bind_scene(py::module_& m) {
@@ -457,7 +488,8 @@ void bind_scene(py::module_& m) {
       .def("limit", &limit)
       .def("opening", &opening)
       .def("robustness", &judged)
-      .def("calibrate", &calibrated);
+      .def("calibrate", &calibrated)
+      .def("fit", &fitted);
 }
 
 }  // namespace softland::python

@@ -288,6 +288,28 @@ class Scene(MutableMapping[str, Any]):
         with shown(progress) as tell:
             return Outcome(self._native.calibrate(given, list(steps), samples, seed, _jobs(jobs), _command(), tell))
 
+    def fit(
+        self,
+        data: str | os.PathLike[str],
+        unknowns: Sequence[str] = (),
+        *,
+        shared: Sequence[str] = (),
+        loss: str = "huber",
+        starts: int | None = None,
+        seed: int = 1,
+        jobs: int | None = None,
+        progress: bool | Progress | None = None,
+    ) -> Outcome:
+        """The scene fitted to the measurements of a bench file (docs/fit.md): values with standard errors and correlations.
+
+        unknowns: entries of [spread], which are their priors, or keys of the scene; default: all of [spread]. shared: what all devices of the file have in
+        common. loss: how data that do not agree count. `found.file("fitted.toml")` is the scene found. Needs the Debian package libceres-dev.
+        """
+        with shown(progress) as tell:
+            return Outcome(
+                self._native.fit(os.fspath(data), list(unknowns), list(shared), loss, starts, seed, _jobs(jobs), _command(), tell)
+            )
+
     def optimize(
         self,
         *,

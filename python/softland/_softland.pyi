@@ -135,6 +135,18 @@ class Scene:
     def calibrate(
         self, errors: Mapping[str, float], steps: Sequence[float], samples: int, seed: int, jobs: int, command: str, progress: _Progress
     ) -> Outcome: ...
+    def fit(
+        self,
+        data: str,
+        unknowns: Sequence[str],
+        shared: Sequence[str],
+        loss: str,
+        starts: int | None,
+        seed: int,
+        jobs: int,
+        command: str,
+        progress: _Progress,
+    ) -> Outcome: ...
 
 class Evaluator:
     def __init__(

@@ -64,6 +64,21 @@ class Bits(unittest.TestCase):
             self.assertEqual([row[k] for row in own[1:]], [row[k] for row in other[1:]], other[0][k])
         self.assertGreater(compared, 10)
 
+    def test_a_fit(self):
+        path = SCENES / "mem-gold.toml"
+        with tempfile.TemporaryDirectory() as folder:
+            bench = pathlib.Path(folder) / "bench.toml"
+            bench.write_text('[[measurement]]\nquantity = "frequency"\nvalue = "40 kHz"\nerror = "0.1 %"\n')
+            options = ("--data", str(bench), "--unknown", "structure.thickness", "--out", str(pathlib.Path(folder) / "fit"))
+            ours = softland.load(path).fit(bench, ["structure.thickness"])
+            theirs = said_by_program("fit", path, *options)
+            self.assertEqual(figures(ours.to_json()).keys(), figures(theirs).keys())
+            self.assertEqual(ours["unknowns"][0].to_json(), theirs["unknowns"][0])
+            self.assertEqual(
+                softland.load(ours.file("fitted.toml"))["structure.thickness"],
+                softland.load(pathlib.Path(folder) / "fit" / "fitted.toml")["structure.thickness"],
+            )
+
     def test_a_search(self):
         path = SCENES / "mem-gold.toml"
         ours = softland.load(path).optimize(robust="none", budget=300, jobs=2).to_json()
