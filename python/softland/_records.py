@@ -134,7 +134,8 @@ def _lines(record: Record, depth: int = 0) -> Iterator[str]:
         elif isinstance(value, str) and len(value) > 200:
             yield "  " * depth + f"{name}: {value[:60]!r}..."
         else:
-            yield "  " * depth + f"{name}: {np.array2string(value, threshold=6) if isinstance(value, np.ndarray) else value!r}"
+            text = np.array2string(value, threshold=6) if isinstance(value, np.ndarray) else repr(value)
+            yield "  " * depth + f"{name}: {text}"
 
 
 def read(text: str) -> Record:
